@@ -35,6 +35,8 @@ pub(super) struct FramedLine {
 #[derive(Clone, Debug)]
 struct Node {
     device: Device,
+    /// What it does to the line in the window's first cycle, `None` where it does nothing, and what it hears then.
+    drives: Option<bool>,
     hears: bool,
     collides: bool,
 }
@@ -48,7 +50,7 @@ impl Node {
 
 impl FramedLine {
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
-        let node = |device| Node { device, hears: true, collides: false };
+        let node = |device| Node { device, drives: None, hears: true, collides: false };
         Self {
             line,
             host,
@@ -108,16 +110,15 @@ impl FramedLine {
             None => line.is_pulled_low(),
         };
         let (mut low, mut driving) = (0, 0);
-        for node in nodes.iter() {
-            let driven = node.device.driven();
-            low += u32::from(driven == Some(false));
-            driving += u32::from(driven.is_some());
+        for node in nodes.iter_mut() {
+            node.drives = node.device.driven();
+            low += u32::from(node.drives == Some(false));
+            driving += u32::from(node.drives.is_some());
         }
         for (index, node) in nodes.iter_mut().enumerate() {
-            let driven = node.device.driven();
-            let others_low = low - u32::from(driven == Some(false));
+            let others_low = low - u32::from(node.drives == Some(false));
             node.hears = line.heard(others_low == 0);
-            let met = driven.is_some() && (host_sends || driving > 1);
+            let met = node.drives.is_some() && (host_sends || driving > 1);
             collide(node, met, now, sinks.get_mut(index));
         }
         if let Some(host) = host {

@@ -38,7 +38,7 @@ impl RawReceiver {
 
     /// Whether nothing can change any more.
     pub(super) fn is_over(&self) -> bool {
-        self.device.at_rest() && self.line.is_over()
+        self.line.is_over() && self.device.at_rest()
     }
 
     /// Whether it has run the cycles before `end`.

@@ -166,7 +166,8 @@ impl Device {
         self.line = line;
         self.machine.transceiver.clock(now);
         let deaf = now == Instant::RESET || self.machine.transceiver.levels() & Levels::DE != 0;
-        let before = core::mem::replace(&mut self.rx, line || deaf);
+        let rx = line || deaf;
+        let before = core::mem::replace(&mut self.rx, rx);
         self.machine.sequencer.clock(now, sink);
         if let Framing::Raw(unpacker) = &mut self.framing
             && now == unpacker.deadline()
@@ -177,7 +178,7 @@ impl Device {
                 self.machine.fault(Faults::SHORT_PACKET);
             }
         }
-        match self.receiver.clock(now, before, self.rx) {
+        match self.receiver.clock(now, before, rx) {
             Some(RxEvent::Byte(byte)) => self.byte(byte, sink),
             Some(RxEvent::FramingError) => {
                 self.machine.fault(Faults::FRAMING);

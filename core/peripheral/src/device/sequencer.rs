@@ -269,20 +269,23 @@ impl Sequencer {
 
     /// The changes of the tick that runs, one after another: the inner loop of a long run.
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
-        let Some(mut running) = self.running else { return };
+        let Some(running) = &mut self.running else { return };
         let stop = until.min(running.end);
-        for Change { offset, lines } in self.plan.changes().get(running.next..).unwrap_or_default() {
+        let (mut next, mut now) = (running.next, self.lines);
+        self.deadline = running.end;
+        for Change { offset, lines } in self.plan.changes().get(next..).unwrap_or_default() {
             let cycle = running.c0 + Cycles(*offset);
             if cycle >= stop {
+                self.deadline = cycle.min(running.end);
                 break;
             }
-            running.next += 1;
-            if *lines != self.lines {
-                self.lines = *lines;
-                sink.record(Record { cycle, levels: Levels(base | u64::from(*lines)) });
+            next += 1;
+            if *lines != now {
+                now = *lines;
+                sink.record(Record { cycle, levels: Levels(base | u64::from(now)) });
             }
         }
-        self.go_on(running);
+        (running.next, self.lines) = (next, now);
     }
 }
 

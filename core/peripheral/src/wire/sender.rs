@@ -39,7 +39,6 @@ pub struct Sender {
     times: BitTimes,
     /// Where each bit of a byte begins.
     bit_starts: [u64; BYTE_BITS as usize],
-    level: bool,
     send: usize,
     byte: usize,
     byte_start: Instant,
@@ -48,6 +47,10 @@ pub struct Sender {
     /// 32 bits, though ten are used: x86-64 code loads a narrower number as 32 bits, and right after a narrower store
     /// that load waits for the cache, at every edge of a run.
     edges: u32,
+    /// The level: 0 or 1, and of 32 bits for the same reason.
+    level: u32,
+    /// Where the first of them is; [`Instant::NEVER`] without one.
+    next: Instant,
 }
 
 impl Sender {
@@ -59,11 +62,12 @@ impl Sender {
             schedule,
             times,
             bit_starts: core::array::from_fn(|k| times.bit(k as u64).0),
-            level: true,
             send: 0,
             byte: 0,
             byte_start: Instant::NEVER,
             edges: 0,
+            level: 1,
+            next: Instant::NEVER,
         };
         sender.load();
         sender
@@ -107,7 +111,7 @@ impl Sender {
     /// What is sent now.
     #[must_use]
     pub const fn level(&self) -> bool {
-        self.level
+        self.level != 0
     }
 
     /// Takes up the byte at (`send`, `byte`), or the first one after it.
@@ -119,31 +123,33 @@ impl Sender {
                 let frame = u32::from(byte) << 1 | 1 << 9;
                 self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
                 debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
+                self.next = self.byte_start;
                 return;
             }
             self.send += 1;
             self.byte = 0;
         }
         self.edges = 0;
+        self.next = Instant::NEVER;
     }
 
     /// Cycle of the next edge; [`Instant::NEVER`] without one.
     #[must_use]
-    pub fn next_edge(&self) -> Instant {
-        match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
-            Some(offset) => Instant(self.byte_start.0 + offset),
-            None => Instant::NEVER,
-        }
+    pub const fn next_edge(&self) -> Instant {
+        self.next
     }
 
     /// Enters the cycle of [`Self::next_edge`].
     pub fn pass(&mut self) {
         debug_assert!(self.edges != 0, "there is no edge to pass");
-        self.level = !self.level;
+        self.level ^= 1;
         self.edges &= self.edges.wrapping_sub(1);
-        if self.edges == 0 {
-            self.byte += 1;
-            self.load();
+        match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
+            Some(offset) => self.next = Instant(self.byte_start.0 + offset),
+            None => {
+                self.byte += 1;
+                self.load();
+            }
         }
     }
 }

@@ -7,8 +7,8 @@
 //! stop low: framing error; arms in the cycle after the first later one that is high
 //! ```
 //!
-//! The looks at data bits change nothing outside. They are made up for when the line changes or
-//! the stop bit is due, so that a byte costs as many events as it has edges, and two.
+//! Looks at data bits, and at a start bit while the line is low, change nothing outside. They are made up for when the
+//! line changes or the stop bit is due, so that a byte costs as many events as it has edges, and one.
 //!
 //! ```
 //! use stepscope_peripheral::{
@@ -28,7 +28,7 @@
 use crate::units::{Cycles, Instant};
 
 /// The stop bit's place in a byte.
-const STOP: u8 = 9;
+const STOP: u32 = 9;
 
 /// What the receiver heard in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,13 +56,15 @@ pub struct Receiver {
     state: State,
     /// Where the latest start bit was seen.
     seen: Instant,
-    /// While sampling: the bit that is looked at next (0 start, 1..=8 data, 9 stop), when, and the
-    /// data bits so far.
+    /// While sampling: the bit that is looked at next (0 start, 1..=8 data, 9 stop), when, and the bits so far, the
+    /// start bit lowest.
     ///
-    /// Invariant: the looks at the start bit and the stop bit are never made up for later.
-    bit: u8,
+    /// Invariant: a look at the stop bit, or at a start bit that is high, is never made up for later.
+    bit: u32,
     at: Instant,
-    byte: u8,
+    heard: u32,
+    /// While sampling: when the stop bit is looked at.
+    stop: Instant,
 }
 
 impl Receiver {
@@ -70,7 +72,15 @@ impl Receiver {
     #[must_use]
     pub const fn new(bit_cycles: Cycles) -> Self {
         let seen = Instant::RESET;
-        Self { bit_cycles, state: State::Armed, seen, bit: 0, at: Instant::NEVER, byte: 0 }
+        Self {
+            bit_cycles,
+            state: State::Armed,
+            seen,
+            bit: 0,
+            at: Instant::NEVER,
+            heard: 0,
+            stop: Instant::NEVER,
+        }
     }
 
     /// Where the latest start bit was seen.
@@ -80,13 +90,13 @@ impl Receiver {
     }
 
     /// Next cycle after `now` in which something comes of what the receiver does if the line stays
-    /// at `rx`: the look at the start bit or at the stop bit, or arming.
+    /// at `rx`: the look at a start bit that is none, the look at the stop bit, or arming.
     #[must_use]
     #[inline(always)]
     pub fn deadline(&self, now: Instant, rx: bool) -> Instant {
         match self.state {
-            State::Sampling if self.bit == 0 => self.at,
-            State::Sampling => self.at + Cycles(u64::from(STOP - self.bit) * self.bit_cycles.0),
+            State::Sampling if self.bit == 0 && rx && now < self.at => self.at,
+            State::Sampling => self.stop,
             State::Armed if !rx => now.next(),
             State::Broken if rx => now.next(),
             _ => Instant::NEVER,
@@ -102,13 +112,13 @@ impl Receiver {
                 self.seen = now;
                 self.state = State::Sampling;
                 self.at = now + Cycles(self.bit_cycles.0 / 2);
-                (self.bit, self.byte) = (0, 0);
+                self.stop = self.at + Cycles(u64::from(STOP) * self.bit_cycles.0);
+                (self.bit, self.heard) = (0, 0);
             }
             State::Broken if rx => self.state = State::Armed,
             State::Sampling => {
-                while self.at < now {
-                    debug_assert!(self.bit > 0, "the look at the start bit was left out");
-                    self.take(before);
+                if self.at < now {
+                    self.make_up(now, before);
                 }
                 if self.at == now {
                     return self.look(rx);
@@ -119,14 +129,18 @@ impl Receiver {
         None
     }
 
-    /// Takes the line's level for the bit that is due.
-    fn take(&mut self, rx: bool) {
-        debug_assert!(self.bit < STOP, "the look at the stop bit was left out");
-        if let Some(place) = self.bit.checked_sub(1) {
-            self.byte |= u8::from(rx).checked_shl(place.into()).unwrap_or(0);
+    /// The looks before `now`, while the line was at `rx`.
+    #[inline(always)]
+    fn make_up(&mut self, now: Instant, rx: bool) {
+        let (mut bit, mut at, mut heard) = (self.bit, self.at, self.heard);
+        while at < now {
+            debug_assert!(bit > 0 || !rx, "a start bit that is none was left out");
+            debug_assert!(bit < STOP, "the look at the stop bit was left out");
+            heard |= u32::from(rx).wrapping_shl(bit);
+            bit += 1;
+            at += self.bit_cycles;
         }
-        self.bit += 1;
-        self.at += self.bit_cycles;
+        (self.bit, self.at, self.heard) = (bit, at, heard);
     }
 
     /// The look that is due in this cycle.
@@ -135,13 +149,13 @@ impl Receiver {
             (0, true) => self.state = State::Armed,
             (STOP, true) => {
                 self.state = State::Armed;
-                return Some(RxEvent::Byte(self.byte));
+                return Some(RxEvent::Byte((self.heard >> 1) as u8));
             }
             (STOP, false) => {
                 self.state = State::Broken;
                 return Some(RxEvent::FramingError);
             }
-            _ => self.take(rx),
+            _ => self.make_up(self.at.next(), rx),
         }
         None
     }
@@ -177,6 +191,26 @@ mod tests {
         assert_eq!(heard(&[(10, 15), (16, 27)], 300), [(120, RxEvent::Byte(0xff))]);
         // Low again in the cycle of the look: the start bit holds, whatever was between.
         assert_eq!(heard(&[(10, 14), (15, 16)], 300), [(114, RxEvent::Byte(0xff))]);
+    }
+
+    #[test]
+    fn a_byte_is_due_at_its_edges_and_its_stop_bit_and_a_glitch_at_its_look() {
+        let mut receiver = Receiver::new(Cycles(11));
+        assert_eq!(receiver.deadline(Instant(9), true), Instant::NEVER);
+        assert_eq!(receiver.clock(Instant(10), true, false), None);
+        // Low, it will be a start bit; were it high from now on, the look at 15 would tell.
+        assert_eq!([false, true].map(|rx| receiver.deadline(Instant(10), rx).0), [114, 15]);
+        // The look has not been made up for: the line was low in it, whatever it is now.
+        assert_eq!([false, true].map(|rx| receiver.deadline(Instant(20), rx).0), [114, 114]);
+        assert_eq!(receiver.clock(Instant(21), false, true), None);
+        assert_eq!(receiver.deadline(Instant(21), true), Instant(114));
+        assert_eq!(receiver.clock(Instant(114), true, true), Some(RxEvent::Byte(0xff)));
+        // A glitch ends with its look and not with the stop bit that it would have had.
+        assert_eq!(receiver.clock(Instant(200), true, false), None);
+        assert_eq!(receiver.clock(Instant(203), false, true), None);
+        assert_eq!(receiver.deadline(Instant(203), true), Instant(205));
+        assert_eq!(receiver.clock(Instant(205), true, true), None);
+        assert_eq!(receiver.deadline(Instant(205), true), Instant::NEVER);
     }
 
     #[test]
