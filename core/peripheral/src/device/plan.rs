@@ -81,7 +81,7 @@ impl Plan {
 
     fn rebuild(&mut self) {
         let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
-        let right = tops(u128::from_le_bytes(self.commands));
+        let right = tops(halves(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
         self.changes.clear();
         if self.config.dir_line == DirLine::PerChannel {
@@ -185,57 +185,74 @@ fn channels(fires: u16) -> impl Iterator<Item = Lines> {
 /// `spread` fires in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M), h = floor(M/2): each
 /// channel keeps r = (k*c + h) mod M and fires if r >= M - c. `burst` fires if k < c.
 ///
-/// All channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
+/// Eight channels go side by side in one number, a byte each. r, c, k and M are at most 127: with bit
 /// 7 set beforehand a subtraction takes nothing from the byte above, and bit 7 is left where it
 /// did not go below 0.
 struct Firing {
-    /// c of each channel.
-    counts: u128,
-    /// r of each channel.
-    remainders: u128,
-    slots: u8,
+    /// c of each channel, and r.
+    counts: [u64; 2],
+    remainders: [u64; 2],
+    /// M in each byte.
+    slots: u64,
     distribution: Distribution,
 }
 
 /// A 1 in each byte.
-const ONES: u128 = u128::from_le_bytes([1; MAX_CHANNELS]);
+const ONES: u64 = u64::from_le_bytes([1; 8]);
 /// Bit 7 of each byte.
-const TOPS: u128 = ONES << 7;
+const TOPS: u64 = ONES << 7;
 // A byte of the numbers above has room for a count, and for bit 7.
-const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u128) == 0);
+const _: () = assert!(MAX_STEPS == 0x7f && TOPS & (ONES * MAX_STEPS as u64) == 0);
 
 impl Firing {
     fn new(counts: [u8; MAX_CHANNELS], slots: u8, distribution: Distribution) -> Self {
         debug_assert!((1..=MAX_STEPS).contains(&slots), "{slots} slots in a tick");
         debug_assert!(counts.iter().all(|&count| count <= slots), "{counts:?} in {slots} slots");
-        let remainders = u128::from_le_bytes([slots / 2; MAX_CHANNELS]);
-        Self { counts: u128::from_le_bytes(counts), remainders, slots, distribution }
+        let remainders = [u64::from(slots / 2) * ONES; 2];
+        Self { counts: halves(counts), remainders, slots: u64::from(slots) * ONES, distribution }
     }
 
     /// The channels that fire in slot `slot`; slots are asked for in order.
     fn slot(&mut self, slot: u8) -> u16 {
         match self.distribution {
             // c - (k + 1) >= 0
-            Distribution::Burst => tops((self.counts | TOPS) - (u128::from(slot) + 1) * ONES),
+            Distribution::Burst => {
+                let slot = (u64::from(slot) + 1) * ONES;
+                tops(self.counts.map(|counts| (counts | TOPS) - slot))
+            }
             // r - (M - c) >= 0, which then is the next r; that of the others is M more.
             Distribution::Spread => {
-                let slots = u128::from(self.slots);
-                let rest = (self.remainders | TOPS) - (slots * ONES - self.counts);
-                let fires = rest & TOPS;
-                self.remainders = rest - fires - ((fires ^ TOPS) >> 7) * (128 - slots);
-                tops(fires)
+                let [low, high] = self.counts;
+                let [first, second] = &mut self.remainders;
+                tops([Self::spread(first, low, self.slots), Self::spread(second, high, self.slots)])
             }
         }
     }
+
+    /// Goes on to the next slot; who fires has bit 7.
+    #[inline(always)]
+    const fn spread(remainders: &mut u64, counts: u64, slots: u64) -> u64 {
+        let rest = (*remainders | TOPS) - (slots - counts);
+        let rests = !rest & TOPS;
+        // M where none fires: the lower bits of those bytes are taken from it.
+        let more = (rests - (rests >> 7)) & slots;
+        *remainders = (rest + more) & !TOPS;
+        rest
+    }
+}
+
+/// Of channels 0 to 7, and of 8 to 15.
+fn halves(bytes: [u8; MAX_CHANNELS]) -> [u64; 2] {
+    let both = u128::from_le_bytes(bytes);
+    [both as u64, (both >> 64) as u64]
 }
 
 /// Bit i of the result is bit 7 of byte i.
 ///
-/// The multiplication moves byte i's bit to bit 56 + i of its half; no two of them meet.
-fn tops(bytes: u128) -> u16 {
-    let bits = bytes >> 7 & ONES;
-    let half = |bits: u64| (bits.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
-    half(bits as u64) | half((bits >> 64) as u64) << 8
+/// The multiplication moves byte i's bit to bit 56 + i; no two of them meet.
+fn tops([low, high]: [u64; 2]) -> u16 {
+    let half = |bytes: u64| ((bytes >> 7 & ONES).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u16;
+    half(low) | half(high) << 8
 }
 
 #[cfg(test)]
