@@ -10,6 +10,9 @@ import { dropDown } from "./popover.js";
 export function createPanel(button, panel, load, about) {
   /** @type {Content | null} */
   let content = null;
+  const place = byId(panel);
+  // What is typed before there is anyone to take it would be lost.
+  place.inert = true;
   const own = dropDown(button, panel, async () => {
     try {
       content ??= await load(own);
@@ -17,6 +20,7 @@ export function createPanel(button, panel, load, about) {
     } catch {
       byId(about).textContent = "This part of the page could not be loaded; try again when the network is there.";
     }
+    place.inert = false;
   });
   return {
     /** @param {State} state @param {State | undefined} before */

@@ -314,3 +314,33 @@ parameters! {
         pub motor: Option<Motor> = None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_is_requested_where_it_is_a_parameter() {
+        let point = |time_s| Point { time_s, position: 0.0 };
+        let points = vec![point(0.5), point(0.7), point(2.0)];
+        let rows = [
+            (Move::Cosine(Cosine { duration_s: 0.3, ..Cosine::default() }), Some(0.3)),
+            (Move::Ramps(Ramps { duration_s: 0.7, ..Ramps::default() }), Some(0.7)),
+            (Move::Sine(Sine { period_s: 0.5, periods: 3, ..Sine::default() }), Some(1.5)),
+            (
+                Move::SineSegments(SineSegments { period_s: 0.25, periods: 3, ..SineSegments::default() }),
+                Some(0.75),
+            ),
+            (Move::Points(Points { points, ..Points::default() }), Some(1.5)),
+            (Move::Points(Points { points: Vec::new(), ..Points::default() }), None),
+            (Move::Dwell(Dwell { duration_s: 0.25 }), Some(0.25)),
+            (Move::Trapezoid(Trapezoid::default()), None),
+            (Move::Staircase(Staircase::default()), None),
+            (Move::JerkLimited(JerkLimited::default()), None),
+            (Move::Constant(Constant::default()), None),
+        ];
+        for (given, requested_s) in rows {
+            assert_eq!(given.requested_s(), requested_s, "{given:?}");
+        }
+    }
+}

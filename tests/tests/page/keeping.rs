@@ -311,10 +311,11 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.open("").await?;
         page.fill(DISTANCE, "1234").await?;
         page.ready().await?;
+        // The panel's script comes after the panel, which takes nothing before that nobody would hear of.
+        assert!(page.eval::<bool>("document.getElementById('experiments-panel').inert").await?);
         page.click("#experiments").await?;
         page.until("document.getElementById('experiment-keep').offsetWidth > 0").await?;
-        // The panel's script comes after the panel; there is nothing to export yet.
-        page.until("document.getElementById('experiments-export').disabled").await?;
+        page.until("!document.getElementById('experiments-panel').inert").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("#experiment-new").await?;
