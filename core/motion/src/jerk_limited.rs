@@ -374,6 +374,27 @@ mod tests {
     ];
 
     #[test]
+    fn a_limit_out_of_its_range_is_refused_at_its_field() {
+        use crate::mechanics::{Acceleration, Distance, Jerk, Speed};
+        let speed = Speed::StepsPerSecond;
+        let (acceleration, jerk) = (Acceleration::StepsPerSecond2, Jerk::StepsPerSecond3);
+        let fits = moves::JerkLimited::default;
+        let rows = [
+            (moves::JerkLimited { distance: Distance::Steps(0.0), ..fits() }, "distance"),
+            (moves::JerkLimited { max_speed: speed(0.0), ..fits() }, "max_speed"),
+            (moves::JerkLimited { max_acceleration: acceleration(1e14), ..fits() }, "max_acceleration"),
+            (moves::JerkLimited { max_jerk: jerk(0.0), ..fits() }, "max_jerk"),
+            (moves::JerkLimited { max_jerk: jerk(1e20), ..fits() }, "max_jerk"),
+        ];
+        for (given, field) in rows {
+            let axis = moves::Axis { moves: vec![moves::Move::JerkLimited(given)], ..Default::default() };
+            let problems = crate::plan_axis(&axis, "x").expect_err(field);
+            let paths: Vec<&str> = problems.iter().map(|problem| problem.path.as_str()).collect();
+            assert_eq!(paths, [format!("x.moves[0].jerk_limited.{field}")]);
+        }
+    }
+
+    #[test]
     fn each_row_of_the_table_has_its_phases() {
         // Phases in s, peak speed.
         let rows = [

@@ -371,6 +371,25 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_least_speed_of_a_block_has_what_is_not_in_the_series() {
+        let mut straight = [0.0; TERMS];
+        straight[0] = 1.0;
+        let farthest: f64 = 1.01;
+        // Of the speed in the middle, 2*(2*farthest)^(TERMS + 1)*beyond/farthest is taken: a half.
+        let beyond = 0.25 * farthest / (2.0 * farthest).powi(TERMS as i32 + 1);
+        let (_, slope) = rest(&straight, beyond, &straight, 3.0);
+        assert!((slope - 0.5).abs() < 1e-9, "{slope}");
+        // A quarter is too little, and so is a way that is told for less than twice the block.
+        let mut bent = straight;
+        bent[1] = 0.375 / farthest;
+        assert_eq!(1.0 - 2.0 * bent[1] * farthest, 0.25);
+        assert_eq!(rest(&bent, 0.0, &straight, 3.0), (f64::INFINITY, 0.0));
+        assert_eq!(rest(&straight, beyond, &straight, 2.0), (f64::INFINITY, 0.0));
+        bent[1] = 0.374 / farthest;
+        assert!(rest(&bent, 0.0, &straight, 3.0).1 > 0.25);
+    }
+
     /// Holds the times of all steps to those that are searched for, and tells how many of them a block told.
     fn check(curve: &(impl Series + Curve + Copy), what: &str) -> u64 {
         let (count, clock) = (curve.steps().unsigned_abs(), 16e6);
