@@ -8,19 +8,29 @@ import { dropDown } from "./popover.js";
 
 /** @param {string} button @param {string} panel  Their ids. @param {(panel: Panel) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
 export function createPanel(button, panel, load, about) {
+  /** @type {Promise<Content> | null} */
+  let loading = null;
   /** @type {Content | null} */
   let content = null;
-  const place = byId(panel);
-  // What is typed before there is anyone to take it would be lost.
-  place.inert = true;
+  const word = byId(about);
+  // What is typed before there is anyone to take it would be lost. The panel itself is not inert: it would let clicks
+  // through, and nothing in it would be read out.
+  /** @type {HTMLElement[]} */
+  const parts = Array.from(byId(panel).querySelectorAll(":scope > *"));
+  const hold = (/** @type {boolean} */ held) => {
+    for (const part of parts) part.inert = held && !part.contains(word);
+  };
+  hold(true);
   const own = dropDown(button, panel, async () => {
     try {
-      content ??= await load(own);
+      loading ??= load(own);
+      content = await loading;
+      hold(false);
       content.opened();
     } catch {
-      byId(about).textContent = "This part of the page could not be loaded; try again when the network is there.";
+      loading = null;
+      word.textContent = "This part of the page could not be loaded; try again when the network is there.";
     }
-    place.inert = false;
   });
   return {
     /** @param {State} state @param {State | undefined} before */

@@ -377,7 +377,7 @@ mod tests {
         straight[0] = 1.0;
         let farthest: f64 = 1.01;
         // Of the speed in the middle, 2*(2*farthest)^(TERMS + 1)*beyond/farthest is taken: a half.
-        let beyond = 0.25 * farthest / (2.0 * farthest).powi(TERMS as i32 + 1);
+        let beyond = 0.25 * farthest / libm::pow(2.0 * farthest, (TERMS + 1) as f64);
         let (_, slope) = rest(&straight, beyond, &straight, 3.0);
         assert!((slope - 0.5).abs() < 1e-9, "{slope}");
         // A quarter is too little, and so is a way that is told for less than twice the block.

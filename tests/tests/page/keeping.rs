@@ -312,10 +312,11 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.fill(DISTANCE, "1234").await?;
         page.ready().await?;
         // The panel's script comes after the panel, which takes nothing before that nobody would hear of.
-        assert!(page.eval::<bool>("document.getElementById('experiments-panel').inert").await?);
+        assert!(page.eval::<bool>("!!document.getElementById('experiment-name').closest('[inert]')").await?);
         page.click("#experiments").await?;
         page.until("document.getElementById('experiment-keep').offsetWidth > 0").await?;
-        page.until("!document.getElementById('experiments-panel').inert").await?;
+        page.until("!document.getElementById('experiment-name').closest('[inert]')").await?;
+        page.until("document.getElementById('experiments-export').disabled").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("#experiment-new").await?;

@@ -558,4 +558,14 @@ mod tests {
         assert_eq!(cut.len(), 1);
         assert!(cut[0] >= 10, "{cut:?}");
     }
+
+    #[test]
+    fn an_entry_that_alone_reaches_the_end_is_kept_whatever_is_behind_it() {
+        let windows = two_rates();
+        let stretch = Stretch::new(EntryFormat::TICKS, 1, 0, &windows[..10]);
+        for more in [false, true] {
+            let pieces = stretch.pieces(more, &mut 1_000_000).unwrap();
+            assert_eq!(pieces.iter().map(|piece| piece.count).collect::<Vec<_>>(), [10], "{more}");
+        }
+    }
 }

@@ -47,10 +47,10 @@ pub struct Sender {
     /// 32 bits, though ten are used: x86-64 code loads a narrower number as 32 bits, and right after a narrower store
     /// that load waits for the cache, at every edge of a run.
     edges: u32,
-    /// The level: 0 or 1, and of 32 bits for the same reason.
-    level: u32,
     /// Where the first of them is; [`Instant::NEVER`] without one.
     next: Instant,
+    /// The level: 0 or 1, and of 32 bits for the same reason.
+    level: u32,
 }
 
 impl Sender {
@@ -66,8 +66,8 @@ impl Sender {
             byte: 0,
             byte_start: Instant::NEVER,
             edges: 0,
-            level: 1,
             next: Instant::NEVER,
+            level: 1,
         };
         sender.load();
         sender

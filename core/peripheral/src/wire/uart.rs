@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn a_byte_is_due_at_its_edges_and_its_stop_bit_and_a_glitch_at_its_look() {
         let mut receiver = Receiver::new(Cycles(11));
-        assert_eq!(receiver.deadline(Instant(9), true), Instant::NEVER);
+        assert_eq!([false, true].map(|rx| receiver.deadline(Instant(9), rx).0), [10, u64::MAX]);
         assert_eq!(receiver.clock(Instant(10), true, false), None);
         // Low, it will be a start bit; were it high from now on, the look at 15 would tell.
         assert_eq!([false, true].map(|rx| receiver.deadline(Instant(10), rx).0), [114, 15]);
@@ -210,7 +210,11 @@ mod tests {
         assert_eq!(receiver.clock(Instant(203), false, true), None);
         assert_eq!(receiver.deadline(Instant(203), true), Instant(205));
         assert_eq!(receiver.clock(Instant(205), true, true), None);
-        assert_eq!(receiver.deadline(Instant(205), true), Instant::NEVER);
+        assert_eq!([false, true].map(|rx| receiver.deadline(Instant(205), rx).0), [206, u64::MAX]);
+        // A line that stays low arms again once it is high.
+        assert_eq!(receiver.clock(Instant(300), true, false), None);
+        assert_eq!(receiver.clock(Instant(404), false, false), Some(RxEvent::FramingError));
+        assert_eq!([false, true].map(|rx| receiver.deadline(Instant(404), rx).0), [u64::MAX, 405]);
     }
 
     #[test]
