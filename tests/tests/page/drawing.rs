@@ -5,7 +5,11 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 
-use crate::{bench::in_browser, native::Known, session::Shown};
+use crate::{
+    bench::in_browser,
+    native::{DISTANCE, Known, with_distance},
+    session::Shown,
+};
 
 #[test]
 fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
@@ -53,6 +57,23 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         let note = page.text("#spectrum-note").await?;
         ensure!(note.contains("not periodic"), "one move has no distortion, and the note says so: {note}");
         Ok(())
+    })
+}
+
+#[test]
+fn the_strip_of_the_whole_run_is_made_when_it_is_shown_again() -> Result<()> {
+    const STRIP: &str = "document.getElementById('overview')";
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.ready().await?;
+        // As wide as before, and out of sight: it is asked for, and there is nothing to make.
+        page.eval::<String>(&format!("{STRIP}.style.height = '0'")).await?;
+        page.until(&format!("{STRIP}.clientHeight === 0")).await?;
+        page.fill(DISTANCE, "800").await?;
+        page.until_digest(&Known::of(&with_distance(800.0))?.digest).await?;
+        page.eval::<String>(&format!("{STRIP}.style.height = ''")).await?;
+        page.eventually("the strip", async || Ok((page.canvas("overview").await?.colours >= 2).then_some(())))
+            .await
     })
 }
 

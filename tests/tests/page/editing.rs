@@ -4,11 +4,10 @@ use anyhow::{Result, ensure};
 
 use crate::{
     bench::in_browser,
-    native::{Known, problems, with_distance},
+    native::{DISTANCE, Known, problems, with_distance},
     session::{CONTROL, RELEASE, SHIFT, field},
 };
 
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 const DURATION: &str = "source.motion.axes[0].moves[0].cosine.duration_s";
 const RAMP: &str = "source.motion.axes[0].moves[0].cosine.ramp_s";
 

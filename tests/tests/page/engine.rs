@@ -5,11 +5,9 @@ use serde_json::{Value, json};
 
 use crate::{
     bench::in_browser,
-    native::{Known, link_of, with_distance},
+    native::{DISTANCE, Known, link_of, with_distance},
     session::Session,
 };
-
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 #[test]
 fn without_webassembly_or_its_simd_the_page_says_so() -> Result<()> {

@@ -8,11 +8,9 @@ use stepscope_tests::golden::CASES;
 use crate::{
     bench::in_engine,
     browser::Browser,
-    native::{Known, with_distance},
+    native::{DISTANCE, Known, with_distance},
     session::Session,
 };
-
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// What a visitor does with the page, from its loading to the link that another visitor, who is given, opens.
 async fn main_job(page: Session) -> Result<Session> {

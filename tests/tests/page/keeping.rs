@@ -6,11 +6,10 @@ use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerA
 
 use crate::{
     bench::in_browser,
-    native::{Known, link_of, with_distance},
+    native::{DISTANCE, Known, link_of, with_distance},
     session::{ENTER, Session, field},
 };
 
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 const SAVED: &str = "localStorage.getItem('stepscope.scenario') ?? ''";
 
 #[test]

@@ -9,11 +9,9 @@ use stepscope_core::{
 
 use crate::{
     bench::in_browser,
-    native::{Known, with_distance},
+    native::{DISTANCE, Known, with_distance},
     session::Session,
 };
-
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// Opens Share, copies, and gives what is on the clipboard then.
 pub(crate) async fn copied(page: &Session) -> Result<String> {

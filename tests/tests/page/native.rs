@@ -61,6 +61,9 @@ pub(crate) fn link_of(json: &str) -> Result<String> {
     Ok(link::encode(&Scenario::from_json(json).map_err(listed)?)?)
 }
 
+/// The path of the default motion's distance, which its field has.
+pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
+
 /// The default motion with another distance in steps.
 pub(crate) fn with_distance(steps: f64) -> String {
     format!(

@@ -6,12 +6,11 @@ use anyhow::{Context, Result, ensure};
 
 use crate::{
     bench::{dist, in_browser_at, in_browser_that_keeps},
-    native::{Known, with_distance},
+    native::{DISTANCE, Known, with_distance},
     programs::{Folder, Program},
     session::Session,
 };
 
-const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 const BUILD: &str = "const build = { id: \"";
 
 /// Waits until all files of the build are on the device.

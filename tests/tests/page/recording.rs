@@ -26,7 +26,7 @@ use crate::{
     cursors,
     exchange::drop_file,
     keyboard::{DOWN, go, key},
-    native::{Known, with_distance},
+    native::{DISTANCE, Known, with_distance},
     reflow,
     session::{CONTROL, ENTER, SHIFT, Session, field},
 };
@@ -46,7 +46,6 @@ pub(crate) const SHOW: &str = "dialog.recording button.main";
 /// It can be shown.
 pub(crate) const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
 pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
-pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
 pub(crate) fn cosine() -> String {

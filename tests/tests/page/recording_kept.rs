@@ -9,8 +9,8 @@ use tokio::time::sleep;
 
 use crate::{
     bench::in_browser,
-    native::{Known, with_distance},
-    recording::{CLOSED, DISTANCE, MESSAGE, READY, SHOW, choose_file, digest, natively},
+    native::{DISTANCE, Known, with_distance},
+    recording::{CLOSED, MESSAGE, READY, SHOW, choose_file, digest, natively},
     session::Session,
 };
 

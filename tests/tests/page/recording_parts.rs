@@ -10,10 +10,8 @@ use tokio::time::sleep;
 
 use crate::{
     bench::in_browser,
-    native::{Known, with_distance},
-    recording::{
-        CLOSED, DISTANCE, MESSAGE, READY, SHOW, choose_file, cosine, digest, natively, says, type_into,
-    },
+    native::{DISTANCE, Known, with_distance},
+    recording::{CLOSED, MESSAGE, READY, SHOW, choose_file, cosine, digest, natively, says, type_into},
     session::{CONTROL, Session},
 };
 

@@ -23,10 +23,9 @@ use stepscope_core::{
 use crate::{
     bench::in_browser,
     cursors,
-    native::{Known, with_distance},
+    native::{DISTANCE, Known, with_distance},
     recording::{
-        CLOSED, DISTANCE, MESSAGE, READY, SHOW, choose_file, cosine, digest, natively, saleae, says,
-        type_into,
+        CLOSED, MESSAGE, READY, SHOW, choose_file, cosine, digest, natively, saleae, says, type_into,
     },
     session::{ENTER, RELEASE, SHIFT, Session},
 };

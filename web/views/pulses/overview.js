@@ -112,11 +112,13 @@ export function createOverview({ engine, dispatch, now }) {
     if (!state.result || canvas.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round((canvas.clientWidth - GUTTER - MARGIN) * ratio()));
     const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
-    if (!answer) return;
+    const height = Math.round(canvas.clientHeight * ratio());
+    // Where it was hidden meanwhile it is made when it is shown again.
+    if (!answer || height === 0) return;
     whole = answer;
     const context = strip.getContext("2d");
-    [strip.width, strip.height] = [wanted, Math.round(canvas.clientHeight * ratio())];
-    if (context) paintOverview(context, answer, { left: 0, height: strip.height });
+    [strip.width, strip.height] = [wanted, height];
+    if (context) paintOverview(context, answer, { left: 0, height });
     paint(now());
   }
 
