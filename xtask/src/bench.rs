@@ -11,6 +11,7 @@
 //! With `--against` the blocks of an earlier commit stand between those of the tree, in a clone of its own.
 
 mod page;
+mod readme;
 mod table;
 
 use std::fs::File;
@@ -28,6 +29,9 @@ use table::{Block, Estimate, Report};
 /// The crate of the kernels, from the workspace's folder.
 const FOLDER: &str = "tests/bench";
 const PACKAGE: &str = "stepscope-bench";
+
+/// The figures of a run, beside what is made of the kernels.
+const RESULTS: &str = "results.json";
 
 /// How long to measure.
 struct Effort {
@@ -111,10 +115,15 @@ pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
 
 /// Keeps what was measured, for whoever goes on with it.
 fn keep(home: &Path, json: &str) -> Result<()> {
-    let path = home.join("results.json");
+    let path = home.join(RESULTS);
     std::fs::write(&path, json).with_context(|| format!("{} can't be written", path.display()))?;
     println!("As JSON: {}", path.strip_prefix(root()).unwrap_or(&path).display());
     Ok(())
+}
+
+/// Writes README's table, of the figures of the last run.
+pub(crate) fn readme() -> Result<()> {
+    readme::write()
 }
 
 /// Sources whose kernels are measured.

@@ -116,6 +116,9 @@ enum Task {
         /// Measure `stepscope serve` alone: how late its replies are, its load, its memory over a day of session
         #[arg(long, conflicts_with_all = ["quick", "against", "page"])]
         live: bool,
+        /// Write README's table, of what was measured last
+        #[arg(long, conflicts_with_all = ["quick", "against", "page", "live"])]
+        readme: bool,
         /// Measure the kernels of this commit in the same blocks, and print what they have become
         #[arg(long, value_name = "REV")]
         against: Option<String>,
@@ -204,6 +207,7 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
+        Task::Bench { readme: true, .. } => bench::readme(),
         Task::Bench { page: true, .. } => bench::page(None).await,
         Task::Bench { live: true, .. } => bench::live().await,
         Task::Bench { quick, against: Some(rev), .. } => bench::against(quick, &rev).await,

@@ -129,6 +129,8 @@ pub enum Kernel {
 pub struct Facts {
     /// Its name, fit for a file.
     pub name: &'static str,
+    /// What it does, for who reads its speed.
+    pub what: &'static str,
     /// What it makes.
     pub unit: &'static str,
     /// What its speed is compared with.
@@ -201,6 +203,7 @@ impl Kernel {
     pub const fn facts(self) -> Facts {
         let plain = Facts {
             name: "",
+            what: "",
             unit: "records",
             yardstick: None,
             aim: None,
@@ -213,73 +216,186 @@ impl Kernel {
         let motor_steps = Facts { unit: "motor_steps", in_browser: true, ..plain };
         let plant = Facts { yardstick: Some(Self::SineCosine), aim: Some(0.125), ..motor_steps };
         match self {
-            Self::Write => Facts { name: "plain_write", in_browser: true, ..plain },
-            Self::Copy => Facts { name: "plain_copy", in_browser: true, ..plain },
+            Self::Write => Facts {
+                name: "plain_write",
+                what: "as many records, made of a counter",
+                in_browser: true,
+                ..plain
+            },
+            Self::Copy => Facts {
+                name: "plain_copy",
+                what: "the same records, copied in memory",
+                in_browser: true,
+                ..plain
+            },
             Self::Stored => Facts {
                 name: "stored_trace",
+                what: "16 channels at 100 kHz into a stored trace, 12 edges a record",
                 aim: Some(1.0 / 6.0),
                 in_browser: true,
                 browser_aim: Some(0.6),
                 ..run
             },
-            Self::Digest => Facts { name: "digest", in_browser: true, browser_aim: Some(0.6), ..run },
-            Self::VariedStored => Facts { name: "varied_stored_trace", in_browser: true, ..run },
-            Self::VariedDigest => Facts { name: "varied_digest", ..run },
-            Self::CommonDir => Facts { name: "common_dir", ..run },
-            Self::Staggered => Facts { name: "staggered", ..run },
-            Self::Framed => Facts { name: "framed", ..run },
-            Self::Segments => Facts { name: "segments", ..run },
-            Self::SegmentsApart => Facts { name: "segments_apart", aim: Some(0.1), ..run },
-            Self::Motors16 => Facts { name: "motors_16", ..run },
-            Self::Motors512 => {
-                Facts { name: "motors_512", yardstick: Some(Self::Motors16), aim: Some(0.8), ..plain }
+            Self::Digest => Facts {
+                name: "digest",
+                what: "the same into a digest",
+                in_browser: true,
+                browser_aim: Some(0.6),
+                ..run
+            },
+            Self::VariedStored => Facts {
+                name: "varied_stored_trace",
+                what: "every tick orders something else: into a stored trace",
+                in_browser: true,
+                ..run
+            },
+            Self::VariedDigest => Facts { name: "varied_digest", what: "the same into a digest", ..run },
+            Self::CommonDir => {
+                Facts { name: "common_dir", what: "one DIR line for all channels, at 10 kHz", ..run }
             }
-            Self::Clock16 => Facts { name: "clock_16_mhz", ..plain },
-            Self::Clock1 => Facts { name: "clock_1_mhz", ..clock },
-            Self::Clock200 => Facts { name: "clock_200_mhz", ..clock },
-            Self::ClockByClock => Facts { name: "clock_by_clock", ..plain },
-            Self::Fast => Facts { name: "fast_speed", yardstick: Some(Self::ClockByClock), ..plain },
-            Self::Roots => Facts { name: "square_roots", ..steps },
+            Self::Staggered => {
+                Facts { name: "staggered", what: "the same with pulses one after another", ..run }
+            }
+            Self::Framed => Facts {
+                name: "framed",
+                what: "the framed protocol, with a host that waits for replies",
+                ..run
+            },
+            Self::Segments => {
+                Facts { name: "segments", what: "16 lists of segments at 100 kHz, 16 edges a record", ..run }
+            }
+            Self::SegmentsApart => Facts {
+                name: "segments_apart",
+                what: "the same, every edge alone in its record",
+                aim: Some(0.1),
+                ..run
+            },
+            Self::Motors16 => Facts {
+                name: "motors_16",
+                what: "16 motors, alone on a line with the packets for 512",
+                ..run
+            },
+            Self::Motors512 => Facts {
+                name: "motors_512",
+                what: "512 motors: 32 controllers on one line",
+                yardstick: Some(Self::Motors16),
+                aim: Some(0.8),
+                ..plain
+            },
+            Self::Clock16 => Facts {
+                name: "clock_16_mhz",
+                what: "a motion that is the same at every clock, at 16 MHz",
+                ..plain
+            },
+            Self::Clock1 => Facts {
+                name: "clock_1_mhz",
+                what: "a motion that is the same at every clock, at 1 MHz",
+                ..clock
+            },
+            Self::Clock200 => Facts { name: "clock_200_mhz", what: "the same at 200 MHz", ..clock },
+            Self::ClockByClock => {
+                Facts { name: "clock_by_clock", what: "a short motion clock by clock", ..plain }
+            }
+            Self::Fast => Facts {
+                name: "fast_speed",
+                what: "a short motion from event to event",
+                yardstick: Some(Self::ClockByClock),
+                ..plain
+            },
+            Self::Roots => Facts { name: "square_roots", what: "one square root a step", ..steps },
             Self::StepTimes => Facts {
                 name: "step_times",
+                what: "the cycles of a trapezoid's steps",
                 yardstick: Some(Self::Roots),
                 aim: Some(0.5),
                 browser_aim: Some(0.6),
                 ..steps
             },
-            Self::Exact => Facts { name: "exact_list", yardstick: Some(Self::Roots), ..steps },
-            Self::Compressed => Facts { name: "compressed", yardstick: Some(Self::Roots), ..steps },
+            Self::Exact => Facts {
+                name: "exact_list",
+                what: "planned, and kept as the smallest list without error",
+                yardstick: Some(Self::Roots),
+                ..steps
+            },
+            Self::Compressed => Facts {
+                name: "compressed",
+                what: "compressed to 25 us, by the quick search",
+                yardstick: Some(Self::Roots),
+                ..steps
+            },
             // Klipper's step compression has 0.075 of such a loop.
-            Self::CompressedKlipper => {
-                Facts { name: "compressed_klipper", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            Self::CompressedKlipper => Facts {
+                name: "compressed_klipper",
+                what: "the same in Klipper's window and widths",
+                yardstick: Some(Self::Roots),
+                aim: Some(0.075),
+                ..steps
+            },
+            Self::PlannedCompressed => Facts {
+                name: "planned_compressed",
+                what: "planned and compressed, in 1/65536 of a cycle",
+                yardstick: Some(Self::Roots),
+                aim: Some(0.075),
+                ..steps
+            },
+            Self::PlannedTicks => Facts {
+                name: "planned_ticks",
+                what: "planned and compressed, in whole cycles",
+                yardstick: Some(Self::Roots),
+                aim: Some(0.075),
+                ..steps
+            },
+            Self::PlannedQ8 => Facts {
+                name: "planned_q8",
+                what: "planned and compressed, in 1/256 of a cycle",
+                yardstick: Some(Self::Roots),
+                aim: Some(0.075),
+                ..steps
+            },
+            Self::Document => Facts {
+                name: "document_table",
+                what: "the table of the trapezoid's document, and how far its steps are from it",
+                yardstick: Some(Self::Roots),
+                ..steps
+            },
+            Self::Plan(planner) => {
+                Facts { name: planner.name(), what: planner.what(), yardstick: Some(Self::Roots), ..steps }
             }
-            Self::PlannedCompressed => {
-                Facts { name: "planned_compressed", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
+            Self::Optimum(segments) => {
+                let (name, what) = match segments {
+                    3 => ("optimum_3_segments", "the vertices of least distortion, three segments a quarter"),
+                    4 => ("optimum_4_segments", "the same, four segments a quarter"),
+                    5 => ("optimum_5_segments", "the same, five segments a quarter"),
+                    _ => ("optimum_6_segments", "the same, six segments a quarter"),
+                };
+                Facts { name, what, unit: "optima", in_browser: true, ..plain }
             }
-            Self::PlannedTicks => {
-                Facts { name: "planned_ticks", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
-            }
-            Self::PlannedQ8 => {
-                Facts { name: "planned_q8", yardstick: Some(Self::Roots), aim: Some(0.075), ..steps }
-            }
-            Self::Document => Facts { name: "document_table", yardstick: Some(Self::Roots), ..steps },
-            Self::Plan(planner) => Facts { name: planner.name(), yardstick: Some(Self::Roots), ..steps },
-            Self::Optimum(segments) => Facts {
-                name: match segments {
-                    3 => "optimum_3_segments",
-                    4 => "optimum_4_segments",
-                    5 => "optimum_5_segments",
-                    _ => "optimum_6_segments",
-                },
-                unit: "optima",
+            Self::Sweep => Facts {
+                name: "sweep_500_rows",
+                what: "a sweep of d1 in 500 rows, as figure 4 of the sine document",
+                unit: "rows",
                 in_browser: true,
                 ..plain
             },
-            Self::Sweep => Facts { name: "sweep_500_rows", unit: "rows", in_browser: true, ..plain },
-            Self::SineCosine => Facts { name: "sine_cosine", ..motor_steps },
-            Self::PlantAveraged => Facts { name: "plant_averaged", ..plant },
-            Self::PlantChopper => Facts { name: "plant_chopper", ..plant },
-            Self::PlantRun => Facts { name: "plant_run", aim: None, ..plant },
+            Self::SineCosine => Facts {
+                name: "sine_cosine",
+                what: "sine and cosine by the plant's polynomials",
+                ..motor_steps
+            },
+            Self::PlantAveraged => {
+                Facts { name: "plant_averaged", what: "16 motors of a plant at steps of 5 us", ..plant }
+            }
+            Self::PlantChopper => Facts {
+                name: "plant_chopper",
+                what: "the same with drivers that chop, at steps of 1 us",
+                ..plant
+            },
+            Self::PlantRun => Facts {
+                name: "plant_run",
+                what: "the first with its run and all its measures",
+                aim: None,
+                ..plant
+            },
         }
     }
 }

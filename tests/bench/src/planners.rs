@@ -121,6 +121,27 @@ impl Planner {
         self.row().0
     }
 
+    /// What it plans.
+    #[must_use]
+    pub const fn what(self) -> &'static str {
+        match self {
+            Self::TrapezoidTable => "every step of a trapezoid, by the document's table",
+            Self::TrapezoidExact => "every step of a trapezoid, by the ideal curve",
+            Self::Staircase => "every step of a staircase",
+            Self::Cosine => "every step of cosine ramps",
+            Self::Sliced => "every step of cosine ramps in slices",
+            Self::Sigmoid => "every step of sigmoid ramps",
+            Self::Bezier => "every step of Bezier ramps",
+            Self::Straight => "every step of straight ramps",
+            Self::Exponential => "every step of exponential ramps",
+            Self::SineSegments => "every step of a sine by segments",
+            Self::Sine => "every step of a sine",
+            Self::JerkLimited => "every step of a jerk-limited move",
+            Self::Points => "every step of a smooth curve through points",
+            Self::Constant => "every step at a constant rate",
+        }
+    }
+
     /// Its move, planned.
     ///
     /// # Errors

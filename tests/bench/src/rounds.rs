@@ -11,6 +11,8 @@ use crate::kernels::{Kernel, Kernels};
 pub struct Report {
     /// The kernel.
     pub name: &'static str,
+    /// What it does.
+    pub what: &'static str,
     /// What it makes.
     pub unit: &'static str,
     /// How many a call.
@@ -51,6 +53,7 @@ fn report(kernels: &mut Kernels, kernel: Kernel) -> Report {
     let (work, facts) = (kernels.work(kernel), kernel.facts());
     Report {
         name: facts.name,
+        what: facts.what,
         unit: facts.unit,
         units: work.units,
         edges: work.edges,

@@ -8,6 +8,9 @@ use serde_json::Value;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Report {
     name: String,
+    /// What it does; empty in a commit whose kernels do not say so.
+    #[serde(default)]
+    what: String,
     /// What a call makes, and how many.
     unit: String,
     units: u64,
@@ -64,7 +67,7 @@ impl Estimate {
 }
 
 /// A ratio of speeds over all blocks.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 struct Ratio {
     median: f64,
     /// Median absolute deviation.
@@ -146,41 +149,69 @@ fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
     [of(|block| &block.native), of(|block| &block.browser)]
 }
 
+/// A kernel in `results.json`.
+#[derive(Deserialize, Serialize)]
+struct Kernel {
+    name: String,
+    what: String,
+    unit: String,
+    /// Native speed in parts of its yardstick's.
+    of_yardstick: Option<Ratio>,
+    yardstick: Option<String>,
+    /// Speed in the browser in parts of the native one, if it is measured there.
+    of_native: Option<Ratio>,
+    /// Speeds in parts of those before.
+    native_of_before: Option<Ratio>,
+    browser_of_before: Option<Ratio>,
+}
+
+/// The kernels of `results.json` that are compared with anything, as a table in Markdown.
+pub(super) fn markdown(results: &str) -> Result<String> {
+    #[derive(Deserialize)]
+    struct Results {
+        kernels: Vec<Kernel>,
+    }
+    let Results { kernels } = serde_json::from_str(results).context("these are no results of a bench")?;
+    let mut lines = vec![
+        "| kernel | what it does | speed, native | in the browser, of native |".to_owned(),
+        "| --- | --- | --- | --- |".to_owned(),
+    ];
+    for Kernel { name, what, of_yardstick, yardstick, of_native, .. } in kernels {
+        if of_yardstick.is_none() && of_native.is_none() {
+            continue;
+        }
+        let native = of_yardstick.zip(yardstick);
+        let native = native.map(|(ratio, yardstick)| format!("{} of `{yardstick}`", ratio.print()));
+        let browser = of_native.map(Ratio::print);
+        let [native, browser] = [native, browser].map(|cell| cell.unwrap_or_else(|| "–".to_owned()));
+        lines.push(format!("| `{name}` | {what} | {native} | {browser} |"));
+    }
+    Ok(lines.join("\n") + "\n")
+}
+
 /// All that was measured, and the ratios of each kernel, as JSON, with the page's own figures as `page` where there are some.
 pub(super) fn json(blocks: &[Block], before: Option<&[Block]>, page: Option<Value>) -> Result<String> {
     #[derive(Serialize)]
-    struct Kernel<'b> {
-        name: &'b str,
-        unit: &'b str,
-        /// Native speed in parts of its yardstick's.
-        of_yardstick: Option<Ratio>,
-        yardstick: Option<&'b str>,
-        /// Speed in the browser in parts of the native one, if it is measured there.
-        of_native: Option<Ratio>,
-        /// Speeds in parts of those before.
-        native_of_before: Option<Ratio>,
-        browser_of_before: Option<Ratio>,
-    }
-    #[derive(Serialize)]
     struct Results<'b> {
-        kernels: Vec<Kernel<'b>>,
+        kernels: Vec<Kernel>,
         blocks: &'b [Block],
         before: Option<&'b [Block]>,
         page: Option<Value>,
     }
     let first = blocks.first().context("nothing was measured")?;
     let kernels = first.native.iter().map(|report| {
-        let Report { name, unit, yardstick, .. } = report;
+        let Report { name, what, unit, yardstick, .. } = report;
         let of_yardstick = yardstick.as_ref().map(|yardstick| {
             ratio(blocks, |block| Ok((find(&block.native, name)?, find(&block.native, yardstick)?)))
         });
         let [native_of_before, browser_of_before] =
             before.map_or([None; 2], |before| both(blocks, before, name));
         Ok(Kernel {
-            name,
-            unit,
+            name: name.clone(),
+            what: what.clone(),
+            unit: unit.clone(),
             of_yardstick: of_yardstick.transpose()?,
-            yardstick: yardstick.as_deref(),
+            yardstick: yardstick.clone(),
             of_native: ratio(blocks, |block| Ok((find(&block.browser, name)?, find(&block.native, name)?)))
                 .ok(),
             native_of_before,
@@ -279,6 +310,7 @@ mod tests {
     fn report(name: &str, yardstick: Option<&str>, seconds: &[f64]) -> Report {
         Report {
             name: name.to_owned(),
+            what: format!("a {name}"),
             unit: "records".to_owned(),
             units: 1000,
             edges: Some(4000),
@@ -335,6 +367,27 @@ mod tests {
         assert_eq!(json["kernels"][0]["native_of_before"]["median"], 0.75);
         assert_eq!(json["kernels"][1]["browser_of_before"], Value::Null);
         assert_eq!(json["before"][0]["native"][0]["seconds"][0], 0.001);
+    }
+
+    #[test]
+    fn the_table_in_markdown_has_what_is_compared_with_anything() {
+        let native = vec![
+            report("copy", None, &[0.001]),
+            report("trace", Some("copy"), &[0.004]),
+            report("digest", Some("copy"), &[0.002]),
+            report("page", None, &[0.001]),
+        ];
+        let browser = vec![report("trace", Some("copy"), &[0.008]), report("page", None, &[0.002])];
+        let results = json(&[Block { native, browser }], None, None).unwrap();
+        let table = markdown(&results).unwrap();
+        let rows: Vec<&str> = table.lines().skip(2).collect();
+        let expected = [
+            "| `trace` | a trace | 0.250 ± 0.000 of `copy` | 0.500 ± 0.000 |",
+            "| `digest` | a digest | 0.500 ± 0.000 of `copy` | – |",
+            "| `page` | a page | – | 0.500 ± 0.000 |",
+        ];
+        assert_eq!(rows, expected);
+        assert!(markdown("{}").is_err());
     }
 
     #[test]

@@ -1,0 +1,65 @@
+//! `cargo xtask bench --readme`: the table in README, of what was measured last. Nobody types its numbers.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use super::{RESULTS, table};
+use crate::root;
+
+/// Between these two lines stands the table.
+const BEGIN: &str = "<!-- Made by `cargo xtask bench --readme`: begin. -->\n";
+const END: &str = "<!-- End. -->\n";
+
+/// Writes the table of the last results.
+pub(super) fn write() -> Result<()> {
+    let results = root().join("target").join("bench").join(RESULTS);
+    let text = std::fs::read_to_string(&results).with_context(|| {
+        format!("{} can't be read; `cargo xtask bench` makes it, alone or with --quick", shown(&results))
+    })?;
+    let table =
+        table::markdown(&text).with_context(|| format!("{} is not what it should be", shown(&results)))?;
+    let readme = root().join("README.md");
+    let before =
+        std::fs::read_to_string(&readme).with_context(|| format!("{} can't be read", shown(&readme)))?;
+    std::fs::write(&readme, with(&before, &table)?)
+        .with_context(|| format!("{} can't be written", shown(&readme)))
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).display().to_string()
+}
+
+/// The text with this table in the place of its own.
+fn with(text: &str, table: &str) -> Result<String> {
+    let parts = text.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
+    let Some((head, tail)) = parts else {
+        bail!(
+            "README.md has no place for the table: a line {:?} and, after it, a line {:?}",
+            BEGIN.trim(),
+            END.trim()
+        )
+    };
+    Ok([head, BEGIN, "\n", table, "\n", END, tail].concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_takes_the_place_of_the_one_before_and_all_else_stays() {
+        let text = format!("a\n{BEGIN}\n| old |\n\n{END}b\n");
+        let once = with(&text, "| new |\n").unwrap();
+        assert_eq!(once, format!("a\n{BEGIN}\n| new |\n\n{END}b\n"));
+        assert_eq!(with(&once, "| new |\n").unwrap(), once);
+        assert!(with("a\nb\n", "").is_err());
+    }
+
+    #[test]
+    fn readme_has_a_place_for_it() {
+        let text = std::fs::read_to_string(root().join("README.md")).unwrap();
+        assert_eq!((text.matches(BEGIN).count(), text.matches(END).count()), (1, 1));
+        assert!(with(&text, "| kernel |\n").is_ok());
+    }
+}
