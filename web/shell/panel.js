@@ -25,12 +25,13 @@ export function createPanel(button, panel, load, about) {
     try {
       loading ??= load(own);
       content = await loading;
-      hold(false);
-      content.opened();
     } catch {
       loading = null;
       word.textContent = "This part of the page could not be loaded; try again when the network is there.";
+      return;
     }
+    hold(false);
+    content.opened();
   });
   return {
     /** @param {State} state @param {State | undefined} before */

@@ -218,13 +218,13 @@ impl Kernel {
         match self {
             Self::Write => Facts {
                 name: "plain_write",
-                what: "as many records, made of a counter",
+                what: "as many records as of `stored_trace`, made of a counter",
                 in_browser: true,
                 ..plain
             },
             Self::Copy => Facts {
                 name: "plain_copy",
-                what: "the same records, copied in memory",
+                what: "the records of `stored_trace`, copied in memory",
                 in_browser: true,
                 ..plain
             },
@@ -238,7 +238,7 @@ impl Kernel {
             },
             Self::Digest => Facts {
                 name: "digest",
-                what: "the same into a digest",
+                what: "the same motion into a digest",
                 in_browser: true,
                 browser_aim: Some(0.6),
                 ..run
@@ -249,12 +249,16 @@ impl Kernel {
                 in_browser: true,
                 ..run
             },
-            Self::VariedDigest => Facts { name: "varied_digest", what: "the same into a digest", ..run },
+            Self::VariedDigest => Facts {
+                name: "varied_digest",
+                what: "every tick orders something else: into a digest",
+                ..run
+            },
             Self::CommonDir => {
-                Facts { name: "common_dir", what: "one DIR line for all channels, at 10 kHz", ..run }
+                Facts { name: "common_dir", what: "16 channels at 10 kHz with one DIR line for all", ..run }
             }
             Self::Staggered => {
-                Facts { name: "staggered", what: "the same with pulses one after another", ..run }
+                Facts { name: "staggered", what: "16 channels at 10 kHz, pulses one after another", ..run }
             }
             Self::Framed => Facts {
                 name: "framed",
@@ -266,7 +270,7 @@ impl Kernel {
             }
             Self::SegmentsApart => Facts {
                 name: "segments_apart",
-                what: "the same, every edge alone in its record",
+                what: "16 lists of segments, every edge alone in its record",
                 aim: Some(0.1),
                 ..run
             },
@@ -287,11 +291,7 @@ impl Kernel {
                 what: "a motion that is the same at every clock, at 16 MHz",
                 ..plain
             },
-            Self::Clock1 => Facts {
-                name: "clock_1_mhz",
-                what: "a motion that is the same at every clock, at 1 MHz",
-                ..clock
-            },
+            Self::Clock1 => Facts { name: "clock_1_mhz", what: "the same at 1 MHz", ..clock },
             Self::Clock200 => Facts { name: "clock_200_mhz", what: "the same at 200 MHz", ..clock },
             Self::ClockByClock => {
                 Facts { name: "clock_by_clock", what: "a short motion clock by clock", ..plain }
@@ -326,7 +326,7 @@ impl Kernel {
             // Klipper's step compression has 0.075 of such a loop.
             Self::CompressedKlipper => Facts {
                 name: "compressed_klipper",
-                what: "the same in Klipper's window and widths",
+                what: "`compressed` in Klipper's window and widths",
                 yardstick: Some(Self::Roots),
                 aim: Some(0.075),
                 ..steps
@@ -363,10 +363,13 @@ impl Kernel {
             }
             Self::Optimum(segments) => {
                 let (name, what) = match segments {
-                    3 => ("optimum_3_segments", "the vertices of least distortion, three segments a quarter"),
-                    4 => ("optimum_4_segments", "the same, four segments a quarter"),
-                    5 => ("optimum_5_segments", "the same, five segments a quarter"),
-                    _ => ("optimum_6_segments", "the same, six segments a quarter"),
+                    3 => (
+                        "optimum_3_segments",
+                        "the vertices of least distortion, by three segments a quarter",
+                    ),
+                    4 => ("optimum_4_segments", "the same, by four segments a quarter"),
+                    5 => ("optimum_5_segments", "the same, by five segments a quarter"),
+                    _ => ("optimum_6_segments", "the same, by six segments a quarter"),
                 };
                 Facts { name, what, unit: "optima", in_browser: true, ..plain }
             }
@@ -387,12 +390,12 @@ impl Kernel {
             }
             Self::PlantChopper => Facts {
                 name: "plant_chopper",
-                what: "the same with drivers that chop, at steps of 1 us",
+                what: "16 motors of a plant whose drivers chop, at steps of 1 us",
                 ..plant
             },
             Self::PlantRun => Facts {
                 name: "plant_run",
-                what: "the first with its run and all its measures",
+                what: "`plant_averaged` with its run and all its measures",
                 aim: None,
                 ..plant
             },

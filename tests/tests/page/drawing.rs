@@ -71,6 +71,9 @@ fn the_strip_of_the_whole_run_is_made_when_it_is_shown_again() -> Result<()> {
         page.until(&format!("{STRIP}.clientHeight === 0")).await?;
         page.fill(DISTANCE, "800").await?;
         page.until_digest(&Known::of(&with_distance(800.0))?.digest).await?;
+        // Blank, as nothing has been drawn since.
+        page.eval::<u32>(&format!("{STRIP}.width = 300")).await?;
+        ensure!(page.canvas("overview").await?.colours < 2, "nothing is drawn out of sight");
         page.eval::<String>(&format!("{STRIP}.style.height = ''")).await?;
         page.eventually("the strip", async || Ok((page.canvas("overview").await?.colours >= 2).then_some(())))
             .await

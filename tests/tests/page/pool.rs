@@ -3,10 +3,11 @@
 //! Starting a browser takes longer than most of what a test does in it. So a browser is lent, and each visitor meets it
 //! as if it were new: with a tab of its own, which begins with no emulation, no script of a test's and no history, and
 //! under a name of its own, such as `visitor-7.page.localhost`. By that name it has an origin that no page was ever at,
-//! and what a page leaves behind (storage, databases, caches, service workers, permissions) stays with its origin. All
-//! these names are this machine, and to a browser they are as safe as 127.0.0.1; and they are one site, which may keep
-//! its process from visitor to visitor. What has no origin is looked after by hand: between two visitors keys and buttons
-//! that are held are lifted and the console is read out, and the clipboard is emptied for whoever may use it.
+//! and what a page leaves behind (storage, databases, caches, cookies without a domain, service workers, permissions)
+//! stays with its origin. All these names are this machine, and to a browser they are as safe as 127.0.0.1; and they are
+//! one site, which may keep its process from visitor to visitor. What has no origin is looked after by hand: between two
+//! visitors keys and buttons that are held are lifted and the console is read out, and the clipboard is emptied for
+//! whoever may use it.
 //!
 //! A browser in which something went wrong is not lent again.
 

@@ -18,6 +18,18 @@ pub(crate) const SMALL: &str = "
 pub(crate) const CUT: &str = "
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     const found = new Set();
+    // Most texts are in the same boxes: each box is asked once. What can be scrolled to is not lost.
+    const known = new Map();
+    const about = (node) => {
+        if (!known.has(node)) {
+            const { position, textOverflow, overflowX, overflowY } = getComputedStyle(node);
+            const scrolls = /auto|scroll/.test(overflowX) && /auto|scroll/.test(overflowY);
+            const ends = (position === 'absolute' && node.parentElement === document.body) || textOverflow === 'ellipsis' || scrolls;
+            const [x, y] = [overflowX, overflowY].map((way) => /hidden|clip/.test(way));
+            known.set(node, { ends, x, y, clip: node.getBoundingClientRect() });
+        }
+        return known.get(node);
+    };
     for (let text = walker.nextNode(); text; text = walker.nextNode()) {
         const parent = text.parentElement;
         if (!text.data.trim() || !parent.checkVisibility({ visibilityProperty: true }) || parent.closest('.unseen, .skip, td, option, noscript, script')) continue;
@@ -27,15 +39,10 @@ pub(crate) const CUT: &str = "
         const around = parent.closest('button')?.getBoundingClientRect();
         if (around && (box.right > around.right + 1 || box.left < around.left - 1)) found.add(`${text.data.trim()} beyond its button`);
         for (let at = parent; at && at !== document.documentElement; at = at.parentElement) {
-            const style = getComputedStyle(at);
-            if (style.position === 'absolute' && at.parentElement === document.body) break;
-            if (style.textOverflow === 'ellipsis') break;
-            const clip = at.getBoundingClientRect();
-            // What can be scrolled to is not lost.
-            const [x, y] = [style.overflowX, style.overflowY];
-            if (/auto|scroll/.test(x) && /auto|scroll/.test(y)) break;
-            const lost = (/hidden|clip/.test(x) && (box.right > clip.right + 2 || box.left < clip.left - 2))
-                || (/hidden|clip/.test(y) && (box.bottom > clip.bottom + 2 || box.top < clip.top - 2));
+            const { ends, x, y, clip } = about(at);
+            if (ends) break;
+            const lost = (x && (box.right > clip.right + 2 || box.left < clip.left - 2))
+                || (y && (box.bottom > clip.bottom + 2 || box.top < clip.top - 2));
             if (lost) { found.add(`${text.data.trim().slice(0, 40)} in ${at.id || at.className || at.tagName}`); break; }
         }
     }
@@ -46,24 +53,25 @@ const OVERLAPS: &str = "
     const nodes = [...document.querySelectorAll('button, input, select, textarea, summary, label, h1, h2, legend, .unit, output, .legend, #status')]
         .filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, .caption') && !node.querySelector(':scope > .unseen'))
         .map((node) => [node, node.getBoundingClientRect()]).filter(([, box]) => box.width > 0 && box.height > 0);
-    const clip = (node, box) => {
-        let { left, right, top, bottom } = box;
-        for (let at = node.parentElement; at; at = at.parentElement) {
-            if (getComputedStyle(at).overflow === 'visible') continue;
-            const outer = at.getBoundingClientRect();
-            left = Math.max(left, outer.left); right = Math.min(right, outer.right);
-            top = Math.max(top, outer.top); bottom = Math.min(bottom, outer.bottom);
+    const meet = (a, b) => ({
+        left: Math.max(a.left, b.left), right: Math.min(a.right, b.right), top: Math.max(a.top, b.top), bottom: Math.min(a.bottom, b.bottom),
+    });
+    // What the boxes around a node leave to be seen; each box is asked once.
+    const known = new Map([[null, { left: -Infinity, right: Infinity, top: -Infinity, bottom: Infinity }]]);
+    const within = (box) => {
+        if (!known.has(box)) {
+            const outer = within(box.parentElement);
+            known.set(box, getComputedStyle(box).overflow === 'visible' ? outer : meet(outer, box.getBoundingClientRect()));
         }
-        return { left, right, top, bottom };
+        return known.get(box);
     };
     const name = (node) => node.id || node.ariaLabel || node.dataset.path || node.textContent.trim().slice(0, 30);
-    const seen = nodes.map(([node, box]) => [node, clip(node, box)]);
+    const seen = nodes.map(([node, box]) => [node, meet(box, within(node.parentElement))]);
     const found = [];
     for (const [index, [one, a]] of seen.entries()) for (const [other, b] of seen.slice(index + 1)) {
-        if (one.contains(other) || other.contains(one)) continue;
         const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
         const down = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
-        if (across > 2 && down > 2) found.push(`${name(one)} and ${name(other)} by ${across.toFixed(0)} x ${down.toFixed(0)}`);
+        if (across > 2 && down > 2 && !one.contains(other) && !other.contains(one)) found.push(`${name(one)} and ${name(other)} by ${across.toFixed(0)} x ${down.toFixed(0)}`);
     }
     return found;";
 
@@ -137,6 +145,40 @@ fn window((width, height): (u32, u32), ratio: u32) -> Value {
 fn none(wrong: &[String]) -> Result<()> {
     ensure!(wrong.is_empty(), "{} things are wrong:\n{}", wrong.len(), wrong.join("\n"));
     Ok(())
+}
+
+/// Puts beside the page what each rule is about.
+const SPOIL: &str = "
+    const put = (tag, id, style) => {
+        const node = Object.assign(document.createElement(tag), { id, textContent: id });
+        const bare = { position: 'fixed', boxSizing: 'border-box', padding: 0, minWidth: 0, minHeight: 0, whiteSpace: 'nowrap' };
+        Object.assign(node.style, bare, style);
+        document.body.append(node);
+    };
+    put('button', 'x', { left: 0, top: 0, width: '10px', height: '12px', overflow: 'auto' });
+    put('p', 'longer-than-its-box', { left: '200px', top: 0, width: '30px', overflow: 'hidden' });
+    put('button', 'under', { left: '300px', top: 0, width: '80px', height: '40px' });
+    put('button', 'over', { left: '350px', top: '10px', width: '80px', height: '40px' });
+    document.body.style.minWidth = '5000px';
+    return null;";
+
+#[test]
+fn each_rule_finds_what_it_is_about() -> Result<()> {
+    in_browser(|page| async move {
+        page.open("").await?;
+        page.js::<()>(SPOIL, vec![]).await?;
+        let mut wrong = Vec::new();
+        look(&page, "here", &mut wrong).await?;
+        for expected in [
+            "here, small: x is 10.0 x 12.0",
+            "here, cut off: longer-than-its-box in longer-than-its-box",
+            "here, overlap: under and over by 30 x 30",
+            "here: 5000 px wide in a window of 1440 px",
+        ] {
+            ensure!(wrong.iter().any(|found| found == expected), "{expected}: not among {wrong:?}");
+        }
+        Ok(())
+    })
 }
 
 #[test]

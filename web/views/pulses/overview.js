@@ -109,13 +109,18 @@ export function createOverview({ engine, dispatch, now }) {
 
   /** @param {State} state */
   async function refresh(state) {
-    if (!state.result || canvas.clientWidth < 60) return;
+    if (!state.result) return;
+    if (canvas.clientWidth < 60) {
+      whole = null;
+      return;
+    }
     const wanted = Math.max(16, Math.round((canvas.clientWidth - GUTTER - MARGIN) * ratio()));
     const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
     const height = Math.round(canvas.clientHeight * ratio());
+    if (!answer) return;
     // Where it was hidden meanwhile it is made when it is shown again.
-    if (!answer || height === 0) return;
-    whole = answer;
+    whole = height > 0 ? answer : null;
+    if (!whole) return;
     const context = strip.getContext("2d");
     [strip.width, strip.height] = [wanted, height];
     if (context) paintOverview(context, answer, { left: 0, height });

@@ -165,7 +165,7 @@ struct Kernel {
     browser_of_before: Option<Ratio>,
 }
 
-/// The kernels of `results.json` that are compared with anything, as a table in Markdown.
+/// The kernels of `results.json` that are compared with anything, and what they are compared with, as a table in Markdown.
 pub(super) fn markdown(results: &str) -> Result<String> {
     #[derive(Deserialize)]
     struct Results {
@@ -176,8 +176,9 @@ pub(super) fn markdown(results: &str) -> Result<String> {
         "| kernel | what it does | speed, native | in the browser, of native |".to_owned(),
         "| --- | --- | --- | --- |".to_owned(),
     ];
+    let yardsticks: Vec<String> = kernels.iter().filter_map(|kernel| kernel.yardstick.clone()).collect();
     for Kernel { name, what, of_yardstick, yardstick, of_native, .. } in kernels {
-        if of_yardstick.is_none() && of_native.is_none() {
+        if of_yardstick.is_none() && of_native.is_none() && !yardsticks.contains(&name) {
             continue;
         }
         let native = of_yardstick.zip(yardstick);
@@ -370,18 +371,20 @@ mod tests {
     }
 
     #[test]
-    fn the_table_in_markdown_has_what_is_compared_with_anything() {
+    fn the_table_in_markdown_has_both_sides_of_every_comparison() {
         let native = vec![
             report("copy", None, &[0.001]),
             report("trace", Some("copy"), &[0.004]),
             report("digest", Some("copy"), &[0.002]),
             report("page", None, &[0.001]),
+            report("alone", None, &[0.001]),
         ];
         let browser = vec![report("trace", Some("copy"), &[0.008]), report("page", None, &[0.002])];
         let results = json(&[Block { native, browser }], None, None).unwrap();
         let table = markdown(&results).unwrap();
         let rows: Vec<&str> = table.lines().skip(2).collect();
         let expected = [
+            "| `copy` | a copy | – | – |",
             "| `trace` | a trace | 0.250 ± 0.000 of `copy` | 0.500 ± 0.000 |",
             "| `digest` | a digest | 0.500 ± 0.000 of `copy` | – |",
             "| `page` | a page | – | 0.500 ± 0.000 |",
