@@ -6,10 +6,7 @@
 use std::{env, time::Instant};
 
 use criterion::{Criterion, SamplingMode, Throughput};
-use stepscope_bench::{
-    kernels::{Kernel, Kernels},
-    rounds,
-};
+use stepscope_bench::{kernel::Kernel, kernels::Kernels, rounds};
 
 fn main() {
     let mut kernels = Kernels::new().expect("the motions hold");

@@ -5,7 +5,8 @@
 //! | --- | --- |
 //! | `motions` | the experiments that are run |
 //! | `planners` | a move of each planner |
-//! | `kernels` | the kernels, what each is compared with, and the aim |
+//! | `kernel` | each kernel: what it does, what it is compared with, and the aim |
+//! | `kernels` | the kernels at work |
 //! | `rounds` | all kernels in turn, over and over, each timed; the report of it |
 //! | `page` (wasm) | such rounds for the worker in `page/` |
 //! | `benches/kernels` | as native code: such rounds, or criterion's figure of each kernel |
@@ -13,6 +14,7 @@
 //! A busy machine changes its speed from second to second, so a ratio is always one of two times
 //! that were taken right after one another, in the same round.
 
+pub mod kernel;
 pub mod kernels;
 pub mod motions;
 pub mod planners;

@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use serde::Serialize;
 
-use crate::kernels::{Kernel, Kernels};
+use crate::{kernel::Kernel, kernels::Kernels};
 
 /// One kernel's times.
 #[derive(Debug, Serialize)]

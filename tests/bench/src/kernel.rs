@@ -1,0 +1,341 @@
+//! What is measured: each kernel, what it does, what it is compared with, and the aim.
+
+use crate::planners::Planner;
+
+/// Something that is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// The records of the steady motion, copied: what a stored trace is compared with.
+    Copy,
+    /// As many records, made of a counter: memory is written and not read.
+    Write,
+    /// The steady motion into a stored trace.
+    Stored,
+    /// The steady motion into a digest.
+    Digest,
+    /// The varied motion into a stored trace.
+    VariedStored,
+    /// The varied motion into a digest.
+    VariedDigest,
+    /// The steady motion at a tenth of the rate, with one DIR line for all channels.
+    CommonDir,
+    /// The same with pulses one after another.
+    Staggered,
+    /// The steady motion over the framed protocol, with a host that waits for replies.
+    Framed,
+    /// The steady motion by lists of segments.
+    Segments,
+    /// Lists of segments whose edges are each alone in a record.
+    SegmentsApart,
+    /// A controller of 16 motors, alone on a line with the packets for 512, into a digest.
+    Motors16,
+    /// 32 such controllers on one line, each into a digest of its own.
+    Motors512,
+    /// The motion that is the same at every clock into a stored trace, at 16 MHz.
+    Clock16,
+    /// The same at 1 MHz.
+    Clock1,
+    /// The same at 200 MHz.
+    Clock200,
+    /// The short motion clock by clock.
+    ClockByClock,
+    /// The short motion at the fast speed.
+    Fast,
+    /// One square root a step, summed: what the planner is compared with.
+    Roots,
+    /// The cycles of a trapezoid's steps, summed.
+    StepTimes,
+    /// As many steps up to 200 000 steps/s and down again, planned and kept as the exact list.
+    Exact,
+    /// The same steps, planned before, compressed to 25 us.
+    Compressed,
+    /// The same, in Klipper's window and widths.
+    CompressedKlipper,
+    /// Planned and compressed.
+    PlannedCompressed,
+    /// Planned and compressed into entries of whole cycles.
+    PlannedTicks,
+    /// Planned and compressed into short entries with eight bits of a fraction.
+    PlannedQ8,
+    /// A trapezoid's own table as its document keeps it, and how far its steps are from it.
+    Document,
+    /// The cycles in which the steps of a planner's move fall due, summed.
+    Plan(Planner),
+    /// The vertices with least distortion, so many segments a quarter.
+    Optimum(u8),
+    /// The sweep of the sine document's figure 4.
+    Sweep,
+    /// Sine and cosine by the plant's polynomials, one a motor-step: what the plant is compared with.
+    SineCosine,
+    /// A tenth of a second of sixteen motors at steps of 5 us, edges in and nobody looking.
+    PlantAveraged,
+    /// As many motor-steps where the drivers chop, at steps of 1 us.
+    PlantChopper,
+    /// The first with the run before it and all measures behind it.
+    PlantRun,
+}
+
+/// What there is to say of a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Facts {
+    /// Its name, fit for a file.
+    pub name: &'static str,
+    /// What it does, for who reads its speed.
+    pub what: &'static str,
+    /// What it makes.
+    pub unit: &'static str,
+    /// What its speed is compared with.
+    pub yardstick: Option<Kernel>,
+    /// Which ratio of the two speeds is aimed at, at least.
+    pub aim: Option<f64>,
+    /// Whether it runs in the browser too.
+    pub in_browser: bool,
+    /// Which part of the native speed is aimed at in the browser, at least.
+    pub browser_aim: Option<f64>,
+}
+
+impl Kernel {
+    /// All kernels, each yardstick right before what is compared with it.
+    pub const ALL: [Self; 50] = [
+        Self::Write,
+        Self::Copy,
+        Self::Stored,
+        Self::Digest,
+        Self::VariedStored,
+        Self::VariedDigest,
+        Self::CommonDir,
+        Self::Staggered,
+        Self::Framed,
+        Self::Segments,
+        Self::SegmentsApart,
+        Self::Motors16,
+        Self::Motors512,
+        Self::Clock16,
+        Self::Clock1,
+        Self::Clock200,
+        Self::ClockByClock,
+        Self::Fast,
+        Self::Roots,
+        Self::StepTimes,
+        Self::Exact,
+        Self::Compressed,
+        Self::CompressedKlipper,
+        Self::PlannedCompressed,
+        Self::PlannedTicks,
+        Self::PlannedQ8,
+        Self::Document,
+        Self::Plan(Planner::TrapezoidTable),
+        Self::Plan(Planner::TrapezoidExact),
+        Self::Plan(Planner::Staircase),
+        Self::Plan(Planner::Cosine),
+        Self::Plan(Planner::Sliced),
+        Self::Plan(Planner::Sigmoid),
+        Self::Plan(Planner::Bezier),
+        Self::Plan(Planner::Straight),
+        Self::Plan(Planner::Exponential),
+        Self::Plan(Planner::SineSegments),
+        Self::Plan(Planner::Sine),
+        Self::Plan(Planner::JerkLimited),
+        Self::Plan(Planner::Points),
+        Self::Plan(Planner::Constant),
+        Self::Optimum(3),
+        Self::Optimum(4),
+        Self::Optimum(5),
+        Self::Optimum(6),
+        Self::Sweep,
+        Self::SineCosine,
+        Self::PlantAveraged,
+        Self::PlantChopper,
+        Self::PlantRun,
+    ];
+
+    /// What there is to say of it.
+    #[must_use]
+    pub const fn facts(self) -> Facts {
+        let plain = Facts {
+            name: "",
+            what: "",
+            unit: "records",
+            yardstick: None,
+            aim: None,
+            in_browser: false,
+            browser_aim: None,
+        };
+        let run = Facts { yardstick: Some(Self::Copy), ..plain };
+        let clock = Facts { yardstick: Some(Self::Clock16), aim: Some(0.9), ..plain };
+        let steps = Facts { unit: "steps", in_browser: true, ..plain };
+        let of_roots = Facts { yardstick: Some(Self::Roots), ..steps };
+        // Klipper's step compression has 0.075 of such a loop.
+        let beside_klipper = Facts { aim: Some(0.075), ..of_roots };
+        let motor_steps = Facts { unit: "motor_steps", in_browser: true, ..plain };
+        let plant = Facts { yardstick: Some(Self::SineCosine), aim: Some(0.125), ..motor_steps };
+        match self {
+            Self::Write => Facts {
+                name: "plain_write",
+                what: "as many records as of `stored_trace`, made of a counter",
+                in_browser: true,
+                ..plain
+            },
+            Self::Copy => Facts {
+                name: "plain_copy",
+                what: "the records of `stored_trace`, copied in memory",
+                in_browser: true,
+                ..plain
+            },
+            Self::Stored => Facts {
+                name: "stored_trace",
+                what: "16 channels at 100 kHz into a stored trace, 12 edges a record",
+                aim: Some(1.0 / 6.0),
+                in_browser: true,
+                browser_aim: Some(0.6),
+                ..run
+            },
+            Self::Digest => Facts {
+                name: "digest",
+                what: "the same motion into a digest",
+                in_browser: true,
+                browser_aim: Some(0.6),
+                ..run
+            },
+            Self::VariedStored => Facts {
+                name: "varied_stored_trace",
+                what: "every tick orders something else: into a stored trace",
+                in_browser: true,
+                ..run
+            },
+            Self::VariedDigest => Facts {
+                name: "varied_digest",
+                what: "every tick orders something else: into a digest",
+                ..run
+            },
+            Self::CommonDir => {
+                Facts { name: "common_dir", what: "16 channels at 10 kHz with one DIR line for all", ..run }
+            }
+            Self::Staggered => {
+                Facts { name: "staggered", what: "16 channels at 10 kHz, pulses one after another", ..run }
+            }
+            Self::Framed => Facts {
+                name: "framed",
+                what: "the framed protocol, with a host that waits for replies",
+                ..run
+            },
+            Self::Segments => {
+                Facts { name: "segments", what: "16 lists of segments at 100 kHz, 16 edges a record", ..run }
+            }
+            Self::SegmentsApart => Facts {
+                name: "segments_apart",
+                what: "16 lists of segments, every edge alone in its record",
+                aim: Some(0.1),
+                ..run
+            },
+            Self::Motors16 => Facts {
+                name: "motors_16",
+                what: "16 motors, alone on a line with the packets for 512",
+                ..run
+            },
+            Self::Motors512 => Facts {
+                name: "motors_512",
+                what: "512 motors: 32 controllers on one line",
+                yardstick: Some(Self::Motors16),
+                aim: Some(0.8),
+                ..plain
+            },
+            Self::Clock16 => Facts {
+                name: "clock_16_mhz",
+                what: "a motion that is the same at every clock, at 16 MHz",
+                ..plain
+            },
+            Self::Clock1 => Facts { name: "clock_1_mhz", what: "the same at 1 MHz", ..clock },
+            Self::Clock200 => Facts { name: "clock_200_mhz", what: "the same at 200 MHz", ..clock },
+            Self::ClockByClock => {
+                Facts { name: "clock_by_clock", what: "a short motion clock by clock", ..plain }
+            }
+            Self::Fast => Facts {
+                name: "fast_speed",
+                what: "a short motion from event to event",
+                yardstick: Some(Self::ClockByClock),
+                ..plain
+            },
+            Self::Roots => Facts { name: "square_roots", what: "one square root a step", ..steps },
+            Self::StepTimes => Facts {
+                name: "step_times",
+                what: "the cycles of a trapezoid's steps",
+                aim: Some(0.5),
+                browser_aim: Some(0.6),
+                ..of_roots
+            },
+            Self::Exact => Facts {
+                name: "exact_list",
+                what: "planned, and kept as the smallest list without error",
+                ..of_roots
+            },
+            Self::Compressed => {
+                Facts { name: "compressed", what: "compressed to 25 us, by the quick search", ..of_roots }
+            }
+            Self::CompressedKlipper => Facts {
+                name: "compressed_klipper",
+                what: "`compressed` in Klipper's window and widths",
+                ..beside_klipper
+            },
+            Self::PlannedCompressed => Facts {
+                name: "planned_compressed",
+                what: "planned and compressed, in 1/65536 of a cycle",
+                ..beside_klipper
+            },
+            Self::PlannedTicks => Facts {
+                name: "planned_ticks",
+                what: "planned and compressed, in whole cycles",
+                ..beside_klipper
+            },
+            Self::PlannedQ8 => Facts {
+                name: "planned_q8",
+                what: "planned and compressed, in 1/256 of a cycle",
+                ..beside_klipper
+            },
+            Self::Document => Facts {
+                name: "document_table",
+                what: "the table of the trapezoid's document, and how far its steps are from it",
+                ..of_roots
+            },
+            Self::Plan(planner) => Facts { name: planner.name(), what: planner.what(), ..of_roots },
+            Self::Optimum(segments) => {
+                let (name, what) = match segments {
+                    3 => (
+                        "optimum_3_segments",
+                        "the vertices of least distortion, by three segments a quarter",
+                    ),
+                    4 => ("optimum_4_segments", "the same, by four segments a quarter"),
+                    5 => ("optimum_5_segments", "the same, by five segments a quarter"),
+                    _ => ("optimum_6_segments", "the same, by six segments a quarter"),
+                };
+                Facts { name, what, unit: "optima", in_browser: true, ..plain }
+            }
+            Self::Sweep => Facts {
+                name: "sweep_500_rows",
+                what: "a sweep of d1 in 500 rows, as figure 4 of the sine document",
+                unit: "rows",
+                in_browser: true,
+                ..plain
+            },
+            Self::SineCosine => Facts {
+                name: "sine_cosine",
+                what: "sine and cosine by the plant's polynomials",
+                ..motor_steps
+            },
+            Self::PlantAveraged => {
+                Facts { name: "plant_averaged", what: "16 motors of a plant at steps of 5 us", ..plant }
+            }
+            Self::PlantChopper => Facts {
+                name: "plant_chopper",
+                what: "16 motors of a plant whose drivers chop, at steps of 1 us",
+                ..plant
+            },
+            Self::PlantRun => Facts {
+                name: "plant_run",
+                what: "`plant_averaged` with its run and all its measures",
+                aim: None,
+                ..plant
+            },
+        }
+    }
+}
