@@ -137,6 +137,8 @@ fn recorded_replies_stand_in_the_table_of_packets_with_their_turnaround_also_aft
         choose_file(&page, "link.csv", &with_late_replies(&framed.recording.trace, clock_hz)).await?;
         says(&page, "TX: 115200 baud").await?;
         show(&page).await?;
+        // The model's table has as many rows.
+        page.until(ON_SHOW).await?;
         let run = framed.experiment.run(&mut Recording::default());
         let table = PacketTable::new(&framed.experiment, &run, 0, &framed.recording.packets);
         let rows = table.len();
