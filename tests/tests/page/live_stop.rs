@@ -9,6 +9,7 @@ use crate::{
     device::{ABOUT, ENDED, FRAMED, SAID, open, start, verified},
     live::LONG,
     live_aside::{ROWS, STOP_IN_SIGHT, start_long},
+    native::Known,
     session::Session,
 };
 
@@ -78,7 +79,7 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
         page.until(&format!("{SAID}.startsWith('Not verified: the port is lost')")).await?;
         // An experiment that could not be sent, and could not be stopped.
         drop_file(&page, "other.json", OTHER).await?;
-        page.ready().await?;
+        page.until_digest(&Known::of(OTHER)?.digest).await?;
         page.click("#live-aside").await?;
         page.until(&format!("{ABOUT}.startsWith('Not with this experiment')")).await?;
         ensure!(
@@ -152,7 +153,7 @@ fn an_experiment_that_changed_behind_the_dialog_is_not_started_unseen() -> Resul
         page.until("!document.getElementById('live-start').disabled").await?;
         let other = FRAMED.replace(r#""protocol":"framed""#, r#""protocol":"framed","baud":57600"#);
         drop_file(&page, "other.json", &other).await?;
-        page.ready().await?;
+        page.until_digest(&Known::of(&other)?.digest).await?;
         page.click("#live-start").await?;
         page.until(&format!("{SAID}.startsWith('The experiment has changed')")).await?;
         page.until(&format!("{ABOUT}.includes('57600 baud')")).await?;
