@@ -165,6 +165,9 @@ async fn page() -> Result<()> {
     print!("{weights}");
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::", "--skip", INSTALLED]);
+    // A visitor rests now and then: one more than there are cores keeps them busy.
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    command.arg(format!("--test-threads={}", cores + 1));
     command.env("STEPSCOPE_AXE", npm::axe().await?);
     command.env(browser::CHROMIUM, Browser::ready().await?.headless().await);
     run::to_end(command, run::LIMIT).await
