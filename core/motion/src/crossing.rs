@@ -143,18 +143,28 @@ impl Quotient {
     /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
     #[inline]
     pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
+        if start.part == Double::default() {
+            return self.after_whole(start.whole);
+        }
         let own = self.part();
         let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
-        let instant =
-            if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) };
-        let cycle = if start.part == Double::default() {
-            whole.wrapping_add(u64::from(self.rest >= self.under - self.rest))
-        } else {
-            let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
-            Rounding::new(start, 0.0).cycle((self.whole, own), is_before)
-        };
-        (instant, cycle)
+        let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);
+        (instant(whole, part), Rounding::new(start, 0.0).cycle((self.whole, own), is_before))
     }
+
+    /// The same after whole cycles.
+    #[inline]
+    pub(super) fn after_whole(self, start: u64) -> (f64, u64) {
+        let whole = start.wrapping_add(self.whole);
+        let cycle = whole.wrapping_add(u64::from(self.rest >= self.under - self.rest));
+        (instant(whole, self.part()), cycle)
+    }
+}
+
+/// Whole cycles and a part of two, as a number.
+#[inline]
+fn instant(whole: u64, part: f64) -> f64 {
+    if part < 1.0 { whole as f64 + part } else { whole.wrapping_add(1) as f64 + (part - 1.0) }
 }
 
 /// Whether step `k` (from 1) of `count` is due before a time, of a move that takes `duration` and whose second half

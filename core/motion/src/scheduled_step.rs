@@ -9,14 +9,14 @@
 //! the sum is rounded once. Where the digits of an f64 do not decide that, `crossing` does.
 
 use crate::{
-    AxisPlan, Curve, PlannedMove, Profile,
+    AxisPlan, Curve, PlannedMove, Profile, StepTimes,
     crossing::{MAX_OFF, Rounding},
-    curve::greater,
     cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
     points::PieceSteps,
     series::{BLOCK, BySeries, MAX_REST, MiddleTime, OfBlock, Series, Times},
+    sine::DueHalves,
 };
 use alloc::boxed::Box;
 use core::ops::ControlFlow;
@@ -65,19 +65,6 @@ type Due = (f64, ScheduledStep);
 trait Form {
     /// Writes the next ones from the block's beginning on, and says how many: none at the end.
     fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize;
-}
-
-impl<S: Iterator<Item = Due>> Form for S {
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
-        let mut len = 0;
-        // From within: an iterator of iterators keeps its place in registers so.
-        let _ = self.try_for_each(|due| {
-            block[len % BLOCK] = due;
-            len += 1;
-            if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
-        len
-    }
 }
 
 /// The steps of a move, each with its instant, one after another.
@@ -146,17 +133,14 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
     let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
     let steps = 1..count + 1;
-    let exactly = move |since: Quotient| {
-        let (instant, cycle) = since.after(start);
-        (instant, ScheduledStep { cycle, right })
-    };
     match profile {
         Profile::Trapezoid(curve) => {
-            let mut times = curve.step_times(clock_hz);
-            let times = core::iter::from_fn(move || times.next_unrounded());
-            scheduled(profile, start, clock_hz, times.map(move |cycles| (cycles, right)))
+            let times = curve.step_times(clock_hz);
+            scheduled(profile, start, clock_hz, OfTrapezoid { times, right })
         }
-        Profile::TrapezoidTable(table) => Box::new(table.step_quotients(clock_hz).map(exactly)),
+        Profile::TrapezoidTable(table) => {
+            Box::new(OfQuotients { times: table.step_quotients(clock_hz), start, right })
+        }
         Profile::Staircase(staircase) => {
             let times = staircase.due_s().map(move |due_s| (due_s * clock, right));
             scheduled(profile, start, clock_hz, times)
@@ -167,20 +151,24 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             scheduled(profile, start, clock_hz, times)
         }
         Profile::Sine(sine) => {
-            let cycles_per_half = sine.period_s() / 2.0 * clock;
-            let times = sine.due_halves().map(move |(half, right)| (half * cycles_per_half, right));
-            scheduled(profile, start, clock_hz, times)
+            let (halves, cycles_per_half) = (sine.due_halves(), sine.period_s() / 2.0 * clock);
+            scheduled(profile, start, clock_hz, OfSine { halves, cycles_per_half })
         }
-        Profile::Points(points) => Box::new(OfPoints { pieces: points.due(), piece: None, start, clock_hz }),
+        Profile::Points(points) => {
+            Box::new(OfPoints { pieces: points.due(), piece: None, cycles: [0.0; BLOCK], start, clock_hz })
+        }
         Profile::Constant(constant) => match constant.even_steps(clock_hz) {
-            Some(even) => Box::new(steps.zip(even.steps()).map(move |(_, since)| exactly(since))),
+            Some(even) => {
+                let times = steps.zip(even.steps()).map(|(_, since)| since);
+                Box::new(OfQuotients { times, start, right })
+            }
             None => {
                 let cycles_per_step = clock / constant.exact_speed().high;
                 let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
                 scheduled(profile, start, clock_hz, times)
             }
         },
-        Profile::Dwell(_) => Box::new(core::iter::empty()),
+        Profile::Dwell(_) => Box::new(OfQuotients { times: core::iter::empty(), start, right }),
         Profile::Sliced(curve) => {
             scheduled(profile, start, clock_hz, curve.due_s().map(move |due_s| (due_s * clock, right)))
         }
@@ -190,40 +178,128 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
     }
 }
 
+/// Steps that are due at quotients of whole numbers after the move's start, all one way.
+struct OfQuotients<I> {
+    times: I,
+    start: CycleTime,
+    right: bool,
+}
+
+impl<I: Iterator<Item = Quotient>> Form for OfQuotients<I> {
+    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+        let Self { times, start, right } = self;
+        // A loop of its own for each keeps its numbers in registers.
+        if start.part == Double::default() {
+            put_each(block, times, *right, |since| since.after_whole(start.whole))
+        } else {
+            put_each(block, times, *right, |since| since.after(*start))
+        }
+    }
+}
+
+/// Writes the instants and cycles of the next steps, and says of how many.
+#[inline]
+fn put_each(
+    block: &mut [Due; BLOCK],
+    times: &mut impl Iterator<Item = Quotient>,
+    right: bool,
+    due: impl Fn(Quotient) -> (f64, u64),
+) -> usize {
+    let mut len = 0;
+    for (place, since) in block.iter_mut().zip(times) {
+        let (instant, cycle) = due(since);
+        *place = (instant, ScheduledStep { cycle, right });
+        len += 1;
+    }
+    len
+}
+
 /// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
 fn scheduled<'p>(
     profile: &'p Profile,
     start: CycleTime,
     clock_hz: u32,
-    times: impl Iterator<Item = (f64, bool)> + 'p,
+    times: impl UnroundedTimes + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
     Box::new(OfTimes { times, cycles: [0.0; BLOCK], ends: Ends { first: 1, start, rounding, is_due_before } })
 }
 
-/// Steps whose times are told one by one.
-struct OfTimes<'p, I> {
-    times: I,
+/// Times of a move's steps in cycles from its start, not rounded, with their directions.
+trait UnroundedTimes {
+    /// Writes the next times, and with them the directions, from the blocks' beginning on, and says how many: none at the
+    /// end.
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize;
+}
+
+/// Told one by one.
+impl<I: Iterator<Item = (f64, bool)>> UnroundedTimes for I {
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
+        let mut len = 0;
+        let _ = self.try_for_each(|(time, right)| {
+            cycles[len % BLOCK] = time;
+            steps[len % BLOCK].1.right = right;
+            len += 1;
+            if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        len
+    }
+}
+
+/// Of a trapezoid, all one way.
+struct OfTrapezoid {
+    times: StepTimes,
+    right: bool,
+}
+
+impl UnroundedTimes for OfTrapezoid {
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
+        steps.iter_mut().for_each(|(_, step)| step.right = self.right);
+        self.times.next_block(cycles)
+    }
+}
+
+/// Of a sine, in cycles of half its period.
+struct OfSine {
+    halves: DueHalves,
+    cycles_per_half: f64,
+}
+
+impl UnroundedTimes for OfSine {
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
+        let mut len = 0;
+        while let Some(rest) = cycles.get_mut(len..).filter(|rest| !rest.is_empty()) {
+            let (formed, right) = self.halves.next_in_half(rest);
+            if formed == 0 {
+                break;
+            }
+            for (cycles, (_, step)) in rest.iter_mut().zip(steps.iter_mut().skip(len)).take(formed) {
+                *cycles *= self.cycles_per_half;
+                step.right = right;
+            }
+            len += formed;
+        }
+        len
+    }
+}
+
+/// Steps whose times are rounded.
+struct OfTimes<'p, T> {
+    times: T,
     /// Of a block's steps, from the move's start on.
     cycles: [f64; BLOCK],
     ends: Ends<'p>,
 }
 
-impl<I: Iterator<Item = (f64, bool)>> Form for OfTimes<'_, I> {
+impl<T: UnroundedTimes> Form for OfTimes<'_, T> {
     fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
-        let mut len = 0;
-        let _ = self.times.try_for_each(|(cycles, right)| {
-            self.cycles[len % BLOCK] = cycles;
-            block[len % BLOCK].1.right = right;
-            len += 1;
-            if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
+        let len = self.times.next_block(&mut self.cycles, block);
         self.ends.put(block, &self.cycles, len);
         len
     }
 }
 
-/// What makes cycles of times that are told one by one.
+/// What makes cycles of times.
 struct Ends<'p> {
     /// The next step, from 1.
     first: u64,
@@ -238,13 +314,13 @@ impl Ends<'_> {
     fn put(&mut self, block: &mut [Due; BLOCK], cycles: &[f64; BLOCK], len: usize) {
         let (start, rounding) = (self.start.cycles(), self.rounding);
         // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
-        let mut nearest = 0.0;
+        let mut are_certain = true;
         for ((instant, step), cycles) in block.iter_mut().zip(cycles) {
             let (cycle, from_middle) = rounding.after_start(0, *cycles);
-            nearest = greater(nearest, from_middle);
+            are_certain &= rounding.is_certain(from_middle);
             (*instant, step.cycle) = (start + cycles, cycle);
         }
-        if !rounding.is_certain(nearest) {
+        if !are_certain {
             for ((k, (_, step)), cycles) in (self.first..).zip(block.iter_mut().take(len)).zip(cycles) {
                 step.cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
             }
@@ -263,12 +339,14 @@ fn by_series<'p>(
     let clock = f64::from(clock_hz);
     let times = BySeries::new(curve, clock, 0.5, profile.steps().unsigned_abs());
     let judge = Judge { off: profile.off(clock), is_due_before: profile.is_due_before(clock_hz) };
-    Box::new(OfSeries { times, judge, right: profile.steps() >= 0, start })
+    Box::new(OfSeries { times, cycles: [0.0; BLOCK], judge, right: profile.steps() >= 0, start })
 }
 
 /// Steps whose times come many at once.
 struct OfSeries<'p> {
     times: BySeries<'p>,
+    /// Of a block's steps.
+    cycles: [f64; BLOCK],
     judge: Judge<'p>,
     right: bool,
     start: CycleTime,
@@ -307,15 +385,14 @@ impl Judge<'_> {
 
 impl Form for OfSeries<'_> {
     fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
-        let Self { times, judge, right, start } = self;
-        let mut cycles = [0.0; BLOCK];
-        let Some(found) = times.times(&mut cycles, &|step, near| judge.exactly(step, near)) else { return 0 };
+        let Self { times, cycles, judge, right, start } = self;
+        let Some(found) = times.times(cycles, &|step, near| judge.exactly(step, near)) else { return 0 };
         let by_search = Rounding::new(*start, judge.off);
         let rounding = |of_block: OfBlock| match of_block.time.is_exact {
             true => Rounding::new(*start, of_block.off + MAX_REST),
             false => by_search.less(of_block.off),
         };
-        rounded(block, (&cycles, found), (*start, *right), &rounding, &|step| {
+        rounded(block, (cycles, found), (*start, *right), &rounding, &|step| {
             let cycles = times.searched(step);
             let cycle = by_search.cycle((0, cycles), |since| (judge.is_due_before)(step + 1, since));
             (start.cycles() + cycles, cycle)
@@ -327,16 +404,18 @@ impl Form for OfSeries<'_> {
 struct OfPoints<'p, I> {
     pieces: I,
     piece: Option<(PieceSteps<'p>, BySeries<'p>)>,
+    /// Of a block's steps.
+    cycles: [f64; BLOCK],
     start: CycleTime,
     clock_hz: u32,
 }
 
 impl<'p, I: Iterator<Item = PieceSteps<'p>>> OfPoints<'p, I> {
     /// The next steps of a piece that has some.
-    fn next_times(&mut self, cycles: &mut [f64; BLOCK]) -> Option<(PieceSteps<'p>, Times)> {
+    fn next_times(&mut self) -> Option<(PieceSteps<'p>, Times)> {
         loop {
             if let Some((steps, by_series)) = &mut self.piece
-                && let Some(found) = by_series.times(cycles, &|_, _| None)
+                && let Some(found) = by_series.times(&mut self.cycles, &|_, _| None)
             {
                 return Some((*steps, found));
             }
@@ -348,13 +427,12 @@ impl<'p, I: Iterator<Item = PieceSteps<'p>>> OfPoints<'p, I> {
 
 impl<'p, I: Iterator<Item = PieceSteps<'p>>> Form for OfPoints<'p, I> {
     fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
-        let mut cycles = [0.0; BLOCK];
-        let Some((steps, found)) = self.next_times(&mut cycles) else { return 0 };
+        let Some((steps, found)) = self.next_times() else { return 0 };
         let (start, clock_hz) = (self.start, self.clock_hz);
         let rounding = |OfBlock { off, least_speed, .. }| {
             Rounding::new(start, off + steps.off_s(least_speed) * f64::from(clock_hz))
         };
-        rounded(block, (&cycles, found), (start, steps.right()), &rounding, &|step| {
+        rounded(block, (&self.cycles, found), (start, steps.right()), &rounding, &|step| {
             steps.due(step).cycle(start, clock_hz)
         })
     }
@@ -381,13 +459,13 @@ fn rounded(
     let (whole, rounding) = (of_block.time.whole, rounding(of_block));
     let from = start.cycles() + whole as f64;
     // All of them without a question, which is seldom of use.
-    let mut nearest = 0.0;
+    let mut are_certain = true;
     for (due, cycles) in block.iter_mut().zip(cycles) {
         let (cycle, from_middle) = rounding.after_start(whole, *cycles);
-        nearest = greater(nearest, from_middle);
+        are_certain &= rounding.is_certain(from_middle);
         *due = (from + cycles, ScheduledStep { cycle, right });
     }
-    if !rounding.is_certain(nearest) {
+    if !are_certain {
         for ((step, due), cycles) in (first..).zip(block.iter_mut().take(len)).zip(cycles) {
             if !rounding.is_certain(rounding.after_start(whole, *cycles).1) {
                 search(step, due);

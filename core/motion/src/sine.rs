@@ -84,26 +84,13 @@ impl Sine {
     }
 
     /// Where each step falls due, in half periods from the start, and whether it goes to the right.
-    pub(super) fn due_halves(&self) -> impl Iterator<Item = (f64, bool)> + use<> {
+    pub(super) fn due_halves(&self) -> DueHalves {
         let oscillation = self.oscillation;
         let Oscillation { amplitude, periods, .. } = oscillation;
         let (travel, halves) = (2 * amplitude, if amplitude > 0 { 2 * u64::from(periods) } else { 0 });
-        // Every half period has the same.
-        let parts: Vec<f64> = if travel <= MAX_KEPT_PARTS {
-            (1..=travel).map(|k| part_of_half(k, amplitude)).collect()
-        } else {
-            Vec::new()
-        };
-        let (mut half, mut k) = (0, 0);
-        core::iter::from_fn(move || {
-            if k == travel {
-                (half, k) = (half + 1, 0);
-            }
-            k += 1;
-            let part = parts.get(k as usize - 1).copied();
-            let due = || half as f64 + part.unwrap_or_else(|| part_of_half(k, amplitude));
-            (half < halves).then(|| (due(), oscillation.goes_right(half)))
-        })
+        let kept = if travel <= MAX_KEPT_PARTS { travel } else { 0 };
+        let parts = (1..=kept).map(|k| part_of_half(k, amplitude)).collect();
+        DueHalves { oscillation, halves, parts, half: 0, past: 0 }
     }
 
     /// When step `k` (from 1) of all falls due, in half periods from the start.
@@ -139,6 +126,46 @@ impl Sine {
     /// 2*pi/T.
     fn angular_speed(&self) -> f64 {
         TAU / self.oscillation.period_s
+    }
+}
+
+/// The steps of a sine, half period after half period.
+pub(super) struct DueHalves {
+    oscillation: Oscillation,
+    /// How many there are.
+    halves: u64,
+    /// Parts of a half period after which its steps fall due, which are the same in each; none where they are too many.
+    parts: Vec<f64>,
+    /// Where it is, and how many steps of it are past.
+    half: u64,
+    past: u64,
+}
+
+impl DueHalves {
+    /// Writes the next steps' times in half periods from the start, from the block's beginning on and no further than to
+    /// the end of a half period; with how many these are, none at the end, and whether they go to the right.
+    pub(super) fn next_in_half(&mut self, block: &mut [f64]) -> (usize, bool) {
+        let Oscillation { amplitude, .. } = self.oscillation;
+        let travel = 2 * amplitude;
+        if self.past == travel {
+            (self.half, self.past) = (self.half + 1, 0);
+        }
+        if self.half >= self.halves {
+            return (0, false);
+        }
+        let len = block.len().min(usize::try_from(travel - self.past).unwrap_or(usize::MAX));
+        let (half, first) = (self.half as f64, self.past as usize);
+        match self.parts.get(first..first + len) {
+            Some(parts) => {
+                block.iter_mut().zip(parts).for_each(|(due, part)| *due = half + part);
+            }
+            None => {
+                let steps = block.iter_mut().zip(self.past + 1..).take(len);
+                steps.for_each(|(due, k)| *due = half + part_of_half(k, amplitude));
+            }
+        }
+        self.past += len as u64;
+        (len, self.oscillation.goes_right(self.half))
     }
 }
 
@@ -203,10 +230,23 @@ impl Curve for Sine {
 mod tests {
     use super::*;
 
+    /// All steps, in blocks of this length.
+    fn all(sine: &Sine, block: usize) -> Vec<(f64, bool)> {
+        let (mut halves, mut block, mut due) = (sine.due_halves(), vec![0.0; block], Vec::new());
+        loop {
+            let (len, right) = halves.next_in_half(&mut block);
+            if len == 0 {
+                return due;
+            }
+            due.extend(block[..len].iter().map(|at| (*at, right)));
+        }
+    }
+
     /// Half periods of the steps of one half period.
     fn half(amplitude: i64) -> Vec<f64> {
-        let sine = Sine::new(amplitude, 1.0, 1);
-        sine.due_halves().take(2 * amplitude.unsigned_abs() as usize).map(|(at, _)| at).collect()
+        let mut due = all(&Sine::new(amplitude, 1.0, 1), 7);
+        due.truncate(2 * amplitude.unsigned_abs() as usize);
+        due.into_iter().map(|(at, _)| at).collect()
     }
 
     #[test]
@@ -218,7 +258,9 @@ mod tests {
         // The first step of a large amplitude: cos = 1 - 1/(2*A), so nearly sqrt(1/A).
         for amplitude in [1_000_000, 1_000_000_000_i64] {
             let sine = Sine::new(amplitude, 1.0, 1);
-            let first = sine.due_halves().next().unwrap().0 * PI;
+            let mut first = [0.0];
+            assert_eq!(sine.due_halves().next_in_half(&mut first), (1, false));
+            let first = first[0] * PI;
             let x = 1.0 / amplitude as f64;
             let expected = libm::sqrt(x) * (1.0 + x / 24.0 + 3.0 * x * x / 640.0);
             assert!((first / expected - 1.0).abs() < 1e-15, "{amplitude}: {first} {expected}");
@@ -229,7 +271,8 @@ mod tests {
     fn every_period_has_its_steps_and_both_halves_mirror_each_other() {
         for amplitude in [1, 2, 3, 1000, -777] {
             let (sine, steps) = (Sine::new(amplitude, 0.5, 3), 2 * amplitude.unsigned_abs() as usize);
-            let due: Vec<(f64, bool)> = sine.due_halves().collect();
+            let due = all(&sine, 64);
+            assert_eq!(all(&sine, 1), due);
             assert_eq!((due.len() as u64, due.len()), (sine.step_count(), 6 * steps));
             for (index, pair) in due.windows(2).enumerate() {
                 assert!(pair[0].0 < pair[1].0, "{amplitude}: {pair:?}");

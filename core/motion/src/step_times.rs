@@ -21,7 +21,9 @@ use crate::{
     Curve,
     crossing::{MAX_OFF, ROUNDING, Rounding, guess, judged},
     cycle_time::CycleTime,
-    round_half_up, square_root,
+    round_half_up,
+    series::BLOCK,
+    square_root,
     trapezoid::Trapezoid,
 };
 
@@ -65,12 +67,22 @@ impl Ramp {
     /// Cycles until `place`, not rounded.
     #[inline]
     fn cycles(&self, place: f64) -> f64 {
-        let speed = square_root(self.start_squared + self.twice_acceleration * place);
-        if self.divides {
-            self.twice_clock * place / (speed + self.start_speed)
-        } else {
-            (speed - self.start_speed) * self.cycles_per_speed
-        }
+        if self.divides { self.divided(place) } else { self.multiplied(place) }
+    }
+
+    #[inline]
+    fn divided(&self, place: f64) -> f64 {
+        self.twice_clock * place / (self.speed(place) + self.start_speed)
+    }
+
+    #[inline]
+    fn multiplied(&self, place: f64) -> f64 {
+        (self.speed(place) - self.start_speed) * self.cycles_per_speed
+    }
+
+    #[inline]
+    fn speed(&self, place: f64) -> f64 {
+        square_root(self.start_squared + self.twice_acceleration * place)
     }
 }
 
@@ -137,9 +149,55 @@ impl StepTimes {
         self.end - self.ramp.cycles(self.count - place)
     }
 
+    /// Writes the cycles until the next steps, not rounded, from the block's beginning on, and says of how many: none at
+    /// the end. A part of the move at once.
+    pub(super) fn next_block(&mut self, block: &mut [f64; BLOCK]) -> usize {
+        let mut len = 0;
+        while let Some(rest) = block.get_mut(len..).filter(|rest| !rest.is_empty()) {
+            let first = self.place;
+            let ends = [self.ramp_end, self.plateau_end, self.count];
+            let Some(end) = ends.into_iter().find(|end| first < *end) else { break };
+            // Places are in the middle between whole numbers, which ends are.
+            let formed = rest.len().min((end - first + 0.5) as usize);
+            let (part, ramp, end, count) = (rest.iter_mut().take(formed), self.ramp, self.end, self.count);
+            match (first < self.ramp_end, first < self.plateau_end, ramp.divides) {
+                (true, _, true) => form(part, first, |place| ramp.divided(place)),
+                (true, _, false) => form(part, first, |place| ramp.multiplied(place)),
+                (_, true, _) => form(part, first, |place| self.steady(place)),
+                (_, _, true) => form(part, first, |place| end - ramp.divided(count - place)),
+                (_, _, false) => form(part, first, |place| end - ramp.multiplied(count - place)),
+            }
+            self.place = first + formed as f64;
+            len += formed;
+        }
+        len
+    }
+
+    /// Writes the times of the next steps and, of these, their cycles.
+    #[inline(never)]
+    fn next_cycles(&mut self, times: &mut [f64; BLOCK], block: &mut [u64; BLOCK]) -> usize {
+        let place = self.place;
+        let len = self.next_block(times);
+        // All of them without a question, as in `scheduled_step`.
+        let mut are_certain = true;
+        for (cycle, cycles) in block.iter_mut().zip(&*times) {
+            let from_middle;
+            (*cycle, from_middle) = self.rounding.after_start(0, *cycles);
+            are_certain &= self.rounding.is_certain(from_middle);
+        }
+        if !are_certain {
+            for ((cycle, cycles), i) in block.iter_mut().zip(&*times).take(len).zip(1..) {
+                if self.rounding.certain(*cycles).is_none() {
+                    *cycle = judge(self.curve, self.clock_hz, place + f64::from(i), *cycles);
+                }
+            }
+        }
+        len
+    }
+
     /// Cycles until the next step, not rounded.
     #[inline]
-    pub(super) fn next_unrounded(&mut self) -> Option<f64> {
+    fn next_unrounded(&mut self) -> Option<f64> {
         let place = self.place;
         let time = if place < self.ramp_end {
             self.climbing(place)
@@ -153,6 +211,12 @@ impl StepTimes {
         self.place = place + 1.0;
         Some(time)
     }
+}
+
+/// Writes the cycles until one place after another from the first on: in a loop that asks for nothing.
+#[inline]
+fn form<'b>(block: impl Iterator<Item = &'b mut f64>, first: f64, cycles_until: impl Fn(f64) -> f64) {
+    block.zip(0..).for_each(|(cycles, i)| *cycles = cycles_until(first + f64::from(i)));
 }
 
 /// The cycle, at about `cycles`, of the step before `next_place`.
@@ -180,6 +244,19 @@ impl Iterator for StepTimes {
     fn nth(&mut self, n: usize) -> Option<u64> {
         self.place += n as f64;
         self.next()
+    }
+
+    /// Block by block.
+    #[inline]
+    fn fold<T, F: FnMut(T, u64) -> T>(mut self, first: T, mut f: F) -> T {
+        let (mut folded, mut times, mut block) = (first, [0.0; BLOCK], [0; BLOCK]);
+        loop {
+            let len = self.next_cycles(&mut times, &mut block);
+            if len == 0 {
+                return folded;
+            }
+            folded = block.iter().take(len).fold(folded, |folded, cycle| f(folded, *cycle));
+        }
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -262,6 +339,39 @@ mod tests {
             }
         }
         assert!(times.is_sorted_by(|a, b| a < b));
+    }
+
+    #[test]
+    fn block_by_block_the_times_are_those_of_one_after_another() {
+        // A line and parts of it, either ramp alone, one that divides, steps near edges that are judged: all of them in
+        // blocks that end anywhere.
+        let rows = [
+            (1000, 1000.0, 5000.0, 8000.0, 16_000_000),
+            (3001, 1000.0, 5000.0, 8000.0, 16_000_000),
+            (-777, 0.0, 1e7, 9000.0, 16_000_000),
+            (500, 2000.0, 2000.0, 1.0, 16_000_000),
+            (200_000, 0.0, 1000.0, 1.0, 1_000_000_000),
+            (30_000, 0.0, 40_000.0, 1e-3, 16_000_000),
+            (1, 1.0, 1.0, 1.0, 1_000_000),
+            (0, 1.0, 1.0, 1.0, 1_000_000),
+        ];
+        for (steps, start, top, acceleration, clock_hz) in rows {
+            let times = Trapezoid::new(steps, start, top, acceleration).step_times(clock_hz);
+            for passed in [0, 1, 63, 64, 65, 500] {
+                let mut times = times.clone();
+                (0..passed).for_each(|_| drop(times.next()));
+                let mut one_by_one = Vec::new();
+                // Which asks for the next one each time.
+                for time in times.clone() {
+                    one_by_one.push(time);
+                }
+                let blocks = times.fold(Vec::new(), |mut all, time| {
+                    all.push(time);
+                    all
+                });
+                assert!(blocks == one_by_one, "{steps} steps to {top} steps/s, {passed} of them passed");
+            }
+        }
     }
 
     #[test]

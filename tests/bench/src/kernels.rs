@@ -124,24 +124,19 @@ impl Kernels {
         })
     }
 
-    /// Calls a kernel once; the result is only there to be used.
+    /// Calls a kernel once; the result is only there to be used. Each has a function of its own, so that what a compiler
+    /// makes of it is its own, too.
     pub fn call(&mut self, kernel: Kernel) -> u64 {
         match kernel {
             Kernel::Copy => self.copy(),
             Kernel::Write => self.write(),
             Kernel::Roots => roots(black_box(START_SPEED), black_box(ACCELERATION)).to_bits(),
-            Kernel::StepTimes => black_box(self.ramp).step_times(CLOCK_HZ).fold(0, u64::wrapping_add),
+            Kernel::StepTimes => step_times(black_box(self.ramp)),
             Kernel::Exact => {
                 entries(stored(&self.move_of_tables, Form::Exact, EntryFormat::Q16, PULSE, CLOCK_HZ))
             }
-            Kernel::Compressed => {
-                let due = black_box(&self.due).iter().copied();
-                segments_of(compressed_quickly(due, TOLERANCE, EntryFormat::Q16, PULSE))
-            }
-            Kernel::CompressedKlipper => {
-                let due = black_box(&self.due).iter().copied();
-                segments_of(compressed_quickly(due, KLIPPERS, EntryFormat::TICKS, PULSE))
-            }
+            Kernel::Compressed => compress(black_box(&self.due), TOLERANCE, EntryFormat::Q16),
+            Kernel::CompressedKlipper => compress(black_box(&self.due), KLIPPERS, EntryFormat::TICKS),
             Kernel::PlannedCompressed => self.planned(EntryFormat::Q16),
             Kernel::PlannedTicks => self.planned(EntryFormat::TICKS),
             Kernel::PlannedQ8 => self.planned(EntryFormat::Q8),
@@ -152,10 +147,7 @@ impl Kernels {
                 PULSE,
                 CLOCK_HZ,
             )),
-            Kernel::Plan(planner) => {
-                let due = black_box(self.plan(planner)).due_steps(CLOCK_HZ);
-                due.fold(0, |sum: u64, step| sum.wrapping_add(step.cycle))
-            }
+            Kernel::Plan(planner) => due_cycles(black_box(self.plan(planner))),
             Kernel::Optimum(segments) => optimum(black_box(segments.into()), Freedom::Free, ORDER)
                 .map_or(0, |found| found.distortion.position.to_bits()),
             Kernel::Sweep => sweep(black_box(SWEEP.0), SWEEP.1, SWEEP_ROWS, ORDER)
@@ -228,17 +220,20 @@ impl Kernels {
     }
 
     /// Segments of the move, planned and compressed.
+    #[inline(never)]
     fn planned(&self, format: EntryFormat) -> u64 {
         let due = black_box(&self.move_of_tables).due_steps(CLOCK_HZ);
         segments_of(compressed_quickly(due, TOLERANCE, format, PULSE))
     }
 
+    #[inline(never)]
     fn copy(&mut self) -> u64 {
         self.target.clear();
         self.target.extend_from_slice(black_box(&self.source));
         self.target.len() as u64
     }
 
+    #[inline(never)]
     fn write(&mut self) -> u64 {
         self.target.clear();
         let made =
@@ -248,7 +243,23 @@ impl Kernels {
     }
 }
 
+#[inline(never)]
+fn step_times(ramp: Trapezoid) -> u64 {
+    ramp.step_times(CLOCK_HZ).fold(0, u64::wrapping_add)
+}
+
+#[inline(never)]
+fn due_cycles(plan: &AxisPlan) -> u64 {
+    plan.due_steps(CLOCK_HZ).fold(0, |sum: u64, step| sum.wrapping_add(step.cycle))
+}
+
+#[inline(never)]
+fn compress(due: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -> u64 {
+    segments_of(compressed_quickly(due.iter().copied(), tolerance, format, PULSE))
+}
+
 /// One angle after another: nothing waits for the one before.
+#[inline(never)]
 fn sine_cosine(quarters: f64) -> f64 {
     (0..MOTOR_STEPS)
         .map(|step| {
@@ -259,6 +270,7 @@ fn sine_cosine(quarters: f64) -> f64 {
 }
 
 /// Motors that step all at once, 4000 times a second.
+#[inline(never)]
 fn plant(regulator: Regulator) -> u64 {
     let Ok(mut plant) = Plant::new(black_box(&motions::plant(regulator))) else { return 0 };
     let end = MOTOR_STEPS / MOTORS * plant.step_cycles();
@@ -283,6 +295,7 @@ fn segments_of(table: Result<Compressed, Cause>) -> u64 {
     table.map_or(0, |table| table.list.segments.len() as u64)
 }
 
+#[inline(never)]
 fn store(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
     target.clear();
     black_box(experiment).run(target);
@@ -290,12 +303,14 @@ fn store(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
 }
 
 /// The records of every controller of a line, each into a digest of its own.
+#[inline(never)]
 fn digest_each(experiment: &Experiment) -> u64 {
     let mut digests = vec![Digest::default(); experiment.controllers()];
     black_box(experiment).run_each(&mut digests);
     digests.iter().map(Digest::records).sum()
 }
 
+#[inline(never)]
 fn digest(experiment: &Experiment) -> u64 {
     let mut digest = Digest::default();
     black_box(experiment).run(&mut digest);
@@ -303,6 +318,7 @@ fn digest(experiment: &Experiment) -> u64 {
 }
 
 /// The least that a planner of this ramp could do.
+#[inline(never)]
 fn roots(v0: f64, a: f64) -> f64 {
     (0..STEPS).map(|k| square_root(v0 * v0 + 2.0 * a * f64::from(k))).sum()
 }

@@ -160,8 +160,7 @@ impl Line {
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        let next = if self.passed == self.forced.len() { self.next } else { self.next_heard };
-        next == Instant::NEVER
+        self.next == Instant::NEVER || self.passed < self.forced.len() && self.next_heard == Instant::NEVER
     }
 
     /// Looks for the next change that is heard.
