@@ -154,8 +154,9 @@ impl DueHalves {
             return (0, false);
         }
         let len = block.len().min(usize::try_from(travel - self.past).unwrap_or(usize::MAX));
-        let (half, first) = (self.half as f64, self.past as usize);
-        match self.parts.get(first..first + len) {
+        let half = self.half as f64;
+        let kept = usize::try_from(self.past).ok().and_then(|past| self.parts.get(past..)?.get(..len));
+        match kept {
             Some(parts) => {
                 block.iter_mut().zip(parts).for_each(|(due, part)| *due = half + part);
             }
