@@ -143,9 +143,12 @@ impl Quotient {
     /// When a step is due that is so long after `start`, as a number, and B1's cycle of it.
     #[inline]
     pub(super) fn after(self, start: CycleTime) -> (f64, u64) {
-        if start.part == Double::default() {
-            return self.after_whole(start.whole);
-        }
+        if start.part == Double::default() { self.after_whole(start.whole) } else { self.after_part(start) }
+    }
+
+    /// The same after a start within a cycle.
+    #[inline(never)]
+    fn after_part(self, start: CycleTime) -> (f64, u64) {
         let own = self.part();
         let (whole, part) = (start.whole.wrapping_add(self.whole), start.part.high + own);
         let is_before = |since: Double| (since - Double::from(self.whole)).exceeds(self.time().part);

@@ -95,7 +95,7 @@ impl DueSteps<'_> {
                 return true;
             }
             let Some(PlannedMove { profile, .. }) = self.moves.next() else { return false };
-            self.form = Some(due_from(profile, self.start, self.clock_hz));
+            self.form = due_from(profile, self.start, self.clock_hz);
             self.start = self.start.plus(profile.length(self.clock_hz));
         }
     }
@@ -128,12 +128,12 @@ impl Iterator for DueSteps<'_> {
 }
 
 /// The steps of a move that starts at `start`: of a timer's table and of one rate the quotients that whole numbers make,
-/// of the others those of their times in f64.
-fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
+/// of the others those of their times in f64; none where it has none.
+fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Option<Steps<'_>> {
     let clock = f64::from(clock_hz);
     let (right, count) = (profile.steps() >= 0, profile.steps().unsigned_abs());
     let steps = 1..count + 1;
-    match profile {
+    let form: Steps<'_> = match profile {
         Profile::Trapezoid(curve) => {
             let times = curve.step_times(clock_hz);
             scheduled(profile, start, clock_hz, OfTrapezoid { times, right })
@@ -151,8 +151,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
             scheduled(profile, start, clock_hz, times)
         }
         Profile::Sine(sine) => {
-            let (halves, cycles_per_half) = (sine.due_halves(), sine.period_s() / 2.0 * clock);
-            scheduled(profile, start, clock_hz, OfSine { halves, cycles_per_half })
+            scheduled(profile, start, clock_hz, sine.due_halves(sine.period_s() / 2.0 * clock))
         }
         Profile::Points(points) => {
             Box::new(OfPoints { pieces: points.due(), piece: None, cycles: [0.0; BLOCK], start, clock_hz })
@@ -168,14 +167,15 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Steps<'_> {
                 scheduled(profile, start, clock_hz, times)
             }
         },
-        Profile::Dwell(_) => Box::new(OfQuotients { times: core::iter::empty(), start, right }),
+        Profile::Dwell(_) => return None,
         Profile::Sliced(curve) => {
             scheduled(profile, start, clock_hz, curve.due_s().map(move |due_s| (due_s * clock, right)))
         }
         Profile::Cosine(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
         Profile::Ramps(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
         Profile::JerkLimited(curve) => by_series(profile, Box::new(*curve), start, clock_hz),
-    }
+    };
+    Some(form)
 }
 
 /// Steps that are due at quotients of whole numbers after the move's start, all one way.
@@ -259,24 +259,15 @@ impl UnroundedTimes for OfTrapezoid {
     }
 }
 
-/// Of a sine, in cycles of half its period.
-struct OfSine {
-    halves: DueHalves,
-    cycles_per_half: f64,
-}
-
-impl UnroundedTimes for OfSine {
+impl UnroundedTimes for DueHalves {
     fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
         let mut len = 0;
         while let Some(rest) = cycles.get_mut(len..).filter(|rest| !rest.is_empty()) {
-            let (formed, right) = self.halves.next_in_half(rest);
+            let (formed, right) = self.next_in_half(rest);
             if formed == 0 {
                 break;
             }
-            for (cycles, (_, step)) in rest.iter_mut().zip(steps.iter_mut().skip(len)).take(formed) {
-                *cycles *= self.cycles_per_half;
-                step.right = right;
-            }
+            steps.iter_mut().skip(len).take(formed).for_each(|(_, step)| step.right = right);
             len += formed;
         }
         len

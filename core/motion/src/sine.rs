@@ -83,14 +83,15 @@ impl Sine {
         self.oscillation.step_count()
     }
 
-    /// Where each step falls due, in half periods from the start, and whether it goes to the right.
-    pub(super) fn due_halves(&self) -> DueHalves {
+    /// When each step falls due from the start, in what there are `per_half` of in half a period, and whether it goes to the
+    /// right.
+    pub(super) fn due_halves(&self, per_half: f64) -> DueHalves {
         let oscillation = self.oscillation;
         let Oscillation { amplitude, periods, .. } = oscillation;
         let (travel, halves) = (2 * amplitude, if amplitude > 0 { 2 * u64::from(periods) } else { 0 });
         let kept = if travel <= MAX_KEPT_PARTS { travel } else { 0 };
         let parts = (1..=kept).map(|k| part_of_half(k, amplitude)).collect();
-        DueHalves { oscillation, halves, parts, half: 0, past: 0 }
+        DueHalves { oscillation, per_half, halves, parts, half: 0, past: 0 }
     }
 
     /// When step `k` (from 1) of all falls due, in half periods from the start.
@@ -132,6 +133,8 @@ impl Sine {
 /// The steps of a sine, half period after half period.
 pub(super) struct DueHalves {
     oscillation: Oscillation,
+    /// The length of each.
+    per_half: f64,
     /// How many there are.
     halves: u64,
     /// Parts of a half period after which its steps fall due, which are the same in each; none where they are too many.
@@ -142,8 +145,8 @@ pub(super) struct DueHalves {
 }
 
 impl DueHalves {
-    /// Writes the next steps' times in half periods from the start, from the block's beginning on and no further than to
-    /// the end of a half period; with how many these are, none at the end, and whether they go to the right.
+    /// Writes the next steps' times from the start, from the block's beginning on and no further than to the end of a half
+    /// period; with how many these are, none at the end, and whether they go to the right.
     pub(super) fn next_in_half(&mut self, block: &mut [f64]) -> (usize, bool) {
         let Oscillation { amplitude, .. } = self.oscillation;
         let travel = 2 * amplitude;
@@ -154,15 +157,15 @@ impl DueHalves {
             return (0, false);
         }
         let len = block.len().min(usize::try_from(travel - self.past).unwrap_or(usize::MAX));
-        let half = self.half as f64;
+        let (half, per_half) = (self.half as f64, self.per_half);
         let kept = usize::try_from(self.past).ok().and_then(|past| self.parts.get(past..)?.get(..len));
         match kept {
             Some(parts) => {
-                block.iter_mut().zip(parts).for_each(|(due, part)| *due = half + part);
+                block.iter_mut().zip(parts).for_each(|(due, part)| *due = (half + part) * per_half);
             }
             None => {
                 let steps = block.iter_mut().zip(self.past + 1..).take(len);
-                steps.for_each(|(due, k)| *due = half + part_of_half(k, amplitude));
+                steps.for_each(|(due, k)| *due = (half + part_of_half(k, amplitude)) * per_half);
             }
         }
         self.past += len as u64;
@@ -233,7 +236,7 @@ mod tests {
 
     /// All steps, in blocks of this length.
     fn all(sine: &Sine, block: usize) -> Vec<(f64, bool)> {
-        let (mut halves, mut block, mut due) = (sine.due_halves(), vec![0.0; block], Vec::new());
+        let (mut halves, mut block, mut due) = (sine.due_halves(1.0), vec![0.0; block], Vec::new());
         loop {
             let (len, right) = halves.next_in_half(&mut block);
             if len == 0 {
@@ -260,7 +263,7 @@ mod tests {
         for amplitude in [1_000_000, 1_000_000_000_i64] {
             let sine = Sine::new(amplitude, 1.0, 1);
             let mut first = [0.0];
-            assert_eq!(sine.due_halves().next_in_half(&mut first), (1, false));
+            assert_eq!(sine.due_halves(1.0).next_in_half(&mut first), (1, false));
             let first = first[0] * PI;
             let x = 1.0 / amplitude as f64;
             let expected = libm::sqrt(x) * (1.0 + x / 24.0 + 3.0 * x * x / 640.0);

@@ -160,12 +160,11 @@ impl StepTimes {
             // Places are in the middle between whole numbers, which ends are.
             let formed = rest.len().min((end - first + 0.5) as usize);
             let (part, ramp, end, count) = (rest.iter_mut().take(formed), self.ramp, self.end, self.count);
-            match (first < self.ramp_end, first < self.plateau_end, ramp.divides) {
-                (true, _, true) => form(part, first, |place| ramp.divided(place)),
-                (true, _, false) => form(part, first, |place| ramp.multiplied(place)),
-                (_, true, _) => form(part, first, |place| self.steady(place)),
-                (_, _, true) => form(part, first, |place| end - ramp.divided(count - place)),
-                (_, _, false) => form(part, first, |place| end - ramp.multiplied(count - place)),
+            match (first < self.ramp_end, first < self.plateau_end) {
+                (false, true) => form(part, first, |place| self.steady(place)),
+                _ if ramp.divides => form(part, first, |place| self.unrounded(place)),
+                (true, _) => form(part, first, |place| ramp.multiplied(place)),
+                (false, false) => form(part, first, |place| end - ramp.multiplied(count - place)),
             }
             self.place = first + formed as f64;
             len += formed;
@@ -195,21 +194,16 @@ impl StepTimes {
         len
     }
 
-    /// Cycles until the next step, not rounded.
+    /// Cycles until a place, not rounded.
     #[inline]
-    fn next_unrounded(&mut self) -> Option<f64> {
-        let place = self.place;
-        let time = if place < self.ramp_end {
+    fn unrounded(&self, place: f64) -> f64 {
+        if place < self.ramp_end {
             self.climbing(place)
         } else if place < self.plateau_end {
             self.steady(place)
-        } else if place < self.count {
-            self.slowing(place)
         } else {
-            return None;
-        };
-        self.place = place + 1.0;
-        Some(time)
+            self.slowing(place)
+        }
     }
 }
 
@@ -232,7 +226,11 @@ impl Iterator for StepTimes {
 
     #[inline]
     fn next(&mut self) -> Option<u64> {
-        let cycles = self.next_unrounded()?;
+        if self.place >= self.count {
+            return None;
+        }
+        let cycles = self.unrounded(self.place);
+        self.place += 1.0;
         // Copies are judged, so that all of this stays in registers.
         Some(match self.rounding.certain(cycles) {
             Some(cycle) => cycle,

@@ -31,7 +31,8 @@ fn times(profile: &Profile) -> Vec<f64> {
         let time = |k: u64| profile.time_s(k as f64 - 0.5) * f64::from(CLOCK_HZ);
         return (1..=profile.step_count()).map(time).collect();
     }
-    let (mut form, mut times) = (due_from(profile, CycleTime::default(), CLOCK_HZ), Vec::new());
+    let mut times = Vec::new();
+    let Some(mut form) = due_from(profile, CycleTime::default(), CLOCK_HZ) else { return times };
     let mut block = [(0.0, ScheduledStep { cycle: 0, right: false }); BLOCK];
     loop {
         let len = form.next_block(&mut block);
