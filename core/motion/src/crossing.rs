@@ -22,6 +22,8 @@
 //! E, and is no tie, would go up as well; nothing proves that there is none. Were times spread evenly, it would be one in
 //! 2^62 of a motion of 2^32 cycles.
 
+use core::hint::black_box;
+
 use crate::{
     cycle_time::{CycleTime, Quotient, tie},
     double::Double,
@@ -43,12 +45,14 @@ pub(super) struct Rounding {
     start: CycleTime,
     /// How far a time may be from the middle between two edges.
     room: f64,
+    /// [`WHOLE`], but not for the compiler: browsers make a constant anew for each step.
+    shift: f64,
 }
 
 impl Rounding {
     /// Of a move that begins at `start`, whose own times in cycles may be off by `off`.
     pub(super) fn new(start: CycleTime, off: f64) -> Self {
-        Self { start, room: 0.5 - MAX_OFF_CYCLES - off }
+        Self { start, room: 0.5 - MAX_OFF_CYCLES - off, shift: black_box(WHOLE) }
     }
 
     /// Of times that may be off by so many cycles more.
@@ -60,7 +64,7 @@ impl Rounding {
     /// or after it; and how far from the cycle's own instant that is, which [`Self::is_certain`] judges.
     #[inline]
     pub(super) fn after_start(&self, whole: u64, cycles: f64) -> (u64, f64) {
-        let (cycle, from_middle) = nearest(self.start.part.high + cycles);
+        let (cycle, from_middle) = self.nearest(self.start.part.high + cycles);
         (self.start.whole.wrapping_add(whole).wrapping_add(cycle), from_middle)
     }
 
@@ -84,17 +88,17 @@ impl Rounding {
     /// floor(cycles + 1/2), where no edge is too near.
     #[inline]
     pub(super) fn certain(&self, cycles: f64) -> Option<u64> {
-        let (cycle, from_middle) = nearest(cycles);
+        let (cycle, from_middle) = self.nearest(cycles);
         self.is_certain(from_middle).then_some(cycle)
     }
-}
 
-/// The nearest whole number, of a negative one what a sum that wraps makes right; and how far it is away.
-#[inline]
-fn nearest(cycles: f64) -> (u64, f64) {
-    // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
-    let moved = cycles + WHOLE;
-    (moved.to_bits().wrapping_sub(WHOLE.to_bits()), libm::fabs(cycles - (moved - WHOLE)))
+    /// The nearest whole number, of a negative one what a sum that wraps makes right; and how far it is away.
+    #[inline]
+    fn nearest(&self, cycles: f64) -> (u64, f64) {
+        // The sum has no digit after the point: it is the nearest whole number, and no conversion is needed.
+        let moved = cycles + self.shift;
+        (moved.to_bits().wrapping_sub(WHOLE.to_bits()), libm::fabs(cycles - (moved - self.shift)))
+    }
 }
 
 /// floor(cycles + 1/2), but for the last digits.

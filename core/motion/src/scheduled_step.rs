@@ -44,14 +44,13 @@ impl AxisPlan {
 
     /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
     pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
-        let none = (0.0, ScheduledStep { cycle: 0, right: false });
         let start = CycleTime::default();
         DueSteps {
             moves: self.moves().iter(),
             start,
             clock_hz,
             form: None,
-            block: [none; BLOCK],
+            block: Block::EMPTY,
             at: 0,
             len: 0,
         }
@@ -61,10 +60,32 @@ impl AxisPlan {
 /// A step with its instant before it is rounded.
 type Due = (f64, ScheduledStep);
 
+/// Steps that are formed at once. Each number has an array of its own, as the loops that write them take several at a time.
+struct Block {
+    instants: [f64; BLOCK],
+    cycles: [u64; BLOCK],
+    right: [bool; BLOCK],
+}
+
+impl Block {
+    const EMPTY: Self = Self { instants: [0.0; BLOCK], cycles: [0; BLOCK], right: [false; BLOCK] };
+
+    /// Its steps from one on and before another.
+    fn steps(&self, from: usize, to: usize) -> impl Iterator<Item = Due> {
+        let steps = self.instants.iter().zip(&self.cycles).zip(&self.right).take(to).skip(from);
+        steps.map(|((instant, &cycle), &right)| (*instant, ScheduledStep { cycle, right }))
+    }
+
+    /// The places of the instants and cycles of its first `len` steps.
+    fn places(&mut self, len: usize) -> impl Iterator<Item = (&mut f64, &mut u64)> {
+        self.instants.iter_mut().zip(&mut self.cycles).take(len)
+    }
+}
+
 /// What forms a move's steps.
 trait Form {
     /// Writes the next ones from the block's beginning on, and says how many: none at the end.
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize;
+    fn next_block(&mut self, block: &mut Block) -> usize;
 }
 
 /// The steps of a move, each with its instant, one after another.
@@ -78,7 +99,7 @@ struct DueSteps<'p> {
     clock_hz: u32,
     /// Of this move.
     form: Option<Steps<'p>>,
-    block: [Due; BLOCK],
+    block: Block,
     /// Of the block the next one, and how many there are.
     at: usize,
     len: usize,
@@ -109,9 +130,10 @@ impl Iterator for DueSteps<'_> {
         if self.at >= self.len && !self.next_block() {
             return None;
         }
-        let due = self.block[self.at % BLOCK];
+        let Block { instants, cycles, right } = &self.block;
+        let at = self.at % BLOCK;
         self.at += 1;
-        Some(due)
+        Some((instants[at], ScheduledStep { cycle: cycles[at], right: right[at] }))
     }
 
     /// Block by block.
@@ -119,8 +141,7 @@ impl Iterator for DueSteps<'_> {
     fn fold<T, F: FnMut(T, Due) -> T>(mut self, first: T, mut f: F) -> T {
         let mut folded = first;
         while self.at < self.len || self.next_block() {
-            let block = self.block.get(self.at..self.len).unwrap_or_default();
-            folded = block.iter().fold(folded, |folded, due| f(folded, *due));
+            folded = self.block.steps(self.at, self.len).fold(folded, &mut f);
             self.at = self.len;
         }
         folded
@@ -186,13 +207,14 @@ struct OfQuotients<I> {
 }
 
 impl<I: Iterator<Item = Quotient>> Form for OfQuotients<I> {
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+    fn next_block(&mut self, block: &mut Block) -> usize {
         let Self { times, start, right } = self;
+        block.right = [*right; BLOCK];
         // A loop of its own for each keeps its numbers in registers.
         if start.part == Double::default() {
-            put_each(block, times, *right, |since| since.after_whole(start.whole))
+            put_each(block, times, |since| since.after_whole(start.whole))
         } else {
-            put_each(block, times, *right, |since| since.after(*start))
+            put_each(block, times, |since| since.after(*start))
         }
     }
 }
@@ -200,15 +222,13 @@ impl<I: Iterator<Item = Quotient>> Form for OfQuotients<I> {
 /// Writes the instants and cycles of the next steps, and says of how many.
 #[inline]
 fn put_each(
-    block: &mut [Due; BLOCK],
+    block: &mut Block,
     times: &mut impl Iterator<Item = Quotient>,
-    right: bool,
     due: impl Fn(Quotient) -> (f64, u64),
 ) -> usize {
     let mut len = 0;
-    for (place, since) in block.iter_mut().zip(times) {
-        let (instant, cycle) = due(since);
-        *place = (instant, ScheduledStep { cycle, right });
+    for ((instant, cycle), since) in block.places(BLOCK).zip(times) {
+        (*instant, *cycle) = due(since);
         len += 1;
     }
     len
@@ -229,16 +249,15 @@ fn scheduled<'p>(
 trait UnroundedTimes {
     /// Writes the next times, and with them the directions, from the blocks' beginning on, and says how many: none at the
     /// end.
-    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize;
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], right: &mut [bool; BLOCK]) -> usize;
 }
 
 /// Told one by one.
 impl<I: Iterator<Item = (f64, bool)>> UnroundedTimes for I {
-    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], right: &mut [bool; BLOCK]) -> usize {
         let mut len = 0;
-        let _ = self.try_for_each(|(time, right)| {
-            cycles[len % BLOCK] = time;
-            steps[len % BLOCK].1.right = right;
+        let _ = self.try_for_each(|(time, goes_right)| {
+            (cycles[len % BLOCK], right[len % BLOCK]) = (time, goes_right);
             len += 1;
             if len < BLOCK { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -253,21 +272,21 @@ struct OfTrapezoid {
 }
 
 impl UnroundedTimes for OfTrapezoid {
-    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
-        steps.iter_mut().for_each(|(_, step)| step.right = self.right);
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], right: &mut [bool; BLOCK]) -> usize {
+        *right = [self.right; BLOCK];
         self.times.next_block(cycles)
     }
 }
 
 impl UnroundedTimes for DueHalves {
-    fn next_block(&mut self, cycles: &mut [f64; BLOCK], steps: &mut [Due; BLOCK]) -> usize {
+    fn next_block(&mut self, cycles: &mut [f64; BLOCK], right: &mut [bool; BLOCK]) -> usize {
         let mut len = 0;
         while let Some(rest) = cycles.get_mut(len..).filter(|rest| !rest.is_empty()) {
-            let (formed, right) = self.next_in_half(rest);
+            let (formed, goes_right) = self.next_in_half(rest);
             if formed == 0 {
                 break;
             }
-            steps.iter_mut().skip(len).take(formed).for_each(|(_, step)| step.right = right);
+            right.iter_mut().skip(len).take(formed).for_each(|right| *right = goes_right);
             len += formed;
         }
         len
@@ -283,8 +302,8 @@ struct OfTimes<'p, T> {
 }
 
 impl<T: UnroundedTimes> Form for OfTimes<'_, T> {
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
-        let len = self.times.next_block(&mut self.cycles, block);
+    fn next_block(&mut self, block: &mut Block) -> usize {
+        let len = self.times.next_block(&mut self.cycles, &mut block.right);
         self.ends.put(block, &self.cycles, len);
         len
     }
@@ -302,18 +321,19 @@ struct Ends<'p> {
 impl Ends<'_> {
     /// Writes the instants and cycles of a block's `len` steps.
     #[inline(never)]
-    fn put(&mut self, block: &mut [Due; BLOCK], cycles: &[f64; BLOCK], len: usize) {
+    fn put(&mut self, block: &mut Block, cycles: &[f64; BLOCK], len: usize) {
         let (start, rounding) = (self.start.cycles(), self.rounding);
         // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
         let mut are_certain = true;
-        for ((instant, step), cycles) in block.iter_mut().zip(cycles) {
-            let (cycle, from_middle) = rounding.after_start(0, *cycles);
+        for ((instant, cycle), cycles) in block.places(BLOCK).zip(cycles) {
+            let from_middle;
+            (*cycle, from_middle) = rounding.after_start(0, *cycles);
             are_certain &= rounding.is_certain(from_middle);
-            (*instant, step.cycle) = (start + cycles, cycle);
+            *instant = start + cycles;
         }
         if !are_certain {
-            for ((k, (_, step)), cycles) in (self.first..).zip(block.iter_mut().take(len)).zip(cycles) {
-                step.cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
+            for ((k, (_, cycle)), cycles) in (self.first..).zip(block.places(len)).zip(cycles) {
+                *cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
             }
         }
         self.first += len as u64;
@@ -375,7 +395,7 @@ impl Judge<'_> {
 }
 
 impl Form for OfSeries<'_> {
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+    fn next_block(&mut self, block: &mut Block) -> usize {
         let Self { times, cycles, judge, right, start } = self;
         let Some(found) = times.times(cycles, &|step, near| judge.exactly(step, near)) else { return 0 };
         let by_search = Rounding::new(*start, judge.off);
@@ -417,7 +437,7 @@ impl<'p, I: Iterator<Item = PieceSteps<'p>>> OfPoints<'p, I> {
 }
 
 impl<'p, I: Iterator<Item = PieceSteps<'p>>> Form for OfPoints<'p, I> {
-    fn next_block(&mut self, block: &mut [Due; BLOCK]) -> usize {
+    fn next_block(&mut self, block: &mut Block) -> usize {
         let Some((steps, found)) = self.next_times() else { return 0 };
         let (start, clock_hz) = (self.start, self.clock_hz);
         let rounding = |OfBlock { off, least_speed, .. }| {
@@ -433,33 +453,33 @@ impl<'p, I: Iterator<Item = PieceSteps<'p>>> Form for OfPoints<'p, I> {
 /// what is found by a search: the instant and the cycle of a step (from 0). Says how many.
 #[inline]
 fn rounded(
-    block: &mut [Due; BLOCK],
+    block: &mut Block,
     (cycles, Times { first, len, of_block }): (&[f64; BLOCK], Times),
     (start, right): (CycleTime, bool),
     rounding: &dyn Fn(OfBlock) -> Rounding,
     searched: &dyn Fn(u64) -> (f64, u64),
 ) -> usize {
-    let search = |step: u64, due: &mut Due| {
-        let (instant, cycle) = searched(step);
-        *due = (instant, ScheduledStep { cycle, right });
-    };
+    block.right = [right; BLOCK];
     let Some(of_block) = of_block else {
-        (first..).zip(block.iter_mut().take(len)).for_each(|(step, due)| search(step, due));
+        for (step, (instant, cycle)) in (first..).zip(block.places(len)) {
+            (*instant, *cycle) = searched(step);
+        }
         return len;
     };
     let (whole, rounding) = (of_block.time.whole, rounding(of_block));
     let from = start.cycles() + whole as f64;
     // All of them without a question, which is seldom of use.
     let mut are_certain = true;
-    for (due, cycles) in block.iter_mut().zip(cycles) {
-        let (cycle, from_middle) = rounding.after_start(whole, *cycles);
+    for ((instant, cycle), cycles) in block.places(BLOCK).zip(cycles) {
+        let from_middle;
+        (*cycle, from_middle) = rounding.after_start(whole, *cycles);
         are_certain &= rounding.is_certain(from_middle);
-        *due = (from + cycles, ScheduledStep { cycle, right });
+        *instant = from + cycles;
     }
     if !are_certain {
-        for ((step, due), cycles) in (first..).zip(block.iter_mut().take(len)).zip(cycles) {
+        for ((step, (instant, cycle)), cycles) in (first..).zip(block.places(len)).zip(cycles) {
             if !rounding.is_certain(rounding.after_start(whole, *cycles).1) {
-                search(step, due);
+                (*instant, *cycle) = searched(step);
             }
         }
     }

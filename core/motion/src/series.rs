@@ -263,21 +263,25 @@ impl Block {
     }
 
     /// The times of steps from a place on.
-    #[inline]
     fn times(&self, from: f64, times: &mut [f64; BLOCK]) {
-        // Term by term, so that the steps of a block are formed side by side.
-        let mut along = [0.0; BLOCK];
-        for (index, along) in along.iter_mut().enumerate() {
-            *along = (from + index as f64 - self.middle) * self.per_step;
+        match self.count {
+            0..=2 => self.by_terms::<2>(from, times),
+            3..=4 => self.by_terms::<4>(from, times),
+            5..=6 => self.by_terms::<6>(from, times),
+            7..=8 => self.by_terms::<8>(from, times),
+            _ => self.by_terms::<TERMS>(from, times),
         }
-        *times = [0.0; BLOCK];
-        for term in self.terms.iter().take(self.count).rev() {
-            for (time, along) in times.iter_mut().zip(&along) {
-                *time = (*time + term) * along;
-            }
-        }
-        for time in times {
-            *time += self.time.part;
+    }
+
+    /// By so many terms: their number is the compiler's, so that several steps at a time go through all of them in
+    /// registers. Those that do not tell are 0, which changes no sum.
+    fn by_terms<const N: usize>(&self, from: f64, times: &mut [f64; BLOCK]) {
+        let terms: [f64; N] =
+            core::array::from_fn(|n| if n < self.count { self.terms[n % TERMS] } else { 0.0 });
+        for (index, time) in (0_u32..).zip(times) {
+            let along = (from + f64::from(index) - self.middle) * self.per_step;
+            let sum = terms.iter().rev().fold(0.0, |sum, term| (sum + term) * along);
+            *time = sum + self.time.part;
         }
     }
 }

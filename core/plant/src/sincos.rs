@@ -1,28 +1,27 @@
 //! Sine and cosine of quarter turns, and the shares of an exponential: polynomials and + - * / alone, so every
 //! target has the same bits (F3).
 
+use core::hint::black_box;
+
 /// 3*2^51: what is added to it loses its fraction to the nearest even whole number.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-const S: [f64; 7] = [
-    core::f64::consts::FRAC_PI_2,
-    -0.645_964_097_506_246_3,
-    0.079_692_626_246_167_05,
-    -0.004_681_754_135_318_688,
-    0.000_160_441_184_787_359_83,
-    -3.598_843_235_212_085e-6,
-    5.692_172_921_967_927e-8,
+/// Of the sine and of the cosine, from the highest power down.
+static TERMS: [[f64; 2]; 7] = [
+    [5.692_172_921_967_927e-8, -6.386_603_083_791_852e-9],
+    [-3.598_843_235_212_085e-6, 4.710_874_778_818_172e-7],
+    [0.000_160_441_184_787_359_83, -2.520_204_237_306_060_7e-5],
+    [-0.004_681_754_135_318_688, 0.000_919_260_274_839_426_6],
+    [0.079_692_626_246_167_05, -0.020_863_480_763_352_96],
+    [-0.645_964_097_506_246_3, 0.253_669_507_901_048_03],
+    [core::f64::consts::FRAC_PI_2, -1.233_700_550_136_169_7],
 ];
 
-const C: [f64; 7] = [
-    -1.233_700_550_136_169_7,
-    0.253_669_507_901_048_03,
-    -0.020_863_480_763_352_96,
-    0.000_919_260_274_839_426_6,
-    -2.520_204_237_306_060_7e-5,
-    4.710_874_778_818_172e-7,
-    -6.386_603_083_791_852e-9,
-];
+/// They come from memory in browsers, which would make each constant anew whenever it is used.
+#[inline(always)]
+fn terms() -> &'static [[f64; 2]; 7] {
+    if cfg!(target_arch = "wasm32") { black_box(&TERMS) } else { &TERMS }
+}
 
 /// From here on, 2^51, the sum with [`ROUND`] has other last bits than the whole number.
 const FAR: f64 = 2_251_799_813_685_248.0;
@@ -46,8 +45,10 @@ pub fn sincos(q: f64) -> (f64, f64) {
     let n = t - ROUND;
     let r = q - n;
     let z = r * r;
-    let s = r * (S[0] + z * (S[1] + z * (S[2] + z * (S[3] + z * (S[4] + z * (S[5] + z * S[6]))))));
-    let c = 1.0 + z * (C[0] + z * (C[1] + z * (C[2] + z * (C[3] + z * (C[4] + z * (C[5] + z * C[6]))))));
+    // Both at once.
+    let [highest, rest @ ..] = terms();
+    let [s, c] = rest.iter().fold(*highest, |[s, c], [of_s, of_c]| [of_s + z * s, of_c + z * c]);
+    let (s, c) = (r * s, 1.0 + z * c);
     // The last bits of t's significand are those of the whole number: 3*2^51 has none there.
     let quarter = if n > -FAR && n < FAR { t.to_bits() & 3 } else { far_quarter(n) };
     let (sine, cosine) = if quarter & 1 == 0 { (s, c) } else { (c, s) };

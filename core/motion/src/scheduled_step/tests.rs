@@ -33,13 +33,13 @@ fn times(profile: &Profile) -> Vec<f64> {
     }
     let mut times = Vec::new();
     let Some(mut form) = due_from(profile, CycleTime::default(), CLOCK_HZ) else { return times };
-    let mut block = [(0.0, ScheduledStep { cycle: 0, right: false }); BLOCK];
+    let mut block = Block::EMPTY;
     loop {
         let len = form.next_block(&mut block);
         if len == 0 {
             return times;
         }
-        times.extend(block[..len].iter().map(|(instant, _)| *instant));
+        times.extend(&block.instants[..len]);
     }
 }
 
