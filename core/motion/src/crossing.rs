@@ -162,9 +162,13 @@ impl Quotient {
     /// The same after whole cycles.
     #[inline]
     pub(super) fn after_whole(self, start: u64) -> (f64, u64) {
-        let whole = start.wrapping_add(self.whole);
-        let cycle = whole.wrapping_add(u64::from(self.rest >= self.under - self.rest));
-        (instant(whole, self.part()), cycle)
+        (instant(start.wrapping_add(self.whole), self.part()), self.cycle_after(start))
+    }
+
+    /// Its cycle alone.
+    #[inline]
+    pub(super) fn cycle_after(self, start: u64) -> u64 {
+        start.wrapping_add(self.whole).wrapping_add(u64::from(self.rest >= self.under - self.rest))
     }
 }
 

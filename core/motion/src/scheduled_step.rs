@@ -14,9 +14,9 @@ use crate::{
     cycle_time::{CycleTime, Quotient},
     double::Double,
     exact::Exact,
+    oscillation::Runs,
     points::PieceSteps,
     series::{BLOCK, BySeries, MAX_REST, MiddleTime, OfBlock, Series, Times},
-    sine::DueHalves,
 };
 use alloc::boxed::Box;
 use core::ops::ControlFlow;
@@ -39,21 +39,12 @@ impl AxisPlan {
 
     /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
     pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = ScheduledStep> + '_ {
-        self.due_instants(clock_hz).map(|(_, due)| due)
+        DueSteps::of(self, clock_hz, false).map(|(_, due)| due)
     }
 
     /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
     pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
-        let start = CycleTime::default();
-        DueSteps {
-            moves: self.moves().iter(),
-            start,
-            clock_hz,
-            form: None,
-            block: Block::EMPTY,
-            at: 0,
-            len: 0,
-        }
+        DueSteps::of(self, clock_hz, true)
     }
 }
 
@@ -62,13 +53,17 @@ type Due = (f64, ScheduledStep);
 
 /// Steps that are formed at once. Each number has an array of its own, as the loops that write them take several at a time.
 struct Block {
+    /// Whether the instants are asked for: 0 where not.
+    has_instants: bool,
     instants: [f64; BLOCK],
     cycles: [u64; BLOCK],
     right: [bool; BLOCK],
 }
 
 impl Block {
-    const EMPTY: Self = Self { instants: [0.0; BLOCK], cycles: [0; BLOCK], right: [false; BLOCK] };
+    fn new(has_instants: bool) -> Self {
+        Self { has_instants, instants: [0.0; BLOCK], cycles: [0; BLOCK], right: [false; BLOCK] }
+    }
 
     /// Its steps from one on and before another.
     fn steps(&self, from: usize, to: usize) -> impl Iterator<Item = Due> {
@@ -76,9 +71,13 @@ impl Block {
         steps.map(|((instant, &cycle), &right)| (*instant, ScheduledStep { cycle, right }))
     }
 
-    /// The places of the instants and cycles of its first `len` steps.
-    fn places(&mut self, len: usize) -> impl Iterator<Item = (&mut f64, &mut u64)> {
-        self.instants.iter_mut().zip(&mut self.cycles).take(len)
+    /// Writes the instants of steps that are due so many cycles after another, if they are asked for.
+    fn put_instants(&mut self, from: f64, cycles: &[f64; BLOCK]) {
+        if self.has_instants {
+            for (instant, cycles) in self.instants.iter_mut().zip(cycles) {
+                *instant = from + cycles;
+            }
+        }
     }
 }
 
@@ -105,7 +104,12 @@ struct DueSteps<'p> {
     len: usize,
 }
 
-impl DueSteps<'_> {
+impl<'p> DueSteps<'p> {
+    fn of(plan: &'p AxisPlan, clock_hz: u32, has_instants: bool) -> Self {
+        let (moves, start, block) = (plan.moves().iter(), CycleTime::default(), Block::new(has_instants));
+        Self { moves, start, clock_hz, form: None, block, at: 0, len: 0 }
+    }
+
     /// Forms the next steps; whether there are any.
     #[inline(never)]
     fn next_block(&mut self) -> bool {
@@ -130,7 +134,7 @@ impl Iterator for DueSteps<'_> {
         if self.at >= self.len && !self.next_block() {
             return None;
         }
-        let Block { instants, cycles, right } = &self.block;
+        let Block { instants, cycles, right, .. } = &self.block;
         let at = self.at % BLOCK;
         self.at += 1;
         Some((instants[at], ScheduledStep { cycle: cycles[at], right: right[at] }))
@@ -167,12 +171,10 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Option<Steps<
             scheduled(profile, start, clock_hz, times)
         }
         Profile::SineSegments(sine) => {
-            let cycles_per_point = sine.point_s() * clock;
-            let times = sine.due_points().map(move |(point, right)| (point * cycles_per_point, right));
-            scheduled(profile, start, clock_hz, times)
+            scheduled(profile, start, clock_hz, OfRuns(sine.due_points(sine.point_s() * clock)))
         }
         Profile::Sine(sine) => {
-            scheduled(profile, start, clock_hz, sine.due_halves(sine.period_s() / 2.0 * clock))
+            scheduled(profile, start, clock_hz, OfRuns(sine.due_halves(sine.period_s() / 2.0 * clock)))
         }
         Profile::Points(points) => {
             Box::new(OfPoints { pieces: points.due(), piece: None, cycles: [0.0; BLOCK], start, clock_hz })
@@ -211,24 +213,31 @@ impl<I: Iterator<Item = Quotient>> Form for OfQuotients<I> {
         let Self { times, start, right } = self;
         block.right = [*right; BLOCK];
         // A loop of its own for each keeps its numbers in registers.
-        if start.part == Double::default() {
-            put_each(block, times, |since| since.after_whole(start.whole))
+        if block.has_instants {
+            let mut len = 0;
+            for ((instant, cycle), since) in block.instants.iter_mut().zip(&mut block.cycles).zip(times) {
+                (*instant, *cycle) = since.after(*start);
+                len += 1;
+            }
+            len
+        } else if start.part == Double::default() {
+            put_each(block, times, |since| since.cycle_after(start.whole))
         } else {
-            put_each(block, times, |since| since.after(*start))
+            put_each(block, times, |since| since.after(*start).1)
         }
     }
 }
 
-/// Writes the instants and cycles of the next steps, and says of how many.
+/// Writes the cycles of the next steps, and says of how many.
 #[inline]
 fn put_each(
     block: &mut Block,
     times: &mut impl Iterator<Item = Quotient>,
-    due: impl Fn(Quotient) -> (f64, u64),
+    due: impl Fn(Quotient) -> u64,
 ) -> usize {
     let mut len = 0;
-    for ((instant, cycle), since) in block.places(BLOCK).zip(times) {
-        (*instant, *cycle) = due(since);
+    for (cycle, since) in block.cycles.iter_mut().zip(times) {
+        *cycle = due(since);
         len += 1;
     }
     len
@@ -278,11 +287,14 @@ impl UnroundedTimes for OfTrapezoid {
     }
 }
 
-impl UnroundedTimes for DueHalves {
+/// Of an oscillation, from one run to the next.
+struct OfRuns<R>(R);
+
+impl<R: Runs> UnroundedTimes for OfRuns<R> {
     fn next_block(&mut self, cycles: &mut [f64; BLOCK], right: &mut [bool; BLOCK]) -> usize {
         let mut len = 0;
         while let Some(rest) = cycles.get_mut(len..).filter(|rest| !rest.is_empty()) {
-            let (formed, goes_right) = self.next_in_half(rest);
+            let (formed, goes_right) = self.0.next_run(rest);
             if formed == 0 {
                 break;
             }
@@ -325,14 +337,14 @@ impl Ends<'_> {
         let (start, rounding) = (self.start.cycles(), self.rounding);
         // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
         let mut are_certain = true;
-        for ((instant, cycle), cycles) in block.places(BLOCK).zip(cycles) {
+        for (cycle, cycles) in block.cycles.iter_mut().zip(cycles) {
             let from_middle;
             (*cycle, from_middle) = rounding.after_start(0, *cycles);
             are_certain &= rounding.is_certain(from_middle);
-            *instant = start + cycles;
         }
+        block.put_instants(start, cycles);
         if !are_certain {
-            for ((k, (_, cycle)), cycles) in (self.first..).zip(block.places(len)).zip(cycles) {
+            for ((k, cycle), cycles) in (self.first..).zip(block.cycles.iter_mut().take(len)).zip(cycles) {
                 *cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
             }
         }
@@ -461,8 +473,8 @@ fn rounded(
 ) -> usize {
     block.right = [right; BLOCK];
     let Some(of_block) = of_block else {
-        for (step, (instant, cycle)) in (first..).zip(block.places(len)) {
-            (*instant, *cycle) = searched(step);
+        for (step, place) in (first..).zip(0..len) {
+            (block.instants[place % BLOCK], block.cycles[place % BLOCK]) = searched(step);
         }
         return len;
     };
@@ -470,16 +482,16 @@ fn rounded(
     let from = start.cycles() + whole as f64;
     // All of them without a question, which is seldom of use.
     let mut are_certain = true;
-    for ((instant, cycle), cycles) in block.places(BLOCK).zip(cycles) {
+    for (cycle, cycles) in block.cycles.iter_mut().zip(cycles) {
         let from_middle;
         (*cycle, from_middle) = rounding.after_start(whole, *cycles);
         are_certain &= rounding.is_certain(from_middle);
-        *instant = from + cycles;
     }
+    block.put_instants(from, cycles);
     if !are_certain {
-        for ((step, (instant, cycle)), cycles) in (first..).zip(block.places(len)).zip(cycles) {
+        for ((step, place), cycles) in (first..).zip(0..len).zip(cycles) {
             if !rounding.is_certain(rounding.after_start(whole, *cycles).1) {
-                (*instant, *cycle) = searched(step);
+                (block.instants[place % BLOCK], block.cycles[place % BLOCK]) = searched(step);
             }
         }
     }

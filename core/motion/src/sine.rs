@@ -29,7 +29,7 @@ use crate::{
     double::{self, Double},
     exact::Exact,
     limits, moves,
-    oscillation::Oscillation,
+    oscillation::{Oscillation, Runs},
     quantities::Quantities,
     square_root,
 };
@@ -144,10 +144,9 @@ pub(super) struct DueHalves {
     past: u64,
 }
 
-impl DueHalves {
-    /// Writes the next steps' times from the start, from the block's beginning on and no further than to the end of a half
-    /// period; with how many these are, none at the end, and whether they go to the right.
-    pub(super) fn next_in_half(&mut self, block: &mut [f64]) -> (usize, bool) {
+impl Runs for DueHalves {
+    /// No further than to the end of a half period.
+    fn next_run(&mut self, block: &mut [f64]) -> (usize, bool) {
         let Oscillation { amplitude, .. } = self.oscillation;
         let travel = 2 * amplitude;
         if self.past == travel {
@@ -238,7 +237,7 @@ mod tests {
     fn all(sine: &Sine, block: usize) -> Vec<(f64, bool)> {
         let (mut halves, mut block, mut due) = (sine.due_halves(1.0), vec![0.0; block], Vec::new());
         loop {
-            let (len, right) = halves.next_in_half(&mut block);
+            let (len, right) = halves.next_run(&mut block);
             if len == 0 {
                 return due;
             }
@@ -263,7 +262,7 @@ mod tests {
         for amplitude in [1_000_000, 1_000_000_000_i64] {
             let sine = Sine::new(amplitude, 1.0, 1);
             let mut first = [0.0];
-            assert_eq!(sine.due_halves(1.0).next_in_half(&mut first), (1, false));
+            assert_eq!(sine.due_halves(1.0).next_run(&mut first), (1, false));
             let first = first[0] * PI;
             let x = 1.0 / amplitude as f64;
             let expected = libm::sqrt(x) * (1.0 + x / 24.0 + 3.0 * x * x / 640.0);

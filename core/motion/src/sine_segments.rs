@@ -31,7 +31,7 @@ use crate::{
     exact::Exact,
     format::grouped,
     limits, moves,
-    oscillation::Oscillation,
+    oscillation::{Oscillation, Runs},
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     problem::ValueError,
     quantities::Quantities,
@@ -207,13 +207,10 @@ impl SineSegments {
         })
     }
 
-    /// Where each step falls due, in points of the angle from the start, and whether it goes to
-    /// the right.
-    pub(super) fn due_points(&self) -> impl Iterator<Item = (f64, bool)> + '_ {
-        self.pieces().flat_map(|Interval { from, to, steps, right }| {
-            let each = (to - from) / steps as f64;
-            (0..steps).map(move |step| (from + (step as f64 + 0.5) * each, right))
-        })
+    /// When each step falls due from the start, in what there are `per_point` of in a point of the angle, and whether it goes
+    /// to the right.
+    pub(super) fn due_points(&self, per_point: f64) -> DuePoints<impl Iterator<Item = Interval> + '_> {
+        DuePoints { intervals: self.pieces(), interval: None, past: 0, per_point }
     }
 
     /// Whether step `k` (from 1) of all falls due before a time in cycles of a clock of `clock_hz`, for certain: its time
@@ -264,6 +261,35 @@ impl SineSegments {
         let (folded, segment) = self.place(t);
         let rate = segment.map_or(0.0, |segment| segment.rate);
         if folded.leftwards { -rate } else { rate }
+    }
+}
+
+/// The steps of the segments, one after another.
+pub(super) struct DuePoints<I> {
+    intervals: I,
+    /// The one where it is, and how many of its steps are past.
+    interval: Option<Interval>,
+    past: u64,
+    per_point: f64,
+}
+
+impl<I: Iterator<Item = Interval>> Runs for DuePoints<I> {
+    /// No further than to the end of a segment.
+    fn next_run(&mut self, block: &mut [f64]) -> (usize, bool) {
+        while self.interval.as_ref().is_none_or(|interval| self.past == interval.steps) {
+            (self.interval, self.past) = (self.intervals.next(), 0);
+            if self.interval.is_none() {
+                break;
+            }
+        }
+        let Some(Interval { from, to, steps, right }) = self.interval else { return (0, false) };
+        let len = block.len().min(usize::try_from(steps - self.past).unwrap_or(usize::MAX));
+        let (each, first, per_point) = ((to - from) / steps as f64, self.past as f64, self.per_point);
+        for (index, due) in (0_u32..).zip(block.iter_mut().take(len)) {
+            *due = (from + (first + f64::from(index) + 0.5) * each) * per_point;
+        }
+        self.past += len as u64;
+        (len, right)
     }
 }
 

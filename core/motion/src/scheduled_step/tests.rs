@@ -33,7 +33,7 @@ fn times(profile: &Profile) -> Vec<f64> {
     }
     let mut times = Vec::new();
     let Some(mut form) = due_from(profile, CycleTime::default(), CLOCK_HZ) else { return times };
-    let mut block = Block::EMPTY;
+    let mut block = Block::new(true);
     loop {
         let len = form.next_block(&mut block);
         if len == 0 {
