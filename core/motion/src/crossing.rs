@@ -168,7 +168,9 @@ impl Quotient {
     /// Its cycle alone.
     #[inline]
     pub(super) fn cycle_after(self, start: u64) -> u64 {
-        start.wrapping_add(self.whole).wrapping_add(u64::from(self.rest >= self.under - self.rest))
+        // Below 2^62, so that signed numbers hold the double: those several of which are compared at once.
+        let goes_up = 2 * self.rest as i64 >= self.under as i64;
+        start.wrapping_add(self.whole).wrapping_add(goes_up.into())
     }
 }
 

@@ -94,6 +94,15 @@ impl Quotient {
     }
 }
 
+/// Quotients in their order, all over one number.
+pub(super) trait Quotients {
+    /// What they are over.
+    fn under(&self) -> u64;
+    /// Writes the whole cycles and the rests of the next ones from the blocks' beginning on, and says of how many: none at
+    /// the end.
+    fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize;
+}
+
 /// Steps of one rate: step k is due after (2k - 1)/2 of its intervals, a quotient of whole numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EvenSteps {
@@ -120,6 +129,7 @@ impl EvenSteps {
         let common = common_divisor(over, under);
         let (over, under) = (over.checked_div(common)?, u64::try_from(under.checked_div(common)?).ok()?);
         let last = over.checked_mul(2 * u128::from(count) + 1)?.checked_div(under.into())?;
+        over.checked_mul(TWO)?;
         (under < MAX_UNDER && last < u64::MAX.into()).then_some(Self { over, under })
     }
 
@@ -134,17 +144,67 @@ impl EvenSteps {
         ((over / under) as u64, (over % under) as u64)
     }
 
-    /// When each step is due, without a division for each.
-    pub(super) fn steps(self) -> impl Iterator<Item = Quotient> {
-        let ((add, add_rest), (mut whole, mut rest)) = (self.divided(2 * self.over), self.divided(self.over));
-        core::iter::from_fn(move || {
-            let time = Quotient { whole, rest, under: self.under };
-            (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
-            if rest >= self.under {
-                (whole, rest) = (whole.wrapping_add(1), rest - self.under);
+    /// When each of `count` steps is due, without a division for each.
+    pub(super) fn steps(self, count: u64) -> EvenRun {
+        let lanes = [1, 3].map(|halves| Lane::of(self.divided(self.over * halves)));
+        EvenRun { under: self.under, lanes, add: Lane::of(self.divided(self.over * TWO)), left: count }
+    }
+}
+
+/// Half intervals of two steps.
+const TWO: u128 = 4;
+
+/// Whole cycles and a rest; numbers with a sign, so that what is past is told by an arithmetic shift alone.
+#[derive(Clone, Copy, Debug)]
+struct Lane {
+    whole: i64,
+    rest: i64,
+}
+
+impl Lane {
+    fn of((whole, rest): (u64, u64)) -> Self {
+        Self { whole: whole as i64, rest: rest as i64 }
+    }
+
+    #[inline]
+    fn plus(self, add: Self, under: i64) -> Self {
+        let past = self.rest + add.rest - under;
+        // -1 where the rests make no whole cycle.
+        let none = past >> 63;
+        let whole = self.whole.wrapping_add(add.whole).wrapping_add(1 + none);
+        Self { whole, rest: past + (under & none) }
+    }
+}
+
+/// Steps of one rate in their order: two at a time, of which neither waits for the other.
+pub(super) struct EvenRun {
+    under: u64,
+    /// The next two.
+    lanes: [Lane; 2],
+    /// What two intervals add to them.
+    add: Lane,
+    /// Steps to come.
+    left: u64,
+}
+
+impl Quotients for EvenRun {
+    fn under(&self) -> u64 {
+        self.under
+    }
+
+    fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
+        let (under, add, mut lanes) = (self.under as i64, self.add, self.lanes);
+        // Beyond the last step nobody reads them.
+        for (wholes, rests) in wholes.chunks_exact_mut(2).zip(rests.chunks_exact_mut(2)) {
+            for (lane, (whole, rest)) in lanes.iter_mut().zip(wholes.iter_mut().zip(rests)) {
+                (*whole, *rest) = (lane.whole as u64, lane.rest as u64);
+                *lane = lane.plus(add, under);
             }
-            Some(time)
-        })
+        }
+        self.lanes = lanes;
+        let len = usize::try_from(self.left).map_or(wholes.len(), |left| left.min(wholes.len()));
+        self.left -= len as u64;
+        len
     }
 }
 
@@ -165,28 +225,62 @@ impl TrapezoidTable {
     }
 
     /// When each step is due in cycles of a clock of `clock_hz`, without a division for each: rows of one reload add the same.
-    pub(super) fn step_quotients(&self, clock_hz: u32) -> impl Iterator<Item = Quotient> + '_ {
+    pub(super) fn step_quotients(&self, clock_hz: u32) -> TableRun<'_> {
         let under = u64::from(self.table().timer_hz().max(1));
-        let quotient = move |ticks: u64| {
-            let product = u128::from(ticks) * u128::from(clock_hz);
-            match u64::try_from(product) {
-                Ok(product) => (product / under, product % under),
-                Err(_) => ((product / u128::from(under)) as u64, (product % u128::from(under)) as u64),
+        TableRun { table: self, clock_hz, under, past: 0, time: (0, 0), last: (0, (0, 0)) }
+    }
+}
+
+/// The steps of a table in their order.
+pub(super) struct TableRun<'t> {
+    table: &'t TrapezoidTable,
+    clock_hz: u32,
+    under: u64,
+    /// Steps that are past, and the whole cycles and rest of the last of them.
+    past: u64,
+    time: (u64, u64),
+    /// The last reload, and what it adds.
+    last: (u64, (u64, u64)),
+}
+
+impl TableRun<'_> {
+    /// The cycles that a reload lasts, and the rest.
+    #[inline]
+    fn cycles(&self, reload: u64) -> (u64, u64) {
+        let (under, clock) = (self.under, u64::from(self.clock_hz));
+        if reload <= u32::MAX.into() {
+            let product = reload * clock;
+            (product / under, product % under)
+        } else {
+            let (product, under) = (u128::from(reload) * u128::from(clock), u128::from(under));
+            ((product / under) as u64, (product % under) as u64)
+        }
+    }
+}
+
+impl Quotients for TableRun<'_> {
+    fn under(&self) -> u64 {
+        self.under
+    }
+
+    fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
+        // The reloads come first: a loop that asks nothing keeps its numbers in registers.
+        let len = self.table.reloads(self.past, wholes);
+        let (mut last, (mut whole, mut rest)) = (self.last, self.time);
+        for (place, rest_place) in wholes.iter_mut().zip(rests).take(len) {
+            if *place != last.0 {
+                last = (*place, self.cycles(*place));
             }
-        };
-        let (mut whole, mut rest) = (0_u64, 0);
-        let mut last = (0, (0, 0));
-        self.reloads().map(move |reload| {
-            if reload != last.0 {
-                last = (reload, quotient(reload));
-            }
-            let (_, (add, add_rest)) = last;
-            (whole, rest) = (whole.wrapping_add(add), rest + add_rest);
-            if rest >= under {
-                (whole, rest) = (whole.wrapping_add(1), rest - under);
-            }
-            Quotient { whole, rest, under }
-        })
+            let (add, add_rest) = last.1;
+            let sum = rest + add_rest;
+            let is_past = sum >= self.under;
+            rest = sum - if is_past { self.under } else { 0 };
+            whole = whole.wrapping_add(add).wrapping_add(is_past.into());
+            (*place, *rest_place) = (whole, rest);
+        }
+        (self.last, self.time) = (last, (whole, rest));
+        self.past += len as u64;
+        len
     }
 }
 
@@ -199,7 +293,21 @@ mod tests {
         moves::{Axis, Move, Trapezoid, TrapezoidMethod},
         plan_axis,
     };
-    use alloc::vec;
+    use alloc::{vec, vec::Vec};
+
+    /// All of them, some at a time.
+    fn all(mut quotients: impl Quotients) -> Vec<Quotient> {
+        let (mut found, mut wholes, mut rests) = (Vec::new(), [0; 8], [0; 8]);
+        loop {
+            let len = quotients.next_block(&mut wholes, &mut rests);
+            if len == 0 {
+                return found;
+            }
+            let under = quotients.under();
+            let block = wholes.iter().zip(&rests).take(len);
+            found.extend(block.map(|(&whole, &rest)| Quotient { whole, rest, under }));
+        }
+    }
 
     #[test]
     fn even_steps_are_quotients_of_whole_numbers() {
@@ -208,7 +316,9 @@ mod tests {
         assert_eq!((even.over, even.under), (1, 60_000_000_000_000));
         // 3 steps/s of a clock of 10 Hz: half an interval is 5/3 cycles.
         let even = EvenSteps::new(3.0, 10, 100).expect("they are short");
-        for (k, time) in (1..=100).zip(even.steps()) {
+        let times = all(even.steps(100));
+        assert_eq!(times.len(), 100);
+        for (k, time) in (1..).zip(times) {
             assert_eq!(time, even.step(k));
             let halves = 5 * (2 * k - 1);
             assert_eq!((time.whole, time.part()), (halves / 3, (halves % 3) as f64 / 3.0), "step {k}");
@@ -216,7 +326,7 @@ mod tests {
         // Ties: of 0.8 steps/s every step stands at a half.
         let even = EvenSteps::new(0.8, 2, 10).expect("they are short");
         assert!(
-            even.steps().take(10).all(|time| time.part() == 0.25 || time.part() == 0.75),
+            all(even.steps(10)).iter().all(|time| time.part() == 0.25 || time.part() == 0.75),
             "1.25 cycles, and 2.5 further"
         );
         let even = EvenSteps::new(1e7 / 3.0, 1_000_000_000, 1_000_000_000).expect("they are short");
@@ -258,7 +368,7 @@ mod tests {
             let plan = plan_axis(&axis, "x").expect("it can be planned");
             let Profile::TrapezoidTable(table) = &plan.moves()[0].profile else { panic!("no table") };
             let mut count = 0;
-            for (k, quotient) in (1..).zip(table.step_quotients(clock_hz)) {
+            for (k, quotient) in (1..).zip(all(table.step_quotients(clock_hz))) {
                 assert_eq!(quotient, table.step_time(k, clock_hz), "step {k} of {steps}");
                 count = k;
             }

@@ -11,7 +11,7 @@
 use crate::{
     AxisPlan, Curve, PlannedMove, Profile, StepTimes,
     crossing::{MAX_OFF, Rounding},
-    cycle_time::{CycleTime, Quotient},
+    cycle_time::{CycleTime, Quotient, Quotients},
     double::Double,
     exact::Exact,
     oscillation::Runs,
@@ -164,7 +164,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Option<Steps<
             scheduled(profile, start, clock_hz, OfTrapezoid { times, right })
         }
         Profile::TrapezoidTable(table) => {
-            Box::new(OfQuotients { times: table.step_quotients(clock_hz), start, right })
+            Box::new(OfQuotients::new(table.step_quotients(clock_hz), start, right))
         }
         Profile::Staircase(staircase) => {
             let times = staircase.due_s().map(move |due_s| (due_s * clock, right));
@@ -180,10 +180,7 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Option<Steps<
             Box::new(OfPoints { pieces: points.due(), piece: None, cycles: [0.0; BLOCK], start, clock_hz })
         }
         Profile::Constant(constant) => match constant.even_steps(clock_hz) {
-            Some(even) => {
-                let times = steps.zip(even.steps()).map(|(_, since)| since);
-                Box::new(OfQuotients { times, start, right })
-            }
+            Some(even) => Box::new(OfQuotients::new(even.steps(count), start, right)),
             None => {
                 let cycles_per_step = clock / constant.exact_speed().high;
                 let times = steps.map(move |k| ((k as f64 - 0.5) * cycles_per_step, right));
@@ -202,45 +199,38 @@ fn due_from(profile: &Profile, start: CycleTime, clock_hz: u32) -> Option<Steps<
 }
 
 /// Steps that are due at quotients of whole numbers after the move's start, all one way.
-struct OfQuotients<I> {
-    times: I,
+struct OfQuotients<Q> {
+    times: Q,
+    /// Of a block's steps.
+    rests: [u64; BLOCK],
     start: CycleTime,
     right: bool,
 }
 
-impl<I: Iterator<Item = Quotient>> Form for OfQuotients<I> {
-    fn next_block(&mut self, block: &mut Block) -> usize {
-        let Self { times, start, right } = self;
-        block.right = [*right; BLOCK];
-        // A loop of its own for each keeps its numbers in registers.
-        if block.has_instants {
-            let mut len = 0;
-            for ((instant, cycle), since) in block.instants.iter_mut().zip(&mut block.cycles).zip(times) {
-                (*instant, *cycle) = since.after(*start);
-                len += 1;
-            }
-            len
-        } else if start.part == Double::default() {
-            put_each(block, times, |since| since.cycle_after(start.whole))
-        } else {
-            put_each(block, times, |since| since.after(*start).1)
-        }
+impl<Q: Quotients> OfQuotients<Q> {
+    fn new(times: Q, start: CycleTime, right: bool) -> Self {
+        Self { times, rests: [0; BLOCK], start, right }
     }
 }
 
-/// Writes the cycles of the next steps, and says of how many.
-#[inline]
-fn put_each(
-    block: &mut Block,
-    times: &mut impl Iterator<Item = Quotient>,
-    due: impl Fn(Quotient) -> u64,
-) -> usize {
-    let mut len = 0;
-    for (cycle, since) in block.cycles.iter_mut().zip(times) {
-        *cycle = due(since);
-        len += 1;
+impl<Q: Quotients> Form for OfQuotients<Q> {
+    fn next_block(&mut self, block: &mut Block) -> usize {
+        let Self { times, rests, start, right } = self;
+        let Block { has_instants, instants, cycles, right: directions } = block;
+        *directions = [*right; BLOCK];
+        // The whole cycles first.
+        let (len, under) = (times.next_block(cycles, rests), times.under());
+        if !*has_instants && start.part == Double::default() {
+            for (cycle, rest) in cycles.iter_mut().zip(&*rests) {
+                *cycle = Quotient { whole: *cycle, rest: *rest, under }.cycle_after(start.whole);
+            }
+        } else {
+            for ((instant, cycle), rest) in instants.iter_mut().zip(cycles).zip(&*rests).take(len) {
+                (*instant, *cycle) = Quotient { whole: *cycle, rest: *rest, under }.after(*start);
+            }
+        }
+        len
     }
-    len
 }
 
 /// The steps of a move that starts at `start`, of their times in cycles from there on and their directions.
@@ -298,7 +288,12 @@ impl<R: Runs> UnroundedTimes for OfRuns<R> {
             if formed == 0 {
                 break;
             }
-            right.iter_mut().skip(len).take(formed).for_each(|right| *right = goes_right);
+            // All of them at once, as a block seldom has two runs.
+            if len == 0 {
+                *right = [goes_right; BLOCK];
+            } else {
+                right.iter_mut().skip(len).for_each(|right| *right = goes_right);
+            }
             len += formed;
         }
         len

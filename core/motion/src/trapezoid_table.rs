@@ -147,17 +147,36 @@ impl TrapezoidTable {
         }
     }
 
-    /// Timer ticks of each step's interval, one after another.
-    pub(super) fn reloads(&self) -> impl Iterator<Item = u64> + '_ {
-        let ramp = self.ramp as usize;
-        let row = |row: &[u64]| match row {
-            [before, after] => after - before,
-            _ => 0,
-        };
-        let sums = self.sums.get(..=ramp).unwrap_or_default();
-        let plateau = (self.count() - 2 * self.ramp) as usize;
-        let up = sums.windows(2).map(row);
-        up.chain(core::iter::repeat_n(self.plateau_reload(), plateau)).chain(sums.windows(2).rev().map(row))
+    /// Writes the timer ticks of the intervals that come after so many from the block's beginning on, and says of how many:
+    /// none at the end.
+    pub(super) fn reloads(&self, past: u64, block: &mut [u64]) -> usize {
+        let (count, ramp) = (self.count(), self.ramp);
+        let left = usize::try_from(count - past).unwrap_or(usize::MAX).min(block.len());
+        let mut len = 0;
+        while len < left {
+            let interval = past + len as u64;
+            let end = if interval < ramp {
+                ramp
+            } else if interval < count - ramp {
+                count - ramp
+            } else {
+                count
+            };
+            let part = block.get_mut(len..left).unwrap_or_default();
+            let part_len = part.len().min((end - interval) as usize);
+            let places = part.iter_mut().take(part_len);
+            if interval < ramp {
+                let sums = self.sums.get(interval as usize..).unwrap_or_default();
+                places.zip(sums.windows(2)).for_each(|(reload, pair)| *reload = between(pair));
+            } else if interval < count - ramp {
+                places.for_each(|reload| *reload = self.plateau_reload());
+            } else {
+                let sums = self.sums.get(..=(count - interval) as usize).unwrap_or_default();
+                places.zip(sums.windows(2).rev()).for_each(|(reload, pair)| *reload = between(pair));
+            }
+            len += part_len;
+        }
+        len
     }
 
     /// Time of step `k` in s, rounded once.
@@ -223,6 +242,14 @@ impl TrapezoidTable {
 
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps < 0 { -magnitude } else { magnitude }
+    }
+}
+
+/// What one sum has more than the one before.
+fn between(pair: &[u64]) -> u64 {
+    match pair {
+        [before, after] => after - before,
+        _ => 0,
     }
 }
 
