@@ -247,14 +247,10 @@ impl TableRun<'_> {
     /// The cycles that a reload lasts, and the rest.
     #[inline]
     fn cycles(&self, reload: u64) -> (u64, u64) {
-        let (under, clock) = (self.under, u64::from(self.clock_hz));
-        if reload <= u32::MAX.into() {
-            let product = reload * clock;
-            (product / under, product % under)
-        } else {
-            let (product, under) = (u128::from(reload) * u128::from(clock), u128::from(under));
-            ((product / under) as u64, (product % under) as u64)
-        }
+        // A part of the timer's rate, which has 32 bits as the clock's has.
+        debug_assert!(reload <= u32::MAX.into(), "a reload of {reload}");
+        let product = reload.wrapping_mul(self.clock_hz.into());
+        (product / self.under, product % self.under)
     }
 }
 

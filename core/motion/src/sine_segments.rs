@@ -36,6 +36,7 @@ use crate::{
     problem::ValueError,
     quantities::Quantities,
     round_half_up,
+    series::{BLOCK, COUNTED},
 };
 use alloc::{format, string::String, vec::Vec};
 
@@ -283,10 +284,10 @@ impl<I: Iterator<Item = Interval>> Runs for DuePoints<I> {
             }
         }
         let Some(Interval { from, to, steps, right }) = self.interval else { return (0, false) };
-        let len = block.len().min(usize::try_from(steps - self.past).unwrap_or(usize::MAX));
+        let len = block.len().min(BLOCK).min(usize::try_from(steps - self.past).unwrap_or(usize::MAX));
         let (each, first, per_point) = ((to - from) / steps as f64, self.past as f64, self.per_point);
-        for (index, due) in (0_u32..).zip(block.iter_mut().take(len)) {
-            *due = (from + (first + f64::from(index) + 0.5) * each) * per_point;
+        for (index, due) in COUNTED.iter().zip(block.iter_mut().take(len)) {
+            *due = (from + (first + index + 0.5) * each) * per_point;
         }
         self.past += len as u64;
         (len, right)

@@ -22,7 +22,7 @@ use crate::{
     crossing::{MAX_OFF, ROUNDING, Rounding, guess, judged},
     cycle_time::CycleTime,
     round_half_up,
-    series::BLOCK,
+    series::{BLOCK, COUNTED},
     square_root,
     trapezoid::Trapezoid,
 };
@@ -210,7 +210,7 @@ impl StepTimes {
 /// Writes the cycles until one place after another from the first on: in a loop that asks for nothing.
 #[inline]
 fn form<'b>(block: impl Iterator<Item = &'b mut f64>, first: f64, cycles_until: impl Fn(f64) -> f64) {
-    block.zip(0..).for_each(|(cycles, i)| *cycles = cycles_until(first + f64::from(i)));
+    block.zip(&COUNTED).for_each(|(cycles, i)| *cycles = cycles_until(first + i));
 }
 
 /// The cycle, at about `cycles`, of the step before `next_place`.
