@@ -56,7 +56,7 @@ pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
     site.texts.insert(LICENCES.to_owned(), licences::page().await?);
     let sources = site.sources();
     clear(dist)?;
-    let bundles = Bundles::make(web, &sources, dist).await?;
+    let bundles = Bundles::make(web, &sources, site.script()?, dist).await?;
     let commit = commit().await;
     for (name, text) in site.built(&bundles, env!("CARGO_PKG_VERSION"), commit.as_deref())? {
         let file = dist.join(name);
@@ -139,6 +139,12 @@ impl Site {
     /// The sources that become files with hashes in their names.
     fn sources(&self) -> BTreeSet<&str> {
         self.naming().flat_map(|(_, text)| named(text)).filter(|file| !names_others(file)).collect()
+    }
+
+    /// The page's own script.
+    fn script(&self) -> Result<&str> {
+        let page = self.texts.get(PAGE).map_or("", String::as_str);
+        files_at(page, &["src=\""]).next().with_context(|| format!("{PAGE} names no script"))
     }
 
     /// The files of bundles that this page or manifest names at these places.

@@ -197,3 +197,28 @@ fn what_a_page_names_for_later_is_made_and_listed_but_not_among_what_opening_it_
     let later: Vec<_> = parts.later["engine/w.js"].iter().map(String::as_str).collect();
     assert_eq!(later, ["assets/w.W.js", "assets/x.X.wasm"]);
 }
+
+#[test]
+fn a_later_part_is_what_the_script_of_the_page_alone_asks_for() {
+    let source = |name: &str, now: &[&str], later: &[&str]| {
+        let import = |path: &&str, kind: &str| format!("{{\"path\": \"{path}\", \"kind\": \"{kind}\"}}");
+        let now = now.iter().map(|path| import(path, "import-statement"));
+        let later = later.iter().map(|path| import(path, "dynamic-import"));
+        let imports: Vec<_> = now.chain(later).collect();
+        format!("\"{name}\": {{\"bytes\": 1, \"imports\": [{}]}}", imports.join(", "))
+    };
+    let inputs = [
+        source("main.js", &["dom.js", "help/card.js"], &["views/tabs.js"]),
+        source("views/tabs.js", &["dom.js"], &["views/file.js"]),
+        source("views/file.js", &[], &["views/tabs.js"]),
+        source("help/card.js", &[], &["help/texts.js"]),
+        source("help/texts.js", &[], &[]),
+        source("help/page.js", &["help/texts.js"], &[]),
+        source("engine/w.js", &["dom.js"], &["pkg/x.js"]),
+        source("dom.js", &[], &[]),
+    ];
+    let note = format!("{{\"inputs\": {{{}}}}}", inputs.join(", "));
+    let sources = BTreeSet::from(["main.js", "help/page.js", "engine/w.js", "style/a.css"]);
+    let parts = esbuild::later_parts(&note, &sources, "main.js").unwrap();
+    assert_eq!(parts.into_iter().collect::<Vec<_>>(), ["views/file.js", "views/tabs.js"]);
+}
