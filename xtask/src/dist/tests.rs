@@ -20,7 +20,10 @@ fn site(changed: &[(&str, &str)]) -> Site {
         ),
         ("licenses.html", "<a href=\"./\">"),
         ("a.webmanifest", r#"{ "start_url": "./", "icons": [{ "src": "icons/i.svg" }] }"#),
-        ("sw.js", "const build = { id: \"development\", files: [] };\nself.x = build;"),
+        (
+            "sw.js",
+            "/**\n * Keeps it.\n */\n// Filled.\nconst build = { id: \"development\", files: [] };\n  // Said.\nself.x = build;",
+        ),
     ];
     let texts = texts.iter().chain(changed).map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
     let headers = "# all\n/*\n  X-One: 1\n  Cache-Control: no-cache\n".to_owned();
@@ -104,7 +107,8 @@ fn pages_and_manifest_have_the_new_names_and_the_service_worker_lists_all_files(
     for name in bundles("M").files().chain(kept) {
         assert!(worker.contains(&format!("\"{name}\"")), "{name} in {worker}");
     }
-    for other in ["development", "index.html", "\"sw.js\"", "_headers"] {
+    assert!(worker.ends_with("};\nself.x = build;\n"), "{worker}");
+    for other in ["development", "index.html", "\"sw.js\"", "_headers", "Keeps", "Filled", "Said"] {
         assert!(!worker.contains(other), "{other} in {worker}");
     }
 }
