@@ -3,11 +3,10 @@
  * all of them; a click elsewhere and Escape close it.
  */
 import { byId, element, fill } from "../dom.js";
-import { documents, takeExplanations, termOf } from "../form/schema.js";
+import { takeExplanations, termOf } from "../form/schema.js";
 import { CARD, termButton } from "../form/term_button.js";
 import { VIEWS } from "../state/views.js";
-
-/** @typedef {import("../form/field.js").Term} Term */
+import { meaning } from "./meaning.js";
 
 /** From the word to its card, and from the card to the window's edges, in CSS pixels. */
 const GAP_PX = 4;
@@ -83,18 +82,21 @@ async function show(word) {
   const texts = own ? null : await load();
   // Another word was asked for meanwhile.
   if (opener !== word || !word.isConnected) return;
-  const view = texts?.CARDS[name.replace("view:", "")];
+  const view = VIEWS.find((each) => name === `view:${each.name}`);
   const term = own ?? texts?.DERIVED[name];
   const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
   fill(
     card,
-    ...(name.startsWith("view:") && view
+    ...(view && texts
       ? [
           element("p", {}, view.about),
           element(
             "dl",
             {},
-            ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]),
+            ...Object.values(texts.TERMS[view.name] ?? {}).flatMap((term) => [
+              element("dt", {}, term.name ?? ""),
+              meaning("dd", term),
+            ]),
           ),
         ]
       : [
@@ -110,12 +112,6 @@ async function show(word) {
   card.showPopover();
   place(card, word);
   word.setAttribute("aria-expanded", "true");
-}
-
-/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */
-export function meaning(tag, { text, from }) {
-  const document = documents()[from ?? ""];
-  return element(tag, {}, text, ...(document ? [" ", element("span", { class: "from" }, `(${document.short})`)] : []));
 }
 
 /** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */
