@@ -2,16 +2,16 @@
 import { byId, element, fill, say } from "../dom.js";
 import { ruleName } from "../form/schema.js";
 import { count, si, time } from "../state/number.js";
+import { required } from "./required.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
 
 /**
  * @param {Timing | null} timing  None without a driver.
- * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void,
- *   required: (timing: Timing | null, rule: string) => string}} page
+ * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void}} page
  */
-export function paintTiming(timing, { state, drivers, toRule, required }) {
+export function paintTiming(timing, { state, drivers, toRule }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   const clock = state.result?.summary.clock_hz ?? 1;
   const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
