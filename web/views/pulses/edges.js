@@ -19,14 +19,12 @@ export function createEdges({ engine, now }) {
   /** @type {EdgeRow[]} */
   let rows = [];
 
-  panel.addEventListener("toggle", () => {
-    if (panel.open) fromShown();
-  });
   which.addEventListener("change", fromShown);
   byId("edges-from").addEventListener("click", fromShown);
   earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
   later.addEventListener("click", () => turn(rows[rows.length - 1]?.cycle ?? -1, true));
 
+  /** Shows what begins with the shown time. */
   function fromShown() {
     return turn(shown(now()).start - 1, true);
   }
@@ -71,5 +69,5 @@ export function createEdges({ engine, now }) {
     if (!panel.open) return;
     if (before?.result !== state.result || (before?.row !== state.row && which.value === "row")) fromShown();
   }
-  return { render };
+  return { render, fromShown };
 }
