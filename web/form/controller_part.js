@@ -1,11 +1,22 @@
 /** An additional controller in the form: its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
 import { MAX_FURTHER } from "../state/state.js";
-import { controllerFields } from "./fields.js";
+import { fields } from "./schema.js";
 import { SOURCES } from "./sources.js";
 
+/** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
+
+/** The bus of a controller: what every user sets. */
+const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
+
+/** An additional controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
+const controllerFields = () => ({
+  own: fields("Controller").filter(({ kind }) => kind !== "lines"),
+  bus: fields("Bus", BUS_SIZE),
+  folded: fields("Bus").filter(({ key }) => !BUS_SIZE.includes(key)),
+});
 
 /** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(index: number) => void} add */
 export function controllerPart(kit, scenario, index, add) {

@@ -19,6 +19,10 @@ export function createEdges({ engine, now }) {
   /** @type {EdgeRow[]} */
   let rows = [];
 
+  const heads = ["time", "cycle", "signal", "then"].map((text, column) =>
+    element("th", { scope: "col", ...(column < 2 ? { class: "number" } : {}) }, text),
+  );
+  fill(/** @type {Element} */ (panel.querySelector("thead")), element("tr", {}, ...heads));
   which.addEventListener("change", fromShown);
   byId("edges-from").addEventListener("click", fromShown);
   earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
