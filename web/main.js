@@ -314,7 +314,7 @@ async function start() {
     createPanel(
       "share",
       "share-panel",
-      async (panel) => (await import("./shell/share.js")).createShare({ shared: link.shared, ...page }, panel),
+      async (panel) => (await import("./shell/share.js")).createShare({ address: link.address, ...page }, panel),
       "link-about",
     ),
     createPanel("export", "export-panel", (panel) => exportsOf(page, panel), "export-status"),

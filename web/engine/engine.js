@@ -1,8 +1,8 @@
 /**
  * The only module that talks to the worker: questions with answers, one run at a time, and a new
  * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
- * once more, so that the views that show it can still ask. Long questions, those of the study, go to further workers, as many
- * as the machine has room for, and keep neither runs nor views waiting; they and their code load with the first of them.
+ * once more, so that the views that show it can still ask. Long questions, those of the study, go to further workers
+ * (further.js) and keep neither runs nor views waiting; they and their code load with the first of them.
  */
 import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
@@ -27,13 +27,6 @@ const PATIENCE_MS = 1000;
 
 /** Recordings that undo finds again. */
 const MAX_RECORDINGS = 3;
-/** Most further workers of one question. */
-const MAX_FURTHER = 4;
-/** A further worker that is not needed ends after this time, in ms: it holds memory. */
-const IDLE_MS = 20_000;
-/** And one whose piece was left off, if it does not come to the piece's end in this time. */
-const LEFT_MS = 300;
-
 /** What is told where the study's code could not be fetched. */
 const MISSING = "this part of the page could not be loaded; try again when the network is there";
 
@@ -55,11 +48,8 @@ export class Engine {
   /** The controller that the worker was told to look at. */
   #selected = 0;
   #cancelling = 0;
-  /** Further workers with nothing to do. @type {Worker[]} */
-  #idle = [];
-  #resting = 0;
-  /** The newest question of each slot that further workers answer. @type {Map<string, AbortController>} */
-  #considered = new Map();
+  /** What has the further workers, once it is needed. @type {Promise<import("./further.js").Further> | null} */
+  #loading = null;
   /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
@@ -163,10 +153,21 @@ export class Engine {
   }
 
   #start() {
-    const worker = another("core");
+    const worker = another();
     worker.onmessage = ({ data }) => this.#heard(data);
     worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
     return worker;
+  }
+
+  /** What has the further workers. */
+  async #further() {
+    try {
+      this.#loading ??= import("./further.js").then(({ Further }) => new Further(Dropped, MISSING));
+      return await this.#loading;
+    } catch {
+      this.#loading = null;
+      throw new Error(MISSING);
+    }
   }
 
   /**
@@ -177,34 +178,8 @@ export class Engine {
    * @param {(at: number, answer: any) => void} [onAnswer]  Hears each answer as it comes.
    * @returns {Promise<any[]>}  All answers, in the order of the pieces.
    */
-  async distribute(method, pieces, signal, onAnswer = () => {}) {
-    /** @type {any[]} */
-    const answers = Array(pieces.length);
-    let next = 0;
-    const help = async () => {
-      const worker = this.#idle.pop() ?? another("study");
-      try {
-        while (next < pieces.length) {
-          const at = next++;
-          answers[at] = await call(worker, method, pieces[at], signal);
-          onAnswer(at, answers[at]);
-        }
-        this.#rest(worker);
-      } catch (error) {
-        next = pieces.length;
-        const timer = setTimeout(() => worker.terminate(), error instanceof Dropped ? LEFT_MS : 0);
-        worker.onmessage = ({ data }) => {
-          clearTimeout(timer);
-          if ("value" in data || "error" in data) this.#rest(worker);
-          else worker.terminate();
-        };
-        throw error;
-      }
-    };
-    await Promise.all(
-      Array.from({ length: Math.min(MAX_FURTHER, navigator.hardwareConcurrency || 1, pieces.length) }, help),
-    );
-    return answers;
+  async distribute(method, pieces, signal, onAnswer) {
+    return (await this.#further()).distribute(method, pieces, signal, onAnswer);
   }
 
   /**
@@ -213,11 +188,7 @@ export class Engine {
    * @returns {Promise<any>}
    */
   async consider(slot, method, ...args) {
-    this.#considered.get(slot)?.abort();
-    const own = new AbortController();
-    this.#considered.set(slot, own);
-    const [answer] = await this.distribute(method, [args], own.signal);
-    return answer;
+    return (await this.#further()).consider(slot, method, args);
   }
 
   /**
@@ -240,25 +211,7 @@ export class Engine {
   async session(work) {
     const good = this.#good ?? this.#restoring;
     if (good === null) return null;
-    const worker = this.#idle.pop() ?? another("study");
-    const { signal } = new AbortController();
-    try {
-      const result = await work((method, ...args) => call(worker, method, args, signal), good.json);
-      this.#rest(worker);
-      return result;
-    } catch (error) {
-      worker.terminate();
-      throw error;
-    }
-  }
-
-  /** Keeps a further worker for the next question that comes soon. @param {Worker} worker */
-  #rest(worker) {
-    this.#idle.push(worker);
-    clearTimeout(this.#resting);
-    this.#resting = window.setTimeout(() => {
-      for (const each of this.#idle.splice(0)) each.terminate();
-    }, IDLE_MS);
+    return (await this.#further()).session((ask) => work(ask, good.json));
   }
 
   /** Hands the worker a further part of the core. @param {import("./wasm.js").Part} part */
@@ -334,32 +287,15 @@ export class Engine {
   }
 }
 
-/** A worker that has the core, or the study's part of it; the page says which script it begins with. @param {"core" | "study"} which */
-function another(which) {
-  const { worker, studyWorker } = byId("main").dataset;
-  const made = new Worker(/** @type {string} */ (which === "core" ? worker : studyWorker), { type: "module" });
-  compiled(which).then(
+/** A worker that has the core; the page says which script it begins with. */
+function another() {
+  const made = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
+  compiled("core").then(
     (module) => made.postMessage({ module }),
     // What goes wrong with the core is told by who waits for the charts.
-    () => which === "study" && made.dispatchEvent(new ErrorEvent("error", { message: MISSING })),
+    () => {},
   );
   return made;
-}
-
-/** One question to a further worker. @param {Worker} worker @param {string} method @param {any[]} args @param {AbortSignal} signal @returns {Promise<any>} */
-function call(worker, method, args, signal) {
-  return new Promise((resolve, reject) => {
-    const drop = () => reject(new Dropped(method));
-    if (signal.aborted) return drop();
-    signal.addEventListener("abort", drop, { once: true });
-    worker.onerror = (event) => reject(new Error(event.message || "the engine could not be loaded"));
-    worker.onmessage = ({ data }) => {
-      signal.removeEventListener("abort", drop);
-      if ("value" in data) resolve(data.value);
-      else reject(new Error(data.error ?? data.message));
-    };
-    worker.postMessage({ id: 0, method, args });
-  });
 }
 
 /** Lets `Dropped` pass in silence and everything else through. @param {unknown} error */

@@ -2,12 +2,9 @@
  * One field of the form: a label, an input (or select), its unit, a hint, its error. What is typed goes out
  * as a value, or as a draft while it is no number yet.
  */
-import { button, element, flash, say } from "../dom.js";
-import { WHOLE, whole } from "../state/json.js";
+import { element, flash, say } from "../dom.js";
 import { parseNumber, si } from "../state/number.js";
 import { derivedAxis, get } from "../state/state.js";
-import { printPoints, readPoints } from "./points.js";
-import { printSegments, readSegments } from "./segments.js";
 import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -21,6 +18,14 @@ import { termButton } from "./term_button.js";
  * @property {(message: string) => void} fail  Shows an error, or none.
  * @property {() => void} focus
  */
+
+/** How lists are typed, once that has loaded; no field of one is made before. @type {import("./lists.js").Lists} */
+let lists = {};
+
+/** @param {import("./lists.js").Lists} loaded */
+export function takeLists(loaded) {
+  lists = loaded;
+}
 
 /** More characters than an input beside its label shows. */
 const LONG = 12;
@@ -45,8 +50,7 @@ export function control(path, field, { dispatch, now }) {
     "aria-keyshortcuts": "F1",
     "data-path": path,
   };
-  const long =
-    ["lines", "wholes", "segments"].includes(field.kind) || field.kind === "points" || field.rows !== undefined;
+  const long = field.kind === "lines" || isList(field) || field.rows !== undefined;
   const wide = long || field.kind === "text" || isHex(field);
   const input =
     field.kind === "choice"
@@ -67,17 +71,15 @@ export function control(path, field, { dispatch, now }) {
     : null;
   const unit = field.unit ? element("span", { class: "unit", id: `${id}-unit` }, field.unit) : null;
   const chooser =
-    field.kind === "points"
-      ? fileChooser(
-          field.label,
-          (text) => {
-            input.value = text;
-            input.dispatchEvent(new Event("input"));
-            input.dispatchEvent(new Event("change"));
-          },
-          (message) => draft(message),
-        )
-      : [];
+    lists[field.kind]?.tools?.(
+      field.label,
+      (text) => {
+        input.value = text;
+        input.dispatchEvent(new Event("input"));
+        input.dispatchEvent(new Event("change"));
+      },
+      (message) => draft(message),
+    ) ?? [];
   const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...chooser);
   const root = element(
     "div",
@@ -162,24 +164,9 @@ export function control(path, field, { dispatch, now }) {
   };
 }
 
-/** Most bytes of a file whose text goes into a field. */
-const MAX_FILE = 1 << 20;
-
-/** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
-function fileChooser(label, put, refuse) {
-  const file = element("input", { type: "file", accept: ".csv,.txt,.tsv,text/csv,text/plain", hidden: "" });
-  file.addEventListener("change", async () => {
-    const [chosen] = file.files ?? [];
-    file.value = "";
-    if (!chosen) return;
-    if (chosen.size > MAX_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MAX_FILE}.`);
-    try {
-      put(await chosen.text());
-    } catch {
-      refuse(`${chosen.name} cannot be read.`);
-    }
-  });
-  return [button("Choose CSV…", `Choose a CSV for ${label}`, () => file.click()), file];
+/** Whether a field holds a list whose way of typing loads with the first of them. @param {Field} field */
+export function isList({ kind }) {
+  return kind === "wholes" || kind === "segments" || kind === "points";
 }
 
 /** @param {any} a @param {any} b */
@@ -192,9 +179,8 @@ function print(value, field) {
   if (value === null || value === undefined) return "";
   if (field.kind === "quantity") return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
-  if (field.kind === "wholes") return value.join("\n");
-  if (field.kind === "segments") return printSegments(value);
-  if (field.kind === "points") return printPoints(value);
+  const list = lists[field.kind];
+  if (list) return list.print(value);
   return isHex(field) ? spaced(value) : String(value);
 }
 
@@ -219,6 +205,8 @@ function bare(text) {
 function read(text, field, state, before) {
   const clockHz = Number(state.scenario.clock_hz) || undefined;
   const unit = field.unit ?? "";
+  const list = lists[field.kind];
+  if (list) return list.read(text);
   switch (field.kind) {
     case "choice":
       if (text === "") return { value: null };
@@ -226,10 +214,6 @@ function read(text, field, state, before) {
       return { value: /^\d+$/.test(text) ? Number(text) : text };
     case "text":
       return { value: text };
-    case "segments":
-      return readSegments(text);
-    case "points":
-      return readPoints(text);
     case "hex":
       return { value: bare(text) };
     case "optional-hex":
@@ -241,8 +225,6 @@ function read(text, field, state, before) {
           .map(bare)
           .filter((line) => line !== ""),
       };
-    case "wholes":
-      return readWholes(text);
     case "optional-number":
       if (text.trim() === "") return { value: null };
       return parseNumber(text, unit);
@@ -257,18 +239,6 @@ function read(text, field, state, before) {
     default:
       return parseNumber(text, unit, { integer: true, clockHz });
   }
-}
-
-/** One whole number a line, with every digit. @param {string} text @returns {{value: (number | bigint)[]} | {message: string}} */
-function readWholes(text) {
-  const read = text
-    .split("\n")
-    .filter((line) => line.trim() !== "")
-    .map((line) =>
-      WHOLE.test(line.trim()) ? { value: whole(line.trim()) } : parseNumber(line, "", { integer: true }),
-    );
-  const wrong = read.find((each) => "message" in each);
-  return wrong ?? { value: read.map((each) => ("value" in each ? each.value : 0)) };
 }
 
 /** `250 mm` also chooses the unit. @param {string} text @param {Field} field @param {any} before @returns {{value: any} | {message: string}} */

@@ -1,7 +1,6 @@
 /** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
-import { button, element } from "../dom.js";
+import { button } from "../dom.js";
 import { MAX_FURTHER } from "../state/state.js";
-import { controllerFields } from "./fields.js";
 import { hex, SOURCES } from "./sources.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -16,33 +15,11 @@ export function controllerItems(kit, scenario) {
   const add = (index) => change("", (now) => withAnother(now, now.controllers[index] ?? null, samples));
   return [
     errorOf("controllers"),
-    ...all.map((_, index) => controllerPart(kit, scenario, index, add)),
+    ...(all.length > 0
+      ? kit.later((further) => all.map((_, index) => further.controllerPart(kit, scenario, index, add)))
+      : []),
     button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_FURTHER),
   ];
-}
-
-/** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(index: number) => void} add */
-function controllerPart(kit, scenario, index, add) {
-  const { block, part, errorOf } = kit;
-  const all = scenario.controllers;
-  const path = `controllers[${index}]`;
-  const name = `Controller ${index + 2}`;
-  const kind = Object.keys(scenario.source)[0];
-  const { own, bus, folded } = controllerFields();
-  const head = element(
-    "div",
-    { class: "item-head end" },
-    button("Copy", `Copy ${name.toLowerCase()}`, () => add(index), all.length >= MAX_FURTHER),
-    button("✕", `Remove ${name.toLowerCase()}`, () => kit.remove("controllers", index)),
-  );
-  return part(name, true, [
-    errorOf(path),
-    head,
-    ...block(path, own),
-    ...block(`${path}.bus`, bus),
-    part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, folded)),
-    ...SOURCES[kind].orderForm(kit, index),
-  ]);
 }
 
 /**

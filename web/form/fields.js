@@ -9,28 +9,14 @@ import { field, fields, labelOf } from "./schema.js";
 /** Packets, one a line: of the host, and of an additional controller. @param {"Packets" | "Controller"} group @returns {Field} */
 export const packetLines = (group) => ({ ...field(group, "packets"), rows: 8 });
 
-/** A channel's list of segments. @returns {Field[]} */
-export const segmentFields = () =>
-  fields("ChannelSegments").map((each) => (each.kind === "segments" ? { ...each, rows: 5 } : each));
-
 /** The level of a glitch is chosen. @returns {Field[]} */
 export const glitchFields = () =>
   fields("Glitch").map((each) =>
     each.key === "level" ? { ...each, kind: "choice", choices: { 0: "0 (low)", 1: "1 (high)" } } : each,
   );
 
-/** The bus of a controller: what every user sets. */
-const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
-
 /** What of a bus counts where segments run it; and nothing of the line does. */
 export const OF_SEGMENTS = ["channels", "pulse_width_cycles", "dir_setup_cycles", "dir_hold_cycles"];
-
-/** An additional controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
-export const controllerFields = () => ({
-  own: fields("Controller").filter(({ kind }) => kind !== "lines"),
-  bus: fields("Bus", BUS_SIZE),
-  folded: fields("Bus").filter(({ key }) => !BUS_SIZE.includes(key)),
-});
 
 /** A curve's points come before what is said of them. @param {Field[]} fields */
 export const pointsFirst = (fields) =>

@@ -126,10 +126,11 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
     });
   }
 
-  /** What is under the pointer stays where it is until it is let go. @param {State} next */
+  /** What is under the pointer stays where it is until it is let go. Whoever waits for the form waits for what it loads. @param {State} next */
   function render(next) {
     state = next;
     if (!hand.holds()) draw(next);
+    return kit.loading();
   }
 
   /** Another kind of source could not be loaded. @param {Error} error */
@@ -141,7 +142,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   /** A part of the form that had to be loaded is there. */
   function anew() {
     [shape, drawn] = ["", undefined];
-    draw(state);
+    if (!hand.holds()) draw(state);
   }
 
   /** @param {State} next */

@@ -1,7 +1,7 @@
 /** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
 
-import { button, element } from "../dom.js";
-import { control } from "./control.js";
+import { button, element, say } from "../dom.js";
+import { control, isList, takeLists } from "./control.js";
 import { createStructure } from "./structure.js";
 import { termButton } from "./term_button.js";
 
@@ -15,6 +15,7 @@ import { termButton } from "./term_button.js";
  *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One of everything, with the core's defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
+/** @typedef {typeof import("./further.js").FURTHER} Further */
 
 /** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/state.js").Message) => void,
  *   anew: () => void, extend: () => Promise<void>}} given  `anew` builds the form once more, `extend` brings more fields and samples. */
@@ -28,11 +29,38 @@ export function createKit({ samples, now, dispatch, anew, extend }) {
 
   const structure = createStructure({ now, dispatch });
 
-  /** @param {string} path @param {Field} field */
+  /** What makes the parts that few experiments have, once it has loaded. @type {Further | null} */
+  let further = null;
+  /** @type {Promise<void> | null} */
+  let loading = null;
+
+  /** Such a part; until it can be made a note stands in its place, and the form is built once more. @param {(further: Further) => Node[]} make */
+  function later(make) {
+    if (further) return make(further);
+    const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
+    loading ??= import("./further.js")
+      .then((loaded) => {
+        further = loaded.FURTHER;
+        takeLists(further.lists);
+      })
+      .finally(() => {
+        loading = null;
+      });
+    const missing = () =>
+      say(note, "Its fields could not be loaded; undo, or reload the page when the network is there.");
+    // Building it takes all notes away.
+    loading.then(() => note.isConnected && anew(), missing);
+    return [note];
+  }
+
+  /** @param {string} path @param {Field} field @returns {Node} */
   function row(path, field) {
-    const made = control(path, field, { dispatch, now });
-    controls.set(path, made);
-    return made.root;
+    const make = () => {
+      const made = control(path, field, { dispatch, now });
+      controls.set(path, made);
+      return made.root;
+    };
+    return isList(field) ? later(() => [make()])[0] : make();
   }
 
   /** The fields below a path. @param {string} path @param {Field[]} fields */
@@ -126,6 +154,9 @@ export function createKit({ samples, now, dispatch, anew, extend }) {
     toggle,
     rows,
     clear,
+    later,
+    /** What is being loaded, if anything is. */
+    loading: () => loading,
     anew,
     extend,
     controls,

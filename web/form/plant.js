@@ -1,51 +1,7 @@
-/** What the edges drive, in the form: supply, sensors, protection, and the motors of channels that no axis gives one. */
-import { button } from "../dom.js";
-import { motorFields } from "./motor.js";
-import { fields, labelOf, mostOf } from "./schema.js";
+/** What the edges drive, in the form: nothing, or motors. */
 
-/** @typedef {import("./kit.js").Kit} Kit */
-
-/** @param {Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
+/** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {
   const on = kit.toggle("plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
-  const head = [kit.errorOf("plant"), on];
-  if (!plant) return head;
-  const group = (/** @type {string} */ name, /** @type {string} */ of) =>
-    kit.part(labelOf("PlantSettings", name), false, kit.block(`plant.${name}`, fields(of)));
-  const guard = plant.protection ?? null;
-  return [
-    ...head,
-    ...kit.block("plant", fields("PlantSettings")),
-    kit.toggle("plant.protection", "Protection: stop at an overload", guard !== null, kit.samples.protection),
-    ...(guard ? kit.block("plant.protection", fields("Protection")) : []),
-    group("current_sensor", "CurrentSensor"),
-    group("encoder", "Encoder"),
-    kit.part("Motors of channels without an axis", (plant.motors ?? []).length > 0, motors(kit, plant.motors ?? [])),
-  ];
-}
-
-/** @param {Kit} kit @param {any[]} list @returns {Node[]} */
-function motors(kit, list) {
-  const at = "plant.motors";
-  return [
-    kit.errorOf(at),
-    ...list.map((_, index) =>
-      kit.item(
-        `Motor ${index}`,
-        `${at}[${index}]`,
-        [
-          ...kit.block(`${at}[${index}]`, fields("PlantMotor")),
-          ...motorFields(kit, `${at}[${index}].motor`, true, `motor ${index}`),
-          button("Remove", `Remove motor ${index}`, () => kit.remove(at, index)),
-        ],
-        "PlantSettings.motors",
-      ),
-    ),
-    button(
-      "Add motor",
-      "Add motor",
-      () => kit.append(at, (last) => structuredClone(last ?? kit.samples.plant_motor)),
-      list.length >= mostOf("PlantSettings", "motors"),
-    ),
-  ];
+  return [kit.errorOf("plant"), on, ...(plant ? kit.later((further) => further.plantFields(kit, plant)) : [])];
 }

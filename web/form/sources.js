@@ -1,8 +1,8 @@
 /** What the host can send: a row a kind, with its part of the form and what it begins with. */
 import { element, say } from "../dom.js";
 import { axisItems } from "./axes.js";
-import { packetLines, segmentFields } from "./fields.js";
-import { field, fields } from "./schema.js";
+import { packetLines } from "./fields.js";
+import { field } from "./schema.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -41,30 +41,13 @@ export const SOURCES = {
   },
   line: {
     fresh: (scenario) => ({ sends: sends(scenario) }),
-    form: (kit, scenario) =>
-      kit.rows(
-        "source.line.sends",
-        scenario.source.line.sends,
-        fields("ScriptedSend"),
-        "Send",
-        (last) =>
-          last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send),
-        "Source.line",
-      ),
+    form: (kit, scenario) => kit.later((further) => further.sendRows(kit, scenario)),
     order: () => ({}),
     orderForm: () => [],
   },
   segments: {
     fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, list) }),
-    form: (kit, scenario) =>
-      kit.rows(
-        "source.segments.channels",
-        scenario.source.segments.channels,
-        segmentFields(),
-        "List",
-        (last) => structuredClone(last ?? list()),
-        "Source.segments",
-      ),
+    form: (kit, scenario) => kit.later((further) => further.segmentRows(kit, scenario)),
     order: () => ({}),
     orderForm: () => [],
   },
@@ -95,7 +78,7 @@ export function runsAlone({ source }) {
 }
 
 /** Faster to the right, a pause, and evenly back: something to see and to change. */
-function list() {
+export function list() {
   const ms = 16_000 * 65_536;
   return {
     start_cycle: 1,
@@ -162,11 +145,4 @@ function sends(scenario) {
     bytes: "",
     frame,
   }));
-}
-
-/** A start that lies behind a send: its bytes have passed. @param {any} send @param {Scenario} scenario */
-function after({ start_cycle, bytes, frame }, scenario) {
-  // A frame's check, COBS and end mark, and room for its reply.
-  const length = String(frame ?? bytes).replace(/\s/g, "").length / 2 + (frame === null ? 1 : 30);
-  return start_cycle + Math.ceil((10 * length * scenario.clock_hz) / Math.max(1, scenario.line.baud));
 }

@@ -3,11 +3,8 @@
  * all of them; a click elsewhere and Escape close it.
  */
 import { byId, element, fill } from "../dom.js";
-import { documents, takeExplanations, termOf } from "../form/schema.js";
 import { CARD, termButton } from "../form/term_button.js";
 import { VIEWS } from "../state/views.js";
-
-/** @typedef {import("../form/field.js").Term} Term */
 
 /** From the word to its card, and from the card to the window's edges, in CSS pixels. */
 const GAP_PX = 4;
@@ -53,23 +50,8 @@ export function createCard() {
 /** The word whose card is on show, or was last. @type {HTMLElement | null} */
 let opener = null;
 
-/** Loads what the terms of fields mean; where that fails their fields' own text stands for it, and the next card asks again. */
-async function explained() {
-  const found = await import("./explained.js").catch(() => null);
-  if (found) takeExplanations(found.EXPLAINED);
-}
-
-/** What the cards say of no field. @type {Promise<typeof import("./texts.js")> | null} */
+/** What fills the card; it loads with the first. @type {Promise<typeof import("./filled.js")> | null} */
 let loading = null;
-
-/** Loads it, once; null where that fails. */
-async function load() {
-  loading ??= import("./texts.js");
-  return loading.catch(() => {
-    loading = null;
-    return null;
-  });
-}
 
 /** Fills the card for a word and shows it there. @param {HTMLElement} word */
 async function show(word) {
@@ -77,45 +59,20 @@ async function show(word) {
   if (!card) return;
   if (opener !== word) opener?.setAttribute("aria-expanded", "false");
   opener = word;
-  const name = word.dataset.term ?? "";
-  if (termOf(name)) await explained();
-  const own = termOf(name);
-  const texts = own ? null : await load();
+  const isWanted = () => opener === word && word.isConnected;
+  try {
+    loading ??= import("./filled.js");
+    await (await loading).fillCard(card, word, isWanted);
+  } catch {
+    loading = null;
+    if (isWanted()) fill(card, element("p", {}, "The text could not be loaded; try again when the network is there."));
+  }
   // Another word was asked for meanwhile.
-  if (opener !== word || !word.isConnected) return;
-  const view = texts?.CARDS[name.replace("view:", "")];
-  const term = own ?? texts?.DERIVED[name];
-  const hint = word.closest(".field")?.querySelector(".hint")?.textContent;
-  fill(
-    card,
-    ...(name.startsWith("view:") && view
-      ? [
-          element("p", {}, view.about),
-          element(
-            "dl",
-            {},
-            ...Object.values(view.terms).flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]),
-          ),
-        ]
-      : [
-          element("strong", {}, term?.name ?? word.textContent ?? ""),
-          meaning(
-            "p",
-            term ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." },
-          ),
-          ...(hint ? [element("p", { class: "range" }, hint)] : []),
-        ]),
-  );
+  if (!isWanted()) return;
   card.hidePopover();
   card.showPopover();
   place(card, word);
   word.setAttribute("aria-expanded", "true");
-}
-
-/** What is meant, with where it comes from. @param {"p" | "dd"} tag @param {Term} term */
-export function meaning(tag, { text, from }) {
-  const document = documents()[from ?? ""];
-  return element(tag, {}, text, ...(document ? [" ", element("span", { class: "from" }, `(${document.short})`)] : []));
 }
 
 /** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */

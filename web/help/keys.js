@@ -1,37 +1,18 @@
-/** The help in the page: every key, from the list of commands itself, and the way to the rest. */
-import { byId, element, fill } from "../dom.js";
-import { listed, listen } from "../shell/commands.js";
+/** The help in the page: every key (key_list.js), and the way to the rest. */
+import { byId, say } from "../dom.js";
+import { listen } from "../shell/commands.js";
 import { explain } from "./card.js";
-
-/** How keys are called on keycaps. @type {{[key: string]: string}} */
-const CAPS = {
-  arrowleft: "←",
-  arrowright: "→",
-  arrowup: "↑",
-  arrowdown: "↓",
-  escape: "Esc",
-  pageup: "Page up",
-  pagedown: "Page down",
-};
 
 /** @param {() => Promise<unknown>} load  Loads what has keys of its own and may not be there yet. */
 export function createKeys(load) {
   const dialog = /** @type {HTMLDialogElement} */ (byId("keys"));
-  const list = () =>
-    fill(
-      byId("keys-list"),
-      ...listed().flatMap(({ title, commands }) => [
-        element("h3", {}, title),
-        element(
-          "dl",
-          { class: "keys" },
-          ...commands.flatMap(({ keys, text }) => [
-            element("dt", {}, ...keys.flatMap((key, index) => [...(index ? [" or "] : []), ...caps(key)])),
-            element("dd", {}, text),
-          ]),
-        ),
-      ]),
-    );
+  const list = async () => {
+    try {
+      (await import("./key_list.js")).listKeys();
+    } catch {
+      say(byId("keys-list"), "The keys could not be loaded; open this again when the network is there.");
+    }
+  };
   const open = () => {
     if (dialog.open) return;
     list();
@@ -60,14 +41,5 @@ export function createKeys(load) {
       text: "show this help",
       run: (event) => (/** @type {Element} */ (event.target).matches("input, textarea") ? false : open()),
     },
-  ]);
-}
-
-/** @param {string} key */
-function caps(key) {
-  const parts = key.split(/\+(?=.)/);
-  return parts.flatMap((part, index) => [
-    ...(index ? ["+"] : []),
-    element("kbd", {}, CAPS[part.toLowerCase()] ?? (part.length === 1 ? part.toUpperCase() : part)),
   ]);
 }

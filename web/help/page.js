@@ -3,9 +3,10 @@ import { byId, element, fill } from "../dom.js";
 import { compiled } from "../engine/wasm.js";
 import { documents, labels, takeExplanations, takeSchema, termOf, terms } from "../form/schema.js";
 import init, { schema } from "../pkg/stepscope_wasm.js";
-import { meaning } from "./card.js";
+import { VIEWS } from "../state/views.js";
 import { EXPLAINED } from "./explained.js";
-import { CARDS, DERIVED } from "./texts.js";
+import { meaning } from "./meaning.js";
+import { DERIVED, TERMS } from "./texts.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -22,15 +23,12 @@ const kinds = (group) =>
 
 fill(byId("moves"), ...kinds("Move"));
 fill(byId("mechanics"), ...kinds("Mechanics"));
-fill(
-  byId("view-list"),
-  ...Object.values(CARDS).flatMap(({ title, about }) => [element("dt", {}, title), element("dd", {}, about)]),
-);
+fill(byId("view-list"), ...VIEWS.flatMap(({ title, about }) => [element("dt", {}, title), element("dd", {}, about)]));
 fill(byId("documents"), ...Object.values(documents()).map(({ title }) => element("li", {}, title)));
 
 // Fields of several groups share a term; two terms can have one name, such as the width of a pulse and the rule for it.
 const all = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
-const ofViews = Object.values(CARDS).flatMap(({ terms }) => Object.values(terms));
+const ofViews = Object.values(TERMS).flatMap((terms) => Object.values(terms));
 const each = [...all.map(([, term]) => term), ...Object.values(DERIVED), ...ofViews];
 const said = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
 said.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));

@@ -3,8 +3,6 @@
  * that loads when the first card of one of them is opened. All other terms stand with their fields in the schema.
  */
 
-import { VIEWS } from "../state/views.js";
-
 /** @typedef {import("../form/field.js").Term} Term */
 
 /** Of what follows from the scenario. @type {{[id: string]: Term}} */
@@ -43,7 +41,7 @@ export const DERIVED = {
 };
 
 /** What the words of each view mean. @type {{[view: string]: {[id: string]: Term}}} */
-const TERMS = {
+export const TERMS = {
   motion: {
     ideal: { name: "Ideal", text: "The curve that was asked for." },
     made: {
@@ -223,8 +221,3 @@ const TERMS = {
     },
   },
 };
-
-/** What is explained behind the heading of each view. */
-export const CARDS = Object.fromEntries(
-  VIEWS.map(({ name, title, about }) => [name, { title, about, terms: TERMS[name] ?? {} }]),
-);

@@ -4,7 +4,7 @@
  */
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
-import { held, isStale } from "../state/state.js";
+import { held } from "../state/state.js";
 import { ownIsKept } from "./storage.js";
 import { parseView, viewOf } from "./view_part.js";
 
@@ -53,15 +53,6 @@ export function createLink({ engine, dispatch, now }) {
     } catch {
       // A scenario that cannot be a link yet; its problems are shown where they are.
     }
-  }
-
-  /** The link to share, and whether the digests of the run on show are in it. */
-  async function shared() {
-    // A recording's digests are no run's: whoever opens the link sees what the model makes of it.
-    const isRun = !isStale(now()) && !now().result?.summary.recorded;
-    const digests = isRun ? await engine.ask("fingerprint") : null;
-    const full = await address(digests ?? undefined);
-    return { full, digests: digests !== null && full.endsWith(digests) };
   }
 
   /** The address at the page's start; after a reload it may only repeat the work that this tab kept. @param {boolean} saved */
@@ -125,7 +116,7 @@ export function createLink({ engine, dispatch, now }) {
     // Standing by until the visitor changes something: an address without a link stays as it is.
     if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);
   }
-  return { render, start, shared, openLink };
+  return { render, start, address, openLink };
 }
 
 /** @param {unknown} error */

@@ -7,8 +7,8 @@ import { viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {{shared: () => Promise<{full: string, digests: boolean}>} & import("../state/types.js").Page} page @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
-export function createShare({ shared, now }, { isOpen }) {
+/** @param {{engine: import("../engine/engine.js").Engine, address: (digests: string | undefined) => Promise<string>} & import("../state/types.js").Page} page @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
+export function createShare({ engine, address, now }, { isOpen }) {
   const text = /** @type {HTMLTextAreaElement} */ (byId("link-text"));
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));
   const about = byId("link-about");
@@ -16,6 +16,15 @@ export function createShare({ shared, now }, { isOpen }) {
   /** Counts the links that were asked for: an older one comes too late. */
   let asked = 0;
   copy.addEventListener("click", toClipboard);
+
+  /** The link to share, and whether the digests of the run on show are in it. */
+  async function shared() {
+    // A recording's digests are no run's: whoever opens the link sees what the model makes of it.
+    const isRun = !isStale(now()) && !now().result?.summary.recorded;
+    const digests = isRun ? await engine.ask("fingerprint") : null;
+    const full = await address(digests ?? undefined);
+    return { full, digests: digests !== null && full.endsWith(digests) };
+  }
 
   async function make() {
     const mine = ++asked;

@@ -6,7 +6,6 @@
  * that name one place share it, and a button in their heads goes from one to the other. A view without a place stands
  * alone while it is open.
  */
-import { selected } from "./state.js";
 
 /** @typedef {import("./types.js").State} State */
 /**
@@ -78,7 +77,8 @@ const ROWS = /** @type {const} */ ([
     tab: "Timing",
     about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
     place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
-    offered: (/** @type {State} */ state) => typeof selected(state)?.violations === "number",
+    offered: (/** @type {State} */ { result }) =>
+      typeof result?.summary.controllers[result.controller]?.violations === "number",
     leads: () => true,
   },
   {

@@ -2,17 +2,30 @@
 import { byId, element, fill, say } from "../dom.js";
 import { ruleName } from "../form/schema.js";
 import { count, si, time } from "../state/number.js";
+import { required } from "./required.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
 
+/** The columns of the two tables: what stands over them, and what that means where it is short. @type {{[table: string]: [string, string?][]}} */
+const HEADS = {
+  margins: [
+    ["rule"],
+    ["least"],
+    ["required"],
+    ["slack", "What was measured beyond what is required, in whole clock cycles"],
+    ["count", "Violations"],
+  ],
+  violations: [["ch", "Channel"], ["rule"], ["time"], ["measured"], ["required"]],
+};
+
 /**
  * @param {Timing | null} timing  None without a driver.
- * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void,
- *   required: (timing: Timing | null, rule: string) => string}} page
+ * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void}} page
  */
-export function paintTiming(timing, { state, drivers, toRule, required }) {
+export function paintTiming(timing, { state, drivers, toRule }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
+  for (const [table, columns] of Object.entries(HEADS)) heads(byId(table), columns);
   const clock = state.result?.summary.clock_hz ?? 1;
   const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
   const sheet = drivers.find(({ id }) => id === timing?.driver);
@@ -75,6 +88,19 @@ export function paintTiming(timing, { state, drivers, toRule, required }) {
       ),
     ),
   );
+}
+
+/** @param {HTMLElement} table @param {[string, string?][]} columns */
+function heads(table, columns) {
+  const head = /** @type {Element} */ (table.querySelector("thead"));
+  if (head.firstChild) return;
+  const cells = columns.map(([text, title]) => {
+    const cell = element("th", { scope: "col", ...(text === "rule" ? {} : { class: "number" }) }, text);
+    if (title) cell.title = title;
+    if (text === "ch") cell.setAttribute("aria-label", "Channel");
+    return cell;
+  });
+  head.append(element("tr", {}, ...cells));
 }
 
 /** @param {string} rule @param {boolean} bad @param {(rule: string) => void} toRule */

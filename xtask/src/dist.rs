@@ -56,7 +56,7 @@ pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
     site.texts.insert(LICENCES.to_owned(), licences::page().await?);
     let sources = site.sources();
     clear(dist)?;
-    let bundles = Bundles::make(web, &sources, dist).await?;
+    let bundles = Bundles::make(web, &sources, site.script()?, dist).await?;
     let commit = commit().await;
     for (name, text) in site.built(&bundles, env!("CARGO_PKG_VERSION"), commit.as_deref())? {
         let file = dist.join(name);
@@ -141,6 +141,12 @@ impl Site {
         self.naming().flat_map(|(_, text)| named(text)).filter(|file| !names_others(file)).collect()
     }
 
+    /// The page's own script.
+    fn script(&self) -> Result<&str> {
+        let page = self.texts.get(PAGE).map_or("", String::as_str);
+        files_at(page, &["src=\""]).next().with_context(|| format!("{PAGE} names no script"))
+    }
+
     /// The files of bundles that this page or manifest names at these places.
     fn wanted<'a>(&self, name: &str, places: &[&str], bundles: &'a Bundles) -> BTreeSet<&'a str> {
         let text = self.texts.get(name).map_or("", String::as_str);
@@ -161,7 +167,7 @@ impl Site {
         // Without a commit the files themselves say which build this is.
         let own = format!("{:08x}", hash_of(&built) >> 32);
         let page = built.get_mut(PAGE).with_context(|| format!("there is no {PAGE}"))?;
-        *page = stamped(page, &format!("{version} ({})", commit.unwrap_or(&own)))?;
+        *page = unindented(&stamped(page, &format!("{version} ({})", commit.unwrap_or(&own)))?);
         let id = format!("{:016x}", hash_of(&built));
         let entries = built.keys().map(|name| if name == PAGE { "./" } else { name });
         let files: Vec<&str> =
@@ -170,7 +176,7 @@ impl Site {
         let headers = self.rules(built.keys().map(String::as_str));
         if let Some(worker) = built.get_mut(SERVICE_WORKER) {
             ensure!(worker.matches(UNLISTED).count() == 1, "{SERVICE_WORKER} must hold once: {UNLISTED}");
-            *worker = worker.replace(UNLISTED, &list);
+            *worker = without_comments(worker).replace(UNLISTED, &list);
         }
         built.insert(headers::FILE.to_owned(), headers);
         Ok(built)
@@ -253,6 +259,20 @@ fn stamped(page: &str, build: &str) -> Result<String> {
         ensure!(page.matches(place.as_str()).count() == 1, "{PAGE} must hold once: {place}");
     }
     Ok(places.iter().fold(page.to_owned(), |page, place| page.replace(place, &place.replace(UNBUILT, build))))
+}
+
+/// A script without the lines that say something to its reader alone.
+fn without_comments(script: &str) -> String {
+    let lines = script.lines().filter(|line| {
+        let text = line.trim_start();
+        !["//", "/*", "*"].iter().any(|mark| text.starts_with(mark))
+    });
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+/// The page without the indents of its lines; it holds no text that keeps them.
+fn unindented(page: &str) -> String {
+    page.lines().map(|line| format!("{}\n", line.trim_start())).collect()
 }
 
 /// Of all that is built: the texts hold the names of all else, and these change with what that holds.

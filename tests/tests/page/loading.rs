@@ -2,6 +2,7 @@
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
+use serde_json::{Value, json};
 
 use crate::{
     bench::in_browser,
@@ -77,5 +78,42 @@ fn nothing_moves_while_the_page_comes_in() -> Result<()> {
             ensure!(seen.cls == 0.0, "{width} x {height}: {} by {:?}", seen.cls, seen.shifted);
         }
         Ok(())
+    })
+}
+
+#[test]
+fn a_part_that_does_not_come_is_told_of_and_asked_for_again() -> Result<()> {
+    let missing = "Its fields could not be loaded";
+    in_browser(|page| async move {
+        let block = async |files: Value| {
+            page.devtools("Network.enable", json!({})).await?;
+            page.devtools("Network.setBlockedURLs", json!({ "urls": files })).await
+        };
+        page.open("").await?;
+        block(json!(["*/further.*", "*/row_list.*", "*/edges.*", "*/filled.*", "*/key_list.*"])).await?;
+        let plant = "[data-path='plant#kind']";
+        page.js::<()>("document.querySelector(arguments[0]).scrollIntoView();", vec![json!(plant)]).await?;
+        page.click(plant).await?;
+        page.until(&format!("[...document.querySelectorAll('.item-note')].some(({{ textContent }}) => textContent.includes('{missing}'))")).await?;
+        page.press("#pulses", "h").await?;
+        page.until("document.getElementById('pulses-sentence').textContent.startsWith('This part of the page could not')").await?;
+        page.click("#rows-open").await?;
+        page.until("document.getElementById('rows-about').textContent !== ''").await?;
+        page.press("#rows-open", "\u{e00c}").await?;
+        page.click("#edge-panel summary").await?;
+        page.until("document.getElementById('edges-count').textContent.startsWith('The table could not')")
+            .await?;
+        page.click("#title-pulses .term").await?;
+        page.until("document.getElementById('term-card').textContent.startsWith('The text could not')")
+            .await?;
+        page.click("#help").await?;
+        page.until("document.getElementById('keys-list').textContent.startsWith('The keys could not')")
+            .await?;
+        page.click("#keys-close").await?;
+
+        block(json!([])).await?;
+        page.click(plant).await?;
+        page.click(plant).await?;
+        page.until("document.querySelector('[data-path=\"plant.tail_s\"]') !== null").await
     })
 }

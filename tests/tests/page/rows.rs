@@ -33,6 +33,13 @@ async fn names(page: &Session) -> Result<Vec<String>> {
         .await
 }
 
+/// Opens the panel, and waits for its list, whose script may have to come.
+async fn open_panel(page: &Session) -> Result<()> {
+    page.click("#rows-open").await?;
+    page.until("document.getElementById('rows-list').children.length > 0 && !document.querySelector('#rows-panel [inert]')")
+        .await
+}
+
 /// Puts the mouse on a row.
 async fn point(page: &Session, row: usize, row_px: f64) -> Result<()> {
     let place = "(({ left, top, width }) => [left, top, width])(document.getElementById('pulses').getBoundingClientRect())";
@@ -50,7 +57,7 @@ fn rows_are_named_ordered_and_hidden_in_their_panel_and_stay_so() -> Result<()> 
     in_browser(|page| async move {
         page.open("").await?;
         until_rows(&page, 6).await?;
-        page.click("#rows-open").await?;
+        open_panel(&page).await?;
         assert_eq!(names(&page).await?, ["EN", "RX", "packets", "ticks", "ch 0"]);
 
         page.click("[aria-label='Name of ch 0']").await?;
@@ -78,7 +85,7 @@ fn rows_are_named_ordered_and_hidden_in_their_panel_and_stay_so() -> Result<()> 
         until_rows(&page, 5).await?;
         point(&page, 1, ROW_PX).await?;
         until_reads(&page, "STEP X axis ").await?;
-        page.click("#rows-open").await?;
+        open_panel(&page).await?;
         assert_eq!(names(&page).await?, ["X axis", "EN", "RX", "packets", "ticks"]);
         // An empty name takes it back.
         page.press("[aria-label='Name of ch 0']", &format!("{CONTROL}a{RELEASE}\u{e003}{ENTER}")).await?;

@@ -179,8 +179,8 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
         let names: Vec<String> = page
             .eval(
                 "Promise.all([import('./form/schema.js'), import('./help/texts.js'), import('./help/explained.js')])
-                 .then(([{ terms, takeExplanations }, { CARDS, DERIVED }, { EXPLAINED }]) => { takeExplanations(EXPLAINED);
-                 return [terms(), DERIVED, ...Object.values(CARDS).map(({ terms }) => terms)].flatMap(Object.values).map(({ name }) => name); })",
+                 .then(([{ terms, takeExplanations }, { TERMS, DERIVED }, { EXPLAINED }]) => { takeExplanations(EXPLAINED);
+                 return [terms(), DERIVED, ...Object.values(TERMS)].flatMap(Object.values).map(({ name }) => name); })",
             )
             .await?;
         ensure!(names.len() > 80, "{} terms", names.len());

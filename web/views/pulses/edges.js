@@ -19,14 +19,16 @@ export function createEdges({ engine, now }) {
   /** @type {EdgeRow[]} */
   let rows = [];
 
-  panel.addEventListener("toggle", () => {
-    if (panel.open) fromShown();
-  });
+  const heads = ["time", "cycle", "signal", "then"].map((text, column) =>
+    element("th", { scope: "col", ...(column < 2 ? { class: "number" } : {}) }, text),
+  );
+  fill(/** @type {Element} */ (panel.querySelector("thead")), element("tr", {}, ...heads));
   which.addEventListener("change", fromShown);
   byId("edges-from").addEventListener("click", fromShown);
   earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
   later.addEventListener("click", () => turn(rows[rows.length - 1]?.cycle ?? -1, true));
 
+  /** Shows what begins with the shown time. */
   function fromShown() {
     return turn(shown(now()).start - 1, true);
   }
@@ -71,5 +73,5 @@ export function createEdges({ engine, now }) {
     if (!panel.open) return;
     if (before?.result !== state.result || (before?.row !== state.row && which.value === "row")) fromShown();
   }
-  return { render };
+  return { render, fromShown };
 }

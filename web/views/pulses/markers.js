@@ -1,8 +1,6 @@
-/** The markers 0 to 9: a button that sets one, and a table of what lies between them, which goes with the last. */
-import { button, byId, element, fill } from "../../dom.js";
-import { count, time } from "../../state/number.js";
+/** The markers 0 to 9: a button that sets one, and a table of what lies between them (marker_list.js), which goes with the last. */
+import { byId, element, fill, say } from "../../dom.js";
 import { shown } from "../../state/state.js";
-import { goToMarker } from "../../time/timeline.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -10,6 +8,8 @@ import { goToMarker } from "../../time/timeline.js";
 export function createMarkers({ dispatch, now, speak }) {
   const panel = byId("marker-panel");
   const body = /** @type {Element} */ (panel.querySelector("tbody"));
+  /** Fills the table; it loads with the first marker. @type {typeof import("./marker_list.js").listMarkers | null} */
+  let list = null;
   byId("marker-set").addEventListener("click", () => {
     const { markers, cursors, hover } = now();
     const free = markers.indexOf(null);
@@ -24,45 +24,26 @@ export function createMarkers({ dispatch, now, speak }) {
   });
 
   /** @param {State} state */
-  function paint(state) {
-    const clock = state.result?.summary.clock_hz ?? 1;
-    const { a } = state.cursors;
-    const set = state.markers
-      .flatMap((cycle, digit) => (cycle === null ? [] : [{ digit, cycle }]))
-      .sort((one, other) => one.cycle - other.cycle);
-    panel.hidden = set.length === 0;
-    /** @type {Element} */ (panel.querySelector("summary")).textContent = `Markers (${set.length})`;
-    const apart = (/** @type {number | undefined | null} */ from, /** @type {number} */ to) =>
-      from === null || from === undefined ? "–" : time((to - from) / clock);
-    fill(
-      body,
-      ...set.map(({ digit, cycle }, index) =>
-        element(
-          "tr",
-          {},
-          element(
-            "td",
-            {},
-            button(String(digit), `Show marker ${digit}`, () => goToMarker({ dispatch, now }, digit)),
-          ),
-          ...[time(cycle / clock), count(cycle), apart(set[index - 1]?.cycle, cycle), apart(a, cycle)].map((text) =>
-            element("td", { class: "number" }, text),
-          ),
-          element(
-            "td",
-            {},
-            button("×", `Remove marker ${digit}`, () => remove(digit)),
-          ),
-        ),
-      ),
-    );
+  async function paint(state) {
+    const count = state.markers.filter((cycle) => cycle !== null).length;
+    panel.hidden = count === 0;
+    say(/** @type {Element} */ (panel.querySelector("summary")), `Markers (${count})`);
+    if (list || count > 0) await fillTable();
   }
 
-  /** @param {number} digit */
-  function remove(digit) {
-    dispatch({ type: "marker", digit, cycle: null });
-    const next = body.querySelector("button");
-    (next ?? byId("marker-set")).focus();
+  /** Once it is there it fills the table at once, in the change that it is told of. */
+  async function fillTable() {
+    try {
+      list ??= (await import("./marker_list.js")).listMarkers;
+    } catch {
+      const cell = element(
+        "td",
+        {},
+        "The table could not be loaded; it comes with the next change when the network is there.",
+      );
+      return fill(body, element("tr", {}, cell));
+    }
+    list(body, { dispatch, now });
   }
 
   /** @param {State} state @param {State | undefined} before */

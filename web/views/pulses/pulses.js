@@ -10,7 +10,6 @@ import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
 import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
-import { createEdges } from "./edges.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
 import { drawLit, paintRows } from "./picture.js";
@@ -41,7 +40,8 @@ export function createPulses({ engine, dispatch, now }) {
   const reading = createReading({ engine, now });
   const spans = createSpans({ engine });
   const markers = createMarkers({ ...page, speak: reading.speak });
-  const edges = createEdges({ engine, now });
+  /** The table of edges; it loads when it is first unfolded. @type {ReturnType<typeof import("./edges.js").createEdges> | null} */
+  let edges = null;
   const panel = createRowPanel({ ...page, canvas, speak: reading.speak });
   const handles = createHandles(byId("pulses-handles"), () => plot, {
     ...page,
@@ -52,6 +52,22 @@ export function createPulses({ engine, dispatch, now }) {
   let answer = null;
   let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
+
+  const table = /** @type {HTMLDetailsElement} */ (byId("edge-panel"));
+  table.addEventListener("toggle", async () => {
+    if (!table.open) return;
+    // Nothing in it takes a press before there is anyone to hear it.
+    const content = /** @type {HTMLElement} */ (table.lastElementChild);
+    content.inert = edges === null;
+    try {
+      const { createEdges } = await import("./edges.js");
+      edges ??= createEdges({ engine, now });
+      content.inert = false;
+      edges.fromShown();
+    } catch {
+      say(byId("edges-count"), "The table could not be loaded; unfold it again when the network is there.");
+    }
+  });
 
   onTimeAxis(canvas, () => plot, { ...page, click: pick });
   watch(stack, () => refresh(now()));
@@ -279,7 +295,7 @@ export function createPulses({ engine, dispatch, now }) {
   function render(state, before) {
     range.render(state, before);
     markers.render(state, before);
-    edges.render(state, before);
+    edges?.render(state, before);
     const strip = overview.render(state, before);
     const arranged =
       before?.result !== state.result ||

@@ -1,178 +1,32 @@
 /**
- * The rows as the visitor has them: a panel under the button in the view's head, a line a group, and keys that do the
- * same to the chosen one.
+ * The rows as the visitor has them: a panel under the button in the view's head, and keys for the chosen one. What both do
+ * loads with the first of them (row_list.js).
  */
-import { button, byId, element, fill, say } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
-import { dropDown } from "../../shell/popover.js";
-import {
-  AS_THEY_ARE,
-  hidden,
-  LEAST_PX,
-  MOST_LETTERS,
-  MOST_PX,
-  moved,
-  named,
-  rowPx,
-  taller,
-} from "../../state/row_choices.js";
-import { calledBy, groupsOf, rowsOf, shownGroups, shows } from "./rows.js";
+import { createPanel } from "../../shell/panel.js";
 
-/** @typedef {import("../../state/types.js").State} State */
-/** @typedef {import("./rows.js").Group} Group */
-/** @typedef {{line: HTMLElement, box: HTMLInputElement, field: HTMLInputElement, up: HTMLButtonElement, down: HTMLButtonElement, put: (group: Group) => void}} Line */
-
-/** A key makes the rows so many CSS pixels taller or lower. */
-const STEP_PX = 3;
+/** @typedef {ReturnType<typeof import("./row_list.js").createRowList>} RowList */
 
 /** @param {{canvas: HTMLElement, speak: (text: string) => void} & import("../../state/types.js").Page} page */
-export function createRowPanel({ canvas, speak, dispatch, now }) {
-  const list = byId("rows-list");
-  const height = /** @type {HTMLInputElement} */ (byId("rows-height"));
-  const popover = dropDown("rows-open", "rows-panel", () => paint(now()));
-  /** Lines of the panel by their groups: one that stays keeps its elements. @type {Map<string, Line>} */
-  const lines = new Map();
-  const choices = () => now().panes.pulses;
-  /** @param {Partial<import("../../state/row_choices.js").RowChoices>} rows */
-  const choose = (rows) => dispatch({ type: "rows", rows });
-
-  [height.min, height.max] = [String(LEAST_PX), String(MOST_PX)];
-  height.addEventListener("input", () => choose(taller(choices(), Number(height.value) - rowPx(choices()))));
-  byId("rows-reset").addEventListener("click", () => {
-    choose(AS_THEY_ARE);
-    speak("The rows are as at first.");
-  });
-  listen(canvas, "Pulses", [
-    { keys: ["Shift+ArrowUp"], text: "move the chosen row up", run: () => move(chosen(), -1, shownGroups(now())) },
-    { keys: ["Shift+ArrowDown"], text: "move it down", run: () => move(chosen(), 1, shownGroups(now())) },
-    { keys: ["h"], text: "hide it", run: () => hide(chosen(), true) },
-    { keys: ["Alt+ArrowDown"], text: "taller rows", run: () => stretch(STEP_PX) },
-    { keys: ["Alt+ArrowUp"], text: "lower rows", run: () => stretch(-STEP_PX) },
-    { keys: ["r"], text: "list of the rows: heights, order, names", run: open },
-  ]);
-
-  /** The group of the chosen signal. */
-  function chosen() {
-    return groupsOf(now()).find(({ rows }) => rows.some((row) => shows(row, now().row)));
-  }
-
-  /** @param {number} by */
-  function stretch(by) {
-    choose(taller(choices(), by));
-    speak(`Rows of ${rowPx(choices())} pixels.`);
-  }
-
-  /** By one among some groups; those between stay where they are. @param {Group | undefined} what @param {number} by @param {Group[]} among */
-  function move(what, by, among) {
-    if (!what) return;
-    const names = among.map(({ group }) => group);
-    const beside = names[names.indexOf(what.group) + by];
-    if (beside === undefined) return speak(`${nameOf(what)} is the ${by < 0 ? "first" : "last"} row.`);
-    const all = groupsOf(now()).map(({ group }) => group);
-    choose(moved(all, what.group, all.indexOf(beside) - all.indexOf(what.group)));
-    speak(`${nameOf(what)} is row ${names.indexOf(beside) + 1} of ${names.length}.`);
-  }
-
-  /** Another signal is chosen where the chosen one goes; the last one stays. @param {Group | undefined} what @param {boolean} away */
-  function hide(what, away) {
-    if (!what) return;
-    if (away && what.group === chosen()?.group) {
-      const rows = rowsOf(now());
-      const from = rows.findIndex((row) => what.rows.some((own) => own.name === row.name && own.kind === row.kind));
-      const others = rows.flatMap((row, at) =>
-        "bit" in row && !what.rows.some((own) => shows(own, row.bit))
-          ? [{ bit: row.bit, far: Math.abs(at - from) }]
-          : [],
-      );
-      const [next] = others.sort((one, other) => one.far - other.far);
-      if (!next) {
-        paint(now());
-        return speak("One signal stays on show.");
-      }
-      dispatch({ type: "row", row: next.bit });
-    }
-    choose(hidden(choices(), what.group, away));
-    speak(`${nameOf(what)} is ${away ? "hidden; the list of rows shows it again" : "on show"}.`);
-  }
-
-  /** @param {Group} what */
-  function nameOf({ group, own }) {
-    return calledBy(now(), group, own);
-  }
-
-  function open() {
-    byId("rows-panel").showPopover({ source: byId("rows-open") });
-    lines.get(chosen()?.group ?? "")?.field.focus();
-  }
-
-  /** @param {Group} first @returns {Line} */
-  function lineOf(first) {
-    let what = first;
-    const box = element("input", { type: "checkbox" });
-    const field = element("input", { type: "text", maxlength: String(MOST_LETTERS), spellcheck: "false" });
-    box.addEventListener("change", () => hide(what, !box.checked));
-    field.addEventListener("input", () => choose(named(choices(), what.group, field.value, what.own)));
-    const press = (/** @type {number} */ by) => {
-      move(what, by, groupsOf(now()));
-      const { up, down } = made;
-      // At an end the button that was pressed is switched off.
-      (by < 0 ? (up.disabled ? down : up) : down.disabled ? up : down).focus();
-    };
-    const [up, down] = [button("↑", "", () => press(-1)), button("↓", "", () => press(1))];
-    const line = element("li", {}, element("label", { class: "check" }, box), field, up, down);
-    const made = {
-      line,
-      box,
-      field,
-      up,
-      down,
-      put: (/** @type {Group} */ group) => {
-        what = group;
-        const { own } = group;
-        box.setAttribute("aria-label", `Show ${own}`);
-        field.setAttribute("aria-label", `Name of ${own}`);
-        field.placeholder = own;
-        for (const [node, way] of /** @type {[HTMLElement, string][]} */ ([
-          [up, "up"],
-          [down, "down"],
-        ])) {
-          node.title = `Move ${own} ${way}`;
-          node.setAttribute("aria-label", node.title);
-        }
-      },
-    };
-    return made;
-  }
-
-  /** @param {State} state */
-  function paint(state) {
-    const px = rowPx(state.panes.pulses);
-    height.value = String(px);
-    say(byId("rows-height-px"), `${px} px`);
-    const groups = groupsOf(state);
-    const shown = shownGroups(state).map(({ group }) => group);
-    const all = groups.map((what, at) => {
-      const line = lines.get(what.group) ?? lineOf(what);
-      lines.set(what.group, line);
-      line.put(what);
-      line.box.checked = shown.includes(what.group);
-      if (document.activeElement !== line.field) line.field.value = state.panes.pulses.names[what.group] ?? "";
-      line.up.disabled = at === 0;
-      line.down.disabled = at === groups.length - 1;
-      return line.line;
+export function createRowPanel({ canvas, ...page }) {
+  /** @type {Promise<RowList> | null} */
+  let loading = null;
+  const load = () => {
+    loading ??= import("./row_list.js").then(({ createRowList }) => createRowList(page));
+    loading.catch(() => {
+      loading = null;
     });
-    if (all.some((line, at) => list.children[at] !== line) || list.children.length !== all.length) fill(list, ...all);
-  }
-
-  /** @param {State} state @param {State | undefined} before */
-  function render(state, before) {
-    if (!popover.isOpen()) return;
-    const same =
-      before?.panes.pulses === state.panes.pulses &&
-      before?.result === state.result &&
-      before?.row === state.row &&
-      before?.allSignals === state.allSignals;
-    if (!same) paint(state);
-  }
-  return { render };
+    return loading;
+  };
+  const missing = () => page.speak("This part of the page could not be loaded; try again when the network is there.");
+  const key = (/** @type {(list: RowList) => void} */ work) => () => void load().then(work, missing);
+  listen(canvas, "Pulses", [
+    { keys: ["Shift+ArrowUp"], text: "move the chosen row up", run: key(({ move }) => move(-1)) },
+    { keys: ["Shift+ArrowDown"], text: "move it down", run: key(({ move }) => move(1)) },
+    { keys: ["h"], text: "hide it", run: key(({ hide }) => hide()) },
+    { keys: ["Alt+ArrowDown"], text: "taller rows", run: key(({ stretch }) => stretch(1)) },
+    { keys: ["Alt+ArrowUp"], text: "lower rows", run: key(({ stretch }) => stretch(-1)) },
+    { keys: ["r"], text: "list of the rows: heights, order, names", run: key(({ open }) => open()) },
+  ]);
+  return createPanel("rows-open", "rows-panel", load, "rows-about");
 }

@@ -3,7 +3,7 @@ import { unlessDropped } from "../../engine/engine.js";
 import { ruleName } from "../../form/schema.js";
 import { si } from "../../state/number.js";
 import { selected, shown } from "../../state/state.js";
-import { required } from "../timing.js";
+import { required } from "../required.js";
 import { hasLine } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */

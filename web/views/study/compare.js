@@ -7,7 +7,8 @@ import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, pretty, short, si } from "../../state/number.js";
 import { cleared, color, draw, watch } from "../../time/plot.js";
 import { field, focusRow, table } from "./parts.js";
-import { isAnother, place, selectedAxis } from "./selected_axis.js";
+import { place } from "./place.js";
+import { isAnother, selectedAxis } from "./selected_axis.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{is_met: boolean, least: {needed_mn_m: number, available_mn_m: number, at_s: number} | null}} Torque */

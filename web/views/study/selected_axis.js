@@ -1,17 +1,8 @@
 /** What the study is about. */
-import { get } from "../../state/state.js";
+import { place } from "./place.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{json: string, controller: number, axis: number, path: string, moves: any[]}} SelectedAxis  Scenario as text, and one of its axes: its path there, its moves. */
-
-/** Where the selected axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
-export function place({ scenario, result, axis: wanted }) {
-  const controller = result?.controller ?? 0;
-  const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
-  const axes = scenario.source?.motion ? (get(scenario, list) ?? []) : [];
-  const axis = Math.min(wanted, axes.length - 1);
-  return { controller, axis, path: axis < 0 ? "" : `${list}[${axis}]`, moves: axes[axis]?.moves };
-}
 
 /**
  * The axis that the study is about. @param {State} state

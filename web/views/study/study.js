@@ -11,7 +11,7 @@ import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
 import { selected } from "../../state/state.js";
-import { place } from "./selected_axis.js";
+import { place } from "./place.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{engine: import("../../engine/engine.js").Engine, samples: import("../../form/kit.js").Samples} & import("../../state/types.js").Page} Given */

@@ -1,19 +1,108 @@
 //! esbuild makes the files with hashes: what a page or worker begins with, what several of these share, and what comes
 //! later, each as one minified module; style sheets, minified; and copies of the wasm and the icons. The hash in a name
 //! is of the file and of all that it imports.
+//!
+//! By itself esbuild makes a file of whatever another set of them shares. The page and its later parts shared twenty, and many small
+//! files weigh more than one. So esbuild works on a copy of the sources in which each later part imports the page's script:
+//! what both need is where that is, and loads with it.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use tokio::process::Command;
+use walkdir::WalkDir;
 
 use super::ASSETS;
 use crate::npm::Npm;
 use crate::run;
 
 const ESBUILD: Npm = Npm { package: "esbuild", version: "0.28.2" };
+
+/// A copy of the sources, which goes when it is done with.
+struct Work {
+    folder: PathBuf,
+}
+
+impl Work {
+    fn new(web: &Path) -> Result<Self> {
+        let folder = std::env::temp_dir().join(format!("stepscope-web-{}", std::process::id()));
+        let work = Self { folder };
+        for entry in WalkDir::new(web) {
+            let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
+            let place = work.web().join(entry.path().strip_prefix(web)?);
+            let done = if entry.file_type().is_dir() {
+                std::fs::create_dir_all(&place)
+            } else {
+                std::fs::copy(entry.path(), &place).map(drop)
+            };
+            done.with_context(|| format!("{} can't be made", place.display()))?;
+        }
+        Ok(work)
+    }
+
+    fn web(&self) -> PathBuf {
+        self.folder.join("web")
+    }
+}
+
+impl Drop for Work {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Has esbuild make files of these `sources` of `web` in the folder `out`; its note of what it made.
+async fn esbuild(web: &Path, sources: &BTreeSet<&str>, out: &Path) -> Result<String> {
+    let note = out.with_extension("json");
+    let path = |option: &str, path: &Path| format!("--{option}={}", path.display());
+    let mut command = Command::new(ESBUILD.program("esbuild").await?);
+    command.current_dir(web).args(sources).args(["--bundle", "--splitting", "--format=esm", "--minify"]);
+    command.args(["--charset=utf8", "--legal-comments=none", "--log-level=warning"]);
+    command.args(["--entry-names=[name].[hash]", "--chunk-names=[name].[hash]"]);
+    command.args(["wasm", "png", "svg"].map(|ending| format!("--loader:.{ending}=copy")));
+    command.arg(path("outdir", out)).arg(path("metafile", &note));
+    run::to_end(command, run::LIMIT).await?;
+    let text = std::fs::read_to_string(&note).context("esbuild does not say what it made")?;
+    std::fs::remove_file(&note).with_context(|| format!("{} can't be removed", note.display()))?;
+    Ok(text)
+}
+
+/// The sources that only the page's `script` loads, and only later: what another page or a worker has as well must not
+/// bring that script along.
+pub(super) fn later_parts(note: &str, sources: &BTreeSet<&str>, script: &str) -> Result<BTreeSet<String>> {
+    #[derive(Deserialize)]
+    struct Note {
+        inputs: BTreeMap<String, Input>,
+    }
+    let Note { inputs } = serde_json::from_str(note).context("esbuild's note of what it read")?;
+    let imports = |source: &str| inputs.get(source).map_or(&[][..], |input| &input.imports);
+    let elsewhere = reached(&inputs, sources.iter().copied().filter(|source| *source != script).collect());
+    let later =
+        reached(&inputs, vec![script]).into_iter().flat_map(imports).filter(|import| import.is_later());
+    let parts = later.map(|import| &import.path).filter(|path| !elsewhere.contains(path.as_str()));
+    Ok(parts.cloned().collect())
+}
+
+/// One of the sources, as esbuild read it.
+#[derive(Debug, Deserialize)]
+struct Input {
+    imports: Vec<Import>,
+}
+
+/// These sources and all that they import, now or later.
+fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut waiting: Vec<&'a str>) -> BTreeSet<&'a str> {
+    let mut found = BTreeSet::new();
+    while let Some(source) = waiting.pop() {
+        if let Some(input) = inputs.get(source)
+            && found.insert(source)
+        {
+            waiting.extend(input.imports.iter().map(|import| import.path.as_str()));
+        }
+    }
+    found
+}
 
 /// Every file that esbuild made, by its path in `dist`.
 #[derive(Debug)]
@@ -42,20 +131,25 @@ impl Import {
 }
 
 impl Bundles {
-    /// Makes files of these `sources` of `web`, and of all that they import, in the folder of assets of `dist`.
-    pub(super) async fn make(web: &Path, sources: &BTreeSet<&str>, dist: &Path) -> Result<Self> {
-        let note = dist.join("esbuild.json");
-        let path = |option: &str, path: &Path| format!("--{option}={}", path.display());
-        let mut command = Command::new(ESBUILD.program("esbuild").await?);
-        command.current_dir(web).args(sources).args(["--bundle", "--splitting", "--format=esm", "--minify"]);
-        command.args(["--charset=utf8", "--legal-comments=none", "--log-level=warning"]);
-        command.args(["--entry-names=[name].[hash]", "--chunk-names=[name].[hash]"]);
-        command.args(["wasm", "png", "svg"].map(|ending| format!("--loader:.{ending}=copy")));
-        command.arg(path("outdir", &dist.join(ASSETS))).arg(path("metafile", &note));
-        run::to_end(command, run::LIMIT).await?;
-        let text = std::fs::read_to_string(&note).context("esbuild does not say what it made")?;
-        std::fs::remove_file(&note).with_context(|| format!("{} can't be removed", note.display()))?;
-        Self::parse(&text)
+    /// Makes files of these `sources` of `web`, and of all that they import, in the folder of assets of `dist`; `script` is
+    /// the page's own among them.
+    pub(super) async fn make(
+        web: &Path,
+        sources: &BTreeSet<&str>,
+        script: &str,
+        dist: &Path,
+    ) -> Result<Self> {
+        let work = Work::new(web)?;
+        let draft = esbuild(&work.web(), sources, &work.folder.join("draft")).await?;
+        for part in later_parts(&draft, sources, script)? {
+            let file = work.web().join(&part);
+            let up = "../".repeat(part.matches('/').count());
+            let text = std::fs::read_to_string(&file)
+                .with_context(|| format!("{} can't be read", file.display()))?;
+            std::fs::write(&file, format!("{text}import \"./{up}{script}\";\n"))
+                .with_context(|| format!("{} can't be written", file.display()))?;
+        }
+        Self::parse(&esbuild(&work.web(), sources, &dist.join(ASSETS)).await?)
     }
 
     /// Reads esbuild's note of what it made.

@@ -20,7 +20,10 @@ fn site(changed: &[(&str, &str)]) -> Site {
         ),
         ("licenses.html", "<a href=\"./\">"),
         ("a.webmanifest", r#"{ "start_url": "./", "icons": [{ "src": "icons/i.svg" }] }"#),
-        ("sw.js", "const build = { id: \"development\", files: [] };\nself.x = build;"),
+        (
+            "sw.js",
+            "/**\n * Keeps it.\n */\n// Filled.\nconst build = { id: \"development\", files: [] };\n  // Said.\nself.x = build;",
+        ),
     ];
     let texts = texts.iter().chain(changed).map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
     let headers = "# all\n/*\n  X-One: 1\n  Cache-Control: no-cache\n".to_owned();
@@ -104,7 +107,8 @@ fn pages_and_manifest_have_the_new_names_and_the_service_worker_lists_all_files(
     for name in bundles("M").files().chain(kept) {
         assert!(worker.contains(&format!("\"{name}\"")), "{name} in {worker}");
     }
-    for other in ["development", "index.html", "\"sw.js\"", "_headers"] {
+    assert!(worker.ends_with("};\nself.x = build;\n"), "{worker}");
+    for other in ["development", "index.html", "\"sw.js\"", "_headers", "Keeps", "Filled", "Said"] {
         assert!(!worker.contains(other), "{other} in {worker}");
     }
 }
@@ -196,4 +200,29 @@ fn what_a_page_names_for_later_is_made_and_listed_but_not_among_what_opening_it_
     assert!(!parts.opening.contains("assets/x.X.wasm") && !parts.opening.contains("assets/w.W.js"));
     let later: Vec<_> = parts.later["engine/w.js"].iter().map(String::as_str).collect();
     assert_eq!(later, ["assets/w.W.js", "assets/x.X.wasm"]);
+}
+
+#[test]
+fn a_later_part_is_what_the_script_of_the_page_alone_asks_for() {
+    let source = |name: &str, now: &[&str], later: &[&str]| {
+        let import = |path: &&str, kind: &str| format!("{{\"path\": \"{path}\", \"kind\": \"{kind}\"}}");
+        let now = now.iter().map(|path| import(path, "import-statement"));
+        let later = later.iter().map(|path| import(path, "dynamic-import"));
+        let imports: Vec<_> = now.chain(later).collect();
+        format!("\"{name}\": {{\"bytes\": 1, \"imports\": [{}]}}", imports.join(", "))
+    };
+    let inputs = [
+        source("main.js", &["dom.js", "help/card.js"], &["views/tabs.js"]),
+        source("views/tabs.js", &["dom.js"], &["views/file.js"]),
+        source("views/file.js", &[], &["views/tabs.js"]),
+        source("help/card.js", &[], &["help/texts.js"]),
+        source("help/texts.js", &[], &[]),
+        source("help/page.js", &["help/texts.js"], &[]),
+        source("engine/w.js", &["dom.js"], &["pkg/x.js"]),
+        source("dom.js", &[], &[]),
+    ];
+    let note = format!("{{\"inputs\": {{{}}}}}", inputs.join(", "));
+    let sources = BTreeSet::from(["main.js", "help/page.js", "engine/w.js", "style/a.css"]);
+    let parts = esbuild::later_parts(&note, &sources, "main.js").unwrap();
+    assert_eq!(parts.into_iter().collect::<Vec<_>>(), ["views/file.js", "views/tabs.js"]);
 }

@@ -1,0 +1,43 @@
+/** An additional controller in the form: its address, its bus and what it is to do. */
+import { button, element } from "../dom.js";
+import { MAX_FURTHER } from "../state/state.js";
+import { fields } from "./schema.js";
+import { SOURCES } from "./sources.js";
+
+/** @typedef {import("./field.js").Field} Field */
+/** @typedef {import("../state/types.js").Scenario} Scenario */
+/** @typedef {import("./kit.js").Kit} Kit */
+
+/** The bus of a controller: what every user sets. */
+const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
+
+/** An additional controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
+const controllerFields = () => ({
+  own: fields("Controller").filter(({ kind }) => kind !== "lines"),
+  bus: fields("Bus", BUS_SIZE),
+  folded: fields("Bus").filter(({ key }) => !BUS_SIZE.includes(key)),
+});
+
+/** @param {Kit} kit @param {Scenario} scenario @param {number} index @param {(index: number) => void} add */
+export function controllerPart(kit, scenario, index, add) {
+  const { block, part, errorOf } = kit;
+  const all = scenario.controllers;
+  const path = `controllers[${index}]`;
+  const name = `Controller ${index + 2}`;
+  const kind = Object.keys(scenario.source)[0];
+  const { own, bus, folded } = controllerFields();
+  const head = element(
+    "div",
+    { class: "item-head end" },
+    button("Copy", `Copy ${name.toLowerCase()}`, () => add(index), all.length >= MAX_FURTHER),
+    button("✕", `Remove ${name.toLowerCase()}`, () => kit.remove("controllers", index)),
+  );
+  return part(name, true, [
+    errorOf(path),
+    head,
+    ...block(path, own),
+    ...block(`${path}.bus`, bus),
+    part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, folded)),
+    ...SOURCES[kind].orderForm(kit, index),
+  ]);
+}

@@ -1,0 +1,8 @@
+/** Parts of the form that few experiments have; they load when one of them is first on show. */
+import { controllerPart } from "./controller_part.js";
+import { LISTS } from "./lists.js";
+import { motorFields } from "./motor_fields.js";
+import { plantFields } from "./plant_fields.js";
+import { segmentRows, sendRows } from "./source_rows.js";
+
+export const FURTHER = { controllerPart, lists: LISTS, motorFields, plantFields, segmentRows, sendRows };

@@ -1,0 +1,53 @@
+/** How fields are typed that hold a list: whole numbers, segments, points of a curve. */
+import { button, element } from "../dom.js";
+import { WHOLE, whole } from "../state/json.js";
+import { parseNumber } from "../state/number.js";
+import { printPoints, readPoints } from "./points.js";
+import { printSegments, readSegments } from "./segments.js";
+
+/**
+ * @typedef {object} List
+ * @property {(value: any) => string} print
+ * @property {(text: string) => {value: any} | {message: string}} read
+ * @property {(label: string, put: (text: string) => void, refuse: (message: string) => void) => Node[]} [tools]  What stands beside the field.
+ * @typedef {{[kind: string]: List}} Lists
+ */
+
+/** @type {Lists} */
+export const LISTS = {
+  wholes: { print: (value) => value.join("\n"), read: readWholes },
+  segments: { print: printSegments, read: readSegments },
+  points: { print: printPoints, read: readPoints, tools: fileChooser },
+};
+
+/** Most bytes of a file whose text goes into a field. */
+const MAX_FILE = 1 << 20;
+
+/** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
+function fileChooser(label, put, refuse) {
+  const file = element("input", { type: "file", accept: ".csv,.txt,.tsv,text/csv,text/plain", hidden: "" });
+  file.addEventListener("change", async () => {
+    const [chosen] = file.files ?? [];
+    file.value = "";
+    if (!chosen) return;
+    if (chosen.size > MAX_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MAX_FILE}.`);
+    try {
+      put(await chosen.text());
+    } catch {
+      refuse(`${chosen.name} cannot be read.`);
+    }
+  });
+  return [button("Choose CSV…", `Choose a CSV for ${label}`, () => file.click()), file];
+}
+
+/** One whole number a line, with every digit. @param {string} text @returns {{value: (number | bigint)[]} | {message: string}} */
+function readWholes(text) {
+  const read = text
+    .split("\n")
+    .filter((line) => line.trim() !== "")
+    .map((line) =>
+      WHOLE.test(line.trim()) ? { value: whole(line.trim()) } : parseNumber(line, "", { integer: true }),
+    );
+  const wrong = read.find((each) => "message" in each);
+  return wrong ?? { value: read.map((each) => ("value" in each ? each.value : 0)) };
+}

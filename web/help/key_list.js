@@ -1,0 +1,41 @@
+/** Every key, from the list of commands itself, for the help in the page. */
+import { byId, element, fill } from "../dom.js";
+import { listed } from "../shell/commands.js";
+
+/** How keys are called on keycaps. @type {{[key: string]: string}} */
+const CAPS = {
+  arrowleft: "←",
+  arrowright: "→",
+  arrowup: "↑",
+  arrowdown: "↓",
+  escape: "Esc",
+  pageup: "Page up",
+  pagedown: "Page down",
+};
+
+/** Lists them. */
+export function listKeys() {
+  fill(
+    byId("keys-list"),
+    ...listed().flatMap(({ title, commands }) => [
+      element("h3", {}, title),
+      element(
+        "dl",
+        { class: "keys" },
+        ...commands.flatMap(({ keys, text }) => [
+          element("dt", {}, ...keys.flatMap((key, index) => [...(index ? [" or "] : []), ...caps(key)])),
+          element("dd", {}, text),
+        ]),
+      ),
+    ]),
+  );
+}
+
+/** @param {string} key */
+function caps(key) {
+  const parts = key.split(/\+(?=.)/);
+  return parts.flatMap((part, index) => [
+    ...(index ? ["+"] : []),
+    element("kbd", {}, CAPS[part.toLowerCase()] ?? (part.length === 1 ? part.toUpperCase() : part)),
+  ]);
+}

@@ -1,0 +1,13 @@
+/** Where in the scenario stands what the study is about. */
+import { get } from "../../state/state.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+
+/** Where the selected axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
+export function place({ scenario, result, axis: wanted }) {
+  const controller = result?.controller ?? 0;
+  const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";
+  const axes = scenario.source?.motion ? (get(scenario, list) ?? []) : [];
+  const axis = Math.min(wanted, axes.length - 1);
+  return { controller, axis, path: axis < 0 ? "" : `${list}[${axis}]`, moves: axes[axis]?.moves };
+}

@@ -1,0 +1,105 @@
+/**
+ * What the timing check found, shown: its tables, and the ways from one violation to the next and from a rule to its place in
+ * the pulses. It loads with the first driver.
+ */
+import { byId } from "../dom.js";
+import { unlessDropped } from "../engine/engine.js";
+import { ruleName } from "../form/schema.js";
+import { si, time } from "../state/number.js";
+import { endOf, shown } from "../state/state.js";
+import { required } from "./required.js";
+import { paintTiming } from "./timing_table.js";
+
+/** @typedef {import("../state/types.js").Timing} Timing */
+
+/** First bit of DIR (contract A3). */
+const DIR = 16;
+/** A violation is shown in a window of so many of the times that it is about. */
+const AROUND = 14;
+
+/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], tell: (text: string) => void} & import("../state/types.js").Page} page */
+export function createFound({ engine, drivers, tell, dispatch, now }) {
+  const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
+  /** @type {Timing | null} */
+  let timing = null;
+  let current = -1;
+  body.addEventListener("click", (event) => {
+    const row = /** @type {HTMLElement} */ (event.target).closest("tr");
+    if (row) show(Number(row.dataset.index));
+  });
+
+  /** The next violation after cursor A, or after the one that is chosen. @param {Timing} answer @param {boolean} forward */
+  async function next(answer, forward) {
+    take(answer);
+    const state = now();
+    const chosen = timing?.violations[current];
+    const { a } = state.cursors;
+    // Several may lie in one cycle; from the chosen one they are gone through one by one.
+    if (chosen && chosen.cycle === a) return show(current + (forward ? 1 : -1));
+    const index = await engine.ask("next_violation", a ?? (forward ? -1 : endOf(state)), forward).catch(unlessDropped);
+    show(index ?? -1);
+  }
+
+  /** The first violation of a rule, or where it came nearest to one. @param {string} rule */
+  function toRule(rule) {
+    const first = timing?.violations.findIndex((each) => each.rule === rule) ?? -1;
+    const { least, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
+    if (first >= 0) return show(first);
+    if (!least) return tell(`${ruleName(rule)}: never measured in this run.`);
+    current = -1;
+    const clock = now().result?.summary.clock_hz ?? 1;
+    go({
+      cycle: least.cycle,
+      channel: least.channel,
+      rule,
+      measured_cycles: least.measured_cycles,
+      required_cycles: required_cycles ?? 0,
+    });
+    tell(
+      `${ruleName(rule)}: least ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
+    );
+  }
+
+  /** Shows a measured time in the pulses, the edge that ends it at cursor A. @param {import("../state/types.js").Violation} measured */
+  function go({ cycle, channel, rule, measured_cycles, required_cycles }) {
+    dispatch({ type: "cursor", which: "a", cycle });
+    dispatch({ type: "row", row: rule.startsWith("dir") ? DIR + channel : channel });
+    const wanted = AROUND * Math.max(1, measured_cycles, required_cycles);
+    const { start, end } = shown(now());
+    if (cycle < start || cycle > end || end - start > 20 * wanted) {
+      dispatch({ type: "window", window: { start: cycle - wanted / 2, end: cycle + wanted / 2 } });
+    }
+    mark();
+    // On a narrow screen the pulses are another tab.
+    if (matchMedia("(max-width: 899px)").matches) dispatch({ type: "view", view: "pulses" });
+  }
+
+  /** Shows a violation in the pulses, its edge at cursor A. @param {number} index */
+  function show(index) {
+    const violation = timing?.violations[index];
+    if (!violation) return tell("No further violation that way.");
+    const { cycle, channel, rule, measured_cycles } = violation;
+    current = index;
+    go(violation);
+    const clock = now().result?.summary.clock_hz ?? 1;
+    tell(
+      `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${required(timing, rule)} required.`,
+    );
+  }
+
+  function mark() {
+    for (const row of body.children) {
+      const chosen = /** @type {HTMLElement} */ (row).dataset.index === String(current);
+      row.classList.toggle("current", chosen);
+      if (chosen) row.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  /** Shows another answer of the check. @param {Timing | null} answer */
+  function take(answer) {
+    if (answer === timing) return;
+    [timing, current] = [answer, -1];
+    paintTiming(timing, { state: now(), drivers, toRule });
+  }
+  return { next, take };
+}
