@@ -31,20 +31,37 @@ fn times(profile: &Profile) -> Vec<f64> {
         let time = |k: u64| profile.time_s(k as f64 - 0.5) * f64::from(CLOCK_HZ);
         return (1..=profile.step_count()).map(time).collect();
     }
-    let mut times = Vec::new();
-    let Some(mut form) = due_from(profile, CycleTime::default(), CLOCK_HZ) else { return times };
-    let mut block = Block::new(true);
+    steps(profile, CycleTime::default(), true).into_iter().map(|(instant, _)| instant).collect()
+}
+
+/// A move's steps, with their instants or without.
+fn steps(profile: &Profile, start: CycleTime, has_instants: bool) -> Vec<Due> {
+    let (mut steps, mut block) = (Vec::new(), Block::new(has_instants));
+    let Some(mut form) = due_from(profile, start, CLOCK_HZ) else { return steps };
     loop {
         let len = form.next_block(&mut block);
         if len == 0 {
-            return times;
+            return steps;
         }
-        times.extend(&block.instants[..len]);
+        steps.extend(block.steps(0, len));
+    }
+}
+
+/// Holds the steps without their instants to those with them, after a whole cycle and within one.
+fn check_without_instants(profile: &Profile) {
+    for part in [0.0, 0.3] {
+        let start = CycleTime { whole: 1000, part: part.into() };
+        let [with, without] = [true, false].map(|has_instants| {
+            let steps = steps(profile, start, has_instants).into_iter().map(|(_, step)| step);
+            steps.collect::<Vec<_>>()
+        });
+        assert!(with == without, "{part} cycles after a whole one: {profile:?}");
     }
 }
 
 /// Holds what judges a move's steps to their times in f64, which are off by `roundings` of the move's time at most.
 fn check_within(profile: &Profile, roundings: f64) {
+    check_without_instants(profile);
     let (times, clock) = (times(profile), f64::from(CLOCK_HZ));
     let (count, end) = (profile.step_count(), profile.duration_s() * clock);
     assert_eq!(times.len() as u64, count, "{profile:?}");
