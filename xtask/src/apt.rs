@@ -2,7 +2,9 @@
 
 use anyhow::{Result, bail};
 use tokio::process::Command;
+use tokio::sync::Mutex;
 
+use crate::aside::say;
 use crate::run;
 
 /// Installs `packages` where that is one command and nobody needs to be asked.
@@ -12,7 +14,10 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
         Ok(apt) if is_root() => apt,
         _ => bail!("{names} can be installed from here only by root and with apt-get"),
     };
-    println!("installing {names}");
+    // The system has one list of packages, and two steps may want some at once.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
+    let _turn = ONE_AT_A_TIME.lock().await;
+    say(format_args!("installing {names}"));
     let apt = |arguments: &[&str]| {
         let mut command = Command::new(&apt);
         command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 use crate::apt;
+use crate::aside::say;
 use crate::tools::version_answer;
 
 /// A browser and the driver that goes with it.
@@ -40,7 +41,7 @@ impl Browser {
             && self.chromium.ends_with("chromium")
             && let Err(why) = apt::install(&["chromium-headless-shell"]).await
         {
-            println!("without Chromium's headless shell the tests take longer: {why:#}");
+            say(format_args!("without Chromium's headless shell the tests take longer: {why:#}"));
         }
         match find() {
             Some(shell) if fits(&shell, &self.chromedriver).await => shell,

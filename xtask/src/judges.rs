@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use tokio::process::Command;
 
+use crate::aside::say;
 use crate::tools::cache;
 use crate::{apt, run, toolchain};
 
@@ -40,7 +41,7 @@ pub(crate) async fn python() -> Result<PathBuf> {
     if python.exists() && works(&python).await {
         return Ok(python);
     }
-    println!("installing {} (once)", PACKAGES.join(" and "));
+    say(format_args!("installing {} (once)", PACKAGES.join(" and ")));
     let remedy = "the live commands' tests need Python 3.9 or newer with venv and pip (Debian: `apt-get install python3-venv` as root)";
     let mut command = Command::new(which::which("python3").context(remedy)?);
     command.args(["-m", "venv", "--clear"]).arg(&home);

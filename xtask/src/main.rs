@@ -13,10 +13,12 @@
 //! | `fuzz` | `cargo xtask fuzz` |
 //! | `mutants` | `cargo xtask mutants` |
 //! | `package` | the crates and the npm package as others would get them |
+//! | `aside` | what a step says that runs beside another |
 //! | `run` | child processes: time limit, no input, killed as a group |
 //! | `attend` | a program that ends with whoever started it, for the page's tests |
 
 mod apt;
+mod aside;
 mod attend;
 mod avr;
 mod bare_metal;

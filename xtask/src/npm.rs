@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use tokio::process::Command;
 
+use crate::aside::say;
 use crate::tools::{cache, find, version_answer};
 use crate::{apt, run};
 
@@ -31,7 +32,7 @@ impl Npm {
     /// Installs it by the npm that is on PATH.
     pub(crate) async fn install(&self, cache: &Path) -> Result<()> {
         let (home, name) = (self.home(cache), format!("{}@{}", self.package, self.version));
-        println!("installing {name} (once)");
+        say(format_args!("installing {name} (once)"));
         std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
         let mut command = Command::new(which::which("npm").context("npm is not on PATH")?);
         command.args(["install", "--no-audit", "--no-fund", "--no-update-notifier", "--prefix"]).arg(&home);

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use tokio::process::Command;
 use walkdir::{DirEntry, WalkDir};
 
+use crate::aside::say;
 use crate::made::Made;
 use crate::{apt, page, root, run, toolchain};
 
@@ -45,7 +46,7 @@ async fn crates() -> Result<()> {
     let packages = folder.join("package");
     let made = Made::of(&packages, &["core", "LICENSE-MIT", "LICENSE-APACHE"], &[]).await?;
     if made.stands()? {
-        println!("the library crates are those that were packed and built last");
+        say("the library crates are those that were packed and built last");
         return Ok(());
     }
     made.clear()?;

@@ -10,6 +10,8 @@ use process_wrap::tokio::{ChildWrapper, CommandWrap};
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::Command;
 
+use crate::aside;
+
 /// No child may take longer: a hung browser or a lost network must not hold a run for ever.
 pub(crate) const LIMIT: Duration = Duration::from_secs(30 * 60);
 
@@ -62,8 +64,9 @@ pub(crate) fn start(mut command: Command) -> Result<Group> {
 }
 
 /// Runs `command` to its end; an error if it can't be started, fails, or takes longer than `limit`.
-pub(crate) async fn to_end(command: Command, limit: Duration) -> Result<()> {
+pub(crate) async fn to_end(mut command: Command, limit: Duration) -> Result<()> {
     let name = name(&command);
+    aside::redirect(&mut command)?;
     let mut group = start(command)?;
     let Ok(status) = tokio::time::timeout(limit, group.0.wait()).await else {
         bail!("{name} was not done after {} s and was stopped", limit.as_secs_f64());

@@ -1,12 +1,15 @@
-//! `cargo xtask test`: every check of the project, one step after the other, with its time. Stops at
-//! the first that fails.
+//! `cargo xtask test`: every check of the project, step by step, with its time; some beside others. Stops at the first that
+//! fails.
 
+use std::cell::RefCell;
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use tokio::process::Command;
 
+use crate::aside::{self, say};
 use crate::browser::{self, Browser};
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
@@ -162,7 +165,7 @@ const INSTALLED: &str = "offline::the_page_can_be_installed";
 async fn page() -> Result<()> {
     let mut command = page_tests().await?;
     let weights = page::weigh(&dist::folder(), page::built().await?)?;
-    print!("{weights}");
+    say(&weights);
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::", "--skip", INSTALLED]);
     // A visitor rests now and then: one more than there are cores keeps them busy.
@@ -189,9 +192,9 @@ async fn engines() -> Result<()> {
             judges::socat().await?;
             command.arg("live_port::").env(serial_port::COMMAND, serial_port::command().await?);
         }
-        Err(why) => {
-            println!("skipped: the page on a port of the system, which this machine cannot have: {why:#}")
-        }
+        Err(why) => say(format_args!(
+            "skipped: the page on a port of the system, which this machine cannot have: {why:#}"
+        )),
     }
     run::to_end(command, run::LIMIT).await
 }
@@ -212,39 +215,88 @@ pub(crate) fn list() {
     }
 }
 
-/// Runs the steps named in `only`, or all if it is empty, in the steps' own order.
+/// The steps that run beside each other: in a row those of each lane, one after the other, and the rows one after the other.
+/// Those of the second lane wait for other programs more than they compute, and what they say is printed when they end.
+const ROWS: [[&[Step]; 2]; 4] = [
+    [&[Step::Format, Step::Lint, Step::Docs], &[]],
+    [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
+    [&[Step::Types, Step::Package], &[]],
+    [&[Step::Page], &[Step::Engines]],
+];
+
+/// Runs the steps named in `only`, or all if it is empty.
 pub(crate) async fn run(only: &[Step]) -> Result<()> {
-    let chosen = Step::value_variants().iter().filter(|step| only.is_empty() || only.contains(step));
-    let mut times = Vec::new();
-    let mut failure = None;
-    for step in chosen {
-        let name = step.name();
-        println!("\n=== {name}");
-        let start = Instant::now();
-        let done = step.run().await;
-        let time = start.elapsed();
-        println!(
-            "=== {name}: {} after {:.1} s",
-            if done.is_ok() { "passed" } else { "failed" },
-            time.as_secs_f64()
-        );
-        times.push((name.clone(), time));
-        if let Err(error) = done {
-            failure = Some(error.context(format!("step {name}")));
+    let start = Instant::now();
+    let times = RefCell::default();
+    let mut done = Ok(());
+    for lanes in ROWS {
+        let mut lanes = lanes.map(|lane| {
+            lane.iter().copied().filter(|step| only.is_empty() || only.contains(step)).collect::<Vec<_>>()
+        });
+        if lanes[0].is_empty() {
+            lanes.reverse();
+        }
+        let [front, beside] = lanes;
+        // Where one fails, the other is dropped, and ends with all that it started.
+        done = tokio::try_join!(in_front(&front, &times), beside_it(&beside, &times)).map(drop);
+        if done.is_err() {
             break;
         }
     }
+    let mut times = times.into_inner();
+    times.sort_by_key(|(step, _)| Step::value_variants().iter().position(|each| each == step));
     println!();
-    for (name, time) in &times {
-        println!("{name:12}{:8.1} s", time.as_secs_f64());
+    for (step, time) in &times {
+        println!("{:12}{:8.1} s", step.name(), time.as_secs_f64());
     }
-    let whole: Duration = times.iter().map(|(_, time)| *time).sum();
-    println!("{:12}{:8.1} s", "all", whole.as_secs_f64());
-    match failure {
-        Some(error) => Err(error),
-        None => {
-            println!("{} passed, 0 failed", times.len());
-            Ok(())
-        }
+    println!("{:12}{:8.1} s", "all", start.elapsed().as_secs_f64());
+    done?;
+    println!("{} passed, 0 failed", times.len());
+    Ok(())
+}
+
+/// The steps that have ended, and how long each took.
+type Times = RefCell<Vec<(Step, Duration)>>;
+
+/// Runs steps whose words are read as they come.
+async fn in_front(steps: &[Step], times: &Times) -> Result<()> {
+    for step in steps {
+        println!("\n=== {}", step.name());
+        let start = Instant::now();
+        let done = step.run().await;
+        ended(*step, start, &done, times);
+        done.with_context(|| format!("step {}", step.name()))?;
+    }
+    Ok(())
+}
+
+/// Runs steps beside those in front.
+async fn beside_it(steps: &[Step], times: &Times) -> Result<()> {
+    for step in steps {
+        let start = Instant::now();
+        let (done, said) = aside::kept(step.run()).await?;
+        println!("\n=== {}, beside", step.name());
+        std::io::stdout().write_all(&said)?;
+        ended(*step, start, &done, times);
+        done.with_context(|| format!("step {}", step.name()))?;
+    }
+    Ok(())
+}
+
+fn ended(step: Step, start: Instant, done: &Result<()>, times: &Times) {
+    let time = start.elapsed();
+    let word = if done.is_ok() { "passed" } else { "failed" };
+    println!("=== {}: {word} after {:.1} s", step.name(), time.as_secs_f64());
+    times.borrow_mut().push((step, time));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_step_stands_in_one_lane_and_in_the_order_of_its_name() {
+        let placed: Vec<_> = ROWS.iter().flatten().copied().flatten().copied().collect();
+        assert!(placed == Step::value_variants());
     }
 }

@@ -11,6 +11,7 @@ use etcetera::BaseStrategy;
 use serde::Deserialize;
 use tokio::process::Command;
 
+use crate::aside::say;
 use crate::{root, run, toolchain, wasm_opt};
 
 const WASM_PACK: &str = "0.15.1";
@@ -186,7 +187,7 @@ impl Tool {
 
     async fn install(&self, cache: &Path) -> Result<PathBuf> {
         let home = self.home(cache);
-        println!("installing {} {} (once; a minute or two)", self.package, self.version);
+        say(format_args!("installing {} {} (once; a minute or two)", self.package, self.version));
         let mut command = toolchain::cargo();
         command.args(["install", "--force", "--locked", self.package]);
         command.args(["--version", &self.version, "--root"]).arg(&home);

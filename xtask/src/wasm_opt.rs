@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
+use crate::aside::say;
 use crate::npm::Npm;
 use crate::tools::{find, version_answer};
 
@@ -37,7 +38,7 @@ pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
     if let Some(old) = on_path {
         bail!("{} is too old and would break the page without a word; {}", old.display(), remedy());
     }
-    println!("neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt");
+    say("neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt");
     Ok(None)
 }
 

@@ -1,0 +1,71 @@
+//! What a step says that runs beside another: it is kept, and printed whole when the step has ended.
+
+use std::fmt;
+use std::fs::File;
+use std::future::Future;
+use std::io::{self, Read, Seek, Write};
+
+use anyhow::{Context, Result};
+use tokio::process::Command;
+
+tokio::task_local! {
+    /// Where the work under way writes; there is none where its words go straight to the terminal.
+    static KEPT: File;
+}
+
+/// Does `work`, and gives beside its result all that it and its children said.
+pub(crate) async fn kept<T>(work: impl Future<Output = T>) -> Result<(T, Vec<u8>)> {
+    let mut file = tempfile::tempfile().context("a file for a step's words can't be made")?;
+    let done = KEPT.scope(file.try_clone()?, work).await;
+    let mut said = Vec::new();
+    file.rewind()?;
+    file.read_to_end(&mut said)?;
+    Ok((done, said))
+}
+
+/// Has a command write where the work under way does.
+pub(crate) fn redirect(command: &mut Command) -> Result<()> {
+    if let Some(file) = here()? {
+        command.stdout(file.try_clone()?).stderr(file);
+    }
+    Ok(())
+}
+
+/// Says a line of a step's own.
+pub(crate) fn say(line: impl fmt::Display) {
+    // Nobody hears the refusal of words, and the step goes on without them.
+    let _ = match here() {
+        Ok(Some(mut file)) => writeln!(file, "{line}"),
+        _ => writeln!(io::stdout(), "{line}"),
+    };
+}
+
+fn here() -> Result<Option<File>> {
+    // They share one place in the file: what is written later stands behind.
+    match KEPT.try_with(File::try_clone) {
+        Ok(file) => Ok(Some(file.context("a step's words can't be kept")?)),
+        Err(_) => Ok(None),
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use crate::run;
+
+    #[tokio::test]
+    async fn what_a_step_and_its_children_say_is_kept_in_its_order() {
+        let (done, said) = kept(async {
+            say("before");
+            let mut command = Command::new("sh");
+            command.args(["-c", "echo out; echo error >&2; exit 3"]);
+            let done = run::to_end(command, run::LIMIT).await;
+            say("after");
+            done
+        })
+        .await
+        .unwrap();
+        assert!(done.is_err());
+        assert_eq!(String::from_utf8(said).unwrap(), "before\nout\nerror\nafter\n");
+    }
+}
