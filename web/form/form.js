@@ -139,8 +139,15 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
     anew();
   }
 
-  /** A part of the form that had to be loaded is there. */
+  /** A part of the form that had to be loaded is there. What is being typed is not taken away: it waits for the next field. */
   function anew() {
+    const active = document.activeElement;
+    if (root.contains(active) && active?.matches("input:not([type=checkbox]), textarea")) {
+      active.addEventListener("blur", () => setTimeout(buildAnew), { once: true });
+    } else buildAnew();
+  }
+
+  function buildAnew() {
     [shape, drawn] = ["", undefined];
     if (!hand.holds()) draw(state);
   }

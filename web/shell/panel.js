@@ -1,10 +1,13 @@
-/** Panels of the header whose content loads when they are first opened. */
+/** Panels whose content loads when they are first opened. */
 import { byId } from "../dom.js";
 import { dropDown } from "./popover.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {{isOpen: () => boolean, close: () => void}} Panel */
 /** @typedef {{opened: () => void, render?: (state: State, before: State | undefined) => void}} Content  `opened` is called whenever the panel opens. */
+
+/** What is told where its code could not be fetched. */
+const MISSING = "This part of the page could not be loaded; try again when the network is there.";
 
 /** @param {string} button @param {string} panel  Their ids. @param {(panel: Panel) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
 export function createPanel(button, panel, load, about) {
@@ -27,9 +30,10 @@ export function createPanel(button, panel, load, about) {
       content = await loading;
     } catch {
       loading = null;
-      word.textContent = "This part of the page could not be loaded; try again when the network is there.";
+      word.textContent = MISSING;
       return;
     }
+    if (word.textContent === MISSING) word.textContent = "";
     hold(false);
     content.opened();
   });

@@ -7,6 +7,14 @@ use tokio::sync::Mutex;
 use crate::aside::say;
 use crate::run;
 
+/// The system has one list of packages, and two steps may want some at once.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
+
+/// Waits until nothing is being installed: whoever ends that half way leaves the system's list broken.
+pub(crate) async fn at_rest() {
+    drop(ONE_AT_A_TIME.lock().await);
+}
+
 /// Installs `packages` where that is one command and nobody needs to be asked.
 pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" and ");
@@ -14,8 +22,6 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
         Ok(apt) if is_root() => apt,
         _ => bail!("{names} can be installed from here only by root and with apt-get"),
     };
-    // The system has one list of packages, and two steps may want some at once.
-    static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
     let _turn = ONE_AT_A_TIME.lock().await;
     say(format_args!("installing {names}"));
     let apt = |arguments: &[&str]| {

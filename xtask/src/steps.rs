@@ -15,13 +15,14 @@ use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
 use crate::{
-    avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+    apt, avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
 };
 
 /// Both workspaces: the fuzz targets are one of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 
-/// The steps, in the order in which they run: what fails fastest comes first.
+/// The steps, in the order in which they are begun but for those of [`ROWS`] that run beside others: what fails fastest comes
+/// first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Step {
     /// rustfmt and Biome find nothing to change
@@ -217,11 +218,13 @@ pub(crate) fn list() {
 
 /// The steps that run beside each other: in a row those of each lane, one after the other, and the rows one after the other.
 /// Those of the second lane wait for other programs more than they compute, and what they say is printed when they end.
-const ROWS: [[&[Step]; 2]; 4] = [
+const ROWS: [[&[Step]; 2]; 5] = [
     [&[Step::Format, Step::Lint, Step::Docs], &[]],
     [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
     [&[Step::Types, Step::Package], &[]],
-    [&[Step::Page], &[Step::Engines]],
+    // Either keeps all cores busy, and lines that are live are held to their times.
+    [&[Step::Page], &[]],
+    [&[Step::Engines], &[]],
 ];
 
 /// Runs the steps named in `only`, or all if it is empty.
@@ -237,8 +240,7 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
             lanes.reverse();
         }
         let [front, beside] = lanes;
-        // Where one fails, the other is dropped, and ends with all that it started.
-        done = tokio::try_join!(in_front(&front, &times), beside_it(&beside, &times)).map(drop);
+        done = both(in_front(&front, &times), beside_it(&beside, &times)).await;
         if done.is_err() {
             break;
         }
@@ -253,6 +255,31 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
     done?;
     println!("{} passed, 0 failed", times.len());
     Ok(())
+}
+
+/// Does both; where one fails the other is dropped, and ends with all that it started. But packages of the system that are being
+/// installed are not left half way.
+async fn both(
+    front: impl Future<Output = Result<()>>,
+    beside: impl Future<Output = Result<()>>,
+) -> Result<()> {
+    tokio::pin!(front, beside);
+    let (done, is_front) = tokio::select! {
+        done = &mut front => (done, true),
+        done = &mut beside => (done, false),
+    };
+    match (done, is_front) {
+        (Ok(()), true) => beside.await,
+        (Ok(()), false) => front.await,
+        (failed, true) => {
+            tokio::select! { _ = beside => {} () = apt::at_rest() => {} }
+            failed
+        }
+        (failed, false) => {
+            tokio::select! { _ = front => {} () = apt::at_rest() => {} }
+            failed
+        }
+    }
 }
 
 /// The steps that have ended, and how long each took.
@@ -293,6 +320,19 @@ fn ended(step: Step, start: Instant, done: &Result<()>, times: &Times) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[tokio::test]
+    async fn of_two_lanes_the_first_failure_counts_and_drops_the_other() {
+        let never = std::future::pending;
+        let fails = || async { Err(anyhow::anyhow!("it failed")) };
+        for done in [both(fails(), never()).await, both(never(), fails()).await] {
+            assert_eq!(done.unwrap_err().to_string(), "it failed");
+        }
+        for done in [both(async { Ok(()) }, fails()).await, both(fails(), async { Ok(()) }).await] {
+            assert!(done.is_err());
+        }
+        assert!(both(async { Ok(()) }, async { Ok(()) }).await.is_ok());
+    }
 
     #[test]
     fn every_step_stands_in_one_lane_and_in_the_order_of_its_name() {
