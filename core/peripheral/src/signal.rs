@@ -243,6 +243,16 @@ pub trait Sink {
     /// A record; cycles rise strictly.
     fn record(&mut self, record: Record);
 
+    /// Several records: the same as one after another.
+    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>)
+    where
+        Self: Sized,
+    {
+        for record in records {
+            self.record(record);
+        }
+    }
+
     /// Something happened in a cycle. Sinks that only want the signals leave this out.
     fn event(&mut self, _at: Instant, _event: Event) {}
 
@@ -262,6 +272,15 @@ impl Sink for Vec<Record> {
             self.last()
         );
         self.push(record);
+    }
+
+    #[inline(always)]
+    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>) {
+        if cfg!(debug_assertions) {
+            records.for_each(|record| self.record(record));
+        } else {
+            self.extend(records);
+        }
     }
 }
 

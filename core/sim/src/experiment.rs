@@ -535,6 +535,12 @@ impl<S: Sink> Sink for Slice<'_, S> {
         self.sink.record(record);
     }
 
+    #[inline(always)]
+    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>) {
+        self.left = self.left.saturating_sub(records.len() as u64);
+        self.sink.records(records);
+    }
+
     fn event(&mut self, at: Instant, event: Event) {
         self.sink.event(at, event);
     }

@@ -49,32 +49,34 @@ impl RawReceiver {
     /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, or until the
     /// sink asks for a pause: the inner loop of a long run.
     pub(super) fn run(&mut self, end: Instant, sink: &mut impl Sink) {
-        while self.start < end {
-            if self.start == self.until {
-                self.enter();
-                let next = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
-                self.until = next.min(end);
-                debug_assert!(self.start < self.until, "the line changed before {:?}", self.start);
+        let (mut start, mut until) = (self.start, self.until);
+        let mut level = self.line.heard(true);
+        while start < end {
+            if start == until {
+                let next;
+                if self.line.next_change() == start {
+                    (level, next) = self.line.change_and_hear();
+                } else {
+                    next = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
+                }
+                until = next.min(end);
+                debug_assert!(start < until, "the line changed before {start:?}");
             }
-            self.device.run(self.line.heard(true), self.until, sink);
-            let rests = self.until == Instant::NEVER && self.device.at_rest();
-            if self.device.now() < self.until && !rests {
-                return;
+            self.device.run(level, until, sink);
+            let rests = until == Instant::NEVER && self.device.at_rest();
+            if self.device.now() < until && !rests {
+                break;
             }
-            self.start = self.until;
+            start = until;
         }
-    }
-
-    /// Enters cycle `start`.
-    fn enter(&mut self) {
-        if self.line.next_change() == self.start {
-            self.line.change();
-        }
+        (self.start, self.until) = (start, until);
     }
 
     /// One cycle.
     pub(super) fn clock(&mut self, sink: &mut impl Sink) {
-        self.enter();
+        if self.line.next_change() == self.start {
+            self.line.change();
+        }
         self.device.clock(self.line.heard(true), sink);
         self.start = self.start.next();
         self.until = self.start;

@@ -9,8 +9,8 @@
 //! All give the same trace, for every configuration and every line.
 
 use crate::{
-    device::{Device, Framing},
-    signal::Sink,
+    device::Device,
+    signal::{Levels, Record, Sink},
     units::{Cycles, Instant},
 };
 
@@ -18,20 +18,12 @@ impl Device {
     /// Next cycle, from [`Self::now`] on, in which something can change if the line stays at the
     /// level of the last cycle.
     fn deadline(&self) -> Instant {
-        if self.now == self.wake {
-            self.now
-        } else {
-            self.machine.sequencer.deadline().min(self.input_deadline())
-        }
+        self.machine.sequencer.deadline().min(self.input_deadline())
     }
 
     #[inline(always)]
     fn input_deadline(&self) -> Instant {
-        let framing = match &self.framing {
-            Framing::Raw(unpacker) => unpacker.deadline(),
-            Framing::Framed(_) => self.machine.transceiver.deadline(),
-        };
-        self.receiver.deadline(self.before(), self.rx).min(framing)
+        self.receiver.deadline(self.before(), self.rx).min(self.other)
     }
 
     /// For how many cycles nothing can change while the line stays at the level of the last cycle;
@@ -56,11 +48,16 @@ impl Device {
     /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
-        if self.now < until && (line != self.line || self.now == self.wake) {
-            self.clock(line, sink);
+        let mut heard = None;
+        if self.now < until && line != self.line {
+            heard = self.hear(line, sink);
+            if heard.is_none() {
+                self.clock(line, sink);
+            }
         }
+        let mut input = heard.unwrap_or_else(|| self.input_deadline());
         while self.now < until && !sink.paused() {
-            let quiet = self.input_deadline().min(until);
+            let quiet = input.min(until);
             if self.machine.sequencer.deadline() < quiet {
                 self.levels = self.machine.sequencer.run(quiet, self.base(), sink);
                 if self.machine.sequencer.deadline() < quiet {
@@ -75,8 +72,26 @@ impl Device {
             self.now = quiet;
             if quiet < until {
                 self.clock(line, sink);
+                input = self.input_deadline();
             }
         }
+    }
+
+    /// [`Self::clock`] in a cycle in which the line changes, and nothing else falls due: most edges of a byte are such. Gives
+    /// [`Self::input_deadline`] then; `None`, and nothing is done, where more falls due or the controller drives the line.
+    #[inline(always)]
+    fn hear(&mut self, line: bool, sink: &mut impl Sink) -> Option<Instant> {
+        let now = self.now;
+        let deaf = self.machine.transceiver.levels() & Levels::DE != 0;
+        if now == self.other || now == self.machine.sequencer.deadline() || deaf {
+            return None;
+        }
+        let deadline = self.receiver.hear(now, self.rx, line)?;
+        (self.line, self.rx) = (line, line);
+        (self.now, self.last) = (now.next(), now);
+        self.levels.0 ^= Levels::RX;
+        sink.record(Record { cycle: now, levels: self.levels });
+        Some(deadline.min(self.other))
     }
 
     /// The last cycle in which something happened, if every cycle that was clocked by itself had a

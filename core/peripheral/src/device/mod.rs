@@ -89,9 +89,11 @@ pub struct Device {
     /// The cycle that the next call of `clock` is, and the one that was run last.
     now: Instant,
     last: Instant,
-    /// A cycle that is clocked by itself, whatever rests: reset, or the one after firmware's last write.
-    /// So on a raw line, where nobody else moves it, EN is looked at in no other.
-    wake: Instant,
+    /// Next cycle in which something else than line, receiver and sequencer falls due: reset, the cycle after firmware's last
+    /// write, a gap, a signal of the transceiver. What that is changes in cycles that are clocked by themselves alone.
+    ///
+    /// Invariant: no cycle is run past it.
+    other: Instant,
     /// The line as others drive it, and as the controller hears it.
     line: bool,
     rx: bool,
@@ -121,7 +123,7 @@ impl Device {
         Self {
             now: Instant::RESET,
             last: Instant::RESET,
-            wake: Instant::RESET,
+            other: Instant::RESET,
             line: true,
             rx: true,
             levels: Levels(0),
@@ -163,6 +165,7 @@ impl Device {
     /// signals in it. Cycle 0 is reset: the line is high in it, whatever is given.
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
+        debug_assert!(now <= self.other, "{:?} was left out", self.other);
         self.line = line;
         self.machine.transceiver.clock(now);
         let deaf = now == Instant::RESET || self.machine.transceiver.levels() & Levels::DE != 0;
@@ -193,6 +196,10 @@ impl Device {
             None => {}
         }
         (self.now, self.last) = (now.next(), now);
+        self.other = match &self.framing {
+            Framing::Raw(unpacker) => unpacker.deadline(),
+            Framing::Framed(_) => self.machine.transceiver.deadline(),
+        };
         let levels = Levels(self.base() | u64::from(self.machine.sequencer.lines()));
         if levels != self.levels {
             self.levels = levels;

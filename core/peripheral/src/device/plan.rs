@@ -42,7 +42,7 @@ pub(super) struct Plan {
     /// DIR of the channels in use, all right.
     all_right: Lines,
     commands: Tick,
-    /// Invariant: offsets rise, none is beyond the tick's end.
+    /// Invariant: offsets rise, none is beyond the tick's end; no two in a row have the same lines.
     changes: Vec<Change>,
 }
 
@@ -109,6 +109,7 @@ impl Plan {
                 }
             }
         }
+        debug_assert!(are_changes(&self.changes), "{:?}", self.changes);
         debug_assert!(
             self.changes.last().is_none_or(|last| last.offset <= self.config.tick().0),
             "a pulse ends after its tick"
@@ -116,6 +117,7 @@ impl Plan {
     }
 
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
+    #[inline(always)]
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.push(rise, dir | Lines::from(fires));
@@ -163,16 +165,20 @@ impl Plan {
         }
     }
 
-    /// Adds a change; of several at the same offset the last counts.
+    /// Adds what is a change; of several at the same offset the last counts.
+    #[inline(always)]
     fn push(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
-            last => {
-                debug_assert!(last.is_none_or(|last| last.offset < offset), "offset {offset} goes back");
-                self.changes.push(Change { offset, lines });
-            }
+            Some(last) if last.lines == lines => {}
+            _ => self.changes.push(Change { offset, lines }),
         }
     }
+}
+
+/// Whether offsets rise and each entry changes the lines.
+fn are_changes(changes: &[Change]) -> bool {
+    changes.is_sorted_by(|one, next| one.offset < next.offset && one.lines != next.lines)
 }
 
 /// The STEP bits of `fires` one by one, ascending.

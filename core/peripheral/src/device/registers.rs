@@ -94,7 +94,7 @@ impl Device {
     pub(super) fn acts(&mut self) {
         self.last = self.present();
         self.now = self.last.next();
-        self.wake = self.now;
+        self.other = self.now;
     }
 
     /// The last cycle that was run. A run to the end of all change leaves `now` behind it.

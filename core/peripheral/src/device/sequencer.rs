@@ -252,6 +252,7 @@ impl Sequencer {
 
     /// Runs alone through the cycles before `until`, while nothing else changes: `base` are the
     /// other signals. Stops after the tick in which the sink asks for a pause. Gives the levels.
+    #[inline(never)]
     pub(super) fn run(&mut self, until: Instant, base: u64, sink: &mut impl Sink) -> Levels {
         while self.deadline < until && !sink.paused() {
             self.run_pulses(until, base, sink);
@@ -271,21 +272,21 @@ impl Sequencer {
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
         let Some(running) = &mut self.running else { return };
         let stop = until.min(running.end);
-        let (mut next, mut now) = (running.next, self.lines);
-        self.deadline = running.end;
-        for Change { offset, lines } in self.plan.changes().get(next..).unwrap_or_default() {
-            let cycle = running.c0 + Cycles(*offset);
-            if cycle >= stop {
-                self.deadline = cycle.min(running.end);
-                break;
-            }
-            next += 1;
-            if *lines != now {
-                now = *lines;
-                sink.record(Record { cycle, levels: Levels(base | u64::from(now)) });
-            }
-        }
-        (running.next, self.lines) = (next, now);
+        let c0 = running.c0;
+        let left = self.plan.changes().get(running.next..).unwrap_or_default();
+        let due = left.iter().position(|change| c0 + Cycles(change.offset) >= stop).unwrap_or(left.len());
+        let (passed, left) = left.split_at(due);
+        self.deadline = left.first().map_or(running.end, |next| (c0 + Cycles(next.offset)).min(running.end));
+        running.next += due;
+        let Some(last) = passed.last() else { return };
+        // The first may be none, after the tick before it.
+        let repeats = usize::from(passed.first().is_some_and(|first| first.lines == self.lines));
+        self.lines = last.lines;
+        let records = passed.get(repeats..).unwrap_or_default().iter();
+        sink.records(records.map(|change| Record {
+            cycle: c0 + Cycles(change.offset),
+            levels: Levels(base | u64::from(change.lines)),
+        }));
     }
 }
 

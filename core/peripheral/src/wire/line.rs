@@ -159,6 +159,7 @@ impl Line {
 
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
+    #[inline(always)]
     pub fn is_over(&self) -> bool {
         self.next == Instant::NEVER || self.passed < self.forced.len() && self.next_heard == Instant::NEVER
     }
@@ -182,7 +183,29 @@ impl Line {
     }
 
     /// Enters the cycle of [`Self::next_change`].
+    #[inline(always)]
     pub fn change(&mut self) {
+        if self.passed < self.forced.len() {
+            return self.change_forced();
+        }
+        self.sender.pass();
+        self.next = self.sender.next_edge();
+    }
+
+    /// [`Self::change`], and what one hears then while no controller sends, and up to when.
+    #[inline(always)]
+    pub fn change_and_hear(&mut self) -> (bool, Instant) {
+        if self.passed < self.forced.len() {
+            self.change_forced();
+            return (self.heard(true), if self.is_over() { Instant::NEVER } else { self.next });
+        }
+        self.sender.pass();
+        self.next = self.sender.next_edge();
+        (self.sender.level(), self.next)
+    }
+
+    /// The same while something is left to be forced.
+    fn change_forced(&mut self) {
         let now = self.next;
         self.enter(now);
         if now == self.next_heard {

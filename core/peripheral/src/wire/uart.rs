@@ -108,18 +108,10 @@ impl Receiver {
     #[inline(always)]
     pub fn clock(&mut self, now: Instant, before: bool, rx: bool) -> Option<RxEvent> {
         match self.state {
-            State::Armed if !rx => {
-                self.seen = now;
-                self.state = State::Sampling;
-                self.at = now + Cycles(self.bit_cycles.0 / 2);
-                self.stop = self.at + Cycles(u64::from(STOP) * self.bit_cycles.0);
-                (self.bit, self.heard) = (0, 0);
-            }
+            State::Armed if !rx => self.begin(now),
             State::Broken if rx => self.state = State::Armed,
             State::Sampling => {
-                if self.at < now {
-                    self.make_up(now, before);
-                }
+                self.make_up(now, before);
                 if self.at == now {
                     return self.look(rx);
                 }
@@ -129,18 +121,51 @@ impl Receiver {
         None
     }
 
+    /// [`Self::clock`] in a cycle in which the line becomes `rx` within a byte or begins one: gives [`Self::deadline`] then. Where
+    /// a look is due or the receiver arms, `None`, and that is left to [`Self::clock`].
+    #[inline(always)]
+    pub(crate) fn hear(&mut self, now: Instant, before: bool, rx: bool) -> Option<Instant> {
+        match self.state {
+            State::Armed if !rx => {
+                self.begin(now);
+                Some(self.stop)
+            }
+            State::Sampling => {
+                self.make_up(now, before);
+                match (self.at == now, self.bit == 0 && rx) {
+                    (true, _) => None,
+                    (false, true) => Some(self.at),
+                    (false, false) => Some(self.stop),
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// A start bit is seen.
+    #[inline(always)]
+    fn begin(&mut self, now: Instant) {
+        self.seen = now;
+        self.state = State::Sampling;
+        self.at = now + Cycles(self.bit_cycles.0 / 2);
+        self.stop = self.at + Cycles(u64::from(STOP) * self.bit_cycles.0);
+        (self.bit, self.heard) = (0, 0);
+    }
+
     /// The looks before `now`, while the line was at `rx`.
     #[inline(always)]
     fn make_up(&mut self, now: Instant, rx: bool) {
-        let (mut bit, mut at, mut heard) = (self.bit, self.at, self.heard);
+        let (mut bit, mut at) = (self.bit, self.at);
         while at < now {
             debug_assert!(bit > 0 || !rx, "a start bit that is none was left out");
             debug_assert!(bit < STOP, "the look at the stop bit was left out");
-            heard |= u32::from(rx).wrapping_shl(bit);
             bit += 1;
             at += self.bit_cycles;
         }
-        (self.bit, self.at, self.heard) = (bit, at, heard);
+        if rx {
+            self.heard |= (1 << bit) - (1 << self.bit);
+        }
+        (self.bit, self.at) = (bit, at);
     }
 
     /// The look that is due in this cycle.
