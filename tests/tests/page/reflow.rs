@@ -77,12 +77,16 @@ const OVERLAPS: &str = "
 
 /// Everything that is wrong with what is on show, each with the place where it was seen.
 async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()> {
-    for (rule, script) in [("small", SMALL), ("cut off", CUT), ("overlap", OVERLAPS)] {
-        let found: Vec<String> = page.js(script, vec![]).await.with_context(|| rule.to_owned())?;
+    // In one call: the page lays itself out once for all rules.
+    let rules = [("small", SMALL), ("cut off", CUT), ("overlap", OVERLAPS)];
+    let rules: String = rules.map(|(rule, script)| format!("['{rule}', (() => {{ {script} }})()],")).concat();
+    let script =
+        format!("const wide = [document.documentElement.scrollWidth, innerWidth]; return [wide, [{rules}]];");
+    let ((content, window), rules): ((u32, u32), Vec<(String, Vec<String>)>) =
+        page.js(&script, vec![]).await.with_context(|| place.to_owned())?;
+    for (rule, found) in rules {
         wrong.extend(found.into_iter().map(|text| format!("{place}, {rule}: {text}")));
     }
-    let (content, window): (u32, u32) =
-        page.eval("[document.documentElement.scrollWidth, innerWidth]").await?;
     if content > window {
         wrong.push(format!("{place}: {content} px wide in a window of {window} px"));
     }
