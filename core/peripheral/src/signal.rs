@@ -243,8 +243,8 @@ pub trait Sink {
     /// A record; cycles rise strictly.
     fn record(&mut self, record: Record);
 
-    /// Several records: the same as one after another.
-    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>)
+    /// Several records: the same as [`Self::record`] of one after another, for sinks that have a faster way.
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone)
     where
         Self: Sized,
     {
@@ -275,7 +275,7 @@ impl Sink for Vec<Record> {
     }
 
     #[inline(always)]
-    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>) {
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
         if cfg!(debug_assertions) {
             records.for_each(|record| self.record(record));
         } else {
@@ -289,6 +289,11 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     fn record(&mut self, record: Record) {
         self.0.record(record);
         self.1.record(record);
+    }
+
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
+        self.0.record_all(records.clone());
+        self.1.record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -309,6 +314,12 @@ impl<S: Sink> Sink for Option<S> {
         }
     }
 
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
+        if let Some(sink) = self {
+            sink.record_all(records);
+        }
+    }
+
     fn event(&mut self, at: Instant, event: Event) {
         if let Some(sink) = self {
             sink.event(at, event);
@@ -323,6 +334,10 @@ impl<S: Sink> Sink for Option<S> {
 impl<S: Sink> Sink for &mut S {
     fn record(&mut self, record: Record) {
         (**self).record(record);
+    }
+
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
+        (**self).record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -388,8 +403,14 @@ mod tests {
         }
     }
 
+    const MORE: [Record; 2] = [
+        Record { cycle: Instant(4), levels: Levels(Levels::EN) },
+        Record { cycle: Instant(9), levels: Levels::RESET },
+    ];
+
     fn give(sink: &mut impl Sink) -> bool {
         sink.record(Record { cycle: Instant(3), levels: Levels::RESET });
+        sink.record_all(MORE.into_iter());
         sink.event(Instant(4), Event::TickEnd);
         sink.paused()
     }
@@ -406,13 +427,16 @@ mod tests {
             assert_eq!(give(&mut &mut both), expected);
             let (first, second) = (both.0, both.1.expect("it is there"));
             for taken in [first, second] {
-                assert_eq!(taken.records, [Record { cycle: Instant(3), levels: Levels::RESET }]);
+                assert_eq!(
+                    taken.records,
+                    [Record { cycle: Instant(3), levels: Levels::RESET }, MORE[0], MORE[1]]
+                );
                 assert_eq!(taken.events, [(Instant(4), Event::TickEnd)]);
             }
         }
         assert!(!give(&mut None::<Taken>), "nobody asks for a pause");
         let mut trace = vec![];
         assert!(!give(&mut trace));
-        assert_eq!(trace.len(), 1);
+        assert_eq!(trace, [Record { cycle: Instant(3), levels: Levels::RESET }, MORE[0], MORE[1]]);
     }
 }

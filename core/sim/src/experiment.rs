@@ -536,9 +536,9 @@ impl<S: Sink> Sink for Slice<'_, S> {
     }
 
     #[inline(always)]
-    fn records(&mut self, records: impl ExactSizeIterator<Item = Record>) {
+    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
         self.left = self.left.saturating_sub(records.len() as u64);
-        self.sink.records(records);
+        self.sink.record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {

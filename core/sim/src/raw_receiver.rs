@@ -57,7 +57,7 @@ impl RawReceiver {
                 if self.line.next_change() == start {
                     (level, next) = self.line.change_and_hear();
                 } else {
-                    next = if self.line.is_over() { Instant::NEVER } else { self.line.next_change() };
+                    next = self.line.heard_until();
                 }
                 until = next.min(end);
                 debug_assert!(start < until, "the line changed before {start:?}");

@@ -6,6 +6,9 @@
 //! run      * * o . . o . * . . o     sequencer goes from edge to edge (o), and nothing happens in the others (.)
 //! ```
 //!
+//! Of the cycles in which the line is heard most are edges within a byte, which change RX alone: these take a short cut
+//! ([`Device::hear`]).
+//!
 //! All give the same trace, for every configuration and every line.
 
 use crate::{
@@ -53,6 +56,10 @@ impl Device {
             heard = self.hear(line, sink);
             if heard.is_none() {
                 self.clock(line, sink);
+                // A line that is low in reset falls after it.
+                if self.now < until && line != self.line {
+                    self.clock(line, sink);
+                }
             }
         }
         let mut input = heard.unwrap_or_else(|| self.input_deadline());
@@ -86,6 +93,7 @@ impl Device {
         if now == self.other || now == self.machine.sequencer.deadline() || deaf {
             return None;
         }
+        debug_assert!(self.rx != line, "the line has changed before {now:?}");
         let deadline = self.receiver.hear(now, self.rx, line)?;
         (self.line, self.rx) = (line, line);
         (self.now, self.last) = (now.next(), now);

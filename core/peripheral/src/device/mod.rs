@@ -89,8 +89,9 @@ pub struct Device {
     /// The cycle that the next call of `clock` is, and the one that was run last.
     now: Instant,
     last: Instant,
-    /// Next cycle in which something else than line, receiver and sequencer falls due: reset, the cycle after firmware's last
-    /// write, a gap, a signal of the transceiver. What that is changes in cycles that are clocked by themselves alone.
+    /// Next cycle in which something other than line, receiver and sequencer falls due: reset, the cycle after what firmware or a
+    /// plant did, a gap on a raw line, a signal of the transceiver on a framed one. (On a raw line the transceiver moves EN alone,
+    /// and that in the cycle after firmware's order.) Only a cycle that is clocked by itself moves it on.
     ///
     /// Invariant: no cycle is run past it.
     other: Instant,
@@ -106,11 +107,7 @@ pub struct Device {
 }
 
 /// How bytes are joined to commands.
-///
-/// It is looked up in every window of a run: a tag of its own is read in fewer instructions than one
-/// that hides in a variant's unused values.
 #[derive(Clone, Debug)]
-#[repr(u8)]
 enum Framing {
     Raw(Unpacker),
     Framed(Controller),
@@ -166,7 +163,8 @@ impl Device {
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         debug_assert!(now <= self.other, "{:?} was left out", self.other);
-        self.line = line;
+        // In reset the line is high, whatever is given, and a low in the next cycle is an edge.
+        self.line = line || now == Instant::RESET;
         self.machine.transceiver.clock(now);
         let deaf = now == Instant::RESET || self.machine.transceiver.levels() & Levels::DE != 0;
         let rx = line || deaf;

@@ -120,8 +120,8 @@ impl Plan {
     #[inline(always)]
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
-            self.push(rise, dir | Lines::from(fires));
-            self.push(rise + self.config.pulse_width, dir);
+            self.add(rise, dir | Lines::from(fires));
+            self.add(rise + self.config.pulse_width, dir);
         }
     }
 
@@ -166,8 +166,13 @@ impl Plan {
     }
 
     /// Adds what is a change; of several at the same offset the last counts.
-    #[inline(always)]
     fn push(&mut self, offset: u64, lines: Lines) {
+        self.add(offset, lines);
+    }
+
+    /// The same, in its caller's code: for pulses, which nearly all ticks are of.
+    #[inline(always)]
+    fn add(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
             Some(last) if last.lines == lines => {}

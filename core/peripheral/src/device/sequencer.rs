@@ -283,7 +283,7 @@ impl Sequencer {
         let repeats = usize::from(passed.first().is_some_and(|first| first.lines == self.lines));
         self.lines = last.lines;
         let records = passed.get(repeats..).unwrap_or_default().iter();
-        sink.records(records.map(|change| Record {
+        sink.record_all(records.map(|change| Record {
             cycle: c0 + Cycles(change.offset),
             levels: Levels(base | u64::from(change.lines)),
         }));

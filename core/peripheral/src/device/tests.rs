@@ -260,6 +260,23 @@ fn positions_count_a_pulse_that_rises_in_the_cycle_of_the_frame() {
 }
 
 #[test]
+fn a_line_that_is_low_from_reset_on_falls_in_the_cycle_after_it() {
+    for protocol in [Protocol::Raw, Protocol::Framed] {
+        let line = SerialLine { baud: BAUD, protocol, ..SerialLine::default() };
+        let config = Config::new(CLOCK_HZ, &bus(1, 4), &line).expect("it holds");
+        let (mut slow, mut slow_left) = (Device::new(&config), Left::default());
+        while slow.now() < Instant(400) {
+            slow.clock(false, &mut slow_left);
+        }
+        let (mut fast, mut fast_left) = (Device::new(&config), Left::default());
+        fast.run(false, Instant(400), &mut fast_left);
+        assert_eq!(fast_left, slow_left);
+        assert_eq!(fast_left.trace.get(1).map(|record| record.cycle), Some(Instant(1)));
+        assert_eq!((fast.faults(), slow.faults()), (Faults::FRAMING, Faults::FRAMING));
+    }
+}
+
+#[test]
 fn the_line_is_heard_again_in_the_very_cycle_in_which_de_falls() {
     let fall = P + 11 * BIT + 17 * BYTE;
     let status = || encode_frame(&[0, Kind::Status as u8]);

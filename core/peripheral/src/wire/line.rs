@@ -157,9 +157,14 @@ impl Line {
         self.next
     }
 
+    /// [`Self::next_change`] while one is left that anyone hears while no controller sends; else [`Instant::NEVER`].
+    #[must_use]
+    pub fn heard_until(&self) -> Instant {
+        if self.is_over() { Instant::NEVER } else { self.next }
+    }
+
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
-    #[inline(always)]
     pub fn is_over(&self) -> bool {
         self.next == Instant::NEVER || self.passed < self.forced.len() && self.next_heard == Instant::NEVER
     }
@@ -183,7 +188,6 @@ impl Line {
     }
 
     /// Enters the cycle of [`Self::next_change`].
-    #[inline(always)]
     pub fn change(&mut self) {
         if self.passed < self.forced.len() {
             return self.change_forced();
@@ -192,19 +196,20 @@ impl Line {
         self.next = self.sender.next_edge();
     }
 
-    /// [`Self::change`], and what one hears then while no controller sends, and up to when.
+    /// [`Self::change`], and what is heard then while no controller sends: [`Self::heard`] and [`Self::heard_until`].
+    #[must_use]
     #[inline(always)]
     pub fn change_and_hear(&mut self) -> (bool, Instant) {
         if self.passed < self.forced.len() {
             self.change_forced();
-            return (self.heard(true), if self.is_over() { Instant::NEVER } else { self.next });
+            return (self.heard(true), self.heard_until());
         }
         self.sender.pass();
         self.next = self.sender.next_edge();
         (self.sender.level(), self.next)
     }
 
-    /// The same while something is left to be forced.
+    /// [`Self::change`] while something is left to be forced.
     fn change_forced(&mut self) {
         let now = self.next;
         self.enter(now);
