@@ -35,13 +35,6 @@ impl Sink for RunSink {
         }
     }
 
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        self.recording.record_all(records.clone());
-        if let Some(check) = &mut self.timing {
-            check.record_all(records);
-        }
-    }
-
     fn event(&mut self, at: Instant, event: Event) {
         self.recording.event(at, event);
     }

@@ -75,14 +75,24 @@ const OVERLAPS: &str = "
     }
     return found;";
 
+/// What one look at the page gives.
+#[derive(serde::Deserialize)]
+struct Seen {
+    /// The content's width, and the window's, in CSS pixels.
+    wide: (u32, u32),
+    /// What breaks each rule.
+    rules: Vec<(String, Vec<String>)>,
+}
+
 /// Everything that is wrong with what is on show, each with the place where it was seen.
 async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()> {
     // In one call: the page lays itself out once for all rules.
     let rules = [("small", SMALL), ("cut off", CUT), ("overlap", OVERLAPS)];
     let rules: String = rules.map(|(rule, script)| format!("['{rule}', (() => {{ {script} }})()],")).concat();
-    let script =
-        format!("const wide = [document.documentElement.scrollWidth, innerWidth]; return [wide, [{rules}]];");
-    let ((content, window), rules): ((u32, u32), Vec<(String, Vec<String>)>) =
+    let script = format!(
+        "const wide = [document.documentElement.scrollWidth, innerWidth]; return {{ wide, rules: [{rules}] }};"
+    );
+    let Seen { wide: (content, window), rules } =
         page.js(&script, vec![]).await.with_context(|| place.to_owned())?;
     for (rule, found) in rules {
         wrong.extend(found.into_iter().map(|text| format!("{place}, {rule}: {text}")));

@@ -117,7 +117,6 @@ impl Plan {
     }
 
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
-    #[inline(always)]
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.add(rise, dir | Lines::from(fires));

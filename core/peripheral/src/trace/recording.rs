@@ -25,12 +25,6 @@ impl Sink for Recording {
         self.digest.record(record);
     }
 
-    #[inline(always)]
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        self.trace.record_all(records.clone());
-        self.digest.record_all(records);
-    }
-
     fn event(&mut self, at: Instant, event: Event) {
         self.packets.event(at, event);
     }
