@@ -15,7 +15,6 @@ use crate::{
     wire::packet::{ChannelCommand, Tick},
 };
 use alloc::{collections::VecDeque, vec::Vec};
-use core::ops::Range;
 
 #[derive(Clone, Debug)]
 pub(super) struct Sequencer {
@@ -270,37 +269,23 @@ impl Sequencer {
     }
 
     /// The changes of the tick that runs, one after another: the inner loop of a long run.
-    #[inline(always)]
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
-        let Some(c0) = self.running.map(|running| running.c0) else { return };
-        let passed = self.pass_pulses(until);
-        let passed = self.plan.changes().get(passed).unwrap_or_default();
-        sink.record_all(passed.iter().map(|change| Record {
-            cycle: c0 + Cycles(change.offset),
-            levels: Levels(base | u64::from(change.lines)),
-        }));
-    }
-
-    /// Passes the changes before `until`: those of them that make a record. By itself, so that the code is there once and not for
-    /// each kind of sink.
-    #[inline(never)]
-    fn pass_pulses(&mut self, until: Instant) -> Range<usize> {
-        let Some(running) = &mut self.running else { return 0..0 };
+        let Some(running) = &mut self.running else { return };
         let (stop, c0) = (until.min(running.end), running.c0);
         let left = self.plan.changes().get(running.next..).unwrap_or_default();
         let due = left.iter().position(|change| c0 + Cycles(change.offset) >= stop).unwrap_or(left.len());
         let (passed, left) = left.split_at(due);
         self.deadline = left.first().map_or(running.end, |next| (c0 + Cycles(next.offset)).min(running.end));
-        let mut from = running.next;
         running.next += due;
-        if let [first, ..] = passed
-            && first.lines == self.lines
-        {
-            // None after the tick before; of all that come after it each is one.
-            from += 1;
-        }
-        self.lines = passed.last().map_or(self.lines, |last| last.lines);
-        from..running.next
+        let Some(last) = passed.last() else { return };
+        // The first may be none, after the tick before it.
+        let repeats = usize::from(passed.first().is_some_and(|first| first.lines == self.lines));
+        self.lines = last.lines;
+        let records = passed.get(repeats..).unwrap_or_default().iter();
+        sink.record_all(records.map(|change| Record {
+            cycle: c0 + Cycles(change.offset),
+            levels: Levels(base | u64::from(change.lines)),
+        }));
     }
 }
 
