@@ -303,7 +303,9 @@ impl Experiment {
     /// the same.
     pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
-        while !run.advance_each(u64::MAX, sinks) {}
+        while !run.is_done() {
+            run.run_to(run.controllers.end.unwrap_or(Instant::NEVER), sinks);
+        }
         run
     }
 

@@ -29,6 +29,8 @@ pub(super) struct FramedLine {
     /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
+    /// Whether bytes are heard as they are sent.
+    in_step: bool,
 }
 
 /// A controller and what it hears of the others.
@@ -50,6 +52,7 @@ impl Node {
 
 impl FramedLine {
     pub(super) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        let in_step = devices.iter().all(|device| device.is_in_step(line.bit_starts()));
         let node = |device| Node { device, drives: None, hears: true, collides: false };
         Self {
             line,
@@ -57,6 +60,7 @@ impl FramedLine {
             nodes: devices.into_iter().map(node).collect(),
             start: Instant::RESET,
             until: Instant::RESET,
+            in_step,
         }
     }
 
@@ -143,10 +147,43 @@ impl FramedLine {
     /// sink asks for a pause.
     pub(super) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.until < end || self.start < self.until {
-            if !self.run_window(end, sinks) {
+            if !(self.run_bytes(end, sinks) || self.run_window(end, sinks)) {
                 return;
             }
         }
+    }
+
+    /// Runs through bytes that all controllers pass whole, while nobody drives the line and the host does nothing else: whether there
+    /// was any.
+    fn run_bytes(&mut self, end: Instant, sinks: &mut [impl Sink]) -> bool {
+        let Self { line, host, nodes, start, until, in_step } = self;
+        if start != until || !*in_step {
+            return false;
+        }
+        let end = host.as_ref().map_or(end, |host| host.deadline(*start).min(end));
+        let [others @ .., last] = nodes.as_mut_slice() else { return false };
+        let (other_sinks, last_sink) = sinks.split_at_mut(others.len().min(sinks.len()));
+        // Where there are several, one byte that all of them pass.
+        let Some(byte) = line.byte_ahead() else { return false };
+        let Some(stop) = last.device.whole_byte(&byte, end) else { return false };
+        let all = others.iter().all(|node| node.device.whole_byte(&byte, end) == Some(stop));
+        if !all || other_sinks.iter().any(Sink::paused) || last_sink.first().is_some_and(Sink::paused) {
+            return false;
+        }
+        let end = if others.is_empty() { end } else { stop.next() };
+        for (index, node) in others.iter_mut().enumerate() {
+            let line = &mut line.clone();
+            match other_sinks.get_mut(index) {
+                Some(sink) => node.device.run_bytes(line, end, sink),
+                None => node.device.run_bytes(line, end, &mut Ignored),
+            };
+        }
+        match last_sink.first_mut() {
+            Some(sink) => last.device.run_bytes(line, end, sink),
+            None => last.device.run_bytes(line, end, &mut Ignored),
+        };
+        (*start, *until) = (last.device.now(), last.device.now());
+        true
     }
 
     /// Runs to the end of a window, which may have begun; false where a sink asked for a pause.

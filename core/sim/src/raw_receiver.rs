@@ -12,11 +12,14 @@ pub(super) struct RawReceiver {
     /// Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
+    /// Whether bytes are heard as they are sent.
+    in_step: bool,
 }
 
 impl RawReceiver {
-    pub(super) const fn new(line: Line, device: Device) -> Self {
-        Self { line, device, start: Instant::RESET, until: Instant::RESET }
+    pub(super) fn new(line: Line, device: Device) -> Self {
+        let in_step = device.is_in_step(line.bit_starts());
+        Self { line, device, start: Instant::RESET, until: Instant::RESET, in_step }
     }
 
     pub(super) const fn line(&self) -> &Line {
@@ -52,14 +55,16 @@ impl RawReceiver {
         let (mut start, mut until) = (self.start, self.until);
         let mut level = self.line.heard(true);
         while start < end {
+            if self.in_step && self.device.run_bytes(&mut self.line, end, sink) {
+                (start, until, level) = (self.device.now(), self.line.heard_until().min(end), true);
+                continue;
+            }
             if start == until {
-                let next;
                 if self.line.next_change() == start {
-                    (level, next) = self.line.change_and_hear();
-                } else {
-                    next = self.line.heard_until();
+                    self.line.change();
+                    level = self.line.heard(true);
                 }
-                until = next.min(end);
+                until = self.line.heard_until().min(end);
                 debug_assert!(start < until, "the line changed before {start:?}");
             }
             self.device.run(level, until, sink);

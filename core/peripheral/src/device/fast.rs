@@ -6,15 +6,16 @@
 //! run      * * o . . o . * . . o     sequencer goes from edge to edge (o), and nothing happens in the others (.)
 //! ```
 //!
-//! Of the cycles in which the line is heard most are edges within a byte, which change RX alone: these take a short cut
-//! ([`Device::hear`]).
+//! Most bytes are heard as they are sent. Each of them is passed in one piece, with the STEP and DIR that change meanwhile
+//! ([`Device::run_bytes`]), where nothing is forced on the line and no tick begins or ends beside it.
 //!
 //! All give the same trace, for every configuration and every line.
 
 use crate::{
     device::Device,
-    signal::{Levels, Record, Sink},
+    signal::{Levels, Sink},
     units::{Cycles, Instant},
+    wire::{ByteAhead, Line, sender::BitStarts},
 };
 
 impl Device {
@@ -51,18 +52,11 @@ impl Device {
     /// tells when that was). Stops early where the sink asks for a pause.
     #[inline(always)]
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
-        let mut heard = None;
-        if self.now < until && line != self.line {
-            heard = self.hear(line, sink);
-            if heard.is_none() {
-                self.clock(line, sink);
-                // A line that is low in reset falls after it.
-                if self.now < until && line != self.line {
-                    self.clock(line, sink);
-                }
-            }
+        // Twice where a line is low in reset: it falls after it.
+        while self.now < until && line != self.line {
+            self.clock(line, sink);
         }
-        let mut input = heard.unwrap_or_else(|| self.input_deadline());
+        let mut input = self.input_deadline();
         while self.now < until && !sink.paused() {
             let quiet = input.min(until);
             if self.machine.sequencer.deadline() < quiet {
@@ -84,22 +78,47 @@ impl Device {
         }
     }
 
-    /// [`Self::clock`] in a cycle in which the line changes, and nothing else falls due: most edges of a byte are such. Gives
-    /// [`Self::input_deadline`] then; `None`, and nothing is done, where more falls due or the controller drives the line.
+    /// Whether [`Self::run_bytes`] may pass a byte that comes next on the line: gives the look at its stop bit. `None` where that is
+    /// not before `until`, where more than RX, STEP and DIR may change up to it, and where no byte may begin.
+    #[must_use]
     #[inline(always)]
-    fn hear(&mut self, line: bool, sink: &mut impl Sink) -> Option<Instant> {
-        let now = self.now;
+    pub fn whole_byte(&self, byte: &ByteAhead<'_>, until: Instant) -> Option<Instant> {
+        debug_assert!(self.now <= byte.start, "{byte:?} has begun before {:?}", self.now);
+        let stop = self.receiver.stop_of(byte.start);
         let deaf = self.machine.transceiver.levels() & Levels::DE != 0;
-        if now == self.other || now == self.machine.sequencer.deadline() || deaf {
-            return None;
+        let whole = self.line && !deaf && self.receiver.is_armed() && stop < until.min(self.other);
+        (whole && self.machine.sequencer.only_pulses(stop)).then_some(stop)
+    }
+
+    /// [`Self::run`] through the bytes of `line` that may be passed whole, each up to the look at its stop bit in one piece: whether
+    /// there was any. They are heard as they are sent ([`Self::is_in_step`]). Stops early where the sink asks for a pause.
+    pub fn run_bytes(&mut self, line: &mut Line, until: Instant, sink: &mut impl Sink) -> bool {
+        debug_assert!(self.is_in_step(line.bit_starts()), "bytes are not heard as they are sent");
+        let from = self.now;
+        while let Some(byte) = line.byte_ahead()
+            && let Some(stop) = self.whole_byte(&byte, until)
+            && !sink.paused()
+        {
+            self.levels = self.machine.sequencer.run_beside(&byte, stop, self.base(), sink);
+            self.now = stop;
+            if self.machine.sequencer.deadline() == stop {
+                self.receiver.hear_data(&byte);
+                self.clock(true, sink);
+            } else {
+                self.receiver.hear_byte(&byte);
+                self.byte(byte.byte, sink);
+                (self.now, self.last) = (stop.next(), stop);
+                self.other = self.deadline_of_others();
+            }
+            line.pass_byte();
         }
-        debug_assert!(self.rx != line, "the line has changed before {now:?}");
-        let deadline = self.receiver.hear(now, self.rx, line)?;
-        (self.line, self.rx) = (line, line);
-        (self.now, self.last) = (now.next(), now);
-        self.levels.0 ^= Levels::RX;
-        sink.record(Record { cycle: now, levels: self.levels });
-        Some(deadline.min(self.other))
+        self.now > from
+    }
+
+    /// Whether bytes whose bits begin and end so are heard as they are sent: only they may be passed whole.
+    #[must_use]
+    pub fn is_in_step(&self, bit_starts: &BitStarts) -> bool {
+        self.receiver.is_in_step(bit_starts)
     }
 
     /// The last cycle in which something happened, if every cycle that was clocked by itself had a

@@ -194,10 +194,7 @@ impl Device {
             None => {}
         }
         (self.now, self.last) = (now.next(), now);
-        self.other = match &self.framing {
-            Framing::Raw(unpacker) => unpacker.deadline(),
-            Framing::Framed(_) => self.machine.transceiver.deadline(),
-        };
+        self.other = self.deadline_of_others();
         let levels = Levels(self.base() | u64::from(self.machine.sequencer.lines()));
         if levels != self.levels {
             self.levels = levels;
@@ -206,18 +203,29 @@ impl Device {
         levels
     }
 
+    /// [`Self::other`] after a cycle.
+    #[inline(always)]
+    fn deadline_of_others(&self) -> Instant {
+        match &self.framing {
+            Framing::Raw(unpacker) => unpacker.deadline(),
+            Framing::Framed(_) => self.machine.transceiver.deadline(),
+        }
+    }
+
+    #[inline(always)]
     fn byte(&mut self, byte: u8, sink: &mut impl Sink) {
         sink.event(self.now, Event::Byte { seen: self.receiver.seen(), byte });
         let unpacked = match &mut self.framing {
             Framing::Raw(unpacker) => unpacker.byte(self.now, byte),
             Framing::Framed(controller) => return controller.byte(self.now, byte, &mut self.machine, sink),
         };
-        let outcome = match unpacked {
-            None => return,
-            Some(Unpacked::OtherAddress) => PacketOutcome::OtherAddress,
-            Some(Unpacked::Own(tick)) => self.commit(tick),
-        };
-        sink.event(self.now, Event::Packet(outcome));
+        if let Some(unpacked) = unpacked {
+            let outcome = match unpacked {
+                Unpacked::OtherAddress => PacketOutcome::OtherAddress,
+                Unpacked::Own(tick) => self.commit(tick),
+            };
+            sink.event(self.now, Event::Packet(outcome));
+        }
     }
 
     /// Judges a packet for this controller (A5).

@@ -83,30 +83,21 @@ impl Plan {
         let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
         let right = tops(halves(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
-        self.changes.clear();
-        if self.config.dir_line == DirLine::PerChannel {
-            self.push(0, dir);
-        }
         let mut firing = Firing::new(counts, self.config.slots, self.config.distribution);
-        for slot in 0..self.config.slots {
-            let start = u64::from(slot) * self.config.step_period;
-            match (firing.slot(slot), self.config.dir_line, self.config.pulse_phasing) {
-                (0, ..) => {}
-                (fires, DirLine::PerChannel, PulsePhasing::Simultaneous) => {
-                    self.pulse(start + self.config.dir_setup, fires, dir);
-                }
-                (fires, DirLine::PerChannel, PulsePhasing::Staggered) => self.staggered(start, fires, dir),
-                (fires, DirLine::Common, PulsePhasing::Simultaneous) => {
-                    let second =
-                        start + self.config.dir_setup + self.config.pulse_width + self.config.dir_hold;
-                    self.push(start, 0);
-                    self.pulse(start + self.config.dir_setup, fires & !right, 0);
-                    self.push(second, self.all_right);
-                    self.pulse(second + self.config.dir_setup, fires & right, self.all_right);
-                }
-                (fires, DirLine::Common, PulsePhasing::Staggered) => {
-                    self.common_staggered(start, fires, right)
-                }
+        match (self.config.dir_line, self.config.pulse_phasing) {
+            (DirLine::PerChannel, PulsePhasing::Simultaneous) => self.pulses(&mut firing, dir),
+            (DirLine::PerChannel, PulsePhasing::Staggered) => {
+                self.changes.clear();
+                self.push(0, dir);
+                self.each_slot(&mut firing, |plan, start, fires| plan.staggered(start, fires, dir));
+            }
+            (DirLine::Common, PulsePhasing::Simultaneous) => {
+                self.changes.clear();
+                self.each_slot(&mut firing, |plan, start, fires| plan.common(start, fires, right));
+            }
+            (DirLine::Common, PulsePhasing::Staggered) => {
+                self.changes.clear();
+                self.each_slot(&mut firing, |plan, start, fires| plan.common_staggered(start, fires, right));
             }
         }
         debug_assert!(are_changes(&self.changes), "{:?}", self.changes);
@@ -116,17 +107,59 @@ impl Plan {
         );
     }
 
+    /// Those slots in which any channel fires: their starts, and who does.
+    fn each_slot(&mut self, firing: &mut Firing, mut slot: impl FnMut(&mut Self, u64, u16)) {
+        for index in 0..self.config.slots {
+            let fires = firing.slot(index);
+            if fires != 0 {
+                slot(self, u64::from(index) * self.config.step_period, fires);
+            }
+        }
+    }
+
+    /// DIR at the tick's start, and in each slot one pulse of all that fire. Nearly all ticks are such: two places are written for
+    /// every slot, and kept where any channel fires.
+    fn pulses(&mut self, firing: &mut Firing, dir: Lines) {
+        let first = Change { offset: 0, lines: dir };
+        self.changes.resize(1 + 2 * usize::from(self.config.slots), first);
+        self.changes[0] = first;
+        let (mut kept, mut rise) = (1, self.config.dir_setup);
+        for slot in 0..self.config.slots {
+            let fires = firing.slot(slot);
+            if let Some([up, down]) = self.changes.get_mut(kept..).and_then(<[_]>::first_chunk_mut) {
+                *up = Change { offset: rise, lines: dir | Lines::from(fires) };
+                *down = Change { offset: rise + self.config.pulse_width, lines: dir };
+            }
+            kept += 2 * usize::from(fires != 0);
+            rise += self.config.step_period;
+        }
+        self.changes.truncate(kept);
+        // Without a setup time the first pulse may rise with DIR.
+        if self.changes.get(1).is_some_and(|second| second.offset == 0) {
+            self.changes.remove(0);
+        }
+    }
+
     /// All of `fires` from `rise` on, for W cycles; DIR stays at `dir`.
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
-            self.add(rise, dir | Lines::from(fires));
-            self.add(rise + self.config.pulse_width, dir);
+            self.push(rise, dir | Lines::from(fires));
+            self.push(rise + self.config.pulse_width, dir);
         }
     }
 
     /// From pulse to pulse of a slot: d = min(dp, floor(Ts/nd)).
     fn distance(&self, fires: u16) -> u64 {
         self.config.settle.min(self.config.step_period / u64::from(fires.count_ones().max(1)))
+    }
+
+    /// The left ones, then the right ones.
+    fn common(&mut self, start: u64, fires: u16, right: u16) {
+        let second = start + self.config.dir_setup + self.config.pulse_width + self.config.dir_hold;
+        self.push(start, 0);
+        self.pulse(start + self.config.dir_setup, fires & !right, 0);
+        self.push(second, self.all_right);
+        self.pulse(second + self.config.dir_setup, fires & right, self.all_right);
     }
 
     /// One channel after another, ascending; pulses that are closer than W overlap.
@@ -166,12 +199,6 @@ impl Plan {
 
     /// Adds what is a change; of several at the same offset the last counts.
     fn push(&mut self, offset: u64, lines: Lines) {
-        self.add(offset, lines);
-    }
-
-    /// The same, in its caller's code: for pulses, which nearly all ticks are of.
-    #[inline(always)]
-    fn add(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
             Some(last) if last.lines == lines => {}
@@ -223,6 +250,7 @@ impl Firing {
     }
 
     /// The channels that fire in slot `slot`; slots are asked for in order.
+    #[inline(always)]
     fn slot(&mut self, slot: u8) -> u16 {
         match self.distribution {
             // c - (k + 1) >= 0

@@ -12,9 +12,14 @@ use crate::{
     config::{Config, Protocol},
     signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
-    wire::packet::{ChannelCommand, Tick},
+    wire::{
+        ByteAhead,
+        packet::{ChannelCommand, Tick},
+        sender::NO_BIT,
+    },
 };
 use alloc::{collections::VecDeque, vec::Vec};
+use core::slice::Iter;
 
 #[derive(Clone, Debug)]
 pub(super) struct Sequencer {
@@ -268,12 +273,68 @@ impl Sequencer {
         Levels(base | u64::from(self.lines))
     }
 
+    /// Whether nothing falls due before `until` but changes of the tick that runs.
+    #[inline(always)]
+    pub(super) fn only_pulses(&self, until: Instant) -> bool {
+        self.running.map_or(self.deadline, |running| running.end) >= until
+    }
+
+    /// [`Self::run`] before `until`, where only changes of the tick that runs fall due, beside the edges of a byte.
+    #[inline(never)]
+    pub(super) fn run_beside(
+        &mut self,
+        byte: &ByteAhead<'_>,
+        until: Instant,
+        base: u64,
+        sink: &mut impl Sink,
+    ) -> Levels {
+        debug_assert!(self.only_pulses(until), "a tick begins or ends beside a byte");
+        let (c0, first) =
+            self.running.map_or((Instant::NEVER, usize::MAX), |running| (running.c0, running.next));
+        let mut changes = self.plan.changes().get(first..).unwrap_or_default().iter();
+        let change_of = |changes: &Iter<'_, Change>| {
+            changes.as_slice().first().map_or(Instant::NEVER, |change| c0 + Cycles(change.offset))
+        };
+        let edge_of =
+            |edges: u32| byte.start + Cycles(byte.bit_starts[edges.trailing_zeros() as usize & NO_BIT]);
+        let (mut lines, mut rx, mut edges) = (self.lines, base, byte.edges | 1 << NO_BIT);
+        // The first may be none, after the tick before it.
+        if changes.as_slice().first().is_some_and(|first| first.lines == lines) {
+            changes.next();
+        }
+        let (mut edge, mut change) = (edge_of(edges), change_of(&changes));
+        loop {
+            let now = edge.min(change);
+            if now >= until {
+                break;
+            }
+            if change == now
+                && let Some(passed) = changes.next()
+            {
+                lines = passed.lines;
+                change = change_of(&changes);
+            }
+            if edge == now {
+                rx ^= Levels::RX;
+                edges &= edges - 1;
+                edge = edge_of(edges);
+            }
+            sink.record(Record { cycle: now, levels: Levels(rx | u64::from(lines)) });
+        }
+        self.lines = lines;
+        if let Some(running) = &mut self.running {
+            running.next = self.plan.changes().len() - changes.len();
+            self.deadline = change.min(running.end);
+        }
+        Levels(rx | u64::from(lines))
+    }
+
     /// The changes of the tick that runs, one after another: the inner loop of a long run.
     fn run_pulses(&mut self, until: Instant, base: u64, sink: &mut impl Sink) {
         let Some(running) = &mut self.running else { return };
         let (stop, c0) = (until.min(running.end), running.c0);
         let left = self.plan.changes().get(running.next..).unwrap_or_default();
-        let due = left.iter().position(|change| c0 + Cycles(change.offset) >= stop).unwrap_or(left.len());
+        let due = left.partition_point(|change| c0 + Cycles(change.offset) < stop);
         let (passed, left) = left.split_at(due);
         self.deadline = left.first().map_or(running.end, |next| (c0 + Cycles(next.offset)).min(running.end));
         running.next += due;

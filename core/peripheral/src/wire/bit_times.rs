@@ -45,6 +45,13 @@ impl BitTimes {
         self.bit(BYTE_BITS * index)
     }
 
+    /// When bytes sent back to back begin after the first one, one after another.
+    #[must_use]
+    pub(super) const fn byte_starts(self) -> ByteStarts {
+        let bits = BYTE_BITS * self.clock_hz;
+        ByteStarts { baud: self.baud, each: (bits / self.baud, bits % self.baud), next: (0, 0) }
+    }
+
     /// How long so many bytes sent back to back hold the line, to the end of the last stop bit.
     #[must_use]
     pub const fn bytes(self, count: u64) -> Cycles {
@@ -63,6 +70,29 @@ impl BitTimes {
     }
 }
 
+/// [`BitTimes::byte`] of one byte after another, without a division for each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ByteStarts {
+    baud: u64,
+    /// Whole cycles of a byte, and the rest in parts of `baud`; those up to the next byte.
+    ///
+    /// Invariant: both rests are below `baud`.
+    each: (u64, u64),
+    next: (u64, u64),
+}
+
+impl ByteStarts {
+    /// The next one.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Cycles {
+        let (start, rest) = self.next;
+        let rest = rest + self.each.1;
+        let carry = u64::from(rest >= self.baud);
+        self.next = (start + self.each.0 + carry, rest - carry * self.baud);
+        Cycles(start)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,6 +103,8 @@ mod tests {
         let times = BitTimes::new(1000, 90);
         assert_eq!([0, 1, 9, 10].map(|bit| times.bit(bit).0), [0, 11, 100, 111]);
         assert_eq!([0, 1, 9, 10].map(|byte| times.byte(byte).0), [0, 111, 1000, 1111]);
+        let mut starts = times.byte_starts();
+        (0..1000).for_each(|byte| assert_eq!(starts.next(), times.byte(byte), "byte {byte}"));
         assert_eq!([0, 1, 10].map(|count| times.bytes(count).0), [0, 111, 1111]);
         assert_eq!(
             [0, 55, 56, 111, 160, 170].map(|after| times.nearest_byte(Cycles(after))),

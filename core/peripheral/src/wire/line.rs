@@ -34,7 +34,10 @@
 //! ```
 
 use crate::units::Instant;
-use crate::wire::{Schedule, sender::Sender};
+use crate::wire::{
+    ByteAhead, Schedule,
+    sender::{BitStarts, Sender},
+};
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
 /// A level forced on the line (A4).
@@ -196,17 +199,25 @@ impl Line {
         self.next = self.sender.next_edge();
     }
 
-    /// [`Self::change`], and what is heard then while no controller sends: [`Self::heard`] and [`Self::heard_until`].
+    /// When the bits of a byte begin that the host sends, from its start bit's on.
+    #[must_use]
+    pub const fn bit_starts(&self) -> &BitStarts {
+        self.sender.bit_starts()
+    }
+
+    /// The byte that begins with [`Self::next_change`], where the host's bytes are all that changes the line.
     #[must_use]
     #[inline(always)]
-    pub fn change_and_hear(&mut self) -> (bool, Instant) {
-        if self.passed < self.forced.len() {
-            self.change_forced();
-            return (self.heard(true), self.heard_until());
-        }
-        self.sender.pass();
+    pub fn byte_ahead(&self) -> Option<ByteAhead<'_>> {
+        if self.passed < self.forced.len() { None } else { self.sender.byte_ahead() }
+    }
+
+    /// Passes all edges of [`Self::byte_ahead`].
+    #[inline(always)]
+    pub fn pass_byte(&mut self) {
+        debug_assert!(self.passed == self.forced.len(), "the byte is not all that changes the line");
+        self.sender.pass_byte();
         self.next = self.sender.next_edge();
-        (self.sender.level(), self.next)
     }
 
     /// [`Self::change`] while something is left to be forced.

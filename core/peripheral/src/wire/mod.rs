@@ -27,4 +27,4 @@ pub mod uart;
 pub use bit_times::BitTimes;
 pub use line::{ForcedLevel, Line};
 pub use schedule::{Schedule, Sent};
-pub use sender::Sender;
+pub use sender::{ByteAhead, Sender};

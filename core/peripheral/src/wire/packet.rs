@@ -123,6 +123,7 @@ impl Unpacker {
     }
 
     /// A byte in cycle `now`; the packet that it completes.
+    #[inline(always)]
     pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
         self.deadline = now + self.gap;
         if self.ignoring {

@@ -16,6 +16,7 @@
 use crate::units::{Cycles, Instant};
 use crate::wire::BitTimes;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Bytes that are sent back to back from a cycle on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,9 +92,21 @@ impl Schedule {
     /// Send `index`, or `None` past the last.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<Sent<'_>> {
+        let (start, places) = self.places(index)?;
+        self.bytes.get(places).map(|bytes| Sent { start, bytes })
+    }
+
+    /// When send `index` begins, and the places of its bytes among those of all sends.
+    pub(super) fn places(&self, index: usize) -> Option<(Instant, Range<usize>)> {
         let &(start, end) = self.sends.get(index)?;
         let first = index.checked_sub(1).and_then(|before| self.sends.get(before)).map_or(0, |s| s.1);
-        self.bytes.get(first..end).map(|bytes| Sent { start, bytes })
+        Some((start, first..end))
+    }
+
+    /// The byte at a place among those of all sends.
+    #[inline(always)]
+    pub(super) fn byte(&self, place: usize) -> Option<u8> {
+        self.bytes.get(place).copied()
     }
 
     /// The last send that begins in cycle `at` or before.

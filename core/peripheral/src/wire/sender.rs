@@ -27,20 +27,48 @@
 //! ```
 
 use crate::units::Instant;
-use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
+use crate::wire::{
+    BitTimes, Schedule,
+    bit_times::{BYTE_BITS, ByteStarts},
+};
 use alloc::rc::Rc;
+use core::ops::Range;
 
 const _: () = assert!(BYTE_BITS <= u32::BITS as u64, "the edges of a byte have a bit each");
+
+/// Cycles from a byte's start to where each of its bits begins, and to its end; those after it are never reached.
+pub type BitStarts = [u64; NO_BIT + 1];
+
+/// The place of a bit that no byte has.
+pub const NO_BIT: usize = 15;
+
+/// A byte that begins with a line's next edge.
+#[derive(Clone, Copy, Debug)]
+pub struct ByteAhead<'a> {
+    /// The byte.
+    pub byte: u8,
+    /// Cycle of its start bit.
+    pub start: Instant,
+    /// Bits that differ from the bit before them, the start bit lowest.
+    pub edges: u32,
+    /// When they begin.
+    pub bit_starts: &'a BitStarts,
+}
 
 /// Iterates over the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
     times: BitTimes,
-    /// Where each bit of a byte begins.
-    bit_starts: [u64; BYTE_BITS as usize],
-    send: usize,
-    byte: usize,
+    bit_starts: BitStarts,
+    /// Sends that have been taken up; when the last of them begins, and the places of its bytes that are to come.
+    sends: usize,
+    send_start: Instant,
+    places: Range<usize>,
+    /// When those begin.
+    byte_starts: ByteStarts,
+    /// The byte that is sent or comes next, and when it begins.
+    byte: u8,
     byte_start: Instant,
     /// Bits of the byte that differ from the bit before them and have not passed.
     ///
@@ -61,8 +89,13 @@ impl Sender {
         let mut sender = Self {
             schedule,
             times,
-            bit_starts: core::array::from_fn(|k| times.bit(k as u64).0),
-            send: 0,
+            bit_starts: core::array::from_fn(|k| {
+                if k as u64 <= BYTE_BITS { times.bit(k as u64).0 } else { u64::MAX / 2 }
+            }),
+            sends: 0,
+            send_start: Instant::NEVER,
+            places: 0..0,
+            byte_starts: times.byte_starts(),
             byte: 0,
             byte_start: Instant::NEVER,
             edges: 0,
@@ -89,12 +122,11 @@ impl Sender {
 
     /// Adds bytes to the last send. The first of them must not begin before the next cycle.
     pub fn extend(&mut self, bytes: &[u8]) {
-        if self.edges == 0
-            && let Some(last) = self.schedule.len().checked_sub(1)
-        {
-            (self.send, self.byte) = (last, self.schedule.get(last).map_or(0, |send| send.bytes.len()));
+        let schedule = Rc::make_mut(&mut self.schedule);
+        schedule.extend(bytes);
+        if self.sends == schedule.len() {
+            self.places.end = schedule.total_bytes();
         }
-        Rc::make_mut(&mut self.schedule).extend(bytes);
         if self.edges == 0 {
             self.load();
         }
@@ -104,7 +136,7 @@ impl Sender {
     pub fn forget_sent(&mut self) {
         if self.edges == 0 {
             self.schedule = Rc::default();
-            (self.send, self.byte) = (0, 0);
+            (self.sends, self.places) = (0, 0..0);
         }
     }
 
@@ -114,23 +146,46 @@ impl Sender {
         self.level != 0
     }
 
-    /// Takes up the byte at (`send`, `byte`), or the first one after it.
+    /// Takes up the next byte.
     fn load(&mut self) {
-        while let Some(send) = self.schedule.get(self.send) {
-            if let Some(&byte) = send.bytes.get(self.byte) {
-                self.byte_start = send.start + self.times.byte(self.byte as u64);
-                // Start bit 0, data, stop bit 1; before the start bit the line is high.
-                let frame = u32::from(byte) << 1 | 1 << 9;
-                self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
-                debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
-                self.next = self.byte_start;
+        while self.places.is_empty() {
+            let Some((start, places)) = self.schedule.places(self.sends) else {
+                (self.edges, self.next) = (0, Instant::NEVER);
                 return;
-            }
-            self.send += 1;
-            self.byte = 0;
+            };
+            self.sends += 1;
+            (self.send_start, self.places, self.byte_starts) = (start, places, self.times.byte_starts());
         }
-        self.edges = 0;
-        self.next = Instant::NEVER;
+        self.byte = self.schedule.byte(self.places.start).unwrap_or_default();
+        self.places.start += 1;
+        self.byte_start = self.send_start + self.byte_starts.next();
+        // Start bit 0, data, stop bit 1; before the start bit the line is high.
+        let frame = u32::from(self.byte) << 1 | 1 << 9;
+        self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
+        debug_assert!(self.edges & 1 == 1, "every byte begins with the edge of its start bit");
+        self.next = self.byte_start;
+    }
+
+    /// When the bits of a byte begin, from its start bit's on.
+    #[must_use]
+    pub const fn bit_starts(&self) -> &BitStarts {
+        &self.bit_starts
+    }
+
+    /// The byte whose start bit is the next edge; `None` within a byte, and after the last.
+    #[must_use]
+    #[inline(always)]
+    pub fn byte_ahead(&self) -> Option<ByteAhead<'_>> {
+        let Self { byte, byte_start: start, edges, ref bit_starts, .. } = *self;
+        (edges & 1 != 0).then_some(ByteAhead { byte, start, edges, bit_starts })
+    }
+
+    /// Passes all edges of [`Self::byte_ahead`].
+    #[inline(always)]
+    pub fn pass_byte(&mut self) {
+        debug_assert!(self.edges & 1 != 0, "no byte is ahead");
+        self.level = 1;
+        self.load();
     }
 
     /// Cycle of the next edge; [`Instant::NEVER`] without one.
@@ -144,12 +199,11 @@ impl Sender {
         debug_assert!(self.edges != 0, "there is no edge to pass");
         self.level ^= 1;
         self.edges &= self.edges.wrapping_sub(1);
-        match self.bit_starts.get(self.edges.trailing_zeros() as usize) {
-            Some(offset) => self.next = Instant(self.byte_start.0 + offset),
-            None => {
-                self.byte += 1;
-                self.load();
-            }
+        if self.edges == 0 {
+            self.load();
+        } else {
+            self.next =
+                Instant(self.byte_start.0 + self.bit_starts[self.edges.trailing_zeros() as usize & NO_BIT]);
         }
     }
 }
