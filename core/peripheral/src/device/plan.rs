@@ -83,22 +83,10 @@ impl Plan {
         let counts = self.commands.map(|byte| ChannelCommand::parse(byte).steps);
         let right = tops(halves(self.commands));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
-        let mut firing = Firing::new(counts, self.config.slots, self.config.distribution);
+        let firing = Firing::new(counts, self.config.slots, self.config.distribution);
         match (self.config.dir_line, self.config.pulse_phasing) {
-            (DirLine::PerChannel, PulsePhasing::Simultaneous) => self.pulses(&mut firing, dir),
-            (DirLine::PerChannel, PulsePhasing::Staggered) => {
-                self.changes.clear();
-                self.push(0, dir);
-                self.each_slot(&mut firing, |plan, start, fires| plan.staggered(start, fires, dir));
-            }
-            (DirLine::Common, PulsePhasing::Simultaneous) => {
-                self.changes.clear();
-                self.each_slot(&mut firing, |plan, start, fires| plan.common(start, fires, right));
-            }
-            (DirLine::Common, PulsePhasing::Staggered) => {
-                self.changes.clear();
-                self.each_slot(&mut firing, |plan, start, fires| plan.common_staggered(start, fires, right));
-            }
+            (DirLine::PerChannel, PulsePhasing::Simultaneous) => self.pulses(firing, dir),
+            _ => self.slots(firing, dir, right),
         }
         debug_assert!(are_changes(&self.changes), "{:?}", self.changes);
         debug_assert!(
@@ -107,19 +95,9 @@ impl Plan {
         );
     }
 
-    /// Those slots in which any channel fires: their starts, and who does.
-    fn each_slot(&mut self, firing: &mut Firing, mut slot: impl FnMut(&mut Self, u64, u16)) {
-        for index in 0..self.config.slots {
-            let fires = firing.slot(index);
-            if fires != 0 {
-                slot(self, u64::from(index) * self.config.step_period, fires);
-            }
-        }
-    }
-
     /// DIR at the tick's start, and in each slot one pulse of all that fire. Nearly all ticks are such: two places are written for
     /// every slot, and kept where any channel fires.
-    fn pulses(&mut self, firing: &mut Firing, dir: Lines) {
+    fn pulses(&mut self, mut firing: Firing, dir: Lines) {
         let first = Change { offset: 0, lines: dir };
         self.changes.resize(1 + 2 * usize::from(self.config.slots), first);
         self.changes[0] = first;
@@ -137,6 +115,25 @@ impl Plan {
         // Without a setup time the first pulse may rise with DIR.
         if self.changes.get(1).is_some_and(|second| second.offset == 0) {
             self.changes.remove(0);
+        }
+    }
+
+    /// What is not [`Self::pulses`], slot by slot.
+    fn slots(&mut self, mut firing: Firing, dir: Lines, right: u16) {
+        self.changes.clear();
+        if self.config.dir_line == DirLine::PerChannel {
+            self.push(0, dir);
+        }
+        for slot in 0..self.config.slots {
+            let start = u64::from(slot) * self.config.step_period;
+            match (firing.slot(slot), self.config.dir_line, self.config.pulse_phasing) {
+                (0, ..) => {}
+                (fires, DirLine::PerChannel, _) => self.staggered(start, fires, dir),
+                (fires, DirLine::Common, PulsePhasing::Simultaneous) => self.common(start, fires, right),
+                (fires, DirLine::Common, PulsePhasing::Staggered) => {
+                    self.common_staggered(start, fires, right);
+                }
+            }
         }
     }
 
