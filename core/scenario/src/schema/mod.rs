@@ -32,11 +32,13 @@ pub(crate) mod rows;
 
 mod bus;
 mod controller;
+#[cfg(feature = "descriptions")]
 mod describe;
 mod driver;
 mod experiment;
 pub(crate) mod judge;
 mod line;
+#[cfg(feature = "descriptions")]
 mod markdown;
 mod mechanics;
 mod motor;
@@ -50,10 +52,12 @@ mod standalone;
 mod types;
 
 pub use controller::Controller;
+#[cfg(feature = "descriptions")]
 pub use describe::describe;
 pub use driver::{DriverModel, DriverTiming, TimingRules};
 pub use experiment::{Analysis, Scenario};
 pub use line::{Glitch, Host, Line, Noise};
+#[cfg(feature = "descriptions")]
 pub use markdown::markdown;
 #[cfg(feature = "plant")]
 pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};

@@ -44,14 +44,14 @@ macro_rules! rows {
             const TYPE: $crate::schema::Type = {
                 const FIELDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
                     name: $crate::schema::rows::plain(stringify!($field)),
-                    doc: concat!($($field_doc),*),
+                    doc: $crate::schema::rows::said(concat!($($field_doc),*)),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
                     only_if_set: !concat!("", $(stringify!($cfg))?).is_empty(),
                     ..$row
                 }),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
-                    doc: concat!($($doc, "\n"),*),
+                    doc: $crate::schema::rows::said(concat!($($doc, "\n"),*)),
                     fields: FIELDS,
                     is_choice: false,
                     is_external: $foreign,
@@ -126,13 +126,13 @@ macro_rules! kinds {
             const TYPE: $crate::schema::Type = {
                 const KINDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
                     name: $key,
-                    doc: concat!($($kind_doc),*),
+                    doc: $crate::schema::rows::said(concat!($($kind_doc),*)),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
                     ..$row
                 }),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
-                    doc: concat!($($doc, "\n"),*),
+                    doc: $crate::schema::rows::said(concat!($($doc, "\n"),*)),
                     fields: KINDS,
                     is_choice: true,
                     is_external: false,
@@ -191,7 +191,7 @@ macro_rules! words {
         impl $crate::schema::Typed for $ty {
             const TYPE: $crate::schema::Type = {
                 const WORDS: &[$crate::schema::Word] =
-                    &[$($crate::schema::Word { name: $word, label: $label, doc: concat!($($doc),*) }),*];
+                    &[$($crate::schema::Word { name: $word, label: $label, doc: $crate::schema::rows::said(concat!($($doc),*)) }),*];
                 $crate::schema::Type::Word(WORDS)
             };
         }
@@ -222,6 +222,11 @@ macro_rules! words {
 }
 
 use crate::schema::{Group, Type, Typed};
+
+/// What is said of a field, which a build without the feature `descriptions` leaves out.
+pub(crate) const fn said(doc: &'static str) -> &'static str {
+    if cfg!(feature = "descriptions") { doc } else { "" }
+}
 
 /// A field's name without the mark of a name that is Rust's own word.
 pub(crate) const fn plain(name: &'static str) -> &'static str {
