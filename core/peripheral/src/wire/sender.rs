@@ -207,3 +207,62 @@ impl Sender {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    /// 10.5 cycles a bit.
+    fn sender(start: u64, bytes: &[u8]) -> Sender {
+        let mut schedule = Schedule::default();
+        schedule.push(Instant(start), bytes);
+        Sender::new(Rc::new(schedule), 21, 2)
+    }
+
+    /// The next edges, at most so many.
+    fn edges(sender: &mut Sender, most: usize) -> Vec<u64> {
+        let next = || {
+            let edge = sender.next_edge();
+            (edge != Instant::NEVER).then(|| sender.pass())?;
+            Some(edge.0)
+        };
+        core::iter::from_fn(next).take(most).collect()
+    }
+
+    #[test]
+    fn bytes_that_join_a_send_later_begin_as_if_they_had_been_known() {
+        let bytes = [0x00, 0xff, 0x55, 0x81, 0x7e];
+        let all = edges(&mut sender(100, &bytes), usize::MAX);
+        for (known, passed) in
+            (0..=bytes.len()).flat_map(|known| (0..=all.len()).map(move |passed| (known, passed)))
+        {
+            let (first, later) = bytes.split_at(known);
+            let mut joined = sender(100, first);
+            let mut found = edges(&mut joined, passed);
+            joined.extend(later);
+            found.extend(edges(&mut joined, usize::MAX));
+            assert_eq!(found, all, "{known} bytes known, {passed} edges passed");
+        }
+    }
+
+    #[test]
+    fn a_whole_byte_is_passed_as_its_edges_are() {
+        let bytes = [0x00, 0xff, 0x55];
+        let (mut whole, mut single) = (sender(7, &bytes), sender(7, &bytes));
+        for byte in bytes {
+            let ahead = whole.byte_ahead().expect("a byte is ahead");
+            assert_eq!((ahead.byte, ahead.start), (byte, single.next_edge()));
+            let places = (0..BYTE_BITS as usize).filter(|bit| ahead.edges >> bit & 1 != 0);
+            let starts: Vec<u64> = places.map(|bit| ahead.start.0 + ahead.bit_starts[bit]).collect();
+            assert_eq!(edges(&mut single, starts.len()), starts, "{byte:#x}");
+            whole.pass_byte();
+            assert_eq!((whole.next_edge(), whole.level()), (single.next_edge(), single.level()), "{byte:#x}");
+        }
+        assert!(whole.byte_ahead().is_none());
+        // What is sent after all has been forgotten begins anew.
+        whole.forget_sent();
+        whole.send(Instant(900), &[0x0f]);
+        assert_eq!(edges(&mut whole, usize::MAX), [900, 910, 952, 994]);
+    }
+}

@@ -211,7 +211,8 @@ impl Receiver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec::Vec;
+    use crate::wire::{BitTimes, Schedule, Sender};
+    use alloc::{rc::Rc, vec::Vec};
 
     /// B = 11: looks at t+5 (start), t+16+11*i (data), t+104 (stop).
     fn heard(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, RxEvent)> {
@@ -262,6 +263,38 @@ mod tests {
         assert_eq!(receiver.clock(Instant(300), true, false), None);
         assert_eq!(receiver.clock(Instant(404), false, false), Some(RxEvent::FramingError));
         assert_eq!([false, true].map(|rx| receiver.deadline(Instant(404), rx).0), [u64::MAX, 405]);
+    }
+
+    /// Senders of many rates: where bytes are in step all of them are heard as they are sent, each before the next begins.
+    #[test]
+    fn bytes_in_step_are_heard_as_they_are_sent() {
+        let (bytes, mut told) = ([0x00, 0xff, 0x55, 0xa7, 0x80], [0, 0]);
+        for (bit, percent) in (1..=24).flat_map(|bit| (80..=120).map(move |percent| (bit, percent))) {
+            let (clock_hz, baud) = (1_000_000, 100_000_000 / (bit * percent));
+            let mut schedule = Schedule::default();
+            schedule.push(Instant(5), &bytes);
+            let mut sender = Sender::new(Rc::new(schedule), clock_hz, baud);
+            let mut receiver = Receiver::new(Cycles(bit.into()));
+            let is_in_step = receiver.is_in_step(sender.bit_starts());
+            let (mut found, mut before) = (Vec::new(), true);
+            for cycle in 1..2000 {
+                if sender.next_edge() == Instant(cycle) {
+                    sender.pass();
+                }
+                found.extend(
+                    receiver.clock(Instant(cycle), before, sender.level()).map(|heard| (cycle, heard)),
+                );
+                before = sender.level();
+            }
+            let times = BitTimes::new(clock_hz, baud);
+            let sent = (0..).zip(bytes).map(|(index, byte)| {
+                let start = Instant(5) + times.byte(index);
+                (receiver.stop_of(start).0, RxEvent::Byte(byte))
+            });
+            assert!(!is_in_step || sent.eq(found), "bits of {bit}, sent at {baud} of {clock_hz}");
+            told[usize::from(is_in_step)] += 1;
+        }
+        assert!(told.iter().all(|count| *count > 200), "{told:?} out of step and in step");
     }
 
     #[test]
