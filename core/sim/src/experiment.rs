@@ -17,7 +17,7 @@ use stepscope_peripheral::{
     config::Config,
     device::{Device, Faults, SegmentEngine},
     segment::CheckedSegments,
-    signal::{Event, MAX_CHANNELS, Record, Sink},
+    signal::{Event, MAX_CHANNELS, Record, Sink, Unpaused},
     units::{Cycles, Instant},
     wire::{ForcedLevel, Line, Schedule},
 };
@@ -303,8 +303,9 @@ impl Experiment {
     /// the same.
     pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
+        let mut sinks: Vec<_> = sinks.iter_mut().map(Unpaused).collect();
         while !run.is_done() {
-            run.run_to(run.controllers.end.unwrap_or(Instant::NEVER), sinks);
+            run.run_to(run.controllers.end.unwrap_or(Instant::NEVER), &mut sinks);
         }
         run
     }
@@ -602,6 +603,27 @@ mod tests {
         let json =
             alloc::format!(r#"{{"source":{{"packets":{{"packets":[{}""]}}}}}}"#, "\"\",".repeat(20_000));
         assert!(paths(&json).len() <= 101);
+    }
+
+    #[test]
+    fn a_whole_run_goes_to_its_end_whatever_its_sink_asks_for() {
+        #[derive(Default)]
+        struct Pausing(Vec<Record>);
+
+        impl Sink for Pausing {
+            fn record(&mut self, record: Record) {
+                self.0.push(record);
+            }
+
+            fn paused(&self) -> bool {
+                self.0.len() >= 50
+            }
+        }
+
+        let experiment = Experiment::from_json("{}").expect("no problems");
+        let (mut pausing, mut all) = (Pausing::default(), Vec::new());
+        assert_eq!(experiment.run(&mut pausing).cycles(), experiment.run(&mut all).cycles());
+        assert!(pausing.0 == all && all.len() > 50, "{} records", all.len());
     }
 
     #[test]

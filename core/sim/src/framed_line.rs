@@ -7,6 +7,10 @@
 //! The run goes from window to window. In a window nobody changes what he does to the line, so each
 //! controller runs through it alone, as fast as its own edges allow. A window ends where the host or
 //! a forced level changes, where a controller may begin or go on to drive, or where the host acts.
+//!
+//! Bytes of the host that nothing disturbs are passed without windows, by all controllers at once, where none of them drives
+//! or begins to before the byte's end, and the host does nothing but send it. What a window would note meanwhile, who drives, hears and
+//! collides, is noted anew at the start of the next one.
 
 use crate::framed_host::FramedHost;
 use crate::ignored::Ignored;
@@ -183,6 +187,7 @@ impl FramedLine {
             None => last.device.run_bytes(line, end, &mut Ignored),
         };
         (*start, *until) = (last.device.now(), last.device.now());
+        debug_assert!(nodes.iter().all(|node| node.device.now() == *start), "a controller stayed behind");
         true
     }
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Most bytes are heard as they are sent. Each of them is passed in one piece, with the STEP and DIR that change meanwhile
-//! ([`Device::run_bytes`]), where nothing is forced on the line and no tick begins or ends beside it.
+//! ([`Device::run_bytes`]), where nothing is forced on the line up to its end and no tick begins or ends beside it.
 //!
 //! All give the same trace, for every configuration and every line.
 
@@ -78,20 +78,24 @@ impl Device {
         }
     }
 
-    /// Whether [`Self::run_bytes`] may pass a byte that comes next on the line: gives the look at its stop bit. `None` where that is
-    /// not before `until`, where more than RX, STEP and DIR may change up to it, and where no byte may begin.
+    /// Whether [`Self::run_bytes`] would pass a byte that comes next on the line: gives the look at its stop bit. `None` where that
+    /// is not before `until`, where more than RX, STEP and DIR may change up to it, and where no byte may begin.
     #[must_use]
     #[inline(always)]
     pub fn whole_byte(&self, byte: &ByteAhead<'_>, until: Instant) -> Option<Instant> {
-        debug_assert!(self.now <= byte.start, "{byte:?} has begun before {:?}", self.now);
         let stop = self.receiver.stop_of(byte.start);
         let deaf = self.machine.transceiver.levels() & Levels::DE != 0;
-        let whole = self.line && !deaf && self.receiver.is_armed() && stop < until.min(self.other);
+        let whole = self.now <= byte.start
+            && self.line
+            && !deaf
+            && self.receiver.is_armed()
+            && stop < until.min(self.other);
         (whole && self.machine.sequencer.only_pulses(stop)).then_some(stop)
     }
 
     /// [`Self::run`] through the bytes of `line` that may be passed whole, each up to the look at its stop bit in one piece: whether
-    /// there was any. They are heard as they are sent ([`Self::is_in_step`]). Stops early where the sink asks for a pause.
+    /// there was any. Stops early where the sink asks for a pause. For lines on which nobody else drives before `until`, and whose
+    /// bytes are heard as they are sent: [`Self::is_in_step`], which is not asked here, as it stays the same.
     pub fn run_bytes(&mut self, line: &mut Line, until: Instant, sink: &mut impl Sink) -> bool {
         debug_assert!(self.is_in_step(line.bit_starts()), "bytes are not heard as they are sent");
         let from = self.now;

@@ -2,8 +2,8 @@
 //!
 //! A synchronous machine: [`Device::clock`] advances it one cycle. Because that is slow,
 //! [`Device::cycles_until_event`] tells for how many cycles nothing can change while the line keeps its level,
-//! and [`Device::advance`] passes them; [`Device::run`] does both as fast as it can. All three give
-//! the same trace.
+//! and [`Device::advance`] passes them; [`Device::run`] does both as fast as it can, and
+//! [`Device::run_bytes`] passes whole bytes. All give the same trace.
 //!
 //! # The order within one cycle
 //! 1. EN, TX and DE change, and the line's level is heard (high while DE is);
@@ -91,7 +91,8 @@ pub struct Device {
     last: Instant,
     /// Next cycle in which something other than line, receiver and sequencer falls due: reset, the cycle after what firmware or a
     /// plant did, a gap on a raw line, a signal of the transceiver on a framed one. (On a raw line the transceiver moves EN alone,
-    /// and that in the cycle after firmware's order.) Only a cycle that is clocked by itself moves it on.
+    /// and that in the cycle after firmware's order.) Only a cycle that is clocked by itself moves it on, and the
+    /// look at a stop bit in [`Self::run_bytes`].
     ///
     /// Invariant: no cycle is run past it.
     other: Instant,

@@ -3,7 +3,7 @@
 use crate::device::Device;
 use crate::{
     config::Config,
-    signal::{Event, Record, Sink},
+    signal::{Sink, Unpaused},
     units::{Cycles, Instant},
 };
 use stepscope_registers::RegisterBus;
@@ -57,6 +57,7 @@ impl<S: Sink> ModelBus<S> {
     /// Time passes: the processor does something else for so many cycles.
     pub fn wait(&mut self, cycles: Cycles) {
         let until = Instant(self.device.now().0.saturating_add(cycles.0));
+        // Whatever is done with the trace.
         self.device.run(true, until, &mut Unpaused(&mut self.sink));
     }
 }
@@ -73,23 +74,13 @@ impl<S: Sink> RegisterBus for ModelBus<S> {
     }
 }
 
-/// A sink that never asks for a pause: time passes on a bus whatever is done with the trace.
-struct Unpaused<'a, S>(&'a mut S);
-
-impl<S: Sink> Sink for Unpaused<'_, S> {
-    fn record(&mut self, record: Record) {
-        self.0.record(record);
-    }
-
-    fn event(&mut self, at: Instant, event: Event) {
-        self.0.event(at, event);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{Bus, SerialLine};
+    use crate::{
+        config::{Bus, SerialLine},
+        signal::{Event, Record},
+    };
     use alloc::vec::Vec;
     use stepscope_registers::{orders, push, status, ticks_done};
 

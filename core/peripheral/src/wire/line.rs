@@ -36,6 +36,7 @@
 use crate::units::Instant;
 use crate::wire::{
     ByteAhead, Schedule,
+    bit_times::BYTE_BITS,
     sender::{BitStarts, Sender},
 };
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
@@ -205,19 +206,28 @@ impl Line {
         self.sender.bit_starts()
     }
 
-    /// The byte that begins with [`Self::next_change`], where the host's bytes are all that changes the line.
+    /// The byte that begins next, where nothing is forced up to its end.
     #[must_use]
     #[inline(always)]
     pub fn byte_ahead(&self) -> Option<ByteAhead<'_>> {
-        if self.passed < self.forced.len() { None } else { self.sender.byte_ahead() }
+        let byte = self.sender.byte_ahead()?;
+        let is_whole = self.forced.get(self.passed).is_none_or(|forced| {
+            self.force.is_none() && forced.start.0 >= byte.start.0 + byte.bit_starts[BYTE_BITS as usize]
+        });
+        is_whole.then_some(byte)
     }
 
     /// Passes all edges of [`Self::byte_ahead`].
     #[inline(always)]
     pub fn pass_byte(&mut self) {
-        debug_assert!(self.passed == self.forced.len(), "the byte is not all that changes the line");
+        debug_assert!(self.byte_ahead().is_some(), "no whole byte is ahead");
         self.sender.pass_byte();
-        self.next = self.sender.next_edge();
+        if self.passed < self.forced.len() {
+            self.look_ahead();
+            self.find_heard();
+        } else {
+            self.next = self.sender.next_edge();
+        }
     }
 
     /// [`Self::change`] while something is left to be forced.
@@ -388,6 +398,29 @@ mod tests {
                 }
             }
             assert_eq!(changes, due, "{before:?} {new:?}");
+        }
+    }
+
+    #[test]
+    fn a_byte_is_whole_where_nothing_is_forced_up_to_its_end() {
+        // The byte lasts from 100 to 200: two edges.
+        let rows = [(50, 10, false), (50, 60, false), (199, 1, false), (200, 5, true), (900, 5, true)];
+        for (start, length, is_whole) in rows {
+            let end = Instant(start + length);
+            let forced = ForcedLevel { start: Instant(start), end, level: false };
+            let mut schedule = Schedule::default();
+            schedule.push(Instant(100), &[0xff]);
+            let mut line = Line::new(Rc::new(schedule), &[forced], 100, 10);
+            assert_eq!(line.byte_ahead().is_some(), is_whole, "forced from {start} for {length}");
+            if is_whole {
+                line.pass_byte();
+                assert_eq!((line.next_change(), line.heard_until()), (forced.start, forced.start));
+                assert!(line.byte_ahead().is_none());
+            }
+            while line.next_change() <= end {
+                line.change();
+            }
+            assert_eq!(line.byte_ahead().is_some(), start + length < 100, "after it");
         }
     }
 

@@ -39,11 +39,13 @@ const _: () = assert!(BYTE_BITS <= u32::BITS as u64, "the edges of a byte have a
 /// Cycles from a byte's start to where each of its bits begins, and to its end; those after it are never reached.
 pub type BitStarts = [u64; NO_BIT + 1];
 
-/// The place of a bit that no byte has.
+/// The place of a bit that no byte has; all bits of a place, too, so that masked with it every place is one of these.
 pub const NO_BIT: usize = 15;
+const _: () = assert!((NO_BIT + 1).is_power_of_two() && NO_BIT > BYTE_BITS as usize);
 
 /// A byte that begins with a line's next edge.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct ByteAhead<'a> {
     /// The byte.
     pub byte: u8,
@@ -183,8 +185,7 @@ impl Sender {
     /// Passes all edges of [`Self::byte_ahead`].
     #[inline(always)]
     pub fn pass_byte(&mut self) {
-        debug_assert!(self.edges & 1 != 0, "no byte is ahead");
-        self.level = 1;
+        debug_assert!(self.edges & 1 != 0 && self.level == 1, "no byte is ahead");
         self.load();
     }
 
