@@ -110,7 +110,8 @@ impl FramedLine {
     fn enter(&mut self, sinks: &mut [impl Sink]) {
         let Self { line, host, nodes, start, .. } = self;
         let now = *start;
-        if line.next_change() == now {
+        // Several where all rested meanwhile, and nobody heard them.
+        while line.next_change() <= now {
             line.change();
         }
         let host_sends = match host {

@@ -60,7 +60,8 @@ impl RawReceiver {
                 continue;
             }
             if start == until {
-                if self.line.next_change() == start {
+                // Several where all rested meanwhile, and nobody heard them.
+                while self.line.next_change() <= start {
                     self.line.change();
                     level = self.line.heard(true);
                 }
@@ -79,7 +80,7 @@ impl RawReceiver {
 
     /// One cycle.
     pub(super) fn clock(&mut self, sink: &mut impl Sink) {
-        if self.line.next_change() == self.start {
+        while self.line.next_change() <= self.start {
             self.line.change();
         }
         self.device.clock(self.line.heard(true), sink);

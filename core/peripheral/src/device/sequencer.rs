@@ -279,7 +279,8 @@ impl Sequencer {
         self.running.map_or(self.deadline, |running| running.end) >= until
     }
 
-    /// [`Self::run`] before `until`, where only changes of the tick that runs fall due, beside the edges of a byte.
+    /// [`Self::run`] before `until`, where only changes of the tick that runs fall due, beside the edges of a byte. Copied into
+    /// its caller it is 5 % slower in the page, and 7 % faster natively.
     #[inline(never)]
     pub(super) fn run_beside(
         &mut self,

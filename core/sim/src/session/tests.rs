@@ -61,6 +61,23 @@ fn what_the_scenario_sends_how_long_and_how_badly_is_left_out_and_segments_have_
 }
 
 #[test]
+fn what_is_forced_while_all_rest_and_nobody_hears_it_is_past_when_bytes_come() {
+    for protocol in ["raw", "framed"] {
+        let json = format!(
+            r#"{{ "line": {{ "protocol": "{protocol}", "glitches": [
+                {{ "start_cycle": 200000, "length_cycles": 2, "level": 1 }},
+                {{ "start_cycle": 200009, "length_cycles": 2, "level": 1 }} ] }} }}"#
+        );
+        let mut session = session(&json);
+        session.advance::<Digest>(Instant(300_000), &mut []);
+        session.receive(&[0x55, 0x33]);
+        session.advance::<Digest>(Instant(400_000), &mut []);
+        assert!(session.heard() == 2 && session.run().cycles().0 == 400_001, "{protocol}");
+        session.recording().verify().expect("the same");
+    }
+}
+
+#[test]
 fn a_reply_leaves_with_its_stop_bit_and_not_before() {
     let mut session = session(
         r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#,
