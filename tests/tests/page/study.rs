@@ -457,6 +457,17 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
             ensure!(speeds.ink(ink).columns > 100.0, "{ink} has {} columns", speeds.ink(ink).columns);
         }
 
+        // Its acceleration reaches over half of what the greatest one has room for: what has no bound, and no chart, takes none.
+        let reach = "(() => {
+            const canvas = document.querySelector(\"canvas[aria-label='Acceleration, Cosine, exact']\");
+            const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            const coloured = (y) => Array.from({ length: width }, (_, x) => 4 * (y * width + x)).some((at) =>
+                data[at + 3] > 200 && Math.max(...data.slice(at, at + 3)) - Math.min(...data.slice(at, at + 3)) > 60);
+            const rows = Array.from({ length: height }, (_, y) => y).filter(coloured);
+            return (rows.at(-1) - rows[0]) / height; })()";
+        let reach: f64 = page.eval(reach).await?;
+        ensure!(reach > 0.3, "the acceleration of a cosine reaches over {reach} of its chart");
+
         page.click("[aria-label='Use: Bezier']").await?;
         page.until(&format!(
             "document.querySelector('[data-path=\"{MOVE}.ramps.shape\"]')?.value === 'bezier'"

@@ -272,17 +272,19 @@ export function createCompare({ engine, dispatch, now, panel }) {
           : [];
       });
     const every = rows.map((_, at) => at);
-    const range = (/** @type {"at_speed" | "at_acceleration"} */ what) => {
-      const values = rows.flatMap((row) => [...(row[what] ?? [])]);
+    const range = (/** @type {"at_speed" | "at_acceleration"} */ what, shown = rows) => {
+      const values = shown.flatMap((row) => [...(row[what] ?? [])]);
       const [min, max] = [Math.min(0, ...values), Math.max(0, ...values)];
       return { min: min * 1.05, max: max * 1.05 || 1, unit: "", prefix: true, label_px: GUTTER };
     };
     draw(speeds, { x: axis, y: range("at_speed"), series: of("at_speed", every) });
-    const accelerations = { ...range("at_acceleration"), label_px: 44 };
+    // Where the speed jumps the acceleration has no bound, and no chart.
+    const isBounded = (/** @type {Cost} */ row) => row.jump === 0;
+    const accelerations = { ...range("at_acceleration", rows.filter(isBounded)), label_px: 44 };
     small.forEach(({ name, canvas, key }, at) => {
       say(name, rows[at].name);
       canvas.setAttribute("aria-label", `Acceleration, ${rows[at].name}`);
-      /** @type {HTMLElement} */ (canvas.parentElement).hidden = !rows[at].at_acceleration || rows[at].jump > 0;
+      /** @type {HTMLElement} */ (canvas.parentElement).hidden = !(rows[at].at_acceleration && isBounded(rows[at]));
       draw(canvas, {
         x: axis,
         y: accelerations,
