@@ -140,6 +140,8 @@ proptest! {
         prop_assert!(done(&engine), "{:?}", engine);
 
         let (mut cut, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        engine.run(Instant::RESET, &mut cut);
+        prop_assert_eq!((engine.now(), cut.len()), (Instant::RESET, 0), "until reset nothing is run");
         engine.run(Instant(until), &mut cut);
         prop_assert_eq!(engine.now(), Instant(until));
         prop_assert!(cut.iter().eq(expected.iter().filter(|record| record.cycle.0 < until)));

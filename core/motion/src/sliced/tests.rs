@@ -1,6 +1,13 @@
 //! The sliced cosine, held against the document's tables and its own rule.
 
 use super::*;
+use crate::{
+    MAX_SPEED,
+    mechanics::Distance,
+    moves::{self, Axis, CosineMethod, Move},
+    plan_axis,
+};
+use alloc::{string::ToString, vec};
 use rand_xoshiro::{
     Xoshiro256StarStar,
     rand_core::{Rng, SeedableRng},
@@ -132,6 +139,25 @@ fn a_plateau_that_jumps_all_at_once_is_still_compensated_in_time() {
     let curve = Sliced::new(100_001, 100.0, 0.0, 0.001, 1_000_000).unwrap();
     assert_eq!(curve.position(curve.duration_s()), 100_001.0);
     assert!((curve.time_error().relative + 0.5).abs() < 1e-4, "{:?}", curve.time_error());
+}
+
+/// Ten slices of a million steps each, at whose rate the decimal of their length decides: its last digits are let pass, half a
+/// step/s is not.
+#[test]
+fn a_rate_above_the_highest_by_more_than_a_decimals_digits_is_refused() {
+    let plan = |steps: f64, slice_s: f64| {
+        let distance = Distance::Steps(steps);
+        let duration_s = 10.0 * slice_s;
+        let moved =
+            moves::Cosine { distance, duration_s, ramp_s: 0.0, method: CosineMethod::Sliced, slice_s };
+        plan_axis(&Axis { moves: vec![Move::Cosine(moved)], ..Axis::default() }, "x")
+    };
+    let plan_at_the_highest = plan(1e7, 0.1).expect("at the highest rate");
+    let rate = plan_at_the_highest.moves()[0].profile.peaks().speed;
+    assert!((rate - MAX_SPEED).abs() < 1e-4, "{rate}");
+    let refused = plan(9_999_995.0, 0.099_999_995).expect_err("half a step/s above it");
+    assert_eq!(refused.len(), 1, "{refused:?}");
+    assert!(refused[0].to_string().contains("duration_s"), "{refused:?}");
 }
 
 #[test]

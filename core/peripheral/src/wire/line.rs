@@ -52,6 +52,13 @@ pub struct ForcedLevel {
     pub level: bool,
 }
 
+impl ForcedLevel {
+    /// Whether it is over in a cycle.
+    fn ends_by(self, cycle: Instant) -> bool {
+        self.end <= cycle
+    }
+}
+
 /// The line, from one change to the next.
 #[derive(Clone, Debug)]
 pub struct Line {
@@ -113,8 +120,8 @@ impl Line {
     /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
     pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);
-        let first = forced.partition_point(|one| one.end <= new.start);
-        let end = forced.partition_point(|one| one.start < new.end);
+        let first = forced.partition_point(|one| one.ends_by(new.start));
+        let end = forced.partition_point(|one| !new.ends_by(one.start));
         let met = forced.get(first..end).unwrap_or_default();
         let before = met.first().filter(|one| one.start < new.start);
         let after = met.last().filter(|one| one.end > new.end);
