@@ -17,7 +17,7 @@ use std::{
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
-        sine_polyline::{self, Bounds, Distinct, Row, swept},
+        sine_polyline::{self, Bounds, Distinct, Row, Rows, swept},
     },
     motion::{
         Profile,
@@ -241,9 +241,9 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 }
 
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
-    let (progress, bounds) = (Progress::new("sweep", false), range.bounds());
+    let (progress, made) = (Progress::new("sweep", false), Rows::new(range.bounds()));
     let rows = parallel::each(points.into(), None, progress, |index| {
-        Row::of(swept(range.from, range.to, points, index as u32), bounds)
+        made.row(swept(range.from, range.to, points, index as u32))
     })?;
     if range.common.written.json {
         return json_of("sine sweep", "polylines", rows.iter().map(cells)).write(out);

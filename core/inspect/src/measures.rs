@@ -34,7 +34,10 @@ mod pulse_errors;
 pub use curve_metrics::{CurveMetrics, POINTS};
 pub use pulse_errors::PulseErrors;
 
-use crate::{actual_motion::Pulses, sine_polyline::differences};
+use crate::{
+    actual_motion::Pulses,
+    sine_polyline::{cosines, differences},
+};
 use alloc::vec::Vec;
 use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{due_steps, placed};
@@ -235,7 +238,7 @@ fn polyline(sine: &sine_segments::SineSegments) -> SineMeasures {
         .chain(segments.last().map(|segment| segment.to))
         .collect();
     let mut sums = Sums::default();
-    for (point, (cosine, off)) in differences(&points).enumerate() {
+    for (point, (cosine, off)) in differences(&points, &cosines()).enumerate() {
         let (cosine, off) = (cosine * amplitude, off * amplitude);
         let at_s = point as f64 * sine.point_s();
         sums.look(at_s, off);

@@ -178,29 +178,54 @@ impl Row {
     /// That of one d1.
     #[must_use]
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
-        Self::of_points(d1, &breakpoints(d1), bounds.into())
-    }
-
-    fn of_points(d1: f64, points: &[u16], bounds: Bounds) -> Self {
-        let distortion = distortion(&on_points(points), bounds);
-        Self { d1, segments: points.len() - 1, distortion, euclidean: euclidean(points) }
+        Rows::new(bounds).row(d1)
     }
 }
 
-fn euclidean(points: &[u16]) -> f64 {
-    let square: f64 = differences(points).map(|(_, off)| off * off).sum();
-    libm::sqrt(square)
+/// What makes rows: their bounds, and the cosines that all of them are held against.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    bounds: Bounds,
+    cosines: Vec<f64>,
+}
+
+impl Rows {
+    /// Those within these bounds.
+    #[must_use]
+    pub fn new(bounds: impl Into<Bounds>) -> Self {
+        Self { bounds: bounds.into(), cosines: cosines() }
+    }
+
+    /// That of one d1.
+    #[must_use]
+    pub fn row(&self, d1: f64) -> Row {
+        self.of_points(d1, &breakpoints(d1))
+    }
+
+    fn of_points(&self, d1: f64, points: &[u16]) -> Row {
+        let distortion = distortion(&on_points(points), self.bounds);
+        let square: f64 = differences(points, &self.cosines).map(|(_, off)| off * off).sum();
+        Row { d1, segments: points.len() - 1, distortion, euclidean: libm::sqrt(square) }
+    }
+}
+
+/// The cosine at the points of a quarter, from its extreme to its middle.
+pub(super) fn cosines() -> Vec<f64> {
+    (0..=QUARTER).map(cosine_at).collect()
 }
 
 /// The cosine at the quarter's 512 points, from its extreme on, and what the line through these breakpoints
 /// has more there, in parts of the amplitude.
-pub(super) fn differences(points: &[u16]) -> impl Iterator<Item = (f64, f64)> + '_ {
+pub(super) fn differences<'p>(
+    points: &'p [u16],
+    cosines: &'p [f64],
+) -> impl Iterator<Item = (f64, f64)> + 'p {
     points.iter().zip(points.iter().skip(1)).flat_map(|(&from, &to)| {
-        let (near, far) = (cosine_at(from), cosine_at(to));
-        (from..to).map(move |point| {
-            let line = near + (far - near) * f64::from(point - from) / f64::from(to - from);
-            let cosine = cosine_at(point);
-            (cosine, line - cosine)
+        let chord = cosines.get(from.into()..=to.into()).unwrap_or_default();
+        let (near, far) = (chord.first().copied().unwrap_or(0.0), chord.last().copied().unwrap_or(0.0));
+        (0..to - from).zip(chord).map(move |(point, cosine)| {
+            let line = near + (far - near) * f64::from(point) / f64::from(to - from);
+            (*cosine, line - cosine)
         })
     })
 }
@@ -213,8 +238,8 @@ pub fn sweep(
     count: u32,
     bounds: impl Into<Bounds>,
 ) -> impl ExactSizeIterator<Item = Row> {
-    let bounds = bounds.into();
-    (0..count).map(move |index| Row::of(swept(from, to, count, index), bounds))
+    let rows = Rows::new(bounds);
+    (0..count).map(move |index| rows.row(swept(from, to, count, index)))
 }
 
 /// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
@@ -231,14 +256,14 @@ pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
 pub struct Distinct {
     next: Option<f64>,
     to: f64,
-    bounds: Bounds,
+    rows: Rows,
 }
 
 impl Distinct {
     /// Those of `from` <= d1 <= `to`.
     #[must_use]
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
-        Self { next: Some(from), to, bounds: bounds.into() }
+        Self { next: Some(from), to, rows: Rows::new(bounds) }
     }
 }
 
@@ -249,7 +274,7 @@ impl Iterator for Distinct {
         let d1 = self.next.take().filter(|d1| *d1 <= self.to)?;
         let points = breakpoints(d1);
         self.next = next_deviation(&points);
-        Some(Row::of_points(d1, &points, self.bounds))
+        Some(self.rows.of_points(d1, &points))
     }
 }
 

@@ -17,7 +17,7 @@
 //! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
 //! ```
 
-use crate::{curve::greater, round_half_up};
+use crate::{bisection::least_near, curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
@@ -41,17 +41,18 @@ pub fn cosine_at(point: u16) -> f64 {
 ///
 /// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
 /// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
-/// breakpoint, and at least the very next point is.
+/// breakpoint, and at least the very next point is. A longer chord deviates more, so not each point is
+/// tried: the search begins at a chord as long as the one before, which is seldom far off.
 pub fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
-    let mut from = 0;
+    let (mut from, mut longer) = (0, 0);
     while from < QUARTER {
-        let mut to = from + 1;
-        while to < QUARTER && deviation(from, to + 1) <= d1 {
-            to += 1;
-        }
-        points.push(to);
-        from = to;
+        let next = from + 1;
+        let y_from = cosine_at(from);
+        let holds = |to: u16| deviation((from, y_from), to) <= d1;
+        longer = least_near(longer, (QUARTER - next).into(), |longer| !holds(next + longer as u16 + 1));
+        from = next + longer as u16;
+        points.push(from);
     }
     points
 }
@@ -61,7 +62,7 @@ pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
     let chords = breakpoints.iter().zip(breakpoints.iter().skip(1));
     chords
         .filter(|(_, to)| **to < QUARTER)
-        .map(|(from, to)| deviation(*from, to + 1))
+        .map(|(from, to)| deviation((*from, cosine_at(*from)), to + 1))
         .reduce(|least, deviation| if deviation < least { deviation } else { least })
 }
 
@@ -69,8 +70,8 @@ pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
 ///
 /// In a quarter the difference rises to one summit, where the cosine runs along the chord, and
 /// falls; so of the 101 only those next to the summit are looked at.
-fn deviation(from: u16, to: u16) -> f64 {
-    let (y_from, y_to) = (cosine_at(from), cosine_at(to));
+fn deviation((from, y_from): (u16, f64), to: u16) -> f64 {
+    let y_to = cosine_at(to);
     let length = f64::from(to - from);
     let summit = libm::asin((y_from - y_to) * 1024.0 / (PI * length)) * 1024.0 / PI;
     let nearest = round_half_up((summit - f64::from(from)) / length * f64::from(CHORD_PARTS)) as u16;
@@ -137,12 +138,20 @@ mod tests {
     }
 
     #[test]
+    fn a_longer_chord_deviates_more() {
+        for from in 0..QUARTER {
+            let deviations = (from + 1..=QUARTER).map(|to| deviation((from, cosine_at(from)), to));
+            assert!(deviations.is_sorted_by(|shorter, longer| shorter < longer), "from {from}");
+        }
+    }
+
+    #[test]
     fn the_summits_neighbours_stand_for_all_101_points_of_every_chord() {
         for from in 0..QUARTER {
             for to in from + 1..=QUARTER {
                 let (y_from, y_to) = (cosine_at(from), cosine_at(to));
                 let all = (0..=CHORD_PARTS).map(|k| deviation_at(k, from, to, y_from, y_to));
-                assert_eq!(deviation(from, to), all.fold(0.0, f64::max), "{from} to {to}");
+                assert_eq!(deviation((from, y_from), to), all.fold(0.0, f64::max), "{from} to {to}");
             }
         }
     }
