@@ -193,19 +193,31 @@ impl Quotients for EvenRun {
     }
 
     fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
-        let (under, add, mut lanes) = (self.under as i64, self.add, self.lanes);
         // Beyond the last step nobody reads them.
-        for (wholes, rests) in wholes.chunks_exact_mut(2).zip(rests.chunks_exact_mut(2)) {
-            for (lane, (whole, rest)) in lanes.iter_mut().zip(wholes.iter_mut().zip(rests)) {
-                (*whole, *rest) = (lane.whole as u64, lane.rest as u64);
-                *lane = lane.plus(add, under);
-            }
-        }
-        self.lanes = lanes;
+        self.lanes = evenly(self.lanes, self.add, self.under, (wholes, rests));
         let len = usize::try_from(self.left).map_or(wholes.len(), |left| left.min(wholes.len()));
         self.left -= len as u64;
         len
     }
+}
+
+/// Writes quotients of which the first two are given and each is `add` after the next but one before it; says which two come
+/// next.
+#[inline]
+fn evenly(
+    mut lanes: [Lane; 2],
+    add: Lane,
+    under: u64,
+    (wholes, rests): (&mut [u64], &mut [u64]),
+) -> [Lane; 2] {
+    let under = under as i64;
+    for (wholes, rests) in wholes.chunks_exact_mut(2).zip(rests.chunks_exact_mut(2)) {
+        for (lane, (whole, rest)) in lanes.iter_mut().zip(wholes.iter_mut().zip(rests)) {
+            (*whole, *rest) = (lane.whole as u64, lane.rest as u64);
+            *lane = lane.plus(add, under);
+        }
+    }
+    lanes
 }
 
 fn common_divisor(mut a: u128, mut b: u128) -> u128 {
@@ -252,14 +264,9 @@ impl TableRun<'_> {
         let product = reload.wrapping_mul(self.clock_hz.into());
         (product / self.under, product % self.under)
     }
-}
 
-impl Quotients for TableRun<'_> {
-    fn under(&self) -> u64 {
-        self.under
-    }
-
-    fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
+    /// The next ones, each by the reload of its own interval.
+    fn by_reloads(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
         // The reloads come first: a loop that asks nothing keeps its numbers in registers.
         let len = self.table.reloads(self.past, wholes);
         let (mut last, (mut whole, mut rest)) = (self.last, self.time);
@@ -274,7 +281,31 @@ impl Quotients for TableRun<'_> {
             whole = whole.wrapping_add(add).wrapping_add(is_past.into());
             (*place, *rest_place) = (whole, rest);
         }
-        (self.last, self.time) = (last, (whole, rest));
+        self.last = last;
+        len
+    }
+}
+
+impl Quotients for TableRun<'_> {
+    fn under(&self) -> u64 {
+        self.under
+    }
+
+    fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
+        let len = match self.table.one_reload(self.past, wholes.len()) {
+            Some(reload) => {
+                let (each, under) = (Lane::of(self.cycles(reload)), self.under as i64);
+                let first = Lane::of(self.time).plus(each, under);
+                let next = [first, first.plus(each, under)];
+                evenly(next, each.plus(each, under), self.under, (wholes, rests));
+                wholes.len()
+            }
+            None => self.by_reloads(wholes, rests),
+        };
+        if let (Some(&whole), Some(&rest)) = (wholes.get(len.wrapping_sub(1)), rests.get(len.wrapping_sub(1)))
+        {
+            self.time = (whole, rest);
+        }
         self.past += len as u64;
         len
     }

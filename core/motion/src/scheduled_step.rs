@@ -332,7 +332,7 @@ impl Ends<'_> {
         let (start, rounding) = (self.start.cycles(), self.rounding);
         // All of them without a question, as in `rounded`: a loop that calls nothing keeps its numbers in registers.
         let mut are_certain = true;
-        for (cycle, cycles) in block.cycles.iter_mut().zip(cycles) {
+        for (cycle, cycles) in block.cycles.iter_mut().zip(cycles).take(len) {
             let from_middle;
             (*cycle, from_middle) = rounding.after_start(0, *cycles);
             are_certain &= rounding.is_certain(from_middle);
@@ -477,7 +477,7 @@ fn rounded(
     let from = start.cycles() + whole as f64;
     // All of them without a question, which is seldom of use.
     let mut are_certain = true;
-    for (cycle, cycles) in block.cycles.iter_mut().zip(cycles) {
+    for (cycle, cycles) in block.cycles.iter_mut().zip(cycles).take(len) {
         let from_middle;
         (*cycle, from_middle) = rounding.after_start(whole, *cycles);
         are_certain &= rounding.is_certain(from_middle);

@@ -114,8 +114,11 @@ pub(super) struct MiddleTime {
     pub(super) is_exact: bool,
 }
 
-/// Times of so many steps at once.
-pub(super) const BLOCK: usize = 64;
+/// Times of so many steps at once: what is done once for all of them costs little by then, and they are 2 kB.
+pub(super) const BLOCK: usize = 256;
+
+/// Steps after which a block's places are formed anew: a place that is no half and a count may have a rounding as a sum.
+const COUNTED_ON: usize = 64;
 
 /// 0, 1, 2, … as numbers to be read: counting takes browsers longer.
 pub(super) static COUNTED: [f64; BLOCK] = {
@@ -178,7 +181,10 @@ impl<'c> BySeries<'c> {
         let first = self.next;
         self.next += len as u64;
         let of_block = self.block.as_ref().map(|block| {
-            block.times(self.place(first), times);
+            let parts = times.get_mut(..len).unwrap_or_default().chunks_mut(COUNTED_ON);
+            for (step, part) in (first..).step_by(COUNTED_ON).zip(parts) {
+                block.times(self.place(step), part);
+            }
             OfBlock { time: block.time, off: block.off, least_speed: block.least_speed }
         });
         Some(Times { first, len, of_block })
@@ -273,7 +279,7 @@ impl Block {
     }
 
     /// The times of steps from a place on.
-    fn times(&self, from: f64, times: &mut [f64; BLOCK]) {
+    fn times(&self, from: f64, times: &mut [f64]) {
         match self.count {
             0..=2 => self.by_terms::<2>(from, times),
             3..=4 => self.by_terms::<4>(from, times),
@@ -285,7 +291,7 @@ impl Block {
 
     /// By so many terms: their number is the compiler's, so that several steps at a time go through all of them in
     /// registers. Those that do not tell are 0, which changes no sum.
-    fn by_terms<const N: usize>(&self, from: f64, times: &mut [f64; BLOCK]) {
+    fn by_terms<const N: usize>(&self, from: f64, times: &mut [f64]) {
         let terms: [f64; N] =
             core::array::from_fn(|n| if n < self.count { self.terms[n % TERMS] } else { 0.0 });
         for (index, time) in COUNTED.iter().zip(times) {

@@ -210,8 +210,10 @@ impl SineSegments {
 
     /// When each step falls due from the start, in what there are `per_point` of in a point of the angle, and whether it goes
     /// to the right.
-    pub(super) fn due_points(&self, per_point: f64) -> DuePoints<impl Iterator<Item = Interval> + '_> {
-        DuePoints { intervals: self.pieces(), interval: None, past: 0, per_point }
+    pub(super) fn due_points(&self, per_point: f64) -> DuePoints {
+        let period = self.pieces().take(4 * self.segments.len()).map(Run::of).collect();
+        let end = f64::from(self.oscillation.periods) * f64::from(POINTS);
+        DuePoints { period, at: 0, past: 0, origin: 0.0, end, per_point }
     }
 
     /// Whether step `k` (from 1) of all falls due before a time in cycles of a clock of `clock_hz`, for certain: its time
@@ -265,32 +267,57 @@ impl SineSegments {
     }
 }
 
+/// An interval's steps, which are equally far apart.
+struct Run {
+    /// The interval's beginning in points of the angle.
+    from: f64,
+    /// From step to step.
+    each: f64,
+    steps: u64,
+    right: bool,
+}
+
+impl Run {
+    fn of(Interval { from, to, steps, right }: Interval) -> Self {
+        Self { from, each: (to - from) / steps as f64, steps, right }
+    }
+}
+
 /// The steps of the segments, one after another.
-pub(super) struct DuePoints<I> {
-    intervals: I,
+pub(super) struct DuePoints {
+    /// Those of a period; the others have the same.
+    period: Vec<Run>,
     /// The one where it is, and how many of its steps are past.
-    interval: Option<Interval>,
+    at: usize,
     past: u64,
+    /// Where this period begins in points of the angle, and where the last one ends.
+    origin: f64,
+    end: f64,
     per_point: f64,
 }
 
-impl<I: Iterator<Item = Interval>> Runs for DuePoints<I> {
+impl Runs for DuePoints {
     /// No further than to the end of a segment.
     fn next_run(&mut self, block: &mut [f64]) -> (usize, bool) {
-        while self.interval.as_ref().is_none_or(|interval| self.past == interval.steps) {
-            (self.interval, self.past) = (self.intervals.next(), 0);
-            if self.interval.is_none() {
-                break;
+        let run = loop {
+            match self.period.get(self.at) {
+                Some(run) if self.past < run.steps => break run,
+                Some(_) => (self.at, self.past) = (self.at + 1, 0),
+                None if self.origin + f64::from(POINTS) < self.end => {
+                    (self.at, self.origin) = (0, self.origin + f64::from(POINTS));
+                }
+                None => return (0, false),
             }
-        }
-        let Some(Interval { from, to, steps, right }) = self.interval else { return (0, false) };
-        let len = block.len().min(BLOCK).min(usize::try_from(steps - self.past).unwrap_or(usize::MAX));
-        let (each, first, per_point) = ((to - from) / steps as f64, self.past as f64, self.per_point);
+        };
+        let len = block.len().min(BLOCK).min(usize::try_from(run.steps - self.past).unwrap_or(usize::MAX));
+        let (from, each, per_point) = (self.origin + run.from, run.each, self.per_point);
+        // A half more than what is past, as the sum with an index has no rounding either way.
+        let first = self.past as f64 + 0.5;
         for (index, due) in COUNTED.iter().zip(block.iter_mut().take(len)) {
-            *due = (from + (first + index + 0.5) * each) * per_point;
+            *due = (from + (first + index) * each) * per_point;
         }
         self.past += len as u64;
-        (len, right)
+        (len, run.right)
     }
 }
 
@@ -399,6 +426,30 @@ mod tests {
                 }
             }
             assert_eq!(sine.position(1.5), 0.0);
+        }
+    }
+
+    #[test]
+    fn every_period_has_its_steps_and_after_the_last_there_are_none() {
+        for (amplitude, periods) in [(1000, 3), (-7, 1), (1, 2), (64, 5)] {
+            let sine = SineSegments::new(amplitude, 0.5, periods, 0.006);
+            let (mut due, mut block, mut made) = (sine.due_points(1.0), [0.0; BLOCK], 0);
+            let mut last = 0.0;
+            loop {
+                let (len, right) = due.next_run(&mut block);
+                if len == 0 {
+                    break;
+                }
+                let half = (block[0] / f64::from(2 * QUARTER)) as u64;
+                assert_eq!(right, sine.oscillation.goes_right(half), "{amplitude}: {}", block[0]);
+                assert!(
+                    block[..len].iter().all(|at| core::mem::replace(&mut last, *at) < *at),
+                    "{amplitude}"
+                );
+                made += len as u64;
+            }
+            assert_eq!(made, sine.step_count(), "{amplitude}");
+            assert_eq!(due.next_run(&mut block), (0, false), "{amplitude}: asked again");
         }
     }
 

@@ -179,7 +179,7 @@ impl StepTimes {
         let len = self.next_block(times);
         // All of them without a question, as in `scheduled_step`.
         let mut are_certain = true;
-        for (cycle, cycles) in block.iter_mut().zip(&*times) {
+        for (cycle, cycles) in block.iter_mut().zip(&*times).take(len) {
             let from_middle;
             (*cycle, from_middle) = self.rounding.after_start(0, *cycles);
             are_certain &= self.rounding.is_certain(from_middle);

@@ -147,6 +147,12 @@ impl TrapezoidTable {
         }
     }
 
+    /// The reload of so many intervals that come after those which are past, if one of the plateau serves them all.
+    pub(super) fn one_reload(&self, past: u64, intervals: usize) -> Option<u64> {
+        let end = past.saturating_add(intervals as u64);
+        (past >= self.ramp && end <= self.count() - self.ramp).then(|| self.plateau_reload())
+    }
+
     /// Writes the timer ticks of the intervals that come after so many from the block's beginning on, and says of how many:
     /// none at the end.
     pub(super) fn reloads(&self, past: u64, block: &mut [u64]) -> usize {

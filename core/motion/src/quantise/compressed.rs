@@ -30,7 +30,7 @@ use crate::{
     ScheduledStep,
     problem::{Cause, ValueError},
 };
-use alloc::{collections::VecDeque, vec::Vec};
+use alloc::{boxed::Box, collections::VecDeque, vec::Vec};
 use core::num::NonZeroU32;
 use stepscope_peripheral::{
     segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
@@ -227,9 +227,9 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         before: u64,
         ready: VecDeque<(Window, bool)>,
     ) -> Compression<impl Iterator<Item = ScheduledStep>> {
-        let Windows { steps, ready: mut read } = self.windows;
-        read.steps.drain(..read.at);
-        let Ready { tolerance, format, pulse, steps: read, count, .. } = read;
+        let Windows { steps, ready: Ready { tolerance, format, pulse, steps: read, at, end, count, .. } } =
+            self.windows;
+        let read = read.into_iter().take(end).skip(at);
         let count = count - ready.len() as u64;
         let ready = ready.into_iter().map(|(window, right)| ScheduledStep { cycle: window.due, right });
         let ready = ready.chain(read).chain(steps);
@@ -279,12 +279,15 @@ struct Windows<I> {
 struct Ready {
     tolerance: Tolerance,
     format: EntryFormat,
+    /// Of the format, in a cycle.
+    units: u64,
     pulse: PulseTimes,
-    /// Those before `at` have their windows.
+    /// Those before `at` have their windows; from `end` on there is room for the next.
     ///
     /// Invariant: two have none, as long as there are as many.
-    steps: Vec<ScheduledStep>,
+    steps: Box<[ScheduledStep; READ + 1]>,
     at: usize,
+    end: usize,
     /// Cycle of the step before the next.
     before: u64,
     /// Steps that have their windows.
@@ -295,8 +298,18 @@ struct Ready {
 
 impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
-        let none = Vec::new();
-        let ready = Ready { tolerance, format, pulse, steps: none, at: 0, before: 0, count: 0, right: false };
+        let ready = Ready {
+            tolerance,
+            format,
+            units: 1 << format.fraction_bits,
+            pulse,
+            steps: Box::new([ScheduledStep { cycle: 0, right: false }; READ + 1]),
+            at: 0,
+            end: 0,
+            before: 0,
+            count: 0,
+            right: false,
+        };
         let mut windows = Self { steps, ready };
         windows.read();
         windows
@@ -306,17 +319,15 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     fn read(&mut self) {
         let Self { steps, ready } = self;
         if ready.left().len() < 2 {
-            ready.steps.drain(..ready.at);
-            ready.at = 0;
-            let mut len = ready.steps.len();
-            ready.steps.resize(len + READ, ScheduledStep { cycle: 0, right: false });
+            ready.steps.copy_within(ready.at..ready.end, 0);
+            let mut end = ready.end - ready.at;
             // From within, and into places that are there: so nothing is asked or called for each but what forms it.
             steps.by_ref().take(READ).for_each(|step| {
-                if let Some(place) = ready.steps.get_mut(len) {
-                    (*place, len) = (step, len + 1);
+                if let Some(place) = ready.steps.get_mut(end) {
+                    (*place, end) = (step, end + 1);
                 }
             });
-            ready.steps.truncate(len);
+            (ready.at, ready.end) = (0, end);
         }
     }
 
@@ -357,7 +368,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
 impl Ready {
     /// Steps without windows.
     fn left(&self) -> &[ScheduledStep] {
-        self.steps.get(self.at..).unwrap_or_default()
+        self.steps.get(self.at..self.end).unwrap_or_default()
     }
 
     /// Makes the windows of the run's next steps, `most` of them at most; says how many.
@@ -413,16 +424,17 @@ impl Ready {
         else {
             return false;
         };
-        let least = self.pulse.min_interval().0;
+        let least = self.pulse.min_interval().0 as i64;
         let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
-        let mut shortest = before;
+        // As signed numbers, which a step that is due before the one before it makes negative.
+        let mut shortest = before as i64;
         // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
         windows.extend(afters.iter().map(|next| {
-            let after = next.cycle.saturating_sub(due);
+            let after = next.cycle.wrapping_sub(due);
             let (early, late) = off(before, after);
             let (low, high) = (due.saturating_sub(early), due.wrapping_add(late));
-            let window = Window::of(due, (low, high), self.format);
-            shortest = shortest.min(before);
+            let window = Window::of(due, (low, high), self.units);
+            shortest = shortest.min(before as i64);
             (due, before) = (next.cycle, after);
             window
         }));
@@ -449,7 +461,7 @@ impl Ready {
         if latest > LAST {
             return Err(ValueError::TooMuch { given: latest as f64, most: LAST as f64, of: "cycles" }.into());
         }
-        Ok(Window::of(step.cycle, (earliest, latest), self.format))
+        Ok(Window::of(step.cycle, (earliest, latest), self.units))
     }
 }
 
@@ -497,7 +509,7 @@ impl Writer {
         let (bits, count) = (self.format.fraction_bits, kept.len() as u32);
         let (mut time, mut next) = (self.time, interval);
         for kept in kept.chunks(AT_ONCE) {
-            let (mut greatest, mut squares) = (0, 0);
+            let (mut greatest, mut squares) = (0, 0_u64);
             for window in kept.iter().map(&window) {
                 time = time.wrapping_add(next);
                 next = next.wrapping_add_signed(add);
@@ -506,7 +518,7 @@ impl Writer {
                 greatest = off.max(greatest);
                 squares += off.wrapping_mul(off);
             }
-            self.error.steps(kept.len(), greatest, squares);
+            self.error.steps(kept.len(), greatest, squares.into());
         }
         let adds = u64::from(count) * u64::from(count).saturating_sub(1) / 2;
         let lasts = interval.wrapping_mul(count.into()).wrapping_add_signed(add.wrapping_mul(adds as i64));

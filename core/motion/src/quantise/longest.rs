@@ -32,11 +32,12 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// From the cycle `earliest` to the end of `latest`.
+    /// From the cycle `earliest` to the end of `latest`, of so many units each: by products, as shifts by a number of bits take
+    /// browsers longer.
     #[inline]
-    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), format: EntryFormat) -> Self {
-        let bits = format.fraction_bits;
-        Self { due, low: earliest << bits, high: latest << bits | ((1 << bits) - 1) }
+    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), units: u64) -> Self {
+        let [low, last] = [earliest, latest].map(|cycle| cycle.wrapping_mul(units));
+        Self { due, low, high: last.wrapping_add(units - 1) }
     }
 
     /// An entry of this step alone from a time on, in the middle of its window or as near as the least interval lets it be.

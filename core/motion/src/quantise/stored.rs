@@ -234,3 +234,18 @@ fn judged(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
         }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_are_entries_without_steps() {
+        let cycles = [1000, 2000, 3000, 3700, 4400, 5100];
+        let steps = cycles.map(|cycle| ScheduledStep { cycle, right: true });
+        let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
+        let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).unwrap();
+        // Two intervals, before them the turn to the right.
+        assert_eq!((table.entries.len(), table.turns()), (3, 1));
+    }
+}
