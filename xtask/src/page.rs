@@ -212,6 +212,18 @@ mod tests {
         Weight { files: vec![("a".to_owned(), Sizes { brotli, ..Sizes::default() })] }
     }
 
+    /// What a bench measures is built as what people load.
+    #[test]
+    fn wasm_opt_does_the_same_for_the_bench_and_for_the_page() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let [page, bench] = [CRATE, "tests/bench"].map(|folder| {
+            let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml")).unwrap();
+            manifest.lines().find(|line| line.starts_with("wasm-opt = [")).map(str::to_owned)
+        });
+        assert!(page.is_some());
+        assert_eq!(page, bench);
+    }
+
     #[test]
     fn what_is_beyond_its_budget_is_refused_with_both_numbers() {
         for (opening, later, expected) in [

@@ -88,8 +88,6 @@ pub struct Facts {
     pub yardstick: Option<Kernel>,
     /// Which ratio of the two speeds is aimed at, at least.
     pub aim: Option<f64>,
-    /// Whether it runs in the browser too.
-    pub in_browser: bool,
     /// Which part of the native speed is aimed at in the browser, at least.
     pub browser_aim: Option<f64>,
 }
@@ -158,49 +156,35 @@ impl Kernel {
             unit: "records",
             yardstick: None,
             aim: None,
-            in_browser: false,
-            browser_aim: None,
+            browser_aim: Some(0.75),
         };
         let run = Facts { yardstick: Some(Self::Copy), ..plain };
         let clock = Facts { yardstick: Some(Self::Clock16), aim: Some(0.9), ..plain };
-        let steps = Facts { unit: "steps", in_browser: true, ..plain };
+        let steps = Facts { unit: "steps", ..plain };
         let of_roots = Facts { yardstick: Some(Self::Roots), ..steps };
         // Klipper's step compression has 0.075 of such a loop.
         let beside_klipper = Facts { aim: Some(0.075), ..of_roots };
-        let motor_steps = Facts { unit: "motor_steps", in_browser: true, ..plain };
+        let motor_steps = Facts { unit: "motor_steps", ..plain };
         let plant = Facts { yardstick: Some(Self::SineCosine), aim: Some(0.125), ..motor_steps };
         match self {
             Self::Write => Facts {
                 name: "plain_write",
                 what: "as many records as of `stored_trace`, made of a counter",
-                in_browser: true,
                 ..plain
             },
-            Self::Copy => Facts {
-                name: "plain_copy",
-                what: "the records of `stored_trace`, copied in memory",
-                in_browser: true,
-                ..plain
-            },
+            Self::Copy => {
+                Facts { name: "plain_copy", what: "the records of `stored_trace`, copied in memory", ..plain }
+            }
             Self::Stored => Facts {
                 name: "stored_trace",
                 what: "16 channels at 100 kHz into a stored trace, 12 edges a record",
                 aim: Some(1.0 / 6.0),
-                in_browser: true,
-                browser_aim: Some(0.6),
                 ..run
             },
-            Self::Digest => Facts {
-                name: "digest",
-                what: "the same motion into a digest",
-                in_browser: true,
-                browser_aim: Some(0.6),
-                ..run
-            },
+            Self::Digest => Facts { name: "digest", what: "the same motion into a digest", ..run },
             Self::VariedStored => Facts {
                 name: "varied_stored_trace",
                 what: "every tick orders something else: into a stored trace",
-                in_browser: true,
                 ..run
             },
             Self::VariedDigest => Facts {
@@ -261,7 +245,6 @@ impl Kernel {
                 name: "step_times",
                 what: "the cycles of a trapezoid's steps",
                 aim: Some(0.5),
-                browser_aim: Some(0.6),
                 ..of_roots
             },
             Self::Exact => Facts {
@@ -308,13 +291,12 @@ impl Kernel {
                     5 => ("optimum_5_segments", "the same, by five segments a quarter"),
                     _ => ("optimum_6_segments", "the same, by six segments a quarter"),
                 };
-                Facts { name, what, unit: "optima", in_browser: true, ..plain }
+                Facts { name, what, unit: "optima", ..plain }
             }
             Self::Sweep => Facts {
                 name: "sweep_500_rows",
                 what: "a sweep of d1 in 500 rows, as figure 4 of the sine document",
                 unit: "rows",
-                in_browser: true,
                 ..plain
             },
             Self::SineCosine => Facts {
