@@ -17,7 +17,7 @@ use std::{
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
-        sine_polyline::{self, Bounds, Distinct, Row, Rows, swept},
+        sine_polyline::{self, Bounds, Distinct, Measure, Row, swept},
     },
     motion::{
         Profile,
@@ -241,9 +241,9 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 }
 
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
-    let (progress, made) = (Progress::new("sweep", false), Rows::new(range.bounds()));
+    let (progress, measure) = (Progress::new("sweep", false), Measure::new(range.bounds()));
     let rows = parallel::each(points.into(), None, progress, |index| {
-        made.row(swept(range.from, range.to, points, index as u32))
+        measure.row(swept(range.from, range.to, points, index as u32))
     })?;
     if range.common.written.json {
         return json_of("sine sweep", "polylines", rows.iter().map(cells)).write(out);

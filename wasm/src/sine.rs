@@ -10,7 +10,7 @@ use std::ops::Range;
 use stepscope_core::{
     inspect::{
         sine_optimum::{Freedom, optimum},
-        sine_polyline::{Bounds, Distinct, Row, Rows, best_of_each, swept},
+        sine_polyline::{Bounds, Distinct, Measure, Row, best_of_each, swept},
     },
     motion::{
         Profile,
@@ -50,9 +50,9 @@ pub fn sine_rows(
     first: u32,
     end: u32,
 ) -> Object {
-    let made = Rows::new(Bounds { order, sensor });
+    let measure = Measure::new(Bounds { order, sensor });
     let Range { start, end } = first..end.min(count);
-    let rows: Vec<Row> = (start..end).map(|index| made.row(swept(from, to, count, index))).collect();
+    let rows: Vec<Row> = (start..end).map(|index| measure.row(swept(from, to, count, index))).collect();
     columns(&rows)
 }
 

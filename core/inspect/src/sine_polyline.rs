@@ -178,25 +178,25 @@ impl Row {
     /// That of one d1.
     #[must_use]
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
-        Rows::new(bounds).row(d1)
+        Measure::new(bounds).row(d1)
     }
 }
 
-/// What makes rows: their bounds, and the cosines that all of them are held against.
+/// What polylines are measured by: the bounds of their distortions, and the cosines that all are held against.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct Measure {
     bounds: Bounds,
     cosines: Vec<f64>,
 }
 
-impl Rows {
-    /// Those within these bounds.
+impl Measure {
+    /// Within these bounds.
     #[must_use]
     pub fn new(bounds: impl Into<Bounds>) -> Self {
         Self { bounds: bounds.into(), cosines: cosines() }
     }
 
-    /// That of one d1.
+    /// The row of one d1.
     #[must_use]
     pub fn row(&self, d1: f64) -> Row {
         self.of_points(d1, &breakpoints(d1))
@@ -238,8 +238,8 @@ pub fn sweep(
     count: u32,
     bounds: impl Into<Bounds>,
 ) -> impl ExactSizeIterator<Item = Row> {
-    let rows = Rows::new(bounds);
-    (0..count).map(move |index| rows.row(swept(from, to, count, index)))
+    let measure = Measure::new(bounds);
+    (0..count).map(move |index| measure.row(swept(from, to, count, index)))
 }
 
 /// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
@@ -256,14 +256,14 @@ pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
 pub struct Distinct {
     next: Option<f64>,
     to: f64,
-    rows: Rows,
+    measure: Measure,
 }
 
 impl Distinct {
     /// Those of `from` <= d1 <= `to`.
     #[must_use]
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
-        Self { next: Some(from), to, rows: Rows::new(bounds) }
+        Self { next: Some(from), to, measure: Measure::new(bounds) }
     }
 }
 
@@ -274,7 +274,7 @@ impl Iterator for Distinct {
         let d1 = self.next.take().filter(|d1| *d1 <= self.to)?;
         let points = breakpoints(d1);
         self.next = next_deviation(&points);
-        Some(self.rows.of_points(d1, &points))
+        Some(self.measure.of_points(d1, &points))
     }
 }
 

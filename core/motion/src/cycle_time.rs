@@ -98,8 +98,8 @@ impl Quotient {
 pub(super) trait Quotients {
     /// What they are over.
     fn under(&self) -> u64;
-    /// Writes the whole cycles and the rests of the next ones from the blocks' beginning on, and says of how many: none at
-    /// the end.
+    /// Writes the whole cycles and the rests of the next ones from the beginning on of two blocks, which are equally long, of an
+    /// even length; and says of how many: none at the end.
     fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize;
 }
 
@@ -193,9 +193,12 @@ impl Quotients for EvenRun {
     }
 
     fn next_block(&mut self, wholes: &mut [u64], rests: &mut [u64]) -> usize {
-        // Beyond the last step nobody reads them.
-        self.lanes = evenly(self.lanes, self.add, self.under, (wholes, rests));
+        debug_assert!(wholes.len() == rests.len() && wholes.len().is_multiple_of(2), "two at a time");
         let len = usize::try_from(self.left).map_or(wholes.len(), |left| left.min(wholes.len()));
+        // Beyond the last step nobody reads them.
+        let formed = len.next_multiple_of(2);
+        let blocks = [wholes, rests].map(|block| block.get_mut(..formed).unwrap_or_default());
+        self.lanes = evenly(self.lanes, self.add, self.under, blocks);
         self.left -= len as u64;
         len
     }
@@ -204,12 +207,7 @@ impl Quotients for EvenRun {
 /// Writes quotients of which the first two are given and each is `add` after the next but one before it; says which two come
 /// next.
 #[inline]
-fn evenly(
-    mut lanes: [Lane; 2],
-    add: Lane,
-    under: u64,
-    (wholes, rests): (&mut [u64], &mut [u64]),
-) -> [Lane; 2] {
+fn evenly(mut lanes: [Lane; 2], add: Lane, under: u64, [wholes, rests]: [&mut [u64]; 2]) -> [Lane; 2] {
     let under = under as i64;
     for (wholes, rests) in wholes.chunks_exact_mut(2).zip(rests.chunks_exact_mut(2)) {
         for (lane, (whole, rest)) in lanes.iter_mut().zip(wholes.iter_mut().zip(rests)) {
@@ -297,7 +295,7 @@ impl Quotients for TableRun<'_> {
                 let (each, under) = (Lane::of(self.cycles(reload)), self.under as i64);
                 let first = Lane::of(self.time).plus(each, under);
                 let next = [first, first.plus(each, under)];
-                evenly(next, each.plus(each, under), self.under, (wholes, rests));
+                evenly(next, each.plus(each, under), self.under, [&mut *wholes, rests]);
                 wholes.len()
             }
             None => self.by_reloads(wholes, rests),

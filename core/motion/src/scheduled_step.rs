@@ -221,7 +221,7 @@ impl<Q: Quotients> Form for OfQuotients<Q> {
         // The whole cycles first.
         let (len, under) = (times.next_block(cycles, rests), times.under());
         if !*has_instants && start.part == Double::default() {
-            for (cycle, rest) in cycles.iter_mut().zip(&*rests) {
+            for (cycle, rest) in cycles.iter_mut().zip(&*rests).take(len) {
                 *cycle = Quotient { whole: *cycle, rest: *rest, under }.cycle_after(start.whole);
             }
         } else {

@@ -211,7 +211,8 @@ impl SineSegments {
     /// When each step falls due from the start, in what there are `per_point` of in a point of the angle, and whether it goes
     /// to the right.
     pub(super) fn due_points(&self, per_point: f64) -> DuePoints {
-        let period = self.pieces().take(4 * self.segments.len()).map(Run::of).collect();
+        let period = self.pieces().take(4 * self.segments.len());
+        let period = period.filter(|piece| piece.steps > 0).map(Run::of).collect();
         let end = f64::from(self.oscillation.periods) * f64::from(POINTS);
         DuePoints { period, at: 0, past: 0, origin: 0.0, end, per_point }
     }

@@ -355,7 +355,7 @@ mod tests {
         ];
         for (steps, start, top, acceleration, clock_hz) in rows {
             let times = Trapezoid::new(steps, start, top, acceleration).step_times(clock_hz);
-            for passed in [0, 1, 63, 64, 65, 500] {
+            for passed in [0, 1, 64, BLOCK - 1, BLOCK, BLOCK + 1, 500] {
                 let mut times = times.clone();
                 if passed > 0 {
                     times.nth(passed - 1);

@@ -48,19 +48,24 @@ impl Counts {
     }
 }
 
-/// Steps of `count` that have fallen by `t`, from a guess that can be off by a rounding: the times
-/// themselves decide.
+/// Steps of `count` that have fallen by `t`, from a guess that can be off by a rounding, and by a step that falls just then: the
+/// times themselves decide.
 pub(super) fn fallen(t: f64, guess: u64, count: u64, counts: Counts, step_s: impl Fn(u64) -> f64) -> u64 {
     let has_fallen = |k| match counts {
         Counts::Then => step_s(k) <= t,
         Counts::After => step_s(k) < t,
     };
-    let mut fallen = if guess > count { count } else { guess };
+    let guess = if guess > count { count } else { guess };
+    let mut fallen = guess;
     while fallen > 0 && !has_fallen(fallen) {
         fallen -= 1;
     }
     while fallen < count && has_fallen(fallen + 1) {
         fallen += 1;
     }
+    debug_assert!(
+        fallen.abs_diff(guess) <= 2,
+        "{fallen} steps have fallen by {t} s, and {guess} are guessed"
+    );
     fallen
 }

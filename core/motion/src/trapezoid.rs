@@ -204,18 +204,18 @@ mod tests {
 
     #[test]
     fn long_moves_have_a_plateau_and_short_ones_are_triangles() {
-        // (steps, start, top, acceleration), (peak speed, ramp s, duration s)
+        // (steps, start, top, acceleration), [peak speed, ramp s, ramp steps, duration s]
         let rows = [
-            ((10_000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 2.4)),
-            ((3000, 1000.0, 5000.0, 8000.0), (5000.0, 0.5, 1.0)),
-            ((800, 0.0, 5000.0, 8000.0), (2_529.822_128, 0.316_227_766, 0.632_455_532)),
-            ((-4, 1000.0, 5000.0, 8000.0), (1_015.874_007_9, 0.001_984_251, 0.003_968_502)),
-            ((500, 1000.0, 1000.0, 1.0), (1000.0, 0.0, 0.5)),
+            ((10_000, 1000.0, 5000.0, 8000.0), [5000.0, 0.5, 1500.0, 2.4]),
+            ((3000, 1000.0, 5000.0, 8000.0), [5000.0, 0.5, 1500.0, 1.0]),
+            ((800, 0.0, 5000.0, 8000.0), [2_529.822_128, 0.316_227_766, 400.0, 0.632_455_532]),
+            ((-4, 1000.0, 5000.0, 8000.0), [1_015.874_007_9, 0.001_984_251, 2.0, 0.003_968_502]),
+            ((500, 1000.0, 1000.0, 1.0), [1000.0, 0.0, 0.0, 0.5]),
         ];
-        for ((steps, start, top, acceleration), (peak, ramp_s, duration_s)) in rows {
+        for ((steps, start, top, acceleration), expected) in rows {
             let curve = Trapezoid::new(steps, start, top, acceleration);
-            let found = [curve.peak_speed(), curve.ramp_s(), curve.duration_s()];
-            for (found, expected) in found.iter().zip([peak, ramp_s, duration_s]) {
+            let found = [curve.peak_speed(), curve.ramp_s(), curve.ramp_steps(), curve.duration_s()];
+            for (found, expected) in found.iter().zip(expected) {
                 assert!((found - expected).abs() <= 1e-6 * expected, "{steps}: {found} {expected}");
             }
             assert_eq!(curve.position(curve.duration_s()), steps as f64);

@@ -426,8 +426,8 @@ impl Ready {
         };
         let least = self.pulse.min_interval().0 as i64;
         let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
-        // As signed numbers, which a step that is due before the one before it makes negative.
-        let mut shortest = before as i64;
+        // As signed numbers, which a step that is due before the one before it makes negative: no cycle has more than 62 bits.
+        let (mut shortest, mut seen) = (before as i64, due);
         // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
         windows.extend(afters.iter().map(|next| {
             let after = next.cycle.wrapping_sub(due);
@@ -435,11 +435,13 @@ impl Ready {
             let (low, high) = (due.saturating_sub(early), due.wrapping_add(late));
             let window = Window::of(due, (low, high), self.units);
             shortest = shortest.min(before as i64);
+            seen |= next.cycle;
             (due, before) = (next.cycle, after);
             window
         }));
         // None is due after one that is due later.
         shortest >= least
+            && seen < 1 << 62
             && last.cycle <= LAST - MAX_TOLERANCE.0
             && between.iter().chain([first]).all(|step| step.right == self.right)
     }
@@ -559,6 +561,22 @@ mod tests {
 
     fn right(cycles: &[u64]) -> Vec<ScheduledStep> {
         cycles.iter().map(|&cycle| ScheduledStep { cycle, right: true }).collect()
+    }
+
+    /// Climbs and falls by about 2^63, which as differences of 64 bits look like climbs alone.
+    #[test]
+    fn a_list_that_falls_from_beyond_all_cycles_is_refused_as_too_long() {
+        let far = 1 << 63;
+        for climbs in [[2_000_000, far + 1_999_000, 1_998_000], [far, far + 5_000_000, 6_000_000]] {
+            let cycles = [&[1_000_000][..], &climbs, &[7_000_000, 8_000_000, 9_000_000]].concat();
+            for format in [EntryFormat::Q16, EntryFormat::TICKS] {
+                let tolerance = Tolerance::of(Cycles(100));
+                let made = compressed_quickly(right(&cycles), tolerance, format, PULSE);
+                let Err(Cause::Value(ValueError::TooMuch { of: "cycles", .. })) = made else {
+                    panic!("{cycles:?}: {:?}", made.err());
+                };
+            }
+        }
     }
 
     fn entries(due: &[u64], tolerance: u64) -> usize {

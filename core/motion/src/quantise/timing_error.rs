@@ -48,12 +48,12 @@ impl TimingError {
                     (*place, len) = (step, len + 1);
                 }
             });
-            if len == 0 {
-                listed.next_segment();
-                return (listed.left == 0).then_some(listed.error);
-            }
             if !listed.take(steps.get(..len)?) {
                 return None;
+            }
+            if len < AT_ONCE {
+                listed.next_segment();
+                return (listed.left == 0).then_some(listed.error);
             }
         }
     }
@@ -103,17 +103,19 @@ impl<'l> Listed<'l> {
             }
             let (steps, rest) = due.split_at(self.left.min(due.len()));
             let (mut time, mut interval, add, right) = (self.time, self.interval, self.add, self.right);
-            let (mut greatest, mut squares) = (0, 0_u64);
+            let (mut greatest, mut squares, mut seen) = (0, 0_u64, 0);
             for step in steps {
                 time = time.wrapping_add(interval);
                 interval = interval.wrapping_add_signed(add);
                 let off = ((time >> FRACTION_BITS).wrapping_sub(step.cycle) as i64).unsigned_abs();
                 greatest = off.max(greatest);
                 squares = squares.wrapping_add(off.wrapping_mul(off));
+                seen |= step.cycle;
                 go_that_way &= step.right == right;
             }
             self.left -= steps.len();
-            let squares = if greatest < MANY { squares.into() } else { self.squares(steps) };
+            let is_near = greatest < MANY && seen < 1 << 63;
+            let (greatest, squares) = if is_near { (greatest, squares.into()) } else { self.far_off(steps) };
             self.error.steps(steps.len(), greatest, squares);
             (self.time, self.interval) = (time, interval);
             due = rest;
@@ -121,15 +123,15 @@ impl<'l> Listed<'l> {
         go_that_way
     }
 
-    /// The sum of the squares of the next steps' errors, which 64 bits may not hold.
+    /// The greatest of the next steps' errors and the sum of their squares, which 64 bits may not hold.
     #[cold]
-    fn squares(&self, steps: &[ScheduledStep]) -> u128 {
+    fn far_off(&self, steps: &[ScheduledStep]) -> (u64, u128) {
         let (mut time, mut interval) = (self.time, self.interval);
-        steps.iter().fold(0, |sum: u128, step| {
+        steps.iter().fold((0, 0), |(greatest, sum): (u64, u128), step| {
             time = time.wrapping_add(interval);
             interval = interval.wrapping_add_signed(self.add);
-            let off = u128::from((time >> FRACTION_BITS).abs_diff(step.cycle));
-            sum.saturating_add(off * off)
+            let off = (time >> FRACTION_BITS).abs_diff(step.cycle);
+            (greatest.max(off), sum.saturating_add(u128::from(off) * u128::from(off)))
         })
     }
 }
@@ -187,6 +189,19 @@ mod tests {
                 squares: offs.iter().map(|off| u128::from(*off) * u128::from(*off)).sum(),
             };
             assert_eq!(TimingError::of(&list, away(&list, off)), Some(expected), "{bits} bits");
+        }
+    }
+
+    #[test]
+    fn a_step_that_is_due_in_the_last_cycles_of_all_is_as_far_off_as_it_is() {
+        let steps = Segment::Steps { count: 1, interval: 1 << FRACTION_BITS, add: 0, right: true };
+        let list = SegmentList { start: Instant(1), segments: vec![steps] };
+        for cycle in [u64::MAX, u64::MAX - 4, (1 << 63) + 2, 1 << 63, (1 << 63) - 1] {
+            let found = TimingError::of(&list, [ScheduledStep { cycle, right: true }]).unwrap();
+            let off = cycle - 1;
+            let expected =
+                TimingError { steps: 1, greatest: off, squares: u128::from(off) * u128::from(off) };
+            assert_eq!(found, expected, "{cycle}");
         }
     }
 

@@ -259,7 +259,7 @@ impl Line {
     }
 
     fn follow_forced(&mut self, now: Instant) {
-        while self.forced.get(self.passed).is_some_and(|forced| forced.end <= now) {
+        while self.forced.get(self.passed).is_some_and(|forced| forced.ends_by(now)) {
             self.passed += 1;
         }
         self.force =
@@ -304,7 +304,7 @@ fn flatten(forced: &[ForcedLevel]) -> Vec<ForcedLevel> {
 
 /// Whether spans are disjoint and rising.
 fn is_flat(forced: &[ForcedLevel]) -> bool {
-    forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.end <= next.start)
+    forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.ends_by(next.start))
 }
 
 #[cfg(test)]
