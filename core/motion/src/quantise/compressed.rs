@@ -426,8 +426,8 @@ impl Ready {
         };
         let least = self.pulse.min_interval().0 as i64;
         let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
-        // As signed numbers, which a step that is due before the one before it makes negative: no cycle has more than 62 bits.
-        let (mut shortest, mut seen) = (before as i64, due);
+        // As signed numbers, which a step that is due before the one before it makes negative.
+        let mut shortest = before as i64;
         // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
         windows.extend(afters.iter().map(|next| {
             let after = next.cycle.wrapping_sub(due);
@@ -435,15 +435,12 @@ impl Ready {
             let (low, high) = (due.saturating_sub(early), due.wrapping_add(late));
             let window = Window::of(due, (low, high), self.units);
             shortest = shortest.min(before as i64);
-            seen |= next.cycle;
             (due, before) = (next.cycle, after);
             window
         }));
-        // None is due after one that is due later.
-        shortest >= least
-            && seen < 1 << 62
-            && last.cycle <= LAST - MAX_TOLERANCE.0
-            && between.iter().chain([first]).all(|step| step.right == self.right)
+        // None is due after one that is due later, so far as their cycles have no more than 63 bits: differences have a sign then.
+        let is_fit = |step: &ScheduledStep| step.right == self.right && step.cycle <= i64::MAX as u64;
+        shortest >= least && last.cycle <= LAST - MAX_TOLERANCE.0 && between.iter().chain([first]).all(is_fit)
     }
 
     /// The window of the next step.
