@@ -24,12 +24,12 @@ use crate::{
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
 };
-use alloc::{rc::Rc, vec::Vec};
-use earliest::Earliest;
+use alloc::rc::Rc;
+use earliest::{Earliest, First};
 use falls::FallingEdges;
 
 // What a list can order is due in a cycle that the tree can hold.
-const _: () = assert!(LAST_CYCLE.0 <= Earliest::LAST.0);
+const _: () = assert!(LAST_CYCLE.0 < Earliest::NONE.0);
 
 /// The engine.
 ///
@@ -58,38 +58,68 @@ pub struct SegmentEngine {
     /// The cycle that the next call of `clock` is.
     now: Instant,
     levels: Levels,
-    channels: Vec<Channel>,
+    channels: [Channel; MAX_CHANNELS],
     /// When each channel's DIR changes or its STEP rises next.
     due: Earliest,
-    /// When the pulses that are high fall.
+    /// When the pulses that are high fall; after an overload, EN with them.
     falls: FallingEdges,
-    positions: [i32; MAX_CHANNELS],
-    /// The cycle in which EN and STEP fall, after an overload; [`Instant::NEVER`] without one.
-    halt: Instant,
+    overloaded: bool,
+    /// From the rise of a pulse to its fall, and to where DIR may change again.
+    width: Cycles,
+    held_for: Cycles,
 }
 
 /// One channel's place in its list.
-#[derive(Clone, Debug)]
+///
+/// Of 64 bytes on every machine, so that its place is found by a shift: 8 % for 16 channels that step at once in a browser.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 struct Channel {
     /// Segments that have begun.
     begun: usize,
-    /// Steps of this segment after the one that comes next.
+    /// Steps of this segment that are to come; while DIR is to change before them, they are `turning`.
+    ///
+    /// Invariant: one of the two is 0.
     left: u32,
+    turning: u32,
     interval: u64,
     add: i64,
     /// A8's `next`: while a step is to come, its time.
     next: u64,
-    /// Level of DIR that the list has ordered so far.
-    right: bool,
-    /// Whether DIR changes before the next step.
-    turns: bool,
+    /// Position counter at the end of this segment.
+    target: i32,
+    /// What a step adds to it: 1 where the list has ordered DIR = 1 last, else -1.
+    sign: i32,
+    /// Its bit of STEP.
+    step: u32,
     /// Last fall + H, 0 before the first pulse: DIR is held until then.
     held: Instant,
 }
 
 impl Channel {
+    /// A channel before its list, which starts in cycle `start`.
+    const fn new(index: usize, start: Instant) -> Self {
+        Self {
+            begun: 0,
+            left: 0,
+            turning: 0,
+            interval: 0,
+            add: 0,
+            next: start.0 << FRACTION_BITS,
+            target: 0,
+            sign: -1,
+            step: 1 << index,
+            held: Instant::RESET,
+        }
+    }
+
+    /// Position counter: what is to come is taken from what it will be, so that a step has nothing to count.
+    const fn position(&self) -> i32 {
+        self.target.wrapping_sub(self.sign.wrapping_mul((self.left + self.turning) as i32))
+    }
+
     /// The next step of this segment: its cycle.
-    fn step(&mut self) -> Instant {
+    fn go_on(&mut self) -> Instant {
         debug_assert!(self.next.checked_add(self.interval).is_some(), "a step leaves 48.16 fixed point");
         self.next = self.next.wrapping_add(self.interval);
         self.interval = self.interval.wrapping_add_signed(self.add);
@@ -101,6 +131,12 @@ impl Channel {
         Instant(self.next >> FRACTION_BITS)
     }
 
+    /// DIR changes: the cycle of the step after it.
+    const fn turn(&mut self) -> Instant {
+        (self.left, self.turning) = (self.turning, 0);
+        self.rise()
+    }
+
     /// Goes on to the next segment with steps: the cycle of its change of DIR, where there is one,
     /// or of its first step; [`Instant::NEVER`] at the list's end.
     fn begin(&mut self, segments: &[Segment]) -> Instant {
@@ -110,15 +146,18 @@ impl Channel {
                 Segment::Dwell(dwell) => self.next = self.next.wrapping_add(dwell),
                 Segment::Steps { count, interval, add, right } => {
                     let turn = self.rise().max(self.held);
-                    self.turns = right != self.right;
-                    (self.left, self.interval, self.add, self.right) =
-                        (count.saturating_sub(1), interval, add, right);
-                    let rise = self.step();
+                    let sign = if right { 1 } else { -1 };
+                    let turns = sign != self.sign;
+                    (self.left, self.turning) = if turns { (0, count) } else { (count, 0) };
+                    (self.interval, self.add, self.sign) = (interval, add, sign);
+                    self.target = self.target.wrapping_add(sign.wrapping_mul(count as i32));
+                    let rise = self.go_on();
                     debug_assert!(turn <= rise, "DIR changes in {turn:?}, after the rise in {rise:?}");
-                    return if self.turns { turn } else { rise };
+                    return if turns { turn } else { rise };
                 }
             }
         }
+        self.left = 0;
         Instant::NEVER
     }
 }
@@ -127,33 +166,23 @@ impl SegmentEngine {
     /// An engine before cycle 0.
     #[must_use]
     pub fn new(lists: Rc<CheckedSegments>) -> Self {
-        let mut due = Earliest::new(lists.lists().len());
-        let channels = lists.lists().iter().enumerate().map(|(index, list)| {
-            let mut channel = Channel {
-                begun: 0,
-                left: 0,
-                interval: 0,
-                add: 0,
-                next: list.start.0 << FRACTION_BITS,
-                right: false,
-                turns: false,
-                held: Instant::RESET,
-            };
+        let pulse = lists.pulse();
+        let mut due = Earliest::new();
+        let mut channels = core::array::from_fn(|index| Channel::new(index, Instant::RESET));
+        for (index, (list, channel)) in lists.lists().iter().zip(&mut channels).enumerate() {
+            *channel = Channel::new(index, list.start);
             due.set(index, channel.begin(&list.segments));
-            channel
-        });
-        let channels = channels.collect();
-        let positions = [0; MAX_CHANNELS];
-        let (now, levels) = (Instant::RESET, Levels::RESET);
+        }
         Self {
             lists,
-            now,
-            levels,
+            now: Instant::RESET,
+            levels: Levels::RESET,
             channels,
             due,
             falls: FallingEdges::default(),
-            positions,
-            halt: Instant::NEVER,
+            overloaded: false,
+            width: pulse.width,
+            held_for: Cycles(pulse.width.0 + pulse.hold.0),
         }
     }
 
@@ -165,8 +194,8 @@ impl SegmentEngine {
 
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
-    pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.positions
+    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
+        self.channels.map(|channel| channel.position())
     }
 
     /// Advances one cycle and gives the levels of all signals in it.
@@ -185,9 +214,11 @@ impl SegmentEngine {
     /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
     fn deadline(&self) -> Instant {
         if self.now == Instant::RESET {
-            self.now
-        } else {
-            self.due.cycle().min(self.falls.cycle()).min(self.halt)
+            return self.now;
+        }
+        match self.due.first().cycle().min(self.falls.cycle()) {
+            Earliest::NONE => Instant::NEVER,
+            cycle => cycle,
         }
     }
 
@@ -197,62 +228,61 @@ impl SegmentEngine {
         if self.now == Instant::RESET || !self.levels.has(Levels::EN) {
             return;
         }
-        self.due = Earliest::new(self.channels.len());
+        self.due = Earliest::new();
         self.falls = FallingEdges::default();
-        self.halt = self.now;
+        self.falls.push(self.now, Levels::EN | u64::from(u16::MAX));
+        self.overloaded = true;
     }
 
     /// Faults so far: none but OVERLOAD.
     #[must_use]
     pub const fn faults(&self) -> Faults {
-        if self.levels.has(Levels::EN) && self.halt.0 == Instant::NEVER.0 {
-            Faults::from_bits(0)
-        } else {
-            Faults::OVERLOAD
-        }
+        if self.overloaded { Faults::OVERLOAD } else { Faults::from_bits(0) }
     }
 
     /// All that falls due in cycle `now`; at least one signal changes.
     fn act(&mut self, now: Instant) {
-        if now == self.halt {
-            self.halt = Instant::NEVER;
-            self.levels.0 &= !(Levels::EN | u64::from(u16::MAX));
-            return;
-        }
-        let mut levels = self.levels.0;
         if self.falls.cycle() == now {
-            levels &= !u64::from(self.falls.pop());
+            self.fall();
         }
-        let pulse = self.lists.pulse();
-        let mut rising = 0_u16;
-        while self.due.cycle() == now {
-            let index = self.due.channel();
-            let Some(channel) = self.channels.get_mut(index) else { break };
-            let next = if channel.turns {
-                channel.turns = false;
-                levels ^= 1 << (Levels::DIR_SHIFT as usize + index);
-                channel.rise()
+        let due = self.due.first();
+        if due.cycle() == now {
+            self.follow(due, now);
+        }
+    }
+
+    /// The next fall.
+    #[inline(always)]
+    fn fall(&mut self) {
+        self.levels.0 &= !self.falls.pop();
+    }
+
+    /// The changes of DIR and the rises that the lists have in cycle `now`, from what is due first to what is due after it.
+    #[inline(always)]
+    fn follow(&mut self, mut due: First, now: Instant) -> First {
+        let mut rising = 0;
+        while due.cycle() == now {
+            let index = due.channel();
+            let channel = &mut self.channels[index];
+            let next = if channel.left > 1 {
+                channel.left -= 1;
+                rising |= u64::from(channel.step);
+                channel.go_on()
+            } else if channel.turning > 0 {
+                self.levels.0 ^= u64::from(channel.step) << Levels::DIR_SHIFT;
+                channel.turn()
             } else {
-                rising |= 1 << index;
-                if let Some(position) = self.positions.get_mut(index) {
-                    *position = position.wrapping_add(if channel.right { 1 } else { -1 });
-                }
-                if channel.left > 0 {
-                    channel.left -= 1;
-                    channel.step()
-                } else {
-                    channel.held = now + pulse.width + pulse.hold;
-                    channel.begin(self.lists.lists().get(index).map_or(&[], |list| &list.segments))
-                }
+                rising |= u64::from(channel.step);
+                channel.held = now + self.held_for;
+                channel.begin(self.lists.lists().get(index).map_or(&[], |list| &list.segments))
             };
-            self.due.set(index, next);
+            due = self.due.set(index, next);
         }
         if rising != 0 {
-            levels |= u64::from(rising);
-            self.falls.push(now + pulse.width, rising);
+            self.levels.0 |= rising;
+            self.falls.push(now + self.width, rising);
         }
-        debug_assert!(self.levels.0 != levels, "no signal changes in {now:?}");
-        self.levels = Levels(levels);
+        due
     }
 
     /// For how many cycles nothing can change; `None` if it is for ever.
@@ -278,21 +308,28 @@ impl SegmentEngine {
         if self.now == Instant::RESET && self.now < until {
             self.clock(sink);
         }
-        loop {
-            let cycle = self.deadline();
-            if sink.paused() {
-                return;
-            }
-            if cycle >= until {
+        let end = until.min(Earliest::NONE);
+        // What the lists have due first is passed on from step to step, and not asked of the tree again.
+        let (mut now, mut due) = (self.now, self.due.first());
+        while !sink.paused() {
+            let (change, fall) = (due.cycle(), self.falls.cycle());
+            let cycle = change.min(fall);
+            if cycle >= end {
+                now = if until == Instant::NEVER { now } else { now.max(until) };
                 break;
             }
-            self.act(cycle);
-            self.now = cycle.next();
+            let before = self.levels;
+            if fall == cycle {
+                self.fall();
+            }
+            if change == cycle {
+                due = self.follow(due, cycle);
+            }
+            debug_assert!(self.levels != before, "no signal changes in {cycle:?}");
+            now = cycle.next();
             sink.record(Record { cycle, levels: self.levels });
         }
-        if until != Instant::NEVER {
-            self.now = self.now.max(until);
-        }
+        self.now = now;
     }
 
     /// Whether nothing can change any more.

@@ -1,8 +1,8 @@
-//! The earliest of up to 16 channels, found again in at most four comparisons after a change.
+//! The earliest of 16 channels, found again in four comparisons after a change.
 //!
 //! ```text
 //!        1          a tree of minima: entry i holds the lesser of 2i and 2i + 1, the leaves
-//!      2   3        (channel c at size + c) hold cycle << 4 | channel; so the root has both the
+//!      2   3        (channel c at 16 + c) hold cycle << 4 | channel; so the root has both the
 //!     4 5 6 7       earliest cycle and, of channels of the same cycle, the first
 //! ```
 
@@ -10,53 +10,60 @@ use crate::{signal::MAX_CHANNELS, units::Instant};
 
 /// Bits of a key for its channel.
 const CHANNEL_BITS: u32 = 4;
-/// Key of a channel for which nothing is due. No cycle is after [`Earliest::LAST`], so no other key is as great.
-const NEVER: u64 = u64::MAX;
 const ENTRIES: usize = 2 * MAX_CHANNELS;
+/// Levels of the tree above its leaves.
+const LEVELS: u32 = MAX_CHANNELS.ilog2();
 const _: () = assert!(MAX_CHANNELS.is_power_of_two() && MAX_CHANNELS <= 1 << CHANNEL_BITS);
 
 #[derive(Clone, Debug)]
 pub(super) struct Earliest {
     keys: [u64; ENTRIES],
-    /// Leaves, a power of two; the first one's index.
-    size: usize,
 }
 
 impl Earliest {
-    /// The last cycle that has a key of its own.
-    pub(super) const LAST: Instant = Instant((NEVER >> CHANNEL_BITS) - 1);
+    /// [`First::cycle`] where nothing is due: what [`Instant::NEVER`] leaves of itself in a key, after every cycle that may be due.
+    pub(super) const NONE: Instant = Instant(Instant::NEVER.0 >> CHANNEL_BITS);
 
-    /// `channels` channels, at most 16, for which nothing is due.
-    pub(super) fn new(channels: usize) -> Self {
-        Self { keys: [NEVER; ENTRIES], size: channels.clamp(1, MAX_CHANNELS).next_power_of_two() }
+    /// Nothing is due.
+    pub(super) fn new() -> Self {
+        Self { keys: [u64::MAX; ENTRIES] }
     }
 
-    /// Sets the cycle of a channel, [`Instant::NEVER`] or one up to [`Self::LAST`].
-    pub(super) fn set(&mut self, channel: usize, cycle: Instant) {
-        debug_assert!(channel < self.size, "channel {channel} has no leaf");
-        debug_assert!(cycle == Instant::NEVER || cycle <= Self::LAST, "{cycle:?} has no key");
-        let mut index = (self.size + channel) % ENTRIES;
-        let mut least =
-            if cycle == Instant::NEVER { NEVER } else { cycle.0 << CHANNEL_BITS | channel as u64 };
+    /// Sets the cycle of a channel, [`Instant::NEVER`] or one before [`Self::NONE`]: what is due first then.
+    #[inline(always)]
+    pub(super) fn set(&mut self, channel: usize, cycle: Instant) -> First {
+        debug_assert!(channel < MAX_CHANNELS, "channel {channel} has no leaf");
+        debug_assert!(cycle == Instant::NEVER || cycle < Self::NONE, "{cycle:?} has no key");
+        let mut index = MAX_CHANNELS + channel % MAX_CHANNELS;
+        let mut least = cycle.0 << CHANNEL_BITS | channel as u64;
         self.keys[index] = least;
-        while index > 1 {
+        for _ in 0..LEVELS {
             least = least.min(self.keys[index ^ 1]);
             index /= 2;
             self.keys[index] = least;
         }
+        First(least)
     }
 
-    /// The earliest cycle; [`Instant::NEVER`] where nothing is due.
-    pub(super) const fn cycle(&self) -> Instant {
-        match self.keys[1] {
-            NEVER => Instant::NEVER,
-            key => Instant(key >> CHANNEL_BITS),
-        }
+    /// What is due first.
+    pub(super) const fn first(&self) -> First {
+        First(self.keys[1])
+    }
+}
+
+/// What is due first: the key at the root of the tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct First(u64);
+
+impl First {
+    /// The earliest cycle; [`Earliest::NONE`] where nothing is due.
+    pub(super) const fn cycle(self) -> Instant {
+        Instant(self.0 >> CHANNEL_BITS)
     }
 
     /// The channel of the earliest cycle; of several the first.
-    pub(super) const fn channel(&self) -> usize {
-        self.keys[1] as usize % MAX_CHANNELS
+    pub(super) const fn channel(self) -> usize {
+        self.0 as usize % MAX_CHANNELS
     }
 }
 
@@ -67,8 +74,8 @@ mod tests {
     #[test]
     fn the_root_is_the_earliest_and_of_those_the_first() {
         for channels in 1..=MAX_CHANNELS {
-            let mut tree = Earliest::new(channels);
-            assert_eq!(tree.cycle(), Instant::NEVER);
+            let mut tree = Earliest::new();
+            assert_eq!(tree.first().cycle(), Earliest::NONE);
             let mut cycles = [Instant::NEVER; MAX_CHANNELS];
             let mut random = 1_u64;
             for _ in 0..2000 {
@@ -81,9 +88,12 @@ mod tests {
                 };
                 tree.set(channel, cycles[channel]);
                 let earliest = cycles.iter().min().copied().unwrap();
-                assert_eq!(tree.cycle(), earliest);
+                assert_eq!(tree.first().cycle(), earliest.min(Earliest::NONE));
                 if earliest != Instant::NEVER {
-                    assert_eq!(Some(tree.channel()), cycles.iter().position(|&cycle| cycle == earliest));
+                    assert_eq!(
+                        Some(tree.first().channel()),
+                        cycles.iter().position(|&cycle| cycle == earliest)
+                    );
                 }
             }
         }
