@@ -37,7 +37,7 @@ use stepscope_peripheral::{
     signal::Positions,
     trace::RowOutcome,
     wire::{
-        cobs::{CobsByte, CobsDecoder},
+        cobs::CobsDecoder,
         frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks},
         packet::{ALL, ChannelCommand},
     },
@@ -114,10 +114,8 @@ impl Head {
             _ => return None,
         }
         let mut reader = CobsDecoder::default();
-        let mut content = bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| match reader.byte(byte) {
-            CobsByte::Content(content) => Some(content),
-            _ => None,
-        });
+        let mut content =
+            bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| reader.byte(byte).content(byte));
         Some(Self { address: content.next()?, kind: content.next()? })
     }
 
@@ -213,12 +211,12 @@ impl Content {
         let mut reader = CobsDecoder::default();
         for at in range.clone() {
             let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
-            match reader.byte(byte) {
-                CobsByte::Content(decoded) => {
+            match reader.byte(byte).content(byte) {
+                Some(decoded) => {
                     content.decoded.push(decoded);
                     content.places.push(at);
                 }
-                _ => content.overhead.push((at, byte)),
+                None => content.overhead.push((at, byte)),
             }
         }
         content.whole = range.is_empty() || reader.is_whole();

@@ -8,7 +8,7 @@ use crate::{
     signal::{Event, Positions, Sink},
     units::Instant,
     wire::{
-        frame::{Deframed, Deframer, Frame, Ticks},
+        frame::{Completed, Deframed, Deframer, Frame, Ticks},
         packet::ALL,
     },
 };
@@ -42,9 +42,19 @@ impl Controller {
     }
 
     /// A byte delivered in cycle `now`.
+    #[inline(always)]
     pub(super) fn byte(&mut self, now: Instant, byte: u8, machine: &mut Machine, sink: &mut impl Sink) {
+        let completed = self.deframer.take(byte);
+        if completed != Completed::Nothing {
+            self.complete(now, completed, machine, sink);
+        }
+    }
+
+    /// What a byte completed in cycle `now`.
+    #[inline(never)]
+    fn complete(&mut self, now: Instant, completed: Completed, machine: &mut Machine, sink: &mut impl Sink) {
         let mut answered = false;
-        let outcome = match self.deframer.byte(byte) {
+        let outcome = match self.deframer.deframed(completed) {
             None => return,
             Some(Deframed::Short) => {
                 machine.fault(Faults::SHORT_PACKET);

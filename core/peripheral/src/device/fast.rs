@@ -103,7 +103,14 @@ impl Device {
             && let Some(stop) = self.whole_byte(&byte, until)
             && !sink.paused()
         {
-            self.levels = self.machine.sequencer.run_beside(&byte, stop, self.base(), sink);
+            self.levels = self.machine.sequencer.run_beside(
+                byte.start,
+                byte.edges,
+                byte.bit_starts,
+                stop,
+                self.base(),
+                sink,
+            );
             self.now = stop;
             if self.machine.sequencer.deadline() == stop {
                 self.receiver.hear_data(&byte);

@@ -272,25 +272,27 @@ impl Device {
     }
 
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
-    /// where it does not.
+    /// where it does not. Its transceiver enters that cycle, as it would do first when the cycle is run.
     #[must_use]
-    pub fn driven(&self) -> Option<bool> {
-        let levels = Levels(self.machine.transceiver.ahead(self.now).0);
+    pub fn driven(&mut self) -> Option<bool> {
+        self.machine.transceiver.clock(self.now);
+        let levels = Levels(self.machine.transceiver.levels());
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
     }
 
-    /// A cycle after [`Self::now`] up to which this controller does not change what it does to the
+    /// After [`Self::driven`]: a cycle after [`Self::now`] up to which this controller does not change what it does to the
     /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
     #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
         if !self.answers() {
             return Instant::NEVER;
         }
-        let (levels, next) = self.machine.transceiver.ahead(self.now);
-        let heard = self.receiver.deadline(self.before(), line || Levels(levels).has(Levels::DE));
+        let transceiver = &self.machine.transceiver;
+        debug_assert!(self.now < transceiver.deadline(), "the transceiver has not entered {:?}", self.now);
+        let heard =
+            self.receiver.deadline(self.before(), line || Levels(transceiver.levels()).has(Levels::DE));
         // What it may hear then can be answered no sooner than after the turnaround.
-        let answer =
-            if heard == Instant::NEVER { heard } else { heard + self.machine.transceiver.turnaround() };
-        next.min(answer)
+        let answer = if heard == Instant::NEVER { heard } else { heard + transceiver.turnaround() };
+        transceiver.deadline().min(answer)
     }
 }

@@ -13,9 +13,8 @@ use crate::{
     signal::{Event, Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
     wire::{
-        ByteAhead,
         packet::{ChannelCommand, Tick},
-        sender::NO_BIT,
+        sender::{BitStarts, NO_BIT},
     },
 };
 use alloc::{collections::VecDeque, vec::Vec};
@@ -279,12 +278,15 @@ impl Sequencer {
         self.running.map_or(self.deadline, |running| running.end) >= until
     }
 
-    /// [`Self::run`] before `until`, where only changes of the tick that runs fall due, beside the edges of a byte. Copied into
-    /// its caller it is 5 % slower in the page, and 7 % faster natively.
+    /// [`Self::run`] before `until`, where only changes of the tick that runs fall due, beside the edges of a byte: of
+    /// [`ByteAhead`](crate::wire::ByteAhead) what they need, as a struct would go by way of the memory in wasm. Copied into its
+    /// caller it is 5 % slower in the page, and 7 % faster natively.
     #[inline(never)]
     pub(super) fn run_beside(
         &mut self,
-        byte: &ByteAhead<'_>,
+        start: Instant,
+        edges: u32,
+        bit_starts: &BitStarts,
         until: Instant,
         base: u64,
         sink: &mut impl Sink,
@@ -296,9 +298,8 @@ impl Sequencer {
         let change_of = |changes: &Iter<'_, Change>| {
             changes.as_slice().first().map_or(Instant::NEVER, |change| c0 + Cycles(change.offset))
         };
-        let edge_of =
-            |edges: u32| byte.start + Cycles(byte.bit_starts[edges.trailing_zeros() as usize & NO_BIT]);
-        let (mut lines, mut rx, mut edges) = (self.lines, base, byte.edges | 1 << NO_BIT);
+        let edge_of = |edges: u32| start + Cycles(bit_starts[edges.trailing_zeros() as usize & NO_BIT]);
+        let (mut lines, mut rx, mut edges) = (self.lines, base, edges | 1 << NO_BIT);
         // The first may be none, after the tick before it.
         if changes.as_slice().first().is_some_and(|first| first.lines == lines) {
             changes.next();

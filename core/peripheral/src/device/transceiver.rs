@@ -61,19 +61,7 @@ impl Transceiver {
         self.next
     }
 
-    /// EN, TX and DE in cycle `now`, which is not after [`Self::deadline`], and the next change
-    /// after it.
-    pub(super) fn ahead(&self, now: Instant) -> (u64, Instant) {
-        debug_assert!(now <= self.next, "{:?} was left out", self.next);
-        if self.next != now {
-            return (self.levels, self.next);
-        }
-        let mut then = self.clone();
-        then.act(now);
-        (then.levels, then.next)
-    }
-
-    /// Cycle `now`.
+    /// Cycle `now`; again in the same one, nothing.
     pub(super) fn clock(&mut self, now: Instant) {
         debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next == now {

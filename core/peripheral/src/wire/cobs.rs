@@ -12,7 +12,7 @@
 //!
 //! let mut reader = CobsDecoder::default();
 //! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // carries 7, 0, 8
-//! assert_eq!(read[1..], [CobsByte::Content(7), CobsByte::Content(0), CobsByte::Content(8), CobsByte::End]);
+//! assert_eq!(read[1..], [CobsByte::Content, CobsByte::Zero, CobsByte::Content, CobsByte::End]);
 //! ```
 
 use cobs::{DecodeResult, DecoderState};
@@ -24,12 +24,26 @@ pub enum CobsByte {
     First,
     /// A byte that carries no content: a code that owes no zero, or the zero of an empty run.
     Overhead,
-    /// This byte of the content; a zero stands where a code does.
-    Content(u8),
+    /// Itself a byte of the content.
+    Content,
+    /// A code where the content has a zero.
+    Zero,
     /// The delimiter of a whole frame.
     End,
     /// A delimiter where more was to come: the bytes before it are not COBS.
     Broken,
+}
+
+impl CobsByte {
+    /// What `byte`, which is this, carries.
+    #[must_use]
+    pub const fn content(self, byte: u8) -> Option<u8> {
+        match self {
+            Self::Content => Some(byte),
+            Self::Zero => Some(0),
+            Self::First | Self::Overhead | Self::End | Self::Broken => None,
+        }
+    }
 }
 
 /// A reader between two bytes.
@@ -59,7 +73,8 @@ impl CobsDecoder {
         match self.0.feed(byte) {
             Ok(DecodeResult::DataStart) => CobsByte::First,
             Ok(DecodeResult::NoData) => CobsByte::Overhead,
-            Ok(DecodeResult::DataContinue(content)) => CobsByte::Content(content),
+            Ok(DecodeResult::DataContinue(0)) => CobsByte::Zero,
+            Ok(DecodeResult::DataContinue(_)) => CobsByte::Content,
             Ok(DecodeResult::DataComplete) => CobsByte::End,
             Err(_) => CobsByte::Broken,
         }
@@ -81,16 +96,16 @@ impl CobsDecoder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use CobsByte::{Broken, Content, End, First, Overhead};
+    use CobsByte::{Broken, Content, End, First, Overhead, Zero};
     use alloc::vec::Vec;
 
     #[test]
     fn each_byte_says_what_it_carries() {
         let rows: [(&[u8], &[CobsByte]); 4] = [
             (&[0, 0], &[Overhead, Overhead]),
-            (&[2, 7, 1, 2, 9, 0], &[First, Content(7), Content(0), Content(0), Content(9), End]),
-            (&[3, 7, 0, 1, 0], &[First, Content(7), Broken, First, End]),
-            (&[1, 1], &[First, Content(0)]),
+            (&[2, 7, 1, 2, 9, 0], &[First, Content, Zero, Zero, Content, End]),
+            (&[3, 7, 0, 1, 0], &[First, Content, Broken, First, End]),
+            (&[1, 1], &[First, Zero]),
         ];
         for (wire, expected) in rows {
             let mut reader = CobsDecoder::default();
@@ -104,7 +119,7 @@ mod tests {
         let mut reader = CobsDecoder::default();
         let wire = [[255].as_slice(), &[5; 254], &[2, 6]].concat();
         let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
-        assert_eq!((found[0], found[254], found[255], found[256]), (First, Content(5), Overhead, Content(6)));
+        assert_eq!((found[0], found[254], found[255], found[256]), (First, Content, Overhead, Content));
         assert!(reader.is_whole() && reader.is_open());
     }
 }

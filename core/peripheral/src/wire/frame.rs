@@ -255,6 +255,16 @@ pub enum Deframed<'a> {
     Overlong,
 }
 
+/// Whether a byte completes something, without what that is: most complete nothing, and are passed without a way to tell it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Completed {
+    Nothing,
+    /// Bytes up to their delimiter, a frame if the CRC is right.
+    Content,
+    Short,
+    Overlong,
+}
+
 /// Joins bytes to frames.
 #[derive(Clone, Debug)]
 pub struct Deframer {
@@ -276,29 +286,44 @@ impl Default for Deframer {
 impl Deframer {
     /// A byte; what it completes.
     pub fn byte(&mut self, byte: u8) -> Option<Deframed<'_>> {
+        let completed = self.take(byte);
+        self.deframed(completed)
+    }
+
+    /// What [`Self::take`] told of right before.
+    pub(crate) fn deframed(&self, completed: Completed) -> Option<Deframed<'_>> {
+        match completed {
+            Completed::Nothing => None,
+            Completed::Content => Some(judge(&self.content)),
+            Completed::Short => Some(Deframed::Short),
+            Completed::Overlong => Some(Deframed::Overlong),
+        }
+    }
+
+    /// A byte; whether it completes anything.
+    pub(crate) fn take(&mut self, byte: u8) -> Completed {
         if self.dropping {
             self.dropping = byte != DELIMITER;
-            return None;
+            return Completed::Nothing;
         }
-        match self.cobs.byte(byte) {
-            CobsByte::Overhead => None,
+        let content = match self.cobs.byte(byte) {
+            CobsByte::Content => byte,
+            CobsByte::Zero => 0,
+            CobsByte::Overhead => return Completed::Nothing,
             CobsByte::First => {
                 self.content.clear();
-                None
+                return Completed::Nothing;
             }
-            CobsByte::Content(_) if self.content.len() == MAX_DECODED => {
-                self.cobs = CobsDecoder::default();
-                self.dropping = true;
-                Some(Deframed::Overlong)
-            }
-            CobsByte::Content(decoded) => {
-                self.content.push(decoded);
-                debug_assert!(self.content.len() <= MAX_DECODED, "a byte too many is kept");
-                None
-            }
-            CobsByte::End => Some(judge(&self.content)),
-            CobsByte::Broken => Some(Deframed::Short),
+            CobsByte::End => return Completed::Content,
+            CobsByte::Broken => return Completed::Short,
+        };
+        if self.content.len() == MAX_DECODED {
+            self.cobs = CobsDecoder::default();
+            self.dropping = true;
+            return Completed::Overlong;
         }
+        self.content.push(content);
+        Completed::Nothing
     }
 
     /// Whether bytes since the last delimiter wait for theirs.
