@@ -57,6 +57,7 @@ impl Bus {
     }
 
     /// Whether nothing can change any more.
+    #[inline]
     pub(super) fn is_over(&self) -> bool {
         match self {
             Self::Raw(receivers) => receivers.iter().all(RawReceiver::is_over),

@@ -22,6 +22,7 @@ impl Controllers {
     }
 
     /// Whether all that was to be run is run.
+    #[inline]
     pub(crate) fn are_done(&self) -> bool {
         match (&self.alone, self.end) {
             (Some(alone), Some(end)) => alone.now() >= end,

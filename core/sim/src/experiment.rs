@@ -409,6 +409,7 @@ impl Run {
 
     /// Whether the run is over.
     #[must_use]
+    #[inline]
     pub fn is_done(&self) -> bool {
         #[cfg(feature = "plant")]
         if let Some(plants) = &self.plants {
