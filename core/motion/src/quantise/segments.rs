@@ -248,12 +248,23 @@ mod tests {
     }
 
     #[test]
+    fn each_plan_needs_a_channel_and_a_channel_no_plan() {
+        let plans = [plan(vec![constant(5.0, 1000.0)]), plan(vec![constant(5.0, 500.0)])];
+        let lists = |channels| {
+            exact_segments(&plans, AxesPath::MOTION, channels, PULSE, 1_000_000)
+                .map(|found| found.lists().len())
+        };
+        let cause = ValueError::Length { given: 2, least: 1, most: 1, of: "axes" };
+        assert_eq!(lists(1), Err(vec![Problem::new("source.motion.axes", cause)]));
+        assert_eq!([2, 3].map(lists), [Ok(2), Ok(2)]);
+    }
+
+    #[test]
     fn what_is_too_much_is_refused_with_its_numbers() {
         let many = [plan(vec![constant(2_000_001.0, 1e4)]), plan(vec![constant(-2_000_000.0, 1e4)])];
         let cause = ValueError::TooMuch { given: 4_000_001.0, most: 4_000_000.0, of: "steps" };
         let found = exact_segments(&many, AxesPath::MOTION, 2, PULSE, 1_000_000);
         assert_eq!(found, Err(vec![Problem::new("source.motion", cause)]));
-        assert!(exact_segments(&many, AxesPath::MOTION, 1, PULSE, 1_000_000).is_err());
         // 2^48 cycles of 1 GHz are 281474.98 s.
         let late = [plan(vec![constant(2.0, 1.0), constant(1.0, 4e-6), constant(9.0, 1.0)])];
         assert!(exact_segments(&late, AxesPath::MOTION, 1, PULSE, 1_000_000_000).is_ok());
