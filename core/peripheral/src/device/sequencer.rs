@@ -304,29 +304,35 @@ impl Sequencer {
         if changes.as_slice().first().is_some_and(|first| first.lines == lines) {
             changes.next();
         }
-        let (mut edge, mut change) = (edge_of(edges), change_of(&changes));
+        // From edge to edge, the changes before it first.
         loop {
-            let now = edge.min(change);
-            if now >= until {
+            let edge = edge_of(edges);
+            let limit = edge.min(until);
+            while let Some(passed) = changes.as_slice().first() {
+                let cycle = c0 + Cycles(passed.offset);
+                if cycle >= limit {
+                    break;
+                }
+                lines = passed.lines;
+                sink.record(Record { cycle, levels: Levels(rx | u64::from(lines)) });
+                changes.next();
+            }
+            if edge >= until {
                 break;
             }
-            if change == now
+            if change_of(&changes) == edge
                 && let Some(passed) = changes.next()
             {
                 lines = passed.lines;
-                change = change_of(&changes);
             }
-            if edge == now {
-                rx ^= Levels::RX;
-                edges &= edges - 1;
-                edge = edge_of(edges);
-            }
-            sink.record(Record { cycle: now, levels: Levels(rx | u64::from(lines)) });
+            rx ^= Levels::RX;
+            edges &= edges - 1;
+            sink.record(Record { cycle: edge, levels: Levels(rx | u64::from(lines)) });
         }
         self.lines = lines;
         if let Some(running) = &mut self.running {
             running.next = self.plan.changes().len() - changes.len();
-            self.deadline = change.min(running.end);
+            self.deadline = change_of(&changes).min(running.end);
         }
         Levels(rx | u64::from(lines))
     }
