@@ -25,7 +25,7 @@ use crate::{
     units::{Cycles, Instant},
 };
 use alloc::rc::Rc;
-use earliest::{Earliest, First};
+use earliest::Earliest;
 use falls::FallingEdges;
 
 // What a list can order is due in a cycle that the tree can hold.
@@ -213,13 +213,17 @@ impl SegmentEngine {
 
     /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
     fn deadline(&self) -> Instant {
-        if self.now == Instant::RESET {
-            return self.now;
-        }
-        match self.due.first().cycle().min(self.falls.cycle()) {
+        match self.next() {
+            _ if self.now == Instant::RESET => self.now,
             Earliest::NONE => Instant::NEVER,
-            cycle => cycle,
+            next => next,
         }
+    }
+
+    /// The same after cycle 0; [`Earliest::NONE`] at the end.
+    #[inline(always)]
+    fn next(&self) -> Instant {
+        self.due.cycle().min(self.falls.cycle())
     }
 
     /// The supply current was too great for too long (PLANT F7): in the cycle after the one that was run last EN and STEP
@@ -241,28 +245,15 @@ impl SegmentEngine {
     }
 
     /// All that falls due in cycle `now`; at least one signal changes.
+    #[inline(always)]
     fn act(&mut self, now: Instant) {
+        let before = self.levels;
         if self.falls.cycle() == now {
-            self.fall();
+            self.levels.0 &= !self.falls.pop();
         }
-        let due = self.due.first();
-        if due.cycle() == now {
-            self.follow(due, now);
-        }
-    }
-
-    /// The next fall.
-    #[inline(always)]
-    fn fall(&mut self) {
-        self.levels.0 &= !self.falls.pop();
-    }
-
-    /// The changes of DIR and the rises that the lists have in cycle `now`, from what is due first to what is due after it.
-    #[inline(always)]
-    fn follow(&mut self, mut due: First, now: Instant) -> First {
         let mut rising = 0;
-        while due.cycle() == now {
-            let index = due.channel();
+        while self.due.cycle() == now {
+            let index = self.due.channel();
             let channel = &mut self.channels[index];
             let next = if channel.left > 1 {
                 channel.left -= 1;
@@ -276,13 +267,13 @@ impl SegmentEngine {
                 channel.held = now + self.held_for;
                 channel.begin(self.lists.lists().get(index).map_or(&[], |list| &list.segments))
             };
-            due = self.due.set(index, next);
+            self.due.set(index, next);
         }
         if rising != 0 {
             self.levels.0 |= rising;
             self.falls.push(now + self.width, rising);
         }
-        due
+        debug_assert!(self.levels != before, "no signal changes in {now:?}");
     }
 
     /// For how many cycles nothing can change; `None` if it is for ever.
@@ -309,23 +300,14 @@ impl SegmentEngine {
             self.clock(sink);
         }
         let end = until.min(Earliest::NONE);
-        // What the lists have due first is passed on from step to step, and not asked of the tree again.
-        let (mut now, mut due) = (self.now, self.due.first());
+        let mut now = self.now;
         while !sink.paused() {
-            let (change, fall) = (due.cycle(), self.falls.cycle());
-            let cycle = change.min(fall);
+            let cycle = self.next();
             if cycle >= end {
                 now = if until == Instant::NEVER { now } else { now.max(until) };
                 break;
             }
-            let before = self.levels;
-            if fall == cycle {
-                self.fall();
-            }
-            if change == cycle {
-                due = self.follow(due, cycle);
-            }
-            debug_assert!(self.levels != before, "no signal changes in {cycle:?}");
+            self.act(cycle);
             now = cycle.next();
             sink.record(Record { cycle, levels: self.levels });
         }

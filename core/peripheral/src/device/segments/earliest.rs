@@ -21,7 +21,7 @@ pub(super) struct Earliest {
 }
 
 impl Earliest {
-    /// [`First::cycle`] where nothing is due: what [`Instant::NEVER`] leaves of itself in a key, after every cycle that may be due.
+    /// [`Self::cycle`] where nothing is due: what [`Instant::NEVER`] leaves of itself in a key, after every cycle that may be due.
     pub(super) const NONE: Instant = Instant(Instant::NEVER.0 >> CHANNEL_BITS);
 
     /// Nothing is due.
@@ -29,9 +29,9 @@ impl Earliest {
         Self { keys: [u64::MAX; ENTRIES] }
     }
 
-    /// Sets the cycle of a channel, [`Instant::NEVER`] or one before [`Self::NONE`]: what is due first then.
+    /// Sets the cycle of a channel, [`Instant::NEVER`] or one before [`Self::NONE`].
     #[inline(always)]
-    pub(super) fn set(&mut self, channel: usize, cycle: Instant) -> First {
+    pub(super) fn set(&mut self, channel: usize, cycle: Instant) {
         debug_assert!(channel < MAX_CHANNELS, "channel {channel} has no leaf");
         debug_assert!(cycle == Instant::NEVER || cycle < Self::NONE, "{cycle:?} has no key");
         let mut index = MAX_CHANNELS + channel % MAX_CHANNELS;
@@ -42,28 +42,16 @@ impl Earliest {
             index /= 2;
             self.keys[index] = least;
         }
-        First(least)
     }
 
-    /// What is due first.
-    pub(super) const fn first(&self) -> First {
-        First(self.keys[1])
-    }
-}
-
-/// What is due first: the key at the root of the tree.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct First(u64);
-
-impl First {
-    /// The earliest cycle; [`Earliest::NONE`] where nothing is due.
-    pub(super) const fn cycle(self) -> Instant {
-        Instant(self.0 >> CHANNEL_BITS)
+    /// The earliest cycle; [`Self::NONE`] where nothing is due.
+    pub(super) const fn cycle(&self) -> Instant {
+        Instant(self.keys[1] >> CHANNEL_BITS)
     }
 
     /// The channel of the earliest cycle; of several the first.
-    pub(super) const fn channel(self) -> usize {
-        self.0 as usize % MAX_CHANNELS
+    pub(super) const fn channel(&self) -> usize {
+        self.keys[1] as usize % MAX_CHANNELS
     }
 }
 
@@ -75,7 +63,7 @@ mod tests {
     fn the_root_is_the_earliest_and_of_those_the_first() {
         for channels in 1..=MAX_CHANNELS {
             let mut tree = Earliest::new();
-            assert_eq!(tree.first().cycle(), Earliest::NONE);
+            assert_eq!(tree.cycle(), Earliest::NONE);
             let mut cycles = [Instant::NEVER; MAX_CHANNELS];
             let mut random = 1_u64;
             for _ in 0..2000 {
@@ -88,12 +76,9 @@ mod tests {
                 };
                 tree.set(channel, cycles[channel]);
                 let earliest = cycles.iter().min().copied().unwrap();
-                assert_eq!(tree.first().cycle(), earliest.min(Earliest::NONE));
+                assert_eq!(tree.cycle(), earliest.min(Earliest::NONE));
                 if earliest != Instant::NEVER {
-                    assert_eq!(
-                        Some(tree.first().channel()),
-                        cycles.iter().position(|&cycle| cycle == earliest)
-                    );
+                    assert_eq!(Some(tree.channel()), cycles.iter().position(|&cycle| cycle == earliest));
                 }
             }
         }
