@@ -62,6 +62,7 @@ impl Transceiver {
     }
 
     /// Cycle `now`; again in the same one, nothing.
+    #[inline(always)]
     pub(super) fn clock(&mut self, now: Instant) {
         debug_assert!(now <= self.next, "{:?} was left out", self.next);
         if self.next == now {
