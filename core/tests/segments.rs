@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use std::{collections::BTreeMap, rc::Rc};
 use stepscope_core::peripheral::{
-    device::SegmentEngine,
+    device::{Faults, SegmentEngine},
     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
     signal::{Levels, Record, Sink},
     units::{Cycles, Instant},
@@ -150,6 +150,58 @@ proptest! {
         engine.run(Instant::NEVER, &mut cut);
         prop_assert_eq!(&cut, &expected);
     }
+}
+
+proptest! {
+    /// PLANT F7, in every place of a pulse, of a turn and of a list.
+    #[test]
+    fn an_overload_lets_all_fall_but_dir_and_no_step_follows(
+        (pulse, lists) in lists(),
+        place in any::<prop::sample::Index>(),
+        late in 0..=2_u64,
+    ) {
+        let (expected, positions) = model(pulse, &lists);
+        let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
+        let at = place.get(&expected).cycle.0 + late;
+        let (mut found, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        engine.run(Instant(at), &mut found);
+        engine.overload();
+        engine.overload();
+        if at == 0 {
+            engine.run(Instant::NEVER, &mut found);
+            prop_assert_eq!((found, engine.positions()), (expected, positions), "before cycle 0 nothing");
+            prop_assert_eq!(engine.faults(), Faults::default());
+            return Ok(());
+        }
+        let mut left: Vec<Record> = expected.iter().copied().filter(|record| record.cycle.0 < at).collect();
+        let levels = left.last().map_or(0, |record| record.levels.0) & !(Levels::EN | 0xffff);
+        left.push(Record { cycle: Instant(at), levels: Levels(levels) });
+        let cut_short = steps_before(&expected, at);
+        for clocked in [false, true] {
+            let (mut engine, mut found) = (engine.clone(), found.clone());
+            prop_assert_eq!((engine.faults(), engine.positions()), (Faults::OVERLOAD, cut_short));
+            if clocked {
+                prop_assert_eq!(engine.clock(&mut found), Levels(levels));
+            }
+            engine.overload();
+            engine.run(Instant::NEVER, &mut found);
+            prop_assert_eq!(&found, &left);
+            prop_assert_eq!((engine.at_rest(), engine.now(), engine.positions()), (true, Instant(at + 1), cut_short));
+            prop_assert_eq!(engine.faults(), Faults::OVERLOAD);
+        }
+    }
+}
+
+#[test]
+fn a_segment_of_more_steps_than_a_position_counts_to_is_counted_from_its_begin() {
+    let pulse = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
+    let steps =
+        |count, right| Segment::Steps { count, interval: pulse.min_interval().0 << 16, add: 0, right };
+    let list = SegmentList { start: Instant(1), segments: vec![steps(u32::MAX, true), steps(5, false)] };
+    let mut engine =
+        SegmentEngine::new(Rc::new(CheckedSegments::new(pulse, vec![list], 1).expect("it fits")));
+    engine.run(Instant(1 + 3 * pulse.min_interval().0 + 1), &mut Vec::new());
+    assert_eq!(engine.positions()[0], 3);
 }
 
 /// Positions by the edges before a cycle (DESIGN A3).

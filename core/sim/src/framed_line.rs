@@ -137,9 +137,9 @@ impl FramedLine {
     }
 
     /// First cycle after the window that begins at `self.start`, at most `end`.
-    fn window(&self, end: Instant) -> Instant {
-        let driven = |node: &Node| node.device.next_driven(node.hears);
-        let driven = self.nodes.iter().map(driven).fold(Instant::NEVER, Instant::min);
+    fn window(&mut self, end: Instant) -> Instant {
+        let driven = |node: &mut Node| node.device.next_driven(node.hears);
+        let driven = self.nodes.iter_mut().map(driven).fold(Instant::NEVER, Instant::min);
         let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
         let others = driven.min(host);
         // While nobody answers, what is forced to the level that the line has is not heard.

@@ -272,7 +272,7 @@ impl Device {
     }
 
     /// What this controller does to the line in cycle [`Self::now`]: its TX where it drives, `None`
-    /// where it does not. Its transceiver enters that cycle, as it would do first when the cycle is run.
+    /// where it does not. Its transceiver enters that cycle, as it does first when the cycle is run.
     #[must_use]
     pub fn driven(&mut self) -> Option<bool> {
         self.machine.transceiver.clock(self.now);
@@ -280,18 +280,18 @@ impl Device {
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
     }
 
-    /// After [`Self::driven`]: a cycle after [`Self::now`] up to which this controller does not change what it does to the
-    /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not.
+    /// A cycle after [`Self::now`] up to which this controller does not change what it does to the
+    /// line, while others keep the line at `line`; [`Instant::NEVER`] if it will not. Its transceiver enters cycle
+    /// [`Self::now`], too.
     #[must_use]
-    pub fn next_driven(&self, line: bool) -> Instant {
+    pub fn next_driven(&mut self, line: bool) -> Instant {
         if !self.answers() {
             return Instant::NEVER;
         }
-        let transceiver = &self.machine.transceiver;
-        debug_assert!(self.now < transceiver.deadline(), "the transceiver has not entered {:?}", self.now);
-        let heard =
-            self.receiver.deadline(self.before(), line || Levels(transceiver.levels()).has(Levels::DE));
+        let drives = self.driven().is_some();
+        let heard = self.receiver.deadline(self.before(), line || drives);
         // What it may hear then can be answered no sooner than after the turnaround.
+        let transceiver = &self.machine.transceiver;
         let answer = if heard == Instant::NEVER { heard } else { heard + transceiver.turnaround() };
         transceiver.deadline().min(answer)
     }

@@ -158,7 +158,8 @@ impl Device {
             | FREE.with(status.free.into())
             | EXPECTED_SEQ.with(expected_seq.into())
             | MOVING.with(self.machine.sequencer.is_moving().into())
-            | EN.with((self.machine.transceiver.levels() & Levels::EN != 0).into())
+            // As recorded: the transceiver may have entered the next cycle ([`Device::driven`]).
+            | EN.with((self.now == Instant::RESET || self.levels.has(Levels::EN)).into())
             | PENDING.with(pending.into())
     }
 }

@@ -31,7 +31,7 @@ use falls::FallingEdges;
 // What a list can order is due in a cycle that the tree can hold.
 const _: () = assert!(LAST_CYCLE.0 < Earliest::NONE.0);
 
-/// The engine.
+/// The engine. It has room for all channels, whatever the lists: 1.6 kB beside them.
 ///
 /// ```
 /// use std::rc::Rc;
@@ -71,7 +71,7 @@ pub struct SegmentEngine {
 
 /// One channel's place in its list.
 ///
-/// Of 64 bytes on every machine, so that its place is found by a shift: 8 % for 16 channels that step at once in a browser.
+/// Of 64 bytes on every machine, so that it is found by a shift: 8 % for 16 channels that step at once in a browser.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Channel {
@@ -95,6 +95,8 @@ struct Channel {
     /// Last fall + H, 0 before the first pulse: DIR is held until then.
     held: Instant,
 }
+
+const _: () = assert!(size_of::<Channel>() == 64);
 
 impl Channel {
     /// A channel before its list, which starts in cycle `start`.
@@ -182,7 +184,7 @@ impl SegmentEngine {
             falls: FallingEdges::default(),
             overloaded: false,
             width: pulse.width,
-            held_for: Cycles(pulse.width.0 + pulse.hold.0),
+            held_for: Cycles(pulse.width.0.saturating_add(pulse.hold.0)),
         }
     }
 
@@ -227,9 +229,11 @@ impl SegmentEngine {
     }
 
     /// The supply current was too great for too long (PLANT F7): in the cycle after the one that was run last EN and STEP
-    /// fall, DIR stays, and no step of any list follows. Before cycle 0 nothing.
+    /// fall, DIR stays, and no step of any list follows. Before cycle 0 nothing, nor from cycle 2^60 - 1 on, long after the
+    /// end of every list.
     pub fn overload(&mut self) {
-        if self.now == Instant::RESET || !self.levels.has(Levels::EN) {
+        let runs = self.now != Instant::RESET && self.now < Earliest::NONE;
+        if !runs || !self.levels.has(Levels::EN) {
             return;
         }
         self.due = Earliest::new();

@@ -308,14 +308,14 @@ impl Sequencer {
         loop {
             let edge = edge_of(edges);
             let limit = edge.min(until);
-            while let Some(passed) = changes.as_slice().first() {
-                let cycle = c0 + Cycles(passed.offset);
-                if cycle >= limit {
-                    break;
-                }
+            while change_of(&changes) < limit
+                && let Some(passed) = changes.next()
+            {
                 lines = passed.lines;
-                sink.record(Record { cycle, levels: Levels(rx | u64::from(lines)) });
-                changes.next();
+                sink.record(Record {
+                    cycle: c0 + Cycles(passed.offset),
+                    levels: Levels(rx | u64::from(lines)),
+                });
             }
             if edge >= until {
                 break;

@@ -301,3 +301,52 @@ fn the_line_is_heard_again_in_the_very_cycle_in_which_de_falls() {
         assert_eq!(last, Some(seen), "sent from {start} on");
     }
 }
+
+/// [`Device::driven`] looks at the next cycle; what firmware reads is of the last one.
+#[test]
+fn who_looks_at_what_is_driven_next_changes_nothing_else() {
+    use stepscope_registers as map;
+    let serial = SerialLine { baud: BAUD, protocol: Protocol::Framed, ..SerialLine::default() };
+    let config = Config::new(CLOCK_HZ, &bus(1, 2), &serial).expect("it holds");
+    let status = encode_frame(&[0, Kind::Status as u8]);
+    let mut schedule = Schedule::default();
+    schedule.push(Instant(P - DELIVERY - BYTE * (status.len() as u64 - 1)), &status);
+    let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
+    // DISABLE in one cycle, ENABLE in another, and the reply of STATUS between.
+    let (disable, enable, end) = (P - 100, P + 3000, Instant(P + 6000));
+    let mut devices = [(); 2].map(|()| Device::new(&config));
+    let mut left = [(); 2].map(|()| Left::default());
+    let mut driving = 0;
+    while devices[0].now() < end {
+        let now = devices[0].now();
+        if line.next_change() == now {
+            line.change();
+        }
+        let level = line.heard(true);
+        let [plain, watched] = &mut devices;
+        let drives = watched.driven();
+        assert_eq!(plain.read(map::status::OFFSET), watched.read(map::status::OFFSET), "before {now:?}");
+        assert_eq!(plain.status(), watched.status());
+        assert!(watched.next_driven(level) > now);
+        let levels = plain.clock(level, &mut left[0]);
+        assert_eq!(watched.clock(level, &mut left[1]), levels);
+        assert_eq!(drives, levels.has(Levels::DE).then(|| levels.has(Levels::TX)), "in {now:?}");
+        driving += u32::from(drives.is_some());
+        let order = match now.0 {
+            at if at == disable => map::control::DISABLE.with(1),
+            at if at == enable => map::control::ENABLE.with(1),
+            _ => continue,
+        };
+        let _ = devices[1].driven();
+        for (device, left) in devices.iter_mut().zip(&mut left) {
+            device.write(map::control::OFFSET, order, left);
+        }
+        let watched = &mut devices[1];
+        assert!(watched.next_driven(level) > watched.now(), "EN falls due again after {now:?}");
+    }
+    let [plain, watched] = left;
+    assert_eq!(plain, watched);
+    let en = plain.trace.windows(2).filter(|pair| (pair[0].levels.0 ^ pair[1].levels.0) & Levels::EN != 0);
+    assert!(en.map(|pair| pair[1].cycle.0).eq([disable + 1, enable + 1]));
+    assert!(driving > 1000, "{driving}");
+}

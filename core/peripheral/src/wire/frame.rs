@@ -255,11 +255,11 @@ pub enum Deframed<'a> {
     Overlong,
 }
 
-/// Whether a byte completes something, without what that is: most complete nothing, and are passed without a way to tell it.
+/// Whether a byte completes something, without what that is: most complete nothing, and this fits a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Completed {
     Nothing,
-    /// Bytes up to their delimiter, a frame if the CRC is right.
+    /// Bytes up to their delimiter: a frame if they are enough and the CRC is right.
     Content,
     Short,
     Overlong,

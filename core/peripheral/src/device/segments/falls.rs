@@ -1,5 +1,5 @@
 //! The falls of the pulses that are high: they come in the order of the rises, because all pulses
-//! have the same width, and each channel has at most one.
+//! have the same width, and each channel has at most one. After an overload EN falls with all of them, alone.
 
 use crate::{signal::MAX_CHANNELS, units::Instant};
 
