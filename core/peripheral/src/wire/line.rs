@@ -70,7 +70,7 @@ pub struct Line {
     force: Option<bool>,
     next: Instant,
     /// Next cycle in which what one hears while no controller sends changes; followed while something is
-    /// left to be forced, because what is forced to the level that the line has is no change.
+    /// left to be forced, because what is forced to the level that the line has is no change. Else [`Instant::RESET`].
     next_heard: Instant,
 }
 
@@ -177,12 +177,13 @@ impl Line {
     /// Whether no change is left that anyone hears while no controller sends.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.next == Instant::NEVER || self.passed < self.forced.len() && self.next_heard == Instant::NEVER
+        self.next == Instant::NEVER || self.next_heard == Instant::NEVER
     }
 
     /// Looks for the next change that is heard.
     fn find_heard(&mut self) {
         if self.passed == self.forced.len() {
+            self.next_heard = Instant::RESET;
             return;
         }
         let (mut ahead, level) = (self.clone(), self.heard(true));
@@ -261,6 +262,9 @@ impl Line {
     fn follow_forced(&mut self, now: Instant) {
         while self.forced.get(self.passed).is_some_and(|forced| forced.ends_by(now)) {
             self.passed += 1;
+        }
+        if self.passed == self.forced.len() {
+            self.next_heard = Instant::RESET;
         }
         self.force =
             self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
