@@ -181,7 +181,7 @@ impl Device {
             }
         }
         match self.receiver.clock(now, before, rx) {
-            Some(RxEvent::Byte(byte)) => self.byte(byte, sink),
+            Some(RxEvent::Byte(byte)) => self.byte_alone(byte, sink),
             Some(RxEvent::FramingError) => {
                 self.machine.fault(Faults::FRAMING);
                 let drops = if let Framing::Raw(unpacker) = &mut self.framing {
@@ -211,6 +211,13 @@ impl Device {
             Framing::Raw(unpacker) => unpacker.deadline(),
             Framing::Framed(_) => self.machine.transceiver.deadline(),
         }
+    }
+
+    /// [`Self::byte`] apart from [`Self::clock`], which then needs no memory of its own in wasm: making room for it takes as long as
+    /// a cycle in which nothing happens.
+    #[inline(never)]
+    fn byte_alone(&mut self, byte: u8, sink: &mut impl Sink) {
+        self.byte(byte, sink);
     }
 
     #[inline(always)]

@@ -175,7 +175,8 @@ impl Sequencer {
         }
     }
 
-    /// All that falls due in cycle `now`.
+    /// All that falls due in cycle `now`. Apart from [`Self::clock`], so that a cycle without needs no memory of its own in wasm.
+    #[inline(never)]
     fn act(&mut self, now: Instant, sink: &mut impl Sink) {
         debug_assert!(self.queue.len() <= self.depth, "more ticks wait than the queue holds");
         while self.deadline == now {

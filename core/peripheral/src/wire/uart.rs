@@ -190,7 +190,8 @@ impl Receiver {
         (self.bit, self.at) = (bit, at);
     }
 
-    /// The look that is due in this cycle.
+    /// The look that is due in this cycle. In its caller, as its answer would go by way of the memory in wasm.
+    #[inline(always)]
     fn look(&mut self, rx: bool) -> Option<RxEvent> {
         match (self.bit, rx) {
             (0, true) => self.state = State::Armed,
