@@ -21,6 +21,7 @@ mod plant;
 mod points;
 mod powercut;
 mod progress;
+mod quantity;
 mod run;
 mod scenarios;
 mod sine;

@@ -4,6 +4,7 @@ use crate::{
     failure::Failure,
     json::Tables,
     output::{self, Outputs},
+    quantity::Microseconds,
     scenarios,
     steps::steps_of_table,
 };
@@ -51,8 +52,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum)]
     form: Option<FormName>,
     /// Greatest error of a step in a compressed table, in us.
-    #[arg(long, value_name = "US", default_value = "25", value_parser = micros)]
-    error_us: f64,
+    #[arg(long, value_name = "US", default_value = "25", allow_negative_numbers = true)]
+    error_us: Microseconds,
     /// In a compressed table no step is off by more than this part of the shorter interval beside it, or, of one that is
     /// never late, of the interval before it: 2 for a half, as in Klipper.
     #[arg(long, value_name = "N")]
@@ -163,11 +164,6 @@ impl Written {
     }
 }
 
-fn micros(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
-    if (0.0..=1e9).contains(&value) { Ok(value) } else { Err("give 0 to 1e9".to_owned()) }
-}
-
 fn widths(text: &str) -> Result<EntryFormat, String> {
     let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
     let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
@@ -212,7 +208,7 @@ impl Axes {
         };
         let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
-        let cycles = tolerance_cycles(arguments.error_us, clock_hz);
+        let cycles = tolerance_cycles(arguments.error_us.get(), clock_hz);
         let (interval_part, search) = (arguments.interval_part, arguments.search);
         let tolerance = Tolerance { cycles, interval_part, side: arguments.window.side() };
         let pulse = PulseTimes::from(&config);

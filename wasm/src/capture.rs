@@ -18,6 +18,7 @@ use stepscope_core::{
             packets::{LinePacket, Packets},
             replies::{self, Dealt},
             report::ChannelReport,
+            tolerance::Tolerance,
         },
     },
     peripheral::signal::Levels,
@@ -310,7 +311,7 @@ impl CaptureFile {
             let own = opened.events(channel);
             let model =
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
-            own.beside(&model, aligned, 1.0 / f64::from(own.clock_hz.min(model.clock_hz)))
+            own.beside(&model, aligned, Tolerance::cycle(own.clock_hz, model.clock_hz))
         });
         object(&found)
     }

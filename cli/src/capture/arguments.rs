@@ -1,6 +1,11 @@
 //! What `stepscope capture` is asked for.
 
-use crate::{failure::Failure, motors::Named, timing};
+use crate::{
+    failure::Failure,
+    motors::Named,
+    quantity::{ExactMicroseconds, Microseconds},
+    timing,
+};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stepscope_core::inspect::{recording::opened::Ask, vcd::Timescale};
@@ -36,8 +41,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "STEP", default_value_t = 0, requires = "against")]
     pub(super) align: usize,
     /// How far a step, or byte, may be from the model's, in us; without it a cycle of the slower clock.
-    #[arg(long, value_name = "US", requires = "against")]
-    pub(super) within_us: Option<f64>,
+    #[arg(long, value_name = "US", requires = "against", allow_negative_numbers = true)]
+    pub(super) within_us: Option<ExactMicroseconds>,
     /// Write how late each step, or byte, is: a table.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
@@ -49,8 +54,8 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "scenario")]
     pub(super) of_steps: bool,
     /// How far the scenario's steps may be from those recorded, in us: fewer segments.
-    #[arg(long, value_name = "US", requires = "scenario")]
-    pub(super) error_us: Option<f64>,
+    #[arg(long, value_name = "US", requires = "scenario", allow_negative_numbers = true)]
+    pub(super) error_us: Option<Microseconds>,
     /// Write the step times of a channel as a table for `stepscope tables --steps`: cycle, direction.
     #[arg(long, value_name = "FILE")]
     pub(super) steps: Option<PathBuf>,

@@ -7,6 +7,7 @@ use stepscope_core::{
     inspect::recording::{
         events::{self, Events},
         opened::Opened,
+        tolerance::Tolerance,
     },
     peripheral::trace::Recording,
 };
@@ -16,7 +17,7 @@ pub(super) struct Beside {
     pub(super) recorded: Events,
     pub(super) model: Events,
     pub(super) found: events::Beside,
-    pub(super) allowed_s: f64,
+    pub(super) within: Tolerance,
 }
 
 impl Beside {
@@ -29,9 +30,9 @@ impl Beside {
         let baud = recording.report.rx().map_or(scenario.line.baud, |line| line.baud);
         let (kind, clock_hz) = (recorded.kind, experiment.config().clock_hz());
         let model = Events::of_records(&run.trace, clock_hz, kind, arguments.channel, baud);
-        let slower = recorded.clock_hz.min(clock_hz);
-        let allowed_s = arguments.within_us.map_or(1.0 / f64::from(slower), |us| us * 1e-6);
-        let found = recorded.beside(&model, arguments.align, allowed_s).ok_or_else(|| {
+        let cycle = Tolerance::cycle(recorded.clock_hz, clock_hz);
+        let within = arguments.within_us.map_or(cycle, |given| given.0);
+        let found = recorded.beside(&model, arguments.align, within).ok_or_else(|| {
             arguments.wrong(format!(
                 "channel {} has {} {} recorded and {} in the model: there is no {} {} in both; map a channel to STEP{}, or give another --channel or --align",
                 arguments.channel,
@@ -43,6 +44,6 @@ impl Beside {
                 arguments.channel,
             ))
         })?;
-        Ok(Self { recorded, model, found, allowed_s })
+        Ok(Self { recorded, model, found, within })
     }
 }

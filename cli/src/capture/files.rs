@@ -4,6 +4,7 @@ use super::{arguments::Arguments, beside::Beside};
 use crate::{
     failure::Failure,
     output::{Out, Outputs},
+    quantity::Microseconds,
 };
 use std::{
     io::{self, Write},
@@ -84,7 +85,12 @@ pub(super) fn write(
 /// The scenario that gives the recording again.
 fn scenario(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Result<Scenario, Failure> {
     recording
-        .scenario(&arguments.name(), arguments.of_steps, arguments.error_us.unwrap_or(0.0), base)
+        .scenario(
+            &arguments.name(),
+            arguments.of_steps,
+            arguments.error_us.map_or(0.0, Microseconds::get),
+            base,
+        )
         .map_err(|refused| arguments.wrong(format!("no scenario can be made of it: {refused}")))
 }
 

@@ -116,12 +116,12 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
         writeln!(out, "  {} {what} have another value", beside.found.other_values)?;
     }
     match found.first_difference {
-        None => writeln!(out, "  no {one} is off by more than {:.3} us", us(beside.allowed_s)),
+        None => writeln!(out, "  no {one} is off by more than {:.3} us", us(beside.within.seconds())),
         Some(first) => writeln!(
             out,
             "  {} {what} are off by more than {:.3} us; first {one} {}",
             found.differing,
-            us(beside.allowed_s),
+            us(beside.within.seconds()),
             off(first)
         ),
     }
@@ -195,7 +195,7 @@ pub(super) fn tables(
             "model": found.model,
             "compared": found.compared,
             "differing": found.differing,
-            "allowed_s": beside.allowed_s,
+            "allowed_s": beside.within,
             "offset_s": found.offset_s,
             "largest_late_s": found.largest.late_s,
             "largest_index": found.largest.step,

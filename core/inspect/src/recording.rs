@@ -13,7 +13,7 @@
 //! ```
 //!
 //! ```
-//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, report::Report};
+//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, report::Report, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::{Recording, steps};
 //! use stepscope_sim::Experiment;
 //!
@@ -27,7 +27,7 @@
 //! assert_eq!(Report::of(&own, 16_000_000, 1, None).channels[0].figures.steps, 3200);
 //! let (own, model) = (steps(&own, 0), steps(&model, 0));
 //! let side = |steps| Side { steps, clock_hz: 16_000_000 };
-//! let found = Comparison::of(side(&own), side(&model), 0, 0.0).expect("both have steps");
+//! let found = Comparison::of(side(&own), side(&model), 0, Tolerance::ZERO).expect("both have steps");
 //! assert!(found.is_same(), "{found:?}");
 //! ```
 
@@ -43,3 +43,4 @@ pub mod replies;
 pub mod report;
 pub mod scenario;
 pub mod serial;
+pub mod tolerance;

@@ -21,6 +21,7 @@ use stepscope_core::{
             alignment::{Comparison, Side},
             opened::{Ask, Opened, Part},
             scenario::{Made, Steps, of_step_times, of_steps},
+            tolerance::Tolerance,
         },
         tables::{write_edges_head, write_edges_row},
         vcd::VcdWriter,
@@ -290,7 +291,7 @@ fn look_at(opened: &Opened) {
         let rates = [figures.greatest_rate_steps_s, figures.greatest_acceleration_steps_s2];
         assert!(rates.into_iter().flatten().all(f64::is_finite), "{figures:?}");
         let side = Side { steps: &steps, clock_hz: opened.clock_hz };
-        let found = Comparison::of(side, side, steps.len() / 2, 0.0);
+        let found = Comparison::of(side, side, steps.len() / 2, Tolerance::ZERO);
         assert!(found.is_some_and(|found| found.is_same() && found.drift_ppm == 0.0), "{found:?}");
     }
     let shown = opened.shown_scenario("file", false);

@@ -6,9 +6,11 @@
 
 /// `mantissa / 10^places`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Decimal {
-    pub(super) mantissa: i128,
-    pub(super) places: u32,
+pub struct Decimal {
+    /// The digits as a whole number, with their sign.
+    pub mantissa: i128,
+    /// How many of the digits are behind the point.
+    pub places: u32,
 }
 
 /// Most digits of a number, its leading zeros not counted: more do not fit.
@@ -16,7 +18,8 @@ const MAX_DIGITS: u32 = 30;
 
 impl Decimal {
     /// Reads a number with an optional sign, point and exponent; `None` where it is none, or does not fit.
-    pub(super) fn parse(text: &[u8]) -> Option<Self> {
+    #[must_use]
+    pub fn parse(text: &[u8]) -> Option<Self> {
         let (negative, text) = match text {
             [b'-', rest @ ..] => (true, rest),
             [b'+', rest @ ..] => (false, rest),
@@ -68,7 +71,8 @@ impl Decimal {
     }
 
     /// The number with at least `places` places, and more only where it needs them; `None` where it does not fit.
-    pub(super) fn with_places(self, places: u32) -> Option<Self> {
+    #[must_use]
+    pub fn with_places(self, places: u32) -> Option<Self> {
         if self.places <= places {
             let mantissa = self.mantissa.checked_mul(power_of_ten(places - self.places)?)?;
             return Some(Self { mantissa, places });

@@ -18,7 +18,8 @@
 //! assert_eq!(cancelled.error.map(|error| error.what).as_deref(), Some(ReadError::CANCELLED));
 //! ```
 
-mod decimal;
+pub mod decimal;
+
 mod detect;
 mod fields;
 mod reading;

@@ -10,7 +10,7 @@
 //! told by itself, and the jitter without it; a few steps that are far off tilt neither ([`super::drift`]), and are counted.
 //!
 //! ```
-//! use stepscope_inspect::recording::alignment::{Comparison, Side};
+//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::Step;
 //!
 //! let steps = |cycles: [u64; 4]| cycles.map(|cycle| Step { cycle, position: 1 });
@@ -20,13 +20,13 @@
 //!     Side { steps: &recorded, clock_hz: 1_000_000 },
 //!     Side { steps: &model, clock_hz: 2_000_000 },
 //!     0,
-//!     1e-6,
+//!     Tolerance::from_micros(1, 0).expect("a time"),
 //! ).expect("both have steps");
 //! assert_eq!((found.largest.step, found.first_difference.map(|first| first.step)), (2, Some(2)));
 //! assert!((found.largest.late_s - 3e-6).abs() < 1e-12);
 //! ```
 
-use super::drift::Drift;
+use super::{drift::Drift, tolerance::Tolerance};
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
@@ -95,10 +95,10 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares step by step; step `aligned` of both, from 0, is taken for the same instant. Up to `allowed_s` a step is
-    /// not different. `None` where one of them has no such step.
+    /// Compares step by step; step `aligned` of both, from 0, is taken for the same instant. A step that is off by
+    /// exactly `within` is not different. `None` where one of them has no such step.
     #[must_use]
-    pub fn of(recorded: Side<'_>, model: Side<'_>, aligned: usize, allowed_s: f64) -> Option<Self> {
+    pub fn of(recorded: Side<'_>, model: Side<'_>, aligned: usize, within: Tolerance) -> Option<Self> {
         let late = Late { recorded, model, aligned };
         let compared = recorded.steps.len().min(model.steps.len());
         let first = late.off(aligned)?;
@@ -122,13 +122,14 @@ impl Comparison {
         };
         let n = compared as f64;
         let (mut sum, mut square) = (0.0, 0.0);
+        let most = within.units(recorded.clock_hz, model.clock_hz);
         for off in (0..compared).filter_map(|index| late.off(index)) {
             sum += off.late_s;
             square += off.late_s * off.late_s;
             if libm::fabs(off.late_s) > libm::fabs(found.largest.late_s) {
                 found.largest = off;
             }
-            if off.other_direction || libm::fabs(off.late_s) > allowed_s {
+            if off.other_direction || late.units(off.step).is_none_or(|units| units.unsigned_abs() > most) {
                 found.differing += 1;
                 found.first_difference = found.first_difference.or(Some(off));
             }
@@ -171,14 +172,19 @@ pub struct Late<'a> {
 }
 
 impl Late<'_> {
+    /// How late step `index` is, exactly, in units of 1/(clock * clock) s.
+    fn units(&self, index: usize) -> Option<i128> {
+        let Self { recorded, model, aligned } = *self;
+        let (came, due) = (recorded.since(aligned, index)?, model.since(aligned, index)?);
+        Some(came * i128::from(model.clock_hz) - due * i128::from(recorded.clock_hz))
+    }
+
     /// Step `index`; `None` where one of both has none.
     #[must_use]
     pub fn off(&self, index: usize) -> Option<Off> {
-        let Self { recorded, model, aligned } = *self;
-        let (came, due) = (recorded.since(aligned, index)?, model.since(aligned, index)?);
+        let Self { recorded, model, .. } = *self;
         let (own, other) = (i128::from(recorded.clock_hz), i128::from(model.clock_hz));
-        // Exact up to the one division.
-        let late = came * other - due * own;
+        let late = self.units(index)?;
         Some(Off {
             step: index,
             recorded_s: recorded.steps.get(index)?.cycle as f64 / own as f64,
@@ -213,7 +219,7 @@ mod tests {
             Side { steps: &recorded, clock_hz: 1_000_000_000 },
             Side { steps: &model, clock_hz: 16_000_000 },
             0,
-            1e-6,
+            Tolerance::from_micros(1, 0).expect("a time"),
         )
         .expect("both have steps");
         assert!((found.drift_ppm - 50.0).abs() < 0.2, "{found:?}");
@@ -233,7 +239,7 @@ mod tests {
                 Side { steps: &recorded, clock_hz: 1_000_000_000 },
                 Side { steps: &model, clock_hz: 16_000_000 },
                 0,
-                1e-6,
+                Tolerance::from_micros(1, 0).expect("a time"),
             )
             .expect("both have steps");
             assert!((found.drift_ppm - 50.0).abs() < 0.1, "{found:?}");
@@ -246,15 +252,15 @@ mod tests {
     fn steps_that_lack_or_go_the_other_way_are_told() {
         let model = steps([100, 200, 300, 400].into_iter());
         let side = |steps| Side { steps, clock_hz: 1000 };
-        let same = Comparison::of(side(&model), side(&model), 2, 0.0).expect("steps");
+        let same = Comparison::of(side(&model), side(&model), 2, Tolerance::ZERO).expect("steps");
         assert!(same.is_same() && same.largest.late_s == 0.0);
-        let lacks = Comparison::of(side(&model[..3]), side(&model), 0, 0.0).expect("steps");
+        let lacks = Comparison::of(side(&model[..3]), side(&model), 0, Tolerance::ZERO).expect("steps");
         assert_eq!((lacks.compared, lacks.is_same(), lacks.first_difference), (3, false, None));
         let mut back = model.clone();
         (back[2].position, back[3].position) = (1, 2);
-        let turned = Comparison::of(side(&back), side(&model), 0, 0.0).expect("steps");
+        let turned = Comparison::of(side(&back), side(&model), 0, Tolerance::ZERO).expect("steps");
         assert_eq!(turned.first_difference.map(|off| (off.step, off.other_direction)), Some((2, true)));
-        assert_eq!(Comparison::of(side(&[]), side(&model), 0, 0.0), None);
-        assert_eq!(Comparison::of(side(&model), side(&model), 4, 0.0), None);
+        assert_eq!(Comparison::of(side(&[]), side(&model), 0, Tolerance::ZERO), None);
+        assert_eq!(Comparison::of(side(&model), side(&model), 4, Tolerance::ZERO), None);
     }
 }

@@ -2,7 +2,7 @@
 //! of RX, each with its time.
 //!
 //! ```
-//! use stepscope_inspect::recording::events::{Events, Kind};
+//! use stepscope_inspect::recording::{events::{Events, Kind}, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::Recording;
 //! use stepscope_sim::Experiment;
 //!
@@ -10,7 +10,7 @@
 //! let mut recording = Recording::default();
 //! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
-//! let found = bytes.beside(&bytes, 0, 0.0).expect("there are bytes");
+//! let found = bytes.beside(&bytes, 0, Tolerance::ZERO).expect("there are bytes");
 //! assert_eq!((found.comparison.compared, found.other_values), (200, 0));
 //! assert!(found.is_same());
 //! ```
@@ -18,6 +18,7 @@
 use super::{
     alignment::{Comparison, Late, Side},
     serial::{Heard, hear},
+    tolerance::Tolerance,
 };
 use alloc::vec::Vec;
 use serde::Serialize;
@@ -136,11 +137,11 @@ impl Events {
         self.steps.is_empty()
     }
 
-    /// Beside a model's, number `aligned` of both, from 0, taken for the same instant; up to `allowed_s` one is not
-    /// different. `None` where one of both has none of this number.
+    /// Beside a model's, number `aligned` of both, from 0, taken for the same instant; one that is off by exactly `within` is
+    /// not different. `None` where one of both has none of this number.
     #[must_use]
-    pub fn beside(&self, model: &Self, aligned: usize, allowed_s: f64) -> Option<Beside> {
-        let comparison = Comparison::of(self.side(), model.side(), aligned, allowed_s)?;
+    pub fn beside(&self, model: &Self, aligned: usize, within: Tolerance) -> Option<Beside> {
+        let comparison = Comparison::of(self.side(), model.side(), aligned, within)?;
         let other_values = self.values.iter().zip(&model.values).filter(|(own, other)| own != other).count();
         Some(Beside { kind: self.kind, comparison, other_values })
     }

@@ -1,0 +1,108 @@
+//! Checked numbers of the command line: one type per quantity, each finite and within its range, so that NaN, infinities
+//! and negative values end as errors of the command line (exit code 2).
+//!
+//! ```text
+//! --within-us NaN     not a number; use 0 to 1000000000 microseconds
+//! --within-us=-1      out of range; use 0 to 1000000000 microseconds
+//! ```
+//!
+//! An option takes its type (`error_us: Option<Microseconds>`) and needs no `value_parser`; give it
+//! `allow_negative_numbers = true`, so that `-1` is not taken for an option. A new quantity is one more row below.
+
+use std::{fmt, str::FromStr};
+use stepscope_core::{capture::read::decimal::Decimal, inspect::recording::tolerance::Tolerance};
+
+/// Defines number types with their range and unit.
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident: $range:expr, $unit:literal;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(crate) struct $name(f64);
+
+        impl $name {
+            pub(crate) const fn get(self) -> f64 {
+                self.0
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                let (from, to) = $range.into_inner();
+                number(text, from, to, $unit).map(Self)
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    )*};
+}
+
+quantities! {
+    /// A time in us.
+    Microseconds: 0.0..=1e9, "microseconds";
+}
+
+/// Reads a number and checks its range.
+fn number(text: &str, from: f64, to: f64, unit: &str) -> Result<f64, String> {
+    let allowed = || format!("use {from} to {to} {unit}");
+    match text.parse::<f64>() {
+        Ok(value) if (from..=to).contains(&value) => Ok(value),
+        Ok(value) if !value.is_nan() => Err(format!("out of range; {}", allowed())),
+        _ => Err(format!("not a number; {}", allowed())),
+    }
+}
+
+/// A time in us, kept as the decimal number that was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ExactMicroseconds(pub(crate) Tolerance);
+
+impl FromStr for ExactMicroseconds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.parse::<Microseconds>()?;
+        let exact = Decimal::parse(text.as_bytes()).and_then(|number| {
+            let number = number.with_places(0)?;
+            Tolerance::from_micros(number.mantissa.try_into().ok()?, number.places)
+        });
+        exact.map(Self).ok_or_else(|| "too many digits; use at most 13 decimal places".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_finite_numbers_in_range_are_taken() {
+        let range = "use 0 to 1000000000 microseconds";
+        for (text, expected) in [
+            ("0", Ok(0.0)),
+            ("20", Ok(20.0)),
+            ("2.5e1", Ok(25.0)),
+            ("1000000000", Ok(1e9)),
+            ("-0", Ok(0.0)),
+            ("NaN", Err("not a number; ")),
+            ("-nan", Err("not a number; ")),
+            ("", Err("not a number; ")),
+            ("20us", Err("not a number; ")),
+            ("20,5", Err("not a number; ")),
+            ("inf", Err("out of range; ")),
+            ("-inf", Err("out of range; ")),
+            ("1e999", Err("out of range; ")),
+            ("-1", Err("out of range; ")),
+            ("1000000000.1", Err("out of range; ")),
+        ] {
+            let expected = expected.map_err(|what| format!("{what}{range}"));
+            assert_eq!(text.parse::<Microseconds>().map(Microseconds::get), expected, "{text}");
+            assert_eq!(text.parse::<ExactMicroseconds>().map(|_| ()), expected.map(|_| ()), "{text}");
+        }
+        assert_eq!("25".parse::<Microseconds>().expect("a time").to_string(), "25");
+        assert!("0.00000000000001".parse::<ExactMicroseconds>().is_err());
+    }
+}

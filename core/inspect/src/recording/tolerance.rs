@@ -1,0 +1,85 @@
+//! How far a step may be from its planned time: an exact fraction of a second, so that what is off by exactly the allowed
+//! time is accepted.
+//!
+//! ```
+//! use stepscope_inspect::recording::tolerance::Tolerance;
+//!
+//! let within = Tolerance::from_micros(20, 0).expect("a time");
+//! // 320 cycles of 16 MHz are 20 us, in units of 1/(16 MHz * 1 MHz) s.
+//! assert_eq!(within.units(16_000_000, 1_000_000), 320_000_000);
+//! ```
+
+use serde::{Serialize, Serializer};
+
+/// An exact time in s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tolerance {
+    numerator: u64,
+    denominator: u64,
+}
+
+impl Tolerance {
+    /// Exactly the aligned time.
+    pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
+
+    /// `mantissa / 10^places` us; `None` with more than 13 decimal places.
+    #[must_use]
+    pub const fn from_micros(mantissa: u64, places: u32) -> Option<Self> {
+        match 10_u64.checked_pow(places.saturating_add(6)) {
+            Some(denominator) => Some(Self { numerator: mantissa, denominator }),
+            None => None,
+        }
+    }
+
+    /// One cycle of the slower of two clocks.
+    #[must_use]
+    pub fn cycle(one_hz: u32, other_hz: u32) -> Self {
+        Self { numerator: 1, denominator: one_hz.min(other_hz).max(1).into() }
+    }
+
+    /// The same in units of 1/(`one_hz` * `other_hz`) s, in which any difference of times of the two clocks is whole; rounded
+    /// down.
+    #[must_use]
+    pub const fn units(self, one_hz: u32, other_hz: u32) -> u128 {
+        // The product of the clocks fits in 64 bits.
+        self.numerator as u128 * (one_hz as u128 * other_hz as u128) / self.denominator as u128
+    }
+
+    /// In s.
+    #[must_use]
+    pub const fn seconds(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+}
+
+impl Serialize for Tolerance {
+    /// In s.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.seconds())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_exact_decimals() {
+        for (mantissa, places, expected) in [
+            (20, 0, Some(20_000)),
+            (2000, 2, Some(20_000)),
+            (625, 4, Some(62)),
+            (0, 13, Some(0)),
+            (1_000_000_000, 0, Some(1_000_000_000_000)),
+            (u64::MAX, 13, Some(1_844_674_407)),
+            (1, 14, None),
+            (1, u32::MAX, None),
+        ] {
+            let units = Tolerance::from_micros(mantissa, places).map(|within| within.units(1_000_000_000, 1));
+            assert_eq!(units, expected, "{mantissa} {places}");
+        }
+        assert_eq!(Tolerance::cycle(u32::MAX, 16_000_000).units(u32::MAX, 16_000_000), u128::from(u32::MAX));
+        assert_eq!(Tolerance::ZERO.units(u32::MAX, u32::MAX), 0);
+        assert!((Tolerance::cycle(16_000_000, 2_000_000).seconds() - 5e-7).abs() < 1e-20);
+    }
+}
