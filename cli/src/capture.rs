@@ -51,7 +51,10 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.against.as_deref().map(scenarios::read).transpose()?;
     let scenario = Scenario { clock_hz: recording.clock_hz, ..base.clone().unwrap_or_default() };
     // Pulses that were made up of positions have no width to check.
-    let mut check = arguments.timing.check(&arguments.file, &scenario)?.filter(|_| recording.has_levels());
+    let mut check = arguments
+        .timing
+        .check_times(&arguments.file, &scenario, recording.is_rounded)?
+        .filter(|_| recording.has_levels());
     if let Some(check) = &mut check {
         recording.records.iter().for_each(|record| check.record(*record));
     }
@@ -90,6 +93,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(beside) = beside.filter(|beside| !beside.found.is_same()) {
         return Err(Failure::NotTheModel(text::difference(&beside)));
     }
+    arguments.timing.needs_steps(recording.report.channels.is_empty())?;
     check.map_or(Ok(()), |check| arguments.timing.verdict(&check))
 }
 

@@ -52,6 +52,8 @@ pub(crate) enum Failure {
     NotTheModel(String),
     /// The timing check found this many violations, and none was to be.
     Violations(u64),
+    /// A strict timing check of a recording without steps.
+    NoSteps,
     /// A port cannot be used, and why.
     Port(String, String),
     /// An option cannot be as it is, and why.
@@ -117,6 +119,7 @@ impl Failure {
             Self::OtherRun(_)
             | Self::NotTheModel(_)
             | Self::Violations(_)
+            | Self::NoSteps
             | Self::NotRealTime(..)
             | Self::NotRecorded(..)
             | Self::NotVerified(_)
@@ -214,6 +217,9 @@ impl fmt::Display for Failure {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")
             }
+            Self::NoSteps => f.write_str(
+                "--strict: the recording has no steps to check; map a channel to STEP0, such as --map STEP0=CH1",
+            ),
             Self::WrongSteps(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "framed: wrong, duplicated or missing ticks with {count} seed{s}")

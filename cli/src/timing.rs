@@ -53,6 +53,16 @@ impl Options {
 
     /// The check, if one was asked for.
     pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
+        self.check_times(path, scenario, false)
+    }
+
+    /// The same of times that were rounded to cycles, or not.
+    pub(crate) fn check_times(
+        &self,
+        path: &Path,
+        scenario: &Scenario,
+        rounded: bool,
+    ) -> Result<Option<TimingCheck>, Failure> {
         if !self.asked() {
             return Ok(None);
         }
@@ -60,7 +70,8 @@ impl Options {
         let rules = self.driver.map(|sheet| sheet.rules.clone()).or_else(own);
         let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
         let kept = if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN };
-        Ok(Some(TimingCheck::new(&rules, scenario.clock_hz, kept)))
+        let new = if rounded { TimingCheck::of_rounded } else { TimingCheck::new };
+        Ok(Some(new(&rules, scenario.clock_hz, kept)))
     }
 
     /// Prints what the check found.
@@ -70,6 +81,11 @@ impl Options {
             print(check, clock_hz).map_err(Failure::output)?;
         }
         Ok(())
+    }
+
+    /// Fails if a strict check of a recording has no step to check.
+    pub(crate) const fn needs_steps(&self, is_empty: bool) -> Result<(), Failure> {
+        if self.strict && is_empty { Err(Failure::NoSteps) } else { Ok(()) }
     }
 
     /// Fails if nothing was to be found, and something was.

@@ -346,6 +346,74 @@ fn pulses_are_held_against_a_driver() {
     assert!(code == Some(2) && err.contains("the scenario names no driver"), "{err}");
 }
 
+/// A dump of 20 steps, one every `interval` ticks, whose pulses are `width` ticks wide.
+fn dump_of(timescale: &str, interval: u64, width: u64) -> String {
+    let head = format!(
+        "$timescale {timescale} $end $var wire 1 ! STEP $end $var wire 1 d DIR $end $enddefinitions $end #0 0! 1d"
+    );
+    (1..=20).fold(head, |text, k| text + &format!(" #{} 1! #{} 0!", k * interval, k * interval + width))
+}
+
+#[test]
+fn a_time_scale_that_is_no_whole_frequency_is_exact() {
+    for (timescale, interval, width, clock_hz, interval_s, high_ns, violations) in [
+        ("83 ns", 120, 12, 1_000_000_000_u64, 9.96e-6, 996.0, 20),
+        ("41667 ps", 240, 5, 1_000_000_000, 10.00008e-6, 208.3, 20),
+        ("6666ps", 1000, 3, 1_000_000_000, 6.666e-6, 20.0, 20),
+        // Exactly the driver's 1000 ns, and a tick less.
+        ("250 ps", 40_000, 4000, 1_000_000_000, 10e-6, 1000.0, 0),
+        ("125 ns", 80, 8, 8_000_000, 10e-6, 1000.0, 0),
+        ("125 ns", 80, 7, 8_000_000, 10e-6, 875.0, 20),
+        // 3.5 us are no whole frequency, but whole cycles of 2 MHz.
+        ("3500 ns", 100, 2, 2_000_000, 350e-6, 7000.0, 0),
+        ("30 us", 100, 2, 100_000, 3e-3, 60_000.0, 0),
+    ] {
+        let dump = dump_of(timescale, interval, width);
+        let (code, out, err) = stepscope(&["capture", "-", "--driver", "a4988", "--strict", "--json"], &dump);
+        assert_eq!(code, Some(if violations > 0 { 3 } else { 0 }), "{timescale}: {err}");
+        let all: Value = serde_json::from_str(&out).expect("JSON");
+        let (file, steps, high) = (
+            &all["tables"]["recording"][0],
+            &all["tables"]["steps"][0],
+            &all["tables"]["timing"].as_array().expect("rules")[0],
+        );
+        assert_eq!((&file["clock_hz"], &steps["steps"]), (&clock_hz.into(), &20.into()), "{timescale}");
+        for name in ["shortest_interval_s", "longest_interval_s"] {
+            let found = steps[name].as_f64().expect("a number");
+            assert!((found / interval_s - 1.0).abs() < 1e-9, "{timescale} {name} {found}");
+        }
+        assert_eq!(steps["greatest_acceleration_steps_s2"], 0.0, "{timescale}");
+        assert!((high["least_ns"].as_f64().expect("a number") - high_ns).abs() < 0.5, "{timescale} {high}");
+        assert_eq!(high["violations"], violations, "{timescale}");
+        let is_exact = file["rounding"].as_str().expect("text").contains("nothing is rounded");
+        assert_eq!(is_exact, !timescale.ends_with("ps") || timescale == "250 ps", "{timescale}");
+    }
+}
+
+#[test]
+fn rounding_to_a_slower_clock_is_counted_and_makes_no_violation() {
+    // 1900 ns, as a DRV8825 needs, are 30.4 cycles of 16 MHz: some pulses become 30 cycles.
+    let dump = dump_of("100 ns", 1003, 19);
+    let line = ["capture", "-", "--driver", "drv8825", "--strict", "--clock", "16000000"];
+    let (code, out, err) = stepscope(&line, &dump);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+    assert!(out.contains("times are rounded to the nearest cycle, by half a cycle at most"), "{out}");
+    let (code, out, _) = stepscope(&line, &dump_of("100 ns", 1003, 18));
+    assert!(code == Some(3) && out.contains("violations 20"), "{out}");
+}
+
+#[test]
+fn a_strict_check_needs_steps() {
+    let still = "$timescale 1 ns $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 0!";
+    for (input, map) in [(still, "STEP0=STEP"), (DUMP, "EN=#0")] {
+        let line = ["capture", "-", "--driver", "a4988", "--map", map];
+        let (code, _, err) = stepscope(&[&line[..], &["--strict"]].concat(), input);
+        assert!(code == Some(3) && err.contains("--strict: the recording has no steps"), "{err}");
+        let (code, _, err) = stepscope(&line, input);
+        assert_eq!((code, err.as_str()), (Some(0), ""));
+    }
+}
+
 #[test]
 fn as_json_it_has_the_tables_of_the_document() {
     let (code, out, err) = stepscope(&["capture", "-", "--json"], DUMP);

@@ -48,8 +48,8 @@ pub struct Recorded {
 /// What putting times into cycles has cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rounding {
-    /// No time was rounded.
-    pub exact: bool,
+    /// Changes of the file whose time is no whole cycle.
+    pub rounded: u64,
     /// Records of the file that share a cycle with the one before.
     pub met: u64,
     /// Of those, single signals that changed there and back.
@@ -58,11 +58,11 @@ pub struct Rounding {
 
 impl fmt::Display for Rounding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.exact {
-            "every time of the file is a whole cycle: nothing is rounded"
-        } else {
-            "times are rounded to the nearest cycle, half a cycle at most"
-        })?;
+        match self.rounded {
+            0 => f.write_str("every time of the file is a whole cycle: nothing is rounded")?,
+            1 => f.write_str("1 time is rounded to the nearest cycle, by half a cycle at most")?,
+            more => write!(f, "{more} times are rounded to the nearest cycle, by half a cycle at most")?,
+        }
         if self.met > 0 {
             write!(f, "; {} times two changes meet in a cycle", self.met)?;
         }
@@ -175,11 +175,27 @@ impl<'m> Records<'m, changes::Iter<'m>> {
     }
 }
 
+impl<'m> Records<'m, changes::Iter<'m>> {
+    /// Those of a capture with its ticks as cycles: nothing is rounded.
+    #[must_use]
+    pub fn in_ticks(capture: &'m Capture, map: &'m ChannelMap) -> Self {
+        Self::new(capture.changes.iter_from(0), Signals::new(map), Timebase::SECOND, 1)
+    }
+}
+
 impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
     fn new(changes: I, signals: Signals<'m>, timebase: Timebase, clock_hz: u32) -> Self {
-        let rounding = Rounding { exact: timebase.is_exact(clock_hz), ..Rounding::default() };
         let cycles = timebase.cycles(clock_hz);
-        Self { changes, signals, timebase, clock_hz, cycles, before: None, last: None, rounding }
+        Self {
+            changes,
+            signals,
+            timebase,
+            clock_hz,
+            cycles,
+            before: None,
+            last: None,
+            rounding: Rounding::default(),
+        }
     }
 
     /// The one before, if this change is of another cycle and the levels are others.
@@ -188,7 +204,10 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         let at = match self.before {
             Some(_) => match self.cycles {
                 Some(cycles) => tick.checked_mul(cycles),
-                None => self.timebase.cycle(tick, self.clock_hz),
+                None => {
+                    self.rounding.rounded += u64::from(!self.timebase.is_whole(tick, self.clock_hz));
+                    self.timebase.cycle(tick, self.clock_hz)
+                }
             }
             .unwrap_or(LAST_CYCLE),
             None => 0,
@@ -286,7 +305,7 @@ mod tests {
                 (84, IDLE | RIGHT | en)
             ]
         );
-        assert_eq!((rounding, end), (Rounding { exact: true, met: 0, lost: 0 }, 104));
+        assert_eq!((rounding, end), (Rounding::default(), 104));
     }
 
     #[test]
@@ -296,7 +315,7 @@ mod tests {
             recorded(&[(0, 0), (21, 1), (23, 0), (51, 2), (53, 3), (70, 2)], 100_000);
         let cycles: Vec<u64> = records.iter().map(|(cycle, _)| *cycle).collect();
         assert_eq!(cycles, [0, 5, 7]);
-        assert_eq!(rounding, Rounding { exact: false, met: 2, lost: 1 });
+        assert_eq!(rounding, Rounding { rounded: 4, met: 2, lost: 1 });
         assert!(rounding.to_string().contains("1 pulses within one are lost"), "{rounding}");
         // A channel that is no signal changes in the same cycle, first.
         let (records, rounding, _) = recorded(&[(0, 0), (20, 1), (21, 0b1001), (22, 0b1000)], 100_000);

@@ -17,6 +17,9 @@ pub struct Timebase {
 }
 
 impl Timebase {
+    /// Ticks of a second.
+    pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
+
     /// Ticks of `numerator / denominator` seconds; `None` where one of them is 0.
     #[must_use]
     pub const fn new(numerator: u64, denominator: u64) -> Option<Self> {
@@ -55,6 +58,14 @@ impl Timebase {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
         let (whole, denominator) = (u128::from(tick).checked_mul(scaled)?, u128::from(self.denominator));
         u64::try_from((whole.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
+    }
+
+    /// Whether a tick falls on a cycle of that clock.
+    #[must_use]
+    pub fn is_whole(self, tick: u64, clock_hz: u32) -> bool {
+        let scaled = u128::from(self.numerator) * u128::from(clock_hz);
+        let whole = u128::from(tick).checked_mul(scaled);
+        whole.is_some_and(|whole| whole.is_multiple_of(u128::from(self.denominator)))
     }
 
     /// Cycles of a tick by that clock, where they are a whole number.

@@ -47,7 +47,7 @@ pub struct StepFigures {
     pub greatest_rate_steps_s: Option<f64>,
     /// Steps by the time from the first to the last, in steps/s.
     pub mean_rate_steps_s: Option<f64>,
-    /// Greatest magnitude of the acceleration ([`step_acceleration`]), in steps/s^2.
+    /// Greatest magnitude of the acceleration ([`step_acceleration`]), in steps/s^2; 0 where rounding to cycles explains it.
     pub greatest_acceleration_steps_s2: Option<f64>,
     /// Greatest part by which an interval differs from the one before it, in one direction: 0.1 for a tenth.
     pub greatest_interval_change: Option<f64>,
@@ -57,9 +57,14 @@ impl StepFigures {
     /// Of steps in cycles of `clock_hz`, one after the other: none of them is kept. `None` where there is none.
     #[must_use]
     pub fn of(steps: impl IntoIterator<Item = Step>, clock_hz: u32) -> Option<Self> {
+        Self::of_rate(steps, f64::from(clock_hz))
+    }
+
+    /// The same of steps in ticks, `hz` of which are a second.
+    #[must_use]
+    pub fn of_rate(steps: impl IntoIterator<Item = Step>, hz: f64) -> Option<Self> {
         let mut steps = steps.into_iter();
         let first = steps.next()?;
-        let hz = f64::from(clock_hz);
         let seconds = |cycle: u64| cycle as f64 / hz;
         let mut found = Self {
             steps: 0,
@@ -137,7 +142,10 @@ impl Acceleration {
         }
         self.steps.push_back(to);
         let Some(found) = step_acceleration::of(self.steps.make_contiguous(), HALF, self.hz) else { return };
-        let found = libm::fabs(found);
+        let span = |from: usize| Some(self.steps.get(from + HALF)?.cycle - self.steps.get(from)?.cycle);
+        // Each of three times is rounded by up to half a cycle: they explain a difference of two.
+        let explained = span(0).zip(span(HALF)).is_some_and(|(first, second)| first.abs_diff(second) <= 2);
+        let found = if explained { 0.0 } else { libm::fabs(found) };
         self.greatest = Some(self.greatest.map_or(found, |most| libm::fmax(most, found)));
     }
 }

@@ -33,7 +33,7 @@ use stepscope_capture::{
     Capture, ChannelMap, Recorded,
     capture::TimedByte,
     channel_map::MapError,
-    recorded::{Records, TooLate},
+    recorded::{Records, Rounding, TooLate},
     timebase::Timebase,
 };
 use stepscope_peripheral::{
@@ -222,6 +222,8 @@ pub struct Opened {
     pub clock_hz: u32,
     /// What the clock does to times.
     pub rounding: String,
+    /// Whether it rounds any.
+    pub is_rounded: bool,
     /// Channels of the bus.
     pub channels: u8,
     /// Its levels; of positions and bytes that of reset alone.
@@ -245,11 +247,16 @@ impl Opened {
         let (mut opened, map, base) = Self::before(&capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(&capture, ask).map(|()| opened) };
         let report = opened.without_levels(&capture, base, ask)?;
+        let exact = opened.exact_channels(&capture, &map, base, ask);
+        let others = others_rounded(&capture, base, opened.clock_hz);
         let recorded = Recorded::new(capture, &map, base, opened.clock_hz).map_err(OpenError::TooLate)?;
-        opened.rounding = recorded.rounding.to_string();
+        opened.rounded(recorded.rounding, others);
         opened.records = recorded.records;
         let (clock_hz, channels) = (opened.clock_hz, opened.channels);
-        let report = report.unwrap_or_else(|| Report::of(&opened.records, clock_hz, channels, ask.baud));
+        let mut report = report.unwrap_or_else(|| Report::of(&opened.records, clock_hz, channels, ask.baud));
+        if let Some(exact) = exact.filter(|_| recorded.rounding.lost == 0) {
+            report.channels = exact;
+        }
         opened.told(report, &map);
         Ok(opened)
     }
@@ -267,15 +274,21 @@ impl Opened {
         if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
             let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
-            (opened.rounding, opened.records) = (recorded.rounding.to_string(), recorded.records);
+            opened.rounded(recorded.rounding, others_rounded(capture, base, clock_hz));
+            opened.records = recorded.records;
             opened.told(report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }), &map);
             return Ok(opened);
         }
         let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
         let mut passed = all.clone();
         let survey = Survey::of(passed.by_ref());
-        opened.rounding = passed.rounding.to_string();
-        let report = Report::of_all(all, survey.changing, clock_hz, opened.channels, ask.baud);
+        opened.rounded(passed.rounding, 0);
+        let mut report = Report::of_all(all, survey.changing, clock_hz, opened.channels, ask.baud);
+        if let Some(exact) = opened.exact_channels(capture, &map, base, ask)
+            && passed.rounding.lost == 0
+        {
+            report.channels = exact;
+        }
         opened.take_part(capture, &map, base, part, survey.count)?;
         opened.told(report, &map);
         Ok(opened)
@@ -381,6 +394,7 @@ impl Opened {
             map: map.to_text(capture),
             clock_hz: USUAL_CLOCK_HZ,
             rounding: String::new(),
+            is_rounded: false,
             channels: map.bus_channels(),
             records: Vec::new(),
             kept: None,
@@ -397,6 +411,33 @@ impl Opened {
             opened.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
         }
         Ok((opened, map, base))
+    }
+
+    /// Notes what the clock does to the times of levels, and to so many others.
+    fn rounded(&mut self, mut rounding: Rounding, others: u64) {
+        rounding.rounded += others;
+        (self.rounding, self.is_rounded) = (rounding.to_string(), rounding.rounded > 0);
+    }
+
+    /// The figures of the steps in the file's own ticks, where its own clock would round them: an interval would vary by a
+    /// cycle, and a constant rate would have an acceleration.
+    fn exact_channels(
+        &self,
+        capture: &Capture,
+        map: &ChannelMap,
+        base: Timebase,
+        ask: &Ask,
+    ) -> Option<Vec<ChannelReport>> {
+        if capture.changes.is_empty() || ask.clock_hz.is_some() || base.is_exact(self.clock_hz) {
+            return None;
+        }
+        let (numerator, denominator) = base.parts();
+        let hz = denominator as f64 / numerator as f64;
+        let of = |channel| {
+            let steps = steps(Records::in_ticks(capture, map), channel);
+            Some(ChannelReport { channel, figures: StepFigures::of_rate(steps, hz)? })
+        };
+        Some((0..self.channels).filter_map(of).collect())
     }
 
     /// What bytes or positions come to; `None` of levels.
@@ -601,21 +642,26 @@ fn title(file: &str) -> String {
     format!("recorded: {file}").chars().take(MAX_TITLE).collect()
 }
 
-/// The clock that was asked for, or the file's own; of positions a finer one of which its times are whole cycles, too, since
-/// their steps stand between the rows.
+/// The requested clock, or the file's own: the slowest in which each of its ticks is a whole number of cycles, or the fastest
+/// where there is none. Steps between rows of positions need a finer one.
 fn clock(ask: &Ask, base: Timebase, positions: bool) -> Result<u32, OpenError> {
-    let most = *CLOCK_HZ.end() as u32;
-    // Of a file that counts in more than a cycle of the fastest clock, the fastest; in no whole part of a second, a
-    // millionth.
+    let (least, most) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
     let own = || {
-        let (numerator, denominator) = base.parts();
-        let fine = denominator / numerator >= u64::from(most);
         if positions && base.is_exact(USUAL_CLOCK_HZ) {
             return USUAL_CLOCK_HZ;
         }
-        base.clock_hz().unwrap_or(if fine { most } else { 1_000_000 }).clamp(*CLOCK_HZ.start() as u32, most)
+        let (_, denominator) = base.parts();
+        let whole = least.div_ceil(denominator).checked_mul(denominator);
+        whole.map_or(most, |hz| hz.min(most)) as u32
     };
     judged(ask.clock_hz.unwrap_or_else(own))
+}
+
+/// Times of bytes and positions that are no whole cycles.
+fn others_rounded(capture: &Capture, base: Timebase, clock_hz: u32) -> u64 {
+    let bytes = capture.bytes.iter().map(|byte| byte.tick);
+    let ticks = bytes.chain(capture.positions.iter().map(|row| row.tick));
+    ticks.filter(|tick| !base.is_whole(*tick, clock_hz)).count() as u64
 }
 
 fn judged(clock_hz: u32) -> Result<u32, OpenError> {
