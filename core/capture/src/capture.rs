@@ -29,7 +29,9 @@ pub enum Format {
     SigrokSession,
     /// sigrok's or PulseView's table: a row a sample.
     SigrokCsv,
-    /// Saleae Logic 2's table of digital channels: a row a change, with its time.
+    /// A table of levels, one row per change, with its time: of DSView, WaveForms, or a program of one's own.
+    LevelsCsv,
+    /// Saleae Logic 2's table of digital channels: one row per change, with its time.
     SaleaeCsv,
     /// Saleae Logic 2's table of decoded bytes.
     SaleaeBytes,
@@ -39,6 +41,10 @@ pub enum Format {
     Trace,
     /// Bytes in hexadecimal, with times or without.
     HexBytes,
+    /// A dump of bytes in hexadecimal, with offsets: of hexdump, xxd, od or a terminal.
+    HexDump,
+    /// A log of bytes in hexadecimal, with the times of a clock.
+    SerialLog,
     /// A table of times and positions.
     PositionsCsv,
     /// No kind that can be read: the capture is empty, and the error says what can.
@@ -51,11 +57,14 @@ impl fmt::Display for Format {
             Self::Vcd => "value change dump",
             Self::SigrokSession => "sigrok session",
             Self::SigrokCsv => "sigrok table of samples",
+            Self::LevelsCsv => "table of levels",
             Self::SaleaeCsv => "Saleae table of levels",
             Self::SaleaeBytes => "Saleae table of decoded bytes",
             Self::EdgesCsv => "Stepscope table of edges",
             Self::Trace => "Stepscope trace",
             Self::HexBytes => "bytes in hexadecimal",
+            Self::HexDump => "hex dump",
+            Self::SerialLog => "serial log",
             Self::PositionsCsv => "table of times and positions",
             Self::Unknown => "file of no known kind",
         })

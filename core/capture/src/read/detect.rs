@@ -3,8 +3,11 @@
 
 use super::{
     decimal::Decimal,
-    fields::{Fields, separator},
-    hex, positions,
+    dump,
+    fields::{Fields, fields, separator},
+    hex,
+    levels::{Layout, column_names, is_comment},
+    positions,
     recorder::quoted,
     saleae, sigrok, stepscope,
     times::TimeUnit,
@@ -16,18 +19,34 @@ pub(super) const UNKNOWN: &str = "no kind of file that can be read here; give a 
     a table of sigrok or PulseView (.sr, .csv), a table of levels or of bytes of Saleae Logic (.csv), a trace or a table \
     of edges of Stepscope, bytes in hexadecimal, or a table of times and positions";
 
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Found {
+    pub(super) format: Format,
+    /// Whether all times in the first rows of a table are whole numbers: without a unit they are no seconds then.
+    pub(super) whole_times: bool,
+    /// Bytes in hexadecimal with a number before them, which no head names.
+    pub(super) table: Option<hex::Table>,
+}
+
+impl Found {
+    const fn of(format: Format) -> Self {
+        Self { format, whole_times: false, table: None }
+    }
+}
+
 /// Bytes from which on a file may go on behind its head, which may have lost a mark of three bytes.
 const FULL: usize = (1 << 16) - 3;
 /// Lines that are looked at.
 const MAX_LINES: usize = 200;
 
 /// The kind of the file that begins with `head`.
-pub(super) fn detect(head: &[u8]) -> Result<Format, String> {
+pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
     if head.trim_ascii().is_empty() {
         return Err("the file is empty; record or export again".into());
     }
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-        return Ok(Format::SigrokSession);
+        return Ok(Found::of(Format::SigrokSession));
     }
     if let Some(what) = binary(head) {
         return Err(what.into());
@@ -44,17 +63,23 @@ pub(super) fn detect(head: &[u8]) -> Result<Format, String> {
         .filter(|line| !line.is_empty() && !line.starts_with(b"META "))
         .take(MAX_LINES)
         .collect();
-    let Some(first) = lines.first() else { return Ok(Format::SigrokCsv) };
+    let Some(first) = lines.first() else { return Ok(Found::of(Format::SigrokCsv)) };
     if first.starts_with(b"$") {
-        return Ok(Format::Vcd);
+        return Ok(Found::of(Format::Vcd));
     }
-    if lines.iter().take(5).any(|line| line.windows(9).any(|word| word == b"libsigrok"))
-        || first.starts_with(b";") && sigrok::is_comment(first)
-    {
-        return Ok(Format::SigrokCsv);
+    let comments = lines.iter().take_while(|line| is_comment(line) && !is_sample(line)).count();
+    let (before, table) = lines.split_at(comments);
+    let of_table = table.first().and_then(|head| by_head(head, table.get(1..).unwrap_or_default()));
+    let says =
+        |word: &[u8]| lines.iter().take(5).any(|line| line.windows(word.len()).any(|text| text == word));
+    let is_of_sigrok = says(b"libsigrok") && !says(b"libsigrok4DSL")
+        || before.first().is_some_and(|line| line.starts_with(b";") && sigrok::is_comment(line))
+            && !of_table.is_some_and(|found| matches!(found.format, Format::LevelsCsv | Format::SaleaeCsv));
+    if is_of_sigrok {
+        return Ok(Found::of(Format::SigrokCsv));
     }
-    by_head(first, lines.get(1..).unwrap_or_default())
-        .or_else(|| by_rows(&lines))
+    of_table
+        .or_else(|| by_rows(if table.is_empty() { &lines } else { table }))
         .ok_or_else(|| format!("{}: {UNKNOWN}", quoted(first)))
 }
 
@@ -80,50 +105,114 @@ fn binary(head: &[u8]) -> Option<&'static str> {
 
 /// The kind of a table by the names of its columns, and by its first rows where a name may stand for either: an encoder
 /// has lines and a position.
-fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Format> {
-    let mut fields = Fields::new();
+fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Found> {
+    let mut columns = Fields::new();
     let separator = separator(line);
-    fields.split(line, separator).ok()?;
-    let names = fields.names();
-    if names.iter().any(|name| name == "logic") || names.first().is_some_and(|name| name == "samples") {
-        return Some(Format::SigrokCsv);
+    columns.split(line, separator).ok()?;
+    let names = column_names(&columns, separator);
+    if names.iter().any(|name| name == "logic") {
+        return Some(Found::of(Format::SigrokCsv));
     }
     if saleae::is_head(&names) {
-        return Some(Format::SaleaeBytes);
+        return Some(Found::of(Format::SaleaeBytes));
     }
-    let unit = TimeUnit::of_column(names.first()?)?;
     if hex::head(line).is_some() {
-        return Some(Format::HexBytes);
+        return Some(Found::of(Format::HexBytes));
     }
+    let Layout { time, unit, .. } = Layout::of(&names)?;
     names.get(1)?;
-    let is_level = |field: &[u8]| matches!(field.trim_ascii(), b"0" | b"1" | b"X");
-    let levels = rows.iter().all(|row| row.split(|byte| *byte == separator).skip(1).all(is_level));
-    let named = names.iter().skip(1).any(|name| name.to_lowercase().starts_with("pos"));
-    if named || !levels && names.get(1).is_some_and(|name| positions::is_position(name)) {
-        return Some(Format::PositionsCsv);
+    let times = || {
+        rows.iter()
+            .filter_map(|row| fields(row, separator).nth(time).map(without_quotes))
+            .filter(|time| !time.is_empty())
+    };
+    // sigrok counts samples so where it does not know the rate; the numbers are all 0.
+    if names.first().is_some_and(|name| name == "samples") && times().all(|time| time == b"0") {
+        return Some(Found::of(Format::SigrokCsv));
     }
-    Some(if unit == TimeUnit::Cycles { Format::EdgesCsv } else { Format::SaleaeCsv })
+    let whole_times = times().all(|time| Decimal::parse(time).is_none_or(|time| time.places == 0))
+        && times().any(|time| Decimal::parse(time).is_some());
+    let found = |format| Some(Found { whole_times, ..Found::of(format) });
+    let is_level = |field: &[u8]| matches!(field, b"0" | b"1" | b"X" | b"\"0\"" | b"\"1\"");
+    let levels = rows.iter().all(|row| {
+        let mut all = fields(row, separator).enumerate();
+        all.all(|(at, field)| at == time || is_level(field))
+    });
+    let lower = |name: &String| name.trim().to_lowercase();
+    let named = names.iter().enumerate().any(|(at, name)| at != time && lower(name).starts_with("pos"));
+    if named || !levels && positions::position_column(&names, time).is_some() {
+        return found(Format::PositionsCsv);
+    }
+    let first = names.first().map(lower).unwrap_or_default();
+    match unit {
+        TimeUnit::Cycles if first.starts_with("cycle") => found(Format::EdgesCsv),
+        _ if first == "time [s]" || first == "time[s]" => found(Format::SaleaeCsv),
+        _ => found(Format::LevelsCsv),
+    }
+}
+
+fn without_quotes(field: &[u8]) -> &[u8] {
+    field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
 }
 
 /// The kind of a file without a head, by its first lines.
-fn by_rows(lines: &[&[u8]]) -> Option<Format> {
+fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     if lines.iter().all(|line| is_sample(line)) {
-        return Some(Format::SigrokCsv);
+        return Some(Found::of(Format::SigrokCsv));
     }
     if is_trace(lines) {
-        return Some(Format::Trace);
+        return Some(Found::of(Format::Trace));
     }
-    if is_positions(lines) {
-        return Some(Format::PositionsCsv);
+    let said: Vec<&[u8]> =
+        lines.iter().filter(|line| !hex::without_comment(line).is_empty()).copied().collect();
+    let first = *said.first()?;
+    if dump::is_dump(&said) {
+        return Some(Found::of(Format::HexDump));
     }
-    let mut said = lines.iter().map(|line| hex::without_comment(line)).filter(|line| !line.is_empty());
-    let first = said.next()?;
+    if hex::is_log(first) {
+        return Some(Found::of(Format::SerialLog));
+    }
+    if let Some(found) = by_numbers(&said) {
+        return found;
+    }
     if hex::is_line(first) {
-        return Some(Format::HexBytes);
+        return Some(Found::of(Format::HexBytes));
     }
     // Labels of sigrok without comments: names, and then samples.
     let (_, rows) = lines.split_first()?;
-    (!rows.is_empty() && rows.iter().all(|line| is_sample(line))).then_some(Format::SigrokCsv)
+    (!rows.is_empty() && rows.iter().all(|line| is_sample(line))).then_some(Found::of(Format::SigrokCsv))
+}
+
+/// The kind of rows that begin with a number that rises: levels, positions or bytes. `Some(None)` if they may be either.
+#[allow(clippy::option_option, reason = "rows of numbers that may be either are of no other kind")]
+fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
+    let separator = separator(lines.first()?);
+    let rows: Vec<Vec<&[u8]>> = lines.iter().map(|line| fields(line, separator).collect()).collect();
+    let columns = rows.first().map_or(0, Vec::len);
+    if let Some(table) = hex::table(lines) {
+        let may_be_positions = columns == 2 && rows.iter().all(|row| row.len() == 2);
+        let found = Found { table: Some(table), ..Found::of(Format::HexBytes) };
+        return Some((!may_be_positions || hex::is_hexadecimal(lines, table)).then_some(found));
+    }
+    let number = |field: &&[u8]| Decimal::parse(field);
+    let times: Vec<Decimal> = rows.iter().map(|row| row.first().and_then(number)).collect::<Option<_>>()?;
+    let places = times.iter().map(|time| time.places).max()?;
+    let ticks: Vec<i128> = times.iter().filter_map(|time| Some(time.with_places(places)?.mantissa)).collect();
+    let rise = ticks.len() == rows.len() && ticks.windows(2).all(|pair| pair.first() < pair.last());
+    if columns < 2 || !rise || rows.iter().any(|row| row.len() != columns) {
+        return None;
+    }
+    let found = |format| Some(Some(Found { whole_times: places == 0, ..Found::of(format) }));
+    let rest = || rows.iter().flat_map(|row| row.iter().skip(1));
+    if rows.len() > 1 && rest().all(|field| matches!(*field, b"0" | b"1")) {
+        return found(Format::LevelsCsv);
+    }
+    // Two bytes on each line are no time and position.
+    let bytes = lines.iter().all(|line| hex::is_line(line)) && !lines.iter().any(|line| line.contains(&b'.'));
+    if columns == 2 && !bytes && rest().all(|field| number(field).is_some()) {
+        return found(Format::PositionsCsv);
+    }
+    None
 }
 
 /// A row of levels only, each one digit: `0,1,1`.
@@ -147,19 +236,4 @@ fn is_trace(lines: &[&[u8]]) -> bool {
         [_] => true,
     };
     rise && lines.first().is_some_and(plain) && records.iter().any(|(_, levels)| *levels > 0xff)
-}
-
-/// Two numbers a line of which the first rises, and that are not two bytes a line.
-fn is_positions(lines: &[&[u8]]) -> bool {
-    let lines: Vec<&[u8]> = lines.iter().filter(|line| !line.starts_with(b"#")).copied().collect();
-    let rows: Option<Vec<(Decimal, Decimal)>> = lines.iter().map(|line| positions::row(line)).collect();
-    let Some(rows) = rows else { return false };
-    let places = rows.iter().map(|(time, _)| time.places).max().unwrap_or(0);
-    let times: Option<Vec<i128>> =
-        rows.iter().map(|(time, _)| time.with_places(places).map(|time| time.mantissa)).collect();
-    let rise = times
-        .is_some_and(|times| times.windows(2).all(|pair| matches!(pair, [before, after] if before < after)));
-    let bytes = lines.iter().all(|line| hex::is_line(line));
-    rise && rows.len() > 1 && (!bytes || lines.iter().any(|line| line.contains(&b'.')))
-        || rise && rows.len() == 1 && !bytes
 }

@@ -24,6 +24,9 @@ impl Fields {
     /// Splits a line.
     pub(super) fn split(&mut self, line: &[u8], separator: u8) -> Result<(), String> {
         self.count = 0;
+        if separator == b' ' {
+            return self.split_blanks(line);
+        }
         self.text.resize(line.len() + 2, 0);
         self.ends.resize(MAX_FIELDS, 0);
         if self.reader.as_ref().is_none_or(|(built, _)| *built != separator) {
@@ -52,6 +55,18 @@ impl Fields {
         }
     }
 
+    /// Splits a line at its blanks.
+    fn split_blanks(&mut self, line: &[u8]) -> Result<(), String> {
+        self.text.clear();
+        self.ends.clear();
+        for field in fields(line, b' ') {
+            self.text.extend_from_slice(field);
+            self.ends.push(self.text.len());
+        }
+        self.count = self.ends.len();
+        if self.count > MAX_FIELDS { Err(format!("more than {MAX_FIELDS} columns")) } else { Ok(()) }
+    }
+
     pub(super) const fn len(&self) -> usize {
         self.count
     }
@@ -76,7 +91,14 @@ impl Fields {
     }
 }
 
-/// What separates the fields of a line.
+/// What separates the fields of a line; blanks if nothing else does.
 pub(super) fn separator(line: &[u8]) -> u8 {
-    SEPARATORS.into_iter().find(|separator| line.contains(separator)).unwrap_or(b',')
+    let found = SEPARATORS.into_iter().find(|separator| line.contains(separator));
+    found.unwrap_or(if line.trim_ascii().contains(&b' ') { b' ' } else { b',' })
+}
+
+/// The fields of a line without quotation marks; of blanks any number separates two.
+pub(super) fn fields(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> {
+    let is_field = move |field: &&[u8]| separator != b' ' || !field.is_empty();
+    line.split(move |byte| *byte == separator).map(<[u8]>::trim_ascii).filter(is_field)
 }

@@ -1,108 +1,231 @@
-//! Tables of levels, a row a change: Saleae Logic 2's export, Stepscope's table of edges, and what is like them.
+//! Tables of levels, one row per change: exports of Saleae Logic 2, DSView, WaveForms and KingstVIS, Stepscope's table of
+//! edges, and tables that a program of one's own has written.
 //!
 //! ```text
-//! Time [s],Channel 0,Channel 1          cycle,time_s,STEP0,DIR0,EN,RX,TX,DE
-//! 0.000000000,0,1                       0,0,0,0,1,1,1,0
-//! 0.000012500,1,1                       24,0.0000015,1,0,1,1,1,0
+//! Time [s],Channel 0,Channel 1        ; Sample rate: 250 MHz        cycle,time_s,STEP0,DIR0,EN,RX,TX,DE
+//! 0.000000000,0,1                     Time(s), STEP, DIR            0,0,0,0,1,1,1,0
+//! 0.000012500,1,1                     0.000995,0,1                  24,0.0000015,1,0,1,1,1,0
 //! ```
 
 use super::{
-    fields::{Fields, separator},
+    decimal::Decimal,
+    fields::{Fields, fields, separator},
     reading::Reader,
     recorder::{Recorder, quoted},
+    sigrok::parse_rate,
     times::{TimeUnit, Times},
 };
-use crate::capture::Capture;
+use crate::{capture::Capture, timebase::Timebase};
 
 /// A table of levels that is being read.
 pub(super) struct LevelsTable {
     recorder: Recorder,
-    /// What the head of the table says; nothing before it is read.
+    /// Whether the first times are whole numbers, which without a unit are no seconds.
+    whole_times: bool,
+    head: Head,
     columns: Option<Columns>,
     /// Levels of channels that have no bit, or no data (`X`).
     unknown: u64,
+    quoted: Fields,
+}
+
+/// What comments before the table say.
+#[derive(Default)]
+struct Head {
+    rate: Option<Decimal>,
+    /// Whether a program has written it that puts the decimal comma of its locale between fields with commas.
+    decimal_commas: bool,
 }
 
 struct Columns {
     separator: u8,
     times: Times,
-    /// Whether a column of times in s comes after the one of cycles, from which it follows.
-    skip: bool,
-    names: Vec<String>,
+    list: Vec<Column>,
+    /// Whether the next row may give the units of the columns.
+    first_row: bool,
+}
+
+/// What a column is.
+enum Column {
+    Time,
+    /// Another column of times, or of sample numbers.
+    Other,
+    /// A channel, whose name errors give.
+    Level(u32, String),
 }
 
 impl LevelsTable {
-    pub(super) const fn new(recorder: Recorder) -> Self {
-        Self { recorder, columns: None, unknown: 0 }
+    pub(super) const fn new(recorder: Recorder, whole_times: bool) -> Self {
+        let head = Head { rate: None, decimal_commas: false };
+        Self { recorder, whole_times, head, columns: None, unknown: 0, quoted: Fields::new() }
     }
 
-    fn head(&mut self, line: &[u8]) -> Result<(), String> {
+    /// The columns by the names in the first row. A row of numbers is none: then the first column is the time.
+    fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
-        let mut fields = Fields::new();
-        fields.split(line, separator)?;
-        let names = fields.names();
-        let unit = names.first().and_then(|name| TimeUnit::of_column(name)).unwrap_or(TimeUnit::Seconds(0));
-        let skip =
-            unit == TimeUnit::Cycles && names.get(1).is_some_and(|name| TimeUnit::of_column(name).is_some());
-        let names: Vec<String> = names.into_iter().skip(1 + usize::from(skip)).collect();
-        for (at, name) in names.iter().enumerate() {
-            let numbered = format!("Channel {at}");
-            self.recorder.channel(if name.is_empty() { &numbered } else { name });
+        self.quoted.split(line, separator)?;
+        let mut names = column_names(&self.quoted, separator);
+        // A separator at the end of each row is no column.
+        if names.len() > 2 && names.last().is_some_and(String::is_empty) {
+            names.pop();
         }
-        if names.is_empty() {
-            return Err(
-                "the head of the table names no channel; it names the time and then each channel".into()
+        let layout = Layout::of(&names);
+        let has_head = layout.is_some();
+        let Layout { time, unit, others } = layout.unwrap_or(Layout {
+            time: 0,
+            unit: if self.whole_times { TimeUnit::Cycles } else { TimeUnit::Seconds(0) },
+            others: Vec::new(),
+        });
+        let unit = if has_head && self.whole_times && !TimeUnit::is_said(names.get(time)) {
+            TimeUnit::Cycles
+        } else {
+            unit
+        };
+        if !has_head {
+            self.recorder.leave_out(
+                "the table does not name its columns: the first is taken as the time, each other as a channel".into(),
             );
         }
-        self.columns = Some(Columns { separator, times: Times::new(unit), skip, names });
-        Ok(())
+        let mut list = Vec::new();
+        let mut bit = 0;
+        for (at, name) in names.iter().enumerate() {
+            if at == time || others.contains(&at) {
+                list.push(if at == time { Column::Time } else { Column::Other });
+                continue;
+            }
+            let name = if has_head { name.clone() } else { format!("D{bit}") };
+            let numbered = format!("Channel {bit}");
+            self.recorder.channel(if name.is_empty() { &numbered } else { &name });
+            list.push(Column::Level(bit, name));
+            bit += 1;
+        }
+        if bit == 0 {
+            return Err("the head of the table names no channel; name the time and then each channel".into());
+        }
+        self.columns = Some(Columns { separator, times: Times::new(unit), list, first_row: true });
+        Ok(has_head)
     }
+
+    /// Takes a comment before the table.
+    fn comment(&mut self, line: &[u8]) {
+        let text = String::from_utf8_lossy(line);
+        let lower = text.to_lowercase();
+        self.head.decimal_commas |= lower.contains("libsigrok4dsl") || lower.contains("dsview");
+        if let Some(at) = ["sample rate:", "samplerate:", "sample rate (hz):"]
+            .iter()
+            .find_map(|key| lower.find(key).map(|at| at + key.len()))
+            && let Some(rate) = lower.get(at..).and_then(|rate| parse_rate(rate.trim()))
+        {
+            self.head.rate = Some(rate);
+        }
+    }
+
+    /// Takes a row of units behind the head: `(ms),(V)`. Whether it is one.
+    fn units(columns: &mut Columns, line: &[u8]) -> bool {
+        let is_unit = |field: &[u8]| matches!(field, [b'(' | b'[', .., b')' | b']'] | []);
+        let all: Vec<&[u8]> = fields(line, columns.separator).collect();
+        if !all.iter().all(|field| is_unit(field)) {
+            return false;
+        }
+        let time = columns.list.iter().position(|column| matches!(column, Column::Time));
+        let name = time.and_then(|at| all.get(at)).and_then(|field| core::str::from_utf8(field).ok());
+        let unit = name.and_then(|name| TimeUnit::parse(name.trim_matches(['(', ')', '[', ']'])));
+        if let Some(unit) = unit {
+            columns.times = Times::new(unit);
+        }
+        unit.is_some()
+    }
+}
+
+/// Which columns of a table are times.
+pub(super) struct Layout {
+    pub(super) time: usize,
+    pub(super) unit: TimeUnit,
+    /// Further columns of times, or of sample numbers.
+    others: Vec<usize>,
+}
+
+impl Layout {
+    /// By the names of the columns; `None` if none is a time.
+    pub(super) fn of(names: &[String]) -> Option<Self> {
+        let named = |name: &String| TimeUnit::named(name);
+        let units: Vec<Option<(TimeUnit, bool)>> = names.iter().map(named).collect();
+        let of = |wanted: &dyn Fn(&(TimeUnit, bool)) -> bool| {
+            units.iter().position(|unit| unit.as_ref().is_some_and(wanted))
+        };
+        // Cycles come first in our own tables, and are exact; a time is better than the number of a sample.
+        let is_cycles = names.first().is_some_and(|name| name.trim().to_lowercase().starts_with("cycle"));
+        let time = if is_cycles {
+            Some(0)
+        } else {
+            of(&|(unit, said)| *unit != TimeUnit::Cycles && *said)
+                .or_else(|| of(&|(unit, _)| *unit != TimeUnit::Cycles))
+                .or_else(|| of(&|_| true))
+        }?;
+        let (unit, _) = (*units.get(time)?)?;
+        let others = (0..names.len()).filter(|at| *at != time && units.get(*at).is_some_and(Option::is_some));
+        Some(Self { time, unit, others: others.collect() })
+    }
+}
+
+/// The names of columns; between blanks a unit in brackets belongs to the name before it.
+pub(super) fn column_names(fields: &Fields, separator: u8) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in fields.names() {
+        match names.last_mut() {
+            Some(last) if separator == b' ' && name.starts_with(['(', '[']) => {
+                last.push(' ');
+                last.push_str(&name);
+            }
+            _ => names.push(name),
+        }
+    }
+    names
+}
+
+/// Whether a line before a table is a comment.
+pub(super) fn is_comment(line: &[u8]) -> bool {
+    matches!(line, [b';' | b'#' | b'%', ..] | [b'/', b'/', ..])
 }
 
 impl Reader for LevelsTable {
     fn take(&mut self, line: &[u8]) -> Result<(), String> {
-        if line.trim_ascii().is_empty() {
+        let line = line.trim_ascii();
+        if line.is_empty() {
             return Ok(());
         }
-        let Some(columns) = &mut self.columns else { return self.head(line) };
+        if is_comment(line) {
+            self.comment(line);
+            return Ok(());
+        }
+        if self.columns.is_none() && self.begin(line)? {
+            return Ok(());
+        }
+        let Some(columns) = &mut self.columns else { return Ok(()) };
+        if core::mem::take(&mut columns.first_row) && Self::units(columns, line) {
+            return Ok(());
+        }
         let separator = columns.separator;
-        let end_of_time = line.iter().position(|byte| *byte == separator).unwrap_or(line.len());
-        let (time, mut rest) = line.split_at(end_of_time);
-        let tick = columns.times.tick(time.trim_ascii(), &mut self.recorder)?;
-        if columns.skip {
-            let second = rest.iter().skip(1).position(|byte| *byte == separator);
-            rest = second.and_then(|length| rest.get(1 + length..)).unwrap_or_default();
-        }
-        let mut levels = 0_u64;
-        for (bit, name) in columns.names.iter().enumerate() {
-            let (field, after) = match rest {
-                // Nearly every row is of this form.
-                [_, level @ (b'0' | b'1'), after @ ..]
-                    if after.first().is_none_or(|byte| *byte == separator) =>
-                {
-                    (core::slice::from_ref(level), after)
+        let (time, levels) = if line.contains(&b'"') {
+            self.quoted.split(line, separator)?;
+            row(self.quoted.iter(), self.quoted.len(), columns, &mut self.unknown)?
+        } else {
+            let count = fields(line, separator).count();
+            if let Some((time, rest)) = decimal_comma(line, columns, count) {
+                if !self.head.decimal_commas {
+                    return Err(format!(
+                        "{} has one field more than the head of the table names, as with a decimal comma; export with \
+                         decimal points, or with semicolons between the fields",
+                        quoted(line)
+                    ));
                 }
-                [_, after @ ..] => {
-                    let length = after.iter().position(|byte| *byte == separator).unwrap_or(after.len());
-                    let (field, after) = after.split_at(length);
-                    (field.trim_ascii(), after)
-                }
-                [] => (&[][..], &[][..]),
-            };
-            rest = after;
-            match field {
-                b"0" => {}
-                b"1" => levels |= 1_u64.checked_shl(bit as u32).unwrap_or(0),
-                b"X" | b"x" => self.unknown += 1,
-                _ => return Err(not_a_level(name, field)),
+                let all = core::iter::once(time).chain(fields(rest, separator));
+                row(all, count - 1, columns, &mut self.unknown)?
+            } else {
+                row(fields(line, separator), count, columns, &mut self.unknown)?
             }
-        }
-        if !rest.is_empty() {
-            return Err(format!(
-                "more fields than the head of the table names, which are {}",
-                columns.names.len()
-            ));
-        }
+        };
+        let tick = columns.times.tick(time, &mut self.recorder)?;
         self.recorder.levels(tick, levels)
     }
 
@@ -115,19 +238,80 @@ impl Reader for LevelsTable {
             None => Err("the table has no head".into()),
         };
         self.recorder.leave_out_unknown(self.unknown, "X: no data");
-        let capture = self.recorder.finish();
+        let mut capture = self.recorder.finish();
+        if capture.timebase.is_none() {
+            capture.timebase = self.head.rate.and_then(period);
+        }
         let found = if found.is_ok() && capture.is_empty() { Err(NO_ROWS.into()) } else { found };
         (capture, found)
     }
+}
+
+/// How long a sample lasts.
+fn period(rate: Decimal) -> Option<Timebase> {
+    let unit = super::decimal::power_of_ten(rate.places).and_then(|unit| u64::try_from(unit).ok());
+    Timebase::new(unit?, u64::try_from(rate.mantissa).ok()?)
+}
+
+/// The time of a row whose first field a decimal comma has split, and what comes after it.
+fn decimal_comma<'l>(line: &'l [u8], columns: &Columns, count: usize) -> Option<(&'l [u8], &'l [u8])> {
+    let split = columns.separator == b',' && count == columns.list.len() + 1;
+    if !split || !matches!(columns.list.first(), Some(Column::Time)) {
+        return None;
+    }
+    let comma = line.iter().position(|byte| *byte == b',')?;
+    let (before, after) = (line.get(..comma)?, line.get(comma + 1..)?);
+    let end = after.iter().position(|byte| *byte == b',')?;
+    let digits = after.get(..end)?;
+    let is_number = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+    let sign = before.strip_prefix(b"-").unwrap_or(before);
+    (is_number(sign) && is_number(digits)).then_some((line.get(..comma + 1 + end)?, after.get(end + 1..)?))
+}
+
+/// The time and the levels of a row.
+fn row<'l>(
+    all: impl Iterator<Item = &'l [u8]>,
+    count: usize,
+    columns: &Columns,
+    unknown: &mut u64,
+) -> Result<(&'l [u8], u64), String> {
+    let (mut time, mut levels) = (&[][..], 0_u64);
+    let mut all = all.fuse();
+    for column in &columns.list {
+        let field = all.next().unwrap_or_default();
+        match column {
+            Column::Time => time = field,
+            Column::Other => {}
+            Column::Level(bit, name) => match field {
+                b"0" => {}
+                b"1" => levels |= 1_u64.checked_shl(*bit).unwrap_or(0),
+                b"X" | b"x" => *unknown += 1,
+                _ => return Err(not_a_level(name, field)),
+            },
+        }
+    }
+    if count > columns.list.len() && all.any(|field| !field.is_empty()) {
+        return Err(format!(
+            "more fields than the head of the table names, which are {}",
+            columns.list.len()
+        ));
+    }
+    Ok((time, levels))
 }
 
 const NO_ROWS: &str = "the table has a head and no rows; record again, or export the whole of the recording";
 
 /// What is wrong with a field that should be a level.
 pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
+    let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
     format!(
-        "{} is {}; a level is 0 or 1: export digital channels only",
+        "{} is {}; a level is 0 or 1: {}",
         if name.is_empty() { "a level" } else { name },
-        quoted(field)
+        quoted(field),
+        if analog {
+            "export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it"
+        } else {
+            "export digital channels only"
+        }
     )
 }

@@ -20,13 +20,16 @@
 
 pub mod decimal;
 
+mod clock;
 mod detect;
 mod fields;
 mod reading;
 mod recorder;
+mod row;
 mod source;
 mod times;
 
+mod dump;
 mod hex;
 mod levels;
 mod positions;
@@ -37,6 +40,7 @@ mod stepscope;
 mod vcd;
 
 use crate::capture::{Capture, Format};
+use detect::Found;
 use reading::Reader;
 use recorder::Recorder;
 use source::Source;
@@ -60,8 +64,8 @@ pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(
         Ok(source) => source,
         Err(what) => return refusal(ReadError::whole(what)),
     };
-    let format = match detect::detect(source.head()) {
-        Ok(format) => format,
+    let Found { format, whole_times, table } = match detect::detect(source.head()) {
+        Ok(found) => found,
         Err(what) => return refusal(ReadError::whole(what)),
     };
     let recorder = Recorder::new(format, limits.most);
@@ -73,11 +77,14 @@ pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(
         }
         Format::SigrokSession => session::read(source, recorder),
         Format::SigrokCsv => by_line(source, sigrok::Samples::new(recorder)),
-        Format::SaleaeCsv | Format::EdgesCsv => by_line(source, levels::LevelsTable::new(recorder)),
+        Format::LevelsCsv | Format::SaleaeCsv | Format::EdgesCsv => {
+            by_line(source, levels::LevelsTable::new(recorder, whole_times))
+        }
         Format::SaleaeBytes => by_line(source, saleae::DecodedBytes::new(recorder)),
         Format::Trace => by_line(source, stepscope::TraceText::new(recorder)),
-        Format::HexBytes => by_line(source, hex::HexText::new(recorder)),
-        Format::PositionsCsv => by_line(source, positions::Positions::new(recorder)),
+        Format::HexBytes | Format::SerialLog => by_line(source, hex::HexText::new(recorder, table)),
+        Format::HexDump => by_line(source, dump::HexDump::new(recorder)),
+        Format::PositionsCsv => by_line(source, positions::Positions::new(recorder, whole_times)),
         Format::Unknown => refusal(ReadError::whole(detect::UNKNOWN.into())),
     }
 }

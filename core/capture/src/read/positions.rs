@@ -8,6 +8,7 @@
 use super::{
     decimal::Decimal,
     fields::{Fields, separator},
+    levels::{Layout, column_names, is_comment},
     reading::Reader,
     recorder::{Names, Recorder, quoted},
     times::{TimeUnit, Times},
@@ -17,39 +18,41 @@ use crate::capture::{Capture, TimedPosition};
 /// Positions that are being read.
 pub(super) struct Positions {
     recorder: Recorder,
+    /// Whether the first times are whole numbers, which without a unit are no seconds.
+    whole_times: bool,
     fields: Fields,
     times: Times,
-    /// What separates the fields, and which of them is the position; nothing before the first line.
-    columns: Option<(u8, usize)>,
+    /// What separates the fields, and which of them are the time and the position; nothing before the first line.
+    columns: Option<(u8, usize, usize)>,
 }
 
 impl Positions {
-    pub(super) const fn new(recorder: Recorder) -> Self {
+    pub(super) const fn new(recorder: Recorder, whole_times: bool) -> Self {
         let times = Times::new(TimeUnit::Seconds(0));
-        Self { recorder, fields: Fields::new(), times, columns: None }
+        Self { recorder, whole_times, fields: Fields::new(), times, columns: None }
     }
 
     /// The columns by the first line, and whether that is a head.
     fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
-        let separator = if line.contains(&b' ') && row(line).is_some() && !line.contains(&b',') {
-            row_separator(line)
-        } else {
-            separator(line)
-        };
+        let separator = separator(line);
         self.fields.split(line, separator)?;
-        let names = self.fields.names();
-        let Some(unit) = names.first().and_then(|name| TimeUnit::of_column(name)) else {
-            self.columns = Some((separator, 1));
+        let names = column_names(&self.fields, separator);
+        let Some(Layout { time, unit, .. }) = Layout::of(&names) else {
+            if self.whole_times {
+                self.times = Times::new(TimeUnit::Cycles);
+            }
+            self.columns = Some((separator, 0, 1));
             return Ok(false);
         };
-        let at = names.iter().position(|name| is_position(name)).unwrap_or(1);
-        self.times = Times::new(unit);
-        self.columns = Some((separator, at));
+        let at = position_column(&names, time).unwrap_or(usize::from(time == 0));
+        let is_said = !self.whole_times || TimeUnit::is_said(names.get(time));
+        self.times = Times::new(if is_said { unit } else { TimeUnit::Cycles });
+        self.columns = Some((separator, time, at));
         let mut others = Names::new();
         names
             .iter()
             .enumerate()
-            .filter(|(column, _)| *column != 0 && *column != at)
+            .filter(|(column, _)| *column != time && *column != at)
             .for_each(|(_, name)| others.add(name));
         if !others.is_empty() {
             self.recorder.leave_out(format!("columns besides time and position: {}", others.told()));
@@ -58,18 +61,25 @@ impl Positions {
     }
 }
 
+/// The column of positions beside the one of times.
+pub(super) fn position_column(names: &[String], time: usize) -> Option<usize> {
+    let of =
+        |is: &dyn Fn(&str) -> bool| names.iter().enumerate().position(|(at, name)| at != time && is(name));
+    of(&|name| name.trim().to_lowercase().starts_with("pos")).or_else(|| of(&is_position))
+}
+
 impl Reader for Positions {
     fn take(&mut self, line: &[u8]) -> Result<(), String> {
         let line = line.trim_ascii();
-        if line.is_empty() || line.starts_with(b"#") {
+        if line.is_empty() || is_comment(line) {
             return Ok(());
         }
         if self.columns.is_none() && self.begin(line)? {
             return Ok(());
         }
-        let (separator, at) = self.columns.unwrap_or((b',', 1));
+        let (separator, time, at) = self.columns.unwrap_or((b',', 0, 1));
         self.fields.split(line, separator)?;
-        let tick = self.times.tick(self.fields.get(0), &mut self.recorder)?;
+        let tick = self.times.tick(self.fields.get(time), &mut self.recorder)?;
         let field = self.fields.get(at);
         let position = Decimal::parse(field)
             .ok_or_else(|| format!("{} is not a position; give a whole number of steps", quoted(field)))?;
@@ -98,17 +108,4 @@ pub(super) fn is_position(name: &str) -> bool {
     // STEP and STEP0 are lines.
     known && !name.strip_prefix("step").is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit()))
         || ["x", "y", "z", "actual", "actual_position", "position"].contains(&name.as_str())
-}
-
-/// Time and position of a row without a head; `None` where it is none.
-pub(super) fn row(line: &[u8]) -> Option<(Decimal, Decimal)> {
-    let separator = row_separator(line);
-    let mut fields = line.split(|byte| *byte == separator).map(<[u8]>::trim_ascii);
-    let row = (Decimal::parse(fields.next()?)?, Decimal::parse(fields.next()?)?);
-    fields.next().is_none().then_some(row)
-}
-
-fn row_separator(line: &[u8]) -> u8 {
-    let separator = separator(line);
-    if line.contains(&separator) { separator } else { b' ' }
 }

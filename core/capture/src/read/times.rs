@@ -6,6 +6,7 @@
 //! ```
 
 use super::{
+    clock::{Dated, Stamp},
     decimal::{Decimal, power_of_ten},
     recorder::{Recorder, quoted},
 };
@@ -39,21 +40,55 @@ impl TimeUnit {
         })
     }
 
-    /// The unit of a table's column of times by its name: `Time [s]`, `t_ms`, `cycle`; `None` where it is no such name.
+    /// The unit of a table's column of times by its name: `Time [s]`, `t_ms`, `micros`, `cycle`, `Sample`; `None` if it is
+    /// no such name.
     pub(super) fn of_column(name: &str) -> Option<Self> {
-        let name = name.trim().to_lowercase();
-        if let Some(unit) = Self::parse(&name).filter(|_| name.len() > 2) {
-            return Some(unit);
-        }
-        let rest =
-            ["timestamp", "start_time", "time", "t"].iter().find_map(|prefix| name.strip_prefix(prefix))?;
-        let unit = rest.trim_matches(|letter: char| " _-[](){}/,".contains(letter));
-        match unit {
-            "" => Some(Self::Seconds(0)),
-            unit if unit.len() < rest.len() => Self::parse(unit),
+        Self::named(name).map(|(unit, _)| unit)
+    }
+
+    /// Whether the name of a column gives the unit of its times.
+    pub(super) fn is_said(name: Option<&String>) -> bool {
+        name.and_then(|name| Self::named(name)).is_some_and(|(_, said)| said)
+    }
+
+    /// The unit, and whether the name says it: `Time` alone does not, and is taken as s.
+    pub(super) fn named(name: &str) -> Option<(Self, bool)> {
+        let lower = name.trim().to_lowercase();
+        let words: Vec<&str> = lower.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty() && *word != "in").collect();
+        let is_time = |word: &&str| TIME_WORDS.contains(word);
+        match words.as_slice() {
+            ["sample" | "samples" | "samplenum" | "index"]
+            | ["sample", "number" | "no" | "num" | "nr" | "index"] => Some((Self::Cycles, true)),
+            ["start" | "elapsed"] => None,
+            [word] if is_time(word) => Some((Self::Seconds(0), false)),
+            // `s` is too short to be a time.
+            [word] if *word != "s" => {
+                let unit = match *word {
+                    "micros" => Some(Self::Seconds(6)),
+                    "millis" => Some(Self::Seconds(3)),
+                    "nanos" => Some(Self::Seconds(9)),
+                    word => Self::parse(word),
+                };
+                unit.or_else(|| camel(name.trim())).map(|unit| (unit, true))
+            }
+            [.., word] if words.iter().any(is_time) => match Self::parse(word) {
+                Some(unit) => Some((unit, true)),
+                None => words.iter().all(is_time).then_some((Self::Seconds(0), false)),
+            },
             _ => None,
         }
     }
+}
+
+/// Words of which a column of times is named.
+const TIME_WORDS: [&str; 7] = ["t", "time", "timestamp", "ts", "start", "elapsed", "uptime"];
+
+/// The unit of `timeUs`, `tMs`.
+fn camel(name: &str) -> Option<TimeUnit> {
+    let unit = name.find(|letter: char| letter.is_uppercase()).filter(|at| *at > 0)?;
+    let (time, unit) = name.split_at(unit);
+    TIME_WORDS.contains(&time).then(|| TimeUnit::parse(unit)).flatten()
 }
 
 /// The ticks of a file's times.
@@ -65,16 +100,23 @@ pub(super) struct Times {
     origin: i128,
     /// The first time, where it is not tick 0 by itself.
     shifted_by: Option<String>,
+    /// Of times without a date: whole days before the latest, and its time of day.
+    days: i128,
+    latest: Option<Decimal>,
+    /// The date of all times that do not say which number is the day.
+    unclear: Option<[u64; 3]>,
 }
+
+const DAY_S: i128 = 86_400;
 
 impl Times {
     pub(super) const fn new(unit: TimeUnit) -> Self {
-        Self { unit, places: None, origin: 0, shifted_by: None }
+        Self { unit, places: None, origin: 0, shifted_by: None, days: 0, latest: None, unclear: None }
     }
 
     /// The tick of a time in the column's unit, not before the last tick that `recorder` has.
     pub(super) fn tick(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
-        let time = match (Decimal::parse(text), self.unit) {
+        let time = match (number(text), self.unit) {
             (Some(time), TimeUnit::Seconds(0)) => time,
             (Some(time), TimeUnit::Seconds(places)) => Decimal { places: time.places + places, ..time },
             (Some(time), TimeUnit::Cycles) => {
@@ -83,7 +125,7 @@ impl Times {
                     .ok_or_else(|| format!("{} is not a cycle; give a whole number from 0", quoted(text)))?;
                 Decimal { mantissa, places: 0 }
             }
-            (None, _) => return self.date(text, recorder),
+            (None, _) => return self.clock(text, recorder),
         };
         self.tick_of(time, text, recorder)
     }
@@ -142,11 +184,46 @@ impl Times {
         Some(time)
     }
 
-    /// The tick of a date and time (ISO 8601), the first of which is tick 0.
-    fn date(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
-        let time = date(text).filter(|_| self.unit == TimeUnit::Seconds(0)).ok_or_else(|| {
-            format!("{} is not a time; give a number, such as 0.00125 or 1.25e-3", quoted(text))
-        })?;
+    /// The tick of a time of a clock, the first of which is tick 0.
+    fn clock(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
+        let stamp = Stamp::parse(text)
+            .filter(|stamp| self.unit == TimeUnit::Seconds(0) && stamp.length == text.len())
+            .ok_or_else(|| {
+                format!("{} is not a time; give a number, such as 0.00125 or 1.25e-3", quoted(text))
+            })?;
+        self.stamp(stamp, text, recorder)
+    }
+
+    /// The tick of a time of a clock. Without dates a time that falls by more than half a day is of the next day.
+    pub(super) fn stamp(
+        &mut self,
+        stamp: Stamp,
+        text: &[u8],
+        recorder: &mut Recorder,
+    ) -> Result<u64, String> {
+        let mut time = stamp.seconds;
+        if let Dated::Unclear(date) = stamp.dated
+            && *self.unclear.get_or_insert(date) != date
+        {
+            return Err(format!(
+                "{} is another day, and the dates do not say which number is the month; write dates as 2026-11-26",
+                quoted(text)
+            ));
+        }
+        if stamp.dated == Dated::No {
+            let before = self.latest.replace(time);
+            let fell = |before: Decimal| {
+                let places = before.places.max(time.places);
+                let whole = |time: Decimal| time.with_places(places).map(|time| time.mantissa);
+                let fall = whole(before)?.checked_sub(whole(time)?)?;
+                Some(fall > power_of_ten(places)? * (DAY_S / 2))
+            };
+            if before.and_then(fell) == Some(true) {
+                self.days += 1;
+            }
+            let days = power_of_ten(time.places).and_then(|second| second.checked_mul(self.days * DAY_S));
+            time.mantissa += days.unwrap_or(0);
+        }
         if self.places.is_none() {
             self.begin_at(time, text);
         }
@@ -159,6 +236,10 @@ impl Times {
             let denominator = power_of_ten(places).and_then(|power| u64::try_from(power).ok());
             recorder.capture.timebase = denominator.and_then(|denominator| Timebase::new(1, denominator));
         }
+        if self.days > 0 {
+            let times = if self.days == 1 { "once".into() } else { format!("{} times", self.days) };
+            recorder.leave_out(format!("the clock passes midnight {times}: the times go on from day to day"));
+        }
         if let Some(first) = self.shifted_by {
             recorder.leave_out(format!(
                 "the first time is {first}: it is taken as 0, and all others count from it"
@@ -167,51 +248,14 @@ impl Times {
     }
 }
 
-/// Seconds since 1970 of a date and time such as `2026-01-31T12:34:56.789012+01:00`.
-fn date(text: &[u8]) -> Option<Decimal> {
-    let text = core::str::from_utf8(text).ok()?;
-    let number = |from: usize, to: usize| {
-        text.get(from..to).and_then(|digits| super::decimal::whole(digits.as_bytes()))
-    };
-    let mark = |at: usize, allowed: &str| text.get(at..=at).is_some_and(|mark| allowed.contains(mark));
-    if !(mark(4, "-") && mark(7, "-") && mark(10, "T ") && mark(13, ":") && mark(16, ":")) {
-        return None;
-    }
-    let (year, month, day) = (number(0, 4)?, number(5, 7)?, number(8, 10)?);
-    let (hour, minute, second) = (number(11, 13)?, number(14, 16)?, number(17, 19)?);
-    if !(1..=12).contains(&month) || !(1..=31).contains(&day) || hour > 23 || minute > 59 || second > 60 {
-        return None;
-    }
-    let rest = text.get(19..)?;
-    let zone = rest.find(['Z', 'z', '+', '-']).unwrap_or(rest.len());
-    let (fraction, zone) = rest.split_at(zone);
-    let fraction = match fraction.strip_prefix('.') {
-        Some(digits) => Decimal::parse(digits.as_bytes())
-            .filter(|number| digits.len() <= 12 && number.places == 0 && number.mantissa >= 0)
-            .map(|number| Decimal { places: digits.len() as u32, ..number })?,
-        None if fraction.is_empty() => Decimal { mantissa: 0, places: 0 },
-        None => return None,
-    };
-    // Days from the first of March of year 0, whose last day of the year is the leap day.
-    let (years, months) = if month > 2 { (year, month - 3) } else { (year.checked_sub(1)?, month + 9) };
-    let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1;
-    let seconds =
-        i128::from(days) * 86_400 - 719_468 * 86_400 + i128::from(hour * 3600 + minute * 60 + second);
-    let seconds = seconds - i128::from(zone_seconds(zone)?);
-    let mantissa = seconds * power_of_ten(fraction.places)? + fraction.mantissa;
-    Some(Decimal { mantissa, places: fraction.places })
-}
-
-/// Seconds of `Z`, `+01:00` or nothing.
-fn zone_seconds(zone: &str) -> Option<i64> {
-    if zone.is_empty() || zone.eq_ignore_ascii_case("z") {
-        return Some(0);
-    }
-    let (sign, digits) = zone.split_at_checked(1)?;
-    let digits: String = digits.chars().filter(|letter| *letter != ':').collect();
-    let number = super::decimal::whole(digits.as_bytes()).filter(|_| digits.len() == 4)?;
-    let seconds = i64::try_from(number / 100 * 3600 + number % 100 * 60).ok()?;
-    Some(if sign == "-" { -seconds } else { seconds })
+/// A number, which may have a decimal comma.
+fn number(text: &[u8]) -> Option<Decimal> {
+    Decimal::parse(text).or_else(|| {
+        let comma = text.iter().position(|byte| *byte == b',')?;
+        let mut text = text.to_vec();
+        *text.get_mut(comma)? = b'.';
+        Decimal::parse(&text)
+    })
 }
 
 #[cfg(test)]
@@ -232,27 +276,27 @@ mod tests {
             ("nanoseconds", Some(TimeUnit::Seconds(9))),
             ("cycle", Some(TimeUnit::Cycles)),
             ("time [cycles]", Some(TimeUnit::Cycles)),
+            ("t/ms", Some(TimeUnit::Seconds(3))),
+            ("time [us]", Some(TimeUnit::Seconds(6))),
+            ("micros", Some(TimeUnit::Seconds(6))),
+            ("millis", Some(TimeUnit::Seconds(3))),
+            ("µs", Some(TimeUnit::Seconds(6))),
+            ("ns", Some(TimeUnit::Seconds(9))),
+            ("timeUs", Some(TimeUnit::Seconds(6))),
+            ("Timestamp (ms)", Some(TimeUnit::Seconds(3))),
+            ("Time in µs", Some(TimeUnit::Seconds(6))),
+            ("Elapsed time [s]", Some(TimeUnit::Seconds(0))),
+            ("Sample", Some(TimeUnit::Cycles)),
+            ("sample number", Some(TimeUnit::Cycles)),
+            ("start_time", Some(TimeUnit::Seconds(0))),
+            ("start", None),
+            ("time step", None),
             ("TX", None),
             ("timer", None),
             ("s", None),
             ("name", None),
         ] {
             assert_eq!(TimeUnit::of_column(name), unit, "{name}");
-        }
-    }
-
-    #[test]
-    fn dates_are_seconds_since_1970() {
-        for (text, expected) in [
-            ("1970-01-01T00:00:00Z", Some((0, 0))),
-            ("2000-02-29T12:00:00.5Z", Some((9_518_256_005, 1))),
-            ("2026-01-31 12:34:56.789012+01:00", Some((1_769_859_296_789_012, 6))),
-            ("1969-12-31T23:59:59", Some((-1, 0))),
-            ("2026-13-01T00:00:00Z", None),
-            ("2026-01-01", None),
-            ("0000-01-01T00:00:00Z", None),
-        ] {
-            assert_eq!(date(text.as_bytes()).map(|time| (time.mantissa, time.places)), expected, "{text}");
         }
     }
 }

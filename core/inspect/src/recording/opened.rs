@@ -38,7 +38,7 @@ use stepscope_capture::{
 };
 use stepscope_peripheral::{
     config::limits::CLOCK_HZ,
-    signal::Record,
+    signal::{Levels, Record},
     trace::{self, Step},
     units::Instant,
     wire::BitTimes,
@@ -112,7 +112,7 @@ impl fmt::Display for OpenError {
             }
             Self::SampleRate => f.write_str("the sample rate is 0; give the samples a second, in Hz"),
             Self::NoSampleRate => f.write_str(
-                "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz",
+                "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz: 1000000 for times in µs, or name their unit in the head of the table (time_us)",
             ),
             Self::NoBaud => f.write_str(
                 "the bytes have no times; give the bit rate, and they are taken for sent back to back",
@@ -246,7 +246,7 @@ impl Opened {
     pub fn new(capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
         let (mut opened, map, base) = Self::before(&capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(&capture, ask).map(|()| opened) };
-        let report = opened.without_levels(&capture, base, ask)?;
+        let report = opened.without_levels(&capture, base, ask, &map)?;
         let exact = opened.exact_channels(&capture, &map, base, ask);
         let others = others_rounded(&capture, base, opened.clock_hz);
         let recorded = Recorded::new(capture, &map, base, opened.clock_hz).map_err(OpenError::TooLate)?;
@@ -269,7 +269,7 @@ impl Opened {
         let (mut opened, map, base) = Self::before(capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(capture, ask).map(|()| opened) };
         let clock_hz = opened.clock_hz;
-        let report = opened.without_levels(capture, base, ask)?;
+        let report = opened.without_levels(capture, base, ask, &map)?;
         // Without levels there is one record, that of reset.
         if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
@@ -446,20 +446,24 @@ impl Opened {
         capture: &Capture,
         base: Timebase,
         ask: &Ask,
+        map: &ChannelMap,
     ) -> Result<Option<Report>, OpenError> {
         let clock_hz = self.clock_hz;
         let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
         let mut report = None;
         if !capture.bytes.is_empty() {
-            let heard = heard(&capture.bytes, cycle);
-            let baud = ask.baud.unwrap_or_else(|| likely_baud(&heard, clock_hz));
+            let all = heard(capture.bytes.iter(), cycle);
+            let baud = ask.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
             if ask.baud.is_none() {
                 self.notes.push(format!(
                     "the file does not say the bit rate; by the times of its bytes {baud} baud is taken: give it"
                 ));
             }
-            let line = LineReport::of_heard(heard, clock_hz, baud);
-            report = Some(Report { channels: Vec::new(), lines: Vec::from([line]) });
+            let lines = self.lines_of(capture, map).into_iter();
+            let lines = lines.map(|(line, bytes)| {
+                LineReport::of_heard_on(line, heard(bytes.into_iter(), cycle), clock_hz, baud)
+            });
+            report = Some(Report { channels: Vec::new(), lines: lines.collect() });
         } else if !capture.positions.is_empty() {
             let steps =
                 capture.steps(cycle, MAX_MADE_STEPS).ok_or(OpenError::TooManySteps(MAX_MADE_STEPS))?;
@@ -467,6 +471,29 @@ impl Opened {
             self.made_steps = Some(steps);
         }
         Ok(report)
+    }
+
+    /// Decoded bytes by the line they are on. Those of one channel are on RX; of several, the map says which are.
+    fn lines_of<'c>(&mut self, capture: &'c Capture, map: &ChannelMap) -> Vec<(u64, Vec<&'c TimedByte>)> {
+        let lines = [Levels::RX, Levels::TX];
+        let of = |line: u64| {
+            let entry = map.entries().iter().find(|entry| 1_u64 << entry.bit == line);
+            let bytes = entry.map(|entry| {
+                capture.bytes.iter().filter(|byte| usize::from(byte.channel) == entry.channel).collect()
+            });
+            bytes.filter(|bytes: &Vec<&TimedByte>| !bytes.is_empty()).map(|bytes| (line, bytes))
+        };
+        let found: Vec<_> = lines.into_iter().filter_map(of).collect();
+        if capture.channels.len() > 1 && found.is_empty() {
+            self.notes.push(format!(
+                "bytes of {} are taken together, as RX; choose one by a map, such as RX=#0",
+                self.names.join(", ")
+            ));
+        }
+        if capture.channels.len() <= 1 || found.is_empty() {
+            return Vec::from([(Levels::RX, capture.bytes.iter().collect())]);
+        }
+        found
     }
 
     /// Tells what it comes to.
@@ -485,6 +512,10 @@ impl Opened {
     /// Bytes without times are taken for sent back to back; levels without times cannot be used.
     fn back_to_back(&mut self, capture: &Capture, ask: &Ask) -> Result<(), OpenError> {
         if capture.bytes.is_empty() {
+            return Err(OpenError::NoSampleRate);
+        }
+        // Without times a byte's tick is its place: others are times whose unit is not known.
+        if (0..).zip(&capture.bytes).any(|(place, byte)| byte.tick != place) {
             return Err(OpenError::NoSampleRate);
         }
         let baud = ask.baud.ok_or(OpenError::NoBaud)?;
@@ -668,7 +699,7 @@ fn judged(clock_hz: u32) -> Result<u32, OpenError> {
     if CLOCK_HZ.contains(&clock_hz.into()) { Ok(clock_hz) } else { Err(OpenError::Clock(clock_hz)) }
 }
 
-fn heard(bytes: &[TimedByte], cycle: impl Fn(u64) -> u64) -> Heard {
+fn heard<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> Heard {
     let mut heard = Heard::default();
     for byte in bytes {
         let start = Instant(cycle(byte.tick));

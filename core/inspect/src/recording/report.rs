@@ -158,11 +158,17 @@ impl LineReport {
         Some(Self { name: line_name(mask), measured, baud, heard, guess })
     }
 
-    /// Of bytes that were decoded already.
+    /// Of bytes that were decoded already, on RX.
     #[must_use]
     pub fn of_heard(heard: Heard, clock_hz: u32, baud: u32) -> Self {
+        Self::of_heard_on(Levels::RX, heard, clock_hz, baud)
+    }
+
+    /// Of bytes that were decoded already, on a line: [`Levels::RX`] or [`Levels::TX`].
+    #[must_use]
+    pub fn of_heard_on(line: u64, heard: Heard, clock_hz: u32, baud: u32) -> Self {
         let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
-        Self { name: line_name(Levels::RX), measured: None, baud, heard, guess }
+        Self { name: line_name(line), measured: None, baud, heard, guess }
     }
 
     /// In one sentence.

@@ -1,0 +1,177 @@
+//! Times of a clock, with or without a date, as logs have them.
+//!
+//! ```text
+//! 2026-11-26T12:00:00.123456+01:00     2026/11/26 12:00:00,123     26.11.2026 12:00:00.123     12:00:00.123
+//! ```
+
+use super::decimal::{Decimal, power_of_ten, whole};
+
+/// Most digits of a fraction of a second.
+const MAX_FRACTION: usize = 12;
+
+/// A time at the beginning of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    /// Seconds since 1970, or since midnight if there is no date.
+    pub(super) seconds: Decimal,
+    pub(super) dated: Dated,
+    /// Bytes of the text that belong to it.
+    pub(super) length: usize,
+}
+
+/// What a time says about its day.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dated {
+    /// Nothing.
+    No,
+    /// The date.
+    Yes,
+    /// A date that does not say which number is the day and which the month, as `05/06/2026`.
+    Unclear([u64; 3]),
+}
+
+impl Stamp {
+    /// Reads the time that a text begins with.
+    pub(super) fn parse(text: &[u8]) -> Option<Self> {
+        let Some((days, dated, date)) = date(text) else {
+            let (seconds, length) = clock(text)?;
+            return Some(Self { seconds, dated: Dated::No, length });
+        };
+        let gap = text.get(date).filter(|gap| b"Tt _".contains(gap)).map(|_| date + 1)?;
+        let (of_day, clock) = clock(text.get(gap..)?)?;
+        let mut length = gap + clock;
+        let rest = text.get(length..)?;
+        let zone = zone(rest).or_else(|| {
+            let (seconds, length) = zone(rest.strip_prefix(b" ").filter(|rest| !rest.starts_with(b"Z"))?)?;
+            Some((seconds, length + 1))
+        });
+        length += zone.map_or(0, |(_, length)| length);
+        let before = days * 86_400 - i128::from(zone.map_or(0, |(seconds, _)| seconds));
+        let mantissa = before.checked_mul(power_of_ten(of_day.places)?)?.checked_add(of_day.mantissa)?;
+        Some(Self { seconds: Decimal { mantissa, ..of_day }, dated, length })
+    }
+}
+
+/// A number of one to four digits that a text begins with, and how many they are.
+fn number(text: &[u8]) -> Option<(u64, usize)> {
+    let length = text.iter().take(5).take_while(|byte| byte.is_ascii_digit()).count();
+    let value = text.get(..length).and_then(whole)?;
+    (length <= 4).then_some((value, length))
+}
+
+/// Days from 1970 to the date that a text begins with, and its length.
+fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
+    let (first, one) = number(text)?;
+    let mark = *text.get(one).filter(|mark| b"-/.".contains(mark))?;
+    let (second, two) = number(text.get(one + 1..)?)?;
+    text.get(one + 1 + two).filter(|other| **other == mark)?;
+    let (third, three) = number(text.get(one + two + 2..)?)?;
+    let length = one + two + three + 2;
+    if one == 4 && two <= 2 && three <= 2 {
+        return Some((days(first, second, third)?, Dated::Yes, length));
+    }
+    if one > 2 || two > 2 || three != 4 {
+        return None;
+    }
+    // With points the day comes first, as does a number that is no month.
+    if mark == b'.' || first > 12 {
+        return Some((days(third, second, first)?, Dated::Yes, length));
+    }
+    if second > 12 {
+        return Some((days(third, first, second)?, Dated::Yes, length));
+    }
+    Some((days(third, second, first)?, Dated::Unclear([first, second, third]), length))
+}
+
+/// Days from 1970 to a date.
+fn days(year: u64, month: u64, day: u64) -> Option<i128> {
+    if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+        return None;
+    }
+    // Days from the first of March of year 0, whose last day of the year is the leap day.
+    let (years, months) = if month > 2 { (year, month - 3) } else { (year.checked_sub(1)?, month + 9) };
+    let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1;
+    Some(i128::from(days) - 719_468)
+}
+
+/// Seconds since midnight of `12:34:56.789`, and its length.
+fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
+    let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
+    let part = |from: usize| {
+        text.get(from).filter(|mark| **mark == b':')?;
+        let (value, length) = number(text.get(from + 1..)?)?;
+        (length == 2).then_some(value)
+    };
+    let (minute, second) = (part(one)?, part(one + 3)?);
+    if hour > 23 || minute > 59 || second > 60 {
+        return None;
+    }
+    let whole_seconds = i128::from(hour * 3600 + minute * 60 + second);
+    let length = one + 6;
+    let digits = text.get(length + 1..).unwrap_or_default();
+    let count = digits.iter().take_while(|digit| digit.is_ascii_digit()).count();
+    let has_fraction = match text.get(length) {
+        Some(b'.' | b',') => count > 0,
+        Some(b':') => count == 3,
+        _ => false,
+    };
+    if !has_fraction {
+        return Some((Decimal { mantissa: whole_seconds, places: 0 }, length));
+    }
+    if count > MAX_FRACTION {
+        return None;
+    }
+    let fraction = digits.get(..count).and_then(whole)?;
+    let places = u32::try_from(count).ok()?;
+    let mantissa = whole_seconds * power_of_ten(places)? + i128::from(fraction);
+    Some((Decimal { mantissa, places }, length + 1 + count))
+}
+
+/// Seconds of `Z`, `+01:00` or `-0130`, and its length.
+fn zone(text: &[u8]) -> Option<(i64, usize)> {
+    let sign = match text.first()? {
+        b'Z' | b'z' => return Some((0, 1)),
+        b'+' => 1,
+        b'-' => -1,
+        _ => return None,
+    };
+    let hours = text.get(1..3).and_then(whole)?;
+    let minutes = if text.get(3) == Some(&b':') { 4 } else { 3 };
+    let minute = text.get(minutes..minutes + 2).and_then(whole)?;
+    let seconds = i64::try_from(hours * 3600 + minute * 60).ok()?;
+    Some((sign * seconds, minutes + 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_seconds_since_1970_or_midnight() {
+        for (text, expected) in [
+            ("1970-01-01T00:00:00Z", Some((0, 0, ""))),
+            ("2000-02-29T12:00:00.5Z", Some((9_518_256_005, 1, ""))),
+            ("2026-01-31 12:34:56.789012+01:00", Some((1_769_859_296_789_012, 6, ""))),
+            ("2026-01-31 12:34:56.789012 +0100 RX", Some((1_769_859_296_789_012, 6, " RX"))),
+            ("2026/01/31 11:34:56,789012: 55", Some((1_769_859_296_789_012, 6, ": 55"))),
+            ("31.01.2026 11:34:56.789", Some((1_769_859_296_789, 3, ""))),
+            ("1/31/2026 11:34:56.789", Some((1_769_859_296_789, 3, ""))),
+            ("1969-12-31T23:59:59", Some((-1, 0, ""))),
+            ("12:00:00.123] 55", Some((43_200_123, 3, "] 55"))),
+            ("9:00:00:123 55", Some((32_400_123, 3, " 55"))),
+            ("12:00:00: 55", Some((43_200, 0, ": 55"))),
+            ("2026-13-01T00:00:00Z", None),
+            ("2026-01-01", None),
+            ("0000-01-01T00:00:00Z", None),
+            ("24:00:00", None),
+            ("12:00", None),
+            ("12:00:00.1234567890123", None),
+        ] {
+            let found = Stamp::parse(text.as_bytes())
+                .map(|stamp| (stamp.seconds.mantissa, stamp.seconds.places, &text[stamp.length..]));
+            assert_eq!(found, expected, "{text}");
+        }
+        let unclear = Stamp::parse(b"05/06/2026 00:00:00").map(|stamp| stamp.dated);
+        assert_eq!(unclear, Some(Dated::Unclear([5, 6, 2026])));
+    }
+}

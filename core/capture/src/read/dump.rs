@@ -1,0 +1,281 @@
+//! Dumps of a file in hexadecimal: `hexdump -C`, `xxd`, `od -t x1`, and the rows of a terminal.
+//!
+//! ```text
+//! 00000000  44 45 41 44  |DEAD|      00000000: 55aa 0102  U...      0000000 44 45      0000: 62 65      be
+//! 00000010                           00000010: 6162       ab        0000020            0010: 01
+//! ```
+//!
+//! Offsets are checked: each row begins where the one before has ended, and `*` stands for rows like the one before.
+
+use super::{
+    reading::Reader,
+    recorder::{Recorder, grouped, quoted},
+    row::{self, Shape},
+};
+use crate::capture::{Capture, TimedByte};
+
+/// What offsets may be written in.
+const BASES: [u64; 3] = [16, 8, 10];
+/// Fewest digits of an offset without `0x`.
+const MIN_DIGITS: usize = 4;
+/// Rows of a terminal that begin at multiples of these may be cut short.
+const WIDTHS: [u64; 3] = [8, 16, 32];
+
+/// A dump that is being read.
+pub(super) struct HexDump {
+    recorder: Recorder,
+    /// Where the next row begins, for each base that fits all offsets so far.
+    next: [Option<u64>; 3],
+    /// The offset of the row before, as it is written.
+    before: String,
+    /// The bytes of the row before, and the most that a row had.
+    row: Vec<u8>,
+    width: u64,
+    /// A `*` was read.
+    repeats: bool,
+    is_over: bool,
+    any: bool,
+    is_proven: bool,
+    short_rows: u64,
+}
+
+impl HexDump {
+    pub(super) fn new(mut recorder: Recorder) -> Self {
+        recorder.channel("bytes");
+        Self {
+            recorder,
+            next: [Some(0); 3],
+            before: String::new(),
+            row: Vec::new(),
+            width: 0,
+            repeats: false,
+            is_over: false,
+            any: false,
+            is_proven: false,
+            short_rows: 0,
+        }
+    }
+
+    /// Checks where a row begins, by the bytes before it, and repeats the row before as often as `*` says.
+    fn begin(&mut self, offset: &Offset<'_>) -> Result<(), String> {
+        let values = BASES.map(|base| offset.value(base));
+        if !core::mem::replace(&mut self.any, true) {
+            self.next = values;
+            for (next, base) in self.next.iter_mut().zip(BASES) {
+                *next = next.filter(|_| offset.may_be(base));
+            }
+            return Ok(());
+        }
+        let mut counts = Vec::new();
+        let (repeats, width, before) =
+            (core::mem::take(&mut self.repeats), self.width, self.row.len() as u64);
+        for (next, value) in self.next.iter_mut().zip(values) {
+            let more = next.zip(value).and_then(|(next, value)| value.checked_sub(next));
+            let is_right = |more: u64| {
+                if repeats { more > 0 && width > 0 && more.is_multiple_of(width) } else { more == 0 }
+            };
+            *next = if more.is_some_and(is_right) { value } else { None };
+            if let (Some(_), Some(more)) = (*next, more) {
+                counts.push(more.checked_div(width).unwrap_or(0));
+            }
+        }
+        if counts.is_empty() {
+            // A terminal shows each block of bytes from a new row on.
+            let start = |base: usize| values.get(base).copied().flatten().filter(|_| offset.colon);
+            let begins = |width: &u64| {
+                let before = Offset::of(self.before.as_bytes()).and_then(|offset| offset.value(16));
+                !repeats
+                    && offset.digits.len() < 8
+                    && self.row.len() < *width as usize
+                    && before.is_some_and(|before| before.is_multiple_of(*width))
+                    && before.and_then(|before| before.checked_add(*width)) == start(0)
+            };
+            if WIDTHS.iter().any(begins) {
+                self.short_rows += 1;
+                self.next = [start(0), None, None];
+                return Ok(());
+            }
+            return Err(format!(
+                "the offset {} does not follow {} and its {before} bytes{}; rows are missing or damaged: dump again",
+                quoted(offset.digits),
+                quoted(self.before.as_bytes()),
+                if repeats { ", repeated" } else { "" },
+            ));
+        }
+        let first = counts.first().copied().unwrap_or(0);
+        if repeats && counts.iter().any(|count| *count != first) {
+            return Err(format!(
+                "the offset {} behind * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
+                quoted(offset.digits)
+            ));
+        }
+        if repeats {
+            self.repeat(first)?;
+        }
+        Ok(())
+    }
+
+    fn repeat(&mut self, count: u64) -> Result<(), String> {
+        let (most, there) = (self.recorder.most(), self.recorder.capture.bytes.len());
+        let more = count.saturating_mul(self.row.len() as u64);
+        if more > most.saturating_sub(there) as u64 {
+            return Err(format!(
+                "* stands for {} bytes; at most {} are read: dump a shorter part",
+                grouped(more),
+                grouped(most as u64)
+            ));
+        }
+        for _ in 0..count {
+            for at in 0..self.row.len() {
+                let byte = self.row.get(at).copied().unwrap_or(0);
+                push(&mut self.recorder, byte)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn push(recorder: &mut Recorder, byte: u8) -> Result<(), String> {
+    let tick = recorder.capture.bytes.len() as u64;
+    recorder.byte(TimedByte { tick, channel: 0, byte, framing_error: false })
+}
+
+/// The offset that a row begins with.
+struct Offset<'l> {
+    digits: &'l [u8],
+    colon: bool,
+    rest: &'l [u8],
+}
+
+impl<'l> Offset<'l> {
+    fn of(line: &'l [u8]) -> Option<Self> {
+        let line = line.trim_ascii();
+        let marked = [&b"0x"[..], b"0X"].iter().find_map(|mark| line.strip_prefix(*mark));
+        let text = marked.unwrap_or(line);
+        let length = text.iter().take_while(|byte| byte.is_ascii_hexdigit()).count();
+        let (digits, rest) = text.split_at(length);
+        let rest = rest.strip_prefix(b"h").unwrap_or(rest);
+        let (colon, rest) = match rest.strip_prefix(b":") {
+            Some(rest) => (true, rest),
+            None => (false, rest),
+        };
+        let is_number = (MIN_DIGITS..=16).contains(&length) && (marked.is_none() || colon);
+        let is_apart = rest.first().is_none_or(u8::is_ascii_whitespace);
+        (is_number && is_apart).then_some(Self { digits, colon, rest })
+    }
+
+    fn value(&self, base: u64) -> Option<u64> {
+        self.digits.iter().try_fold(0_u64, |value, digit| {
+            let digit = char::from(*digit).to_digit(base as u32)?;
+            value.checked_mul(base)?.checked_add(digit.into())
+        })
+    }
+
+    /// Whether a program writes offsets so: of `od` they have seven digits, and are octal by default.
+    fn may_be(&self, base: u64) -> bool {
+        match base {
+            16 => true,
+            10 => self.colon || self.digits.len() == 7,
+            _ => !self.colon && self.digits.len() == 7,
+        }
+    }
+}
+
+/// Whether lines are a dump: its first row begins with an offset, and the next one fits it.
+pub(super) fn is_dump(lines: &[&[u8]]) -> bool {
+    let Some(first) = lines.first().and_then(|line| Offset::of(line)) else { return false };
+    let mut bytes = Vec::new();
+    let is_row = row::parse(first.rest, &mut bytes).is_ok() && !bytes.is_empty();
+    let is_zero = first.digits.iter().all(|digit| *digit == b'0');
+    // Words that are no bytes are of a dump, too, if it begins at 0: its reader says what to do.
+    let words = first.rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    let is_words = words.count() > 1;
+    if is_zero && first.digits.len() > MIN_DIGITS && (is_row || is_words) || first.colon && is_row {
+        return true;
+    }
+    let next = lines.get(1).and_then(|line| Offset::of(line));
+    let follows = |base: &u64| {
+        let end = first.value(*base).and_then(|start| start.checked_add(bytes.len() as u64));
+        end.is_some() && next.as_ref().and_then(|next| next.value(*base)) == end
+    };
+    is_row && (BASES.iter().any(follows) || is_zero && lines.get(1).is_none_or(|line| *line == b"*"))
+}
+
+impl Reader for HexDump {
+    fn take(&mut self, line: &[u8]) -> Result<(), String> {
+        let line = line.trim_ascii();
+        if line.is_empty() {
+            return Ok(());
+        }
+        if self.is_over {
+            return Err(format!(
+                "{} comes after the last offset of the dump; give one dump per file",
+                quoted(line)
+            ));
+        }
+        if line == b"*" {
+            if self.row.is_empty() || core::mem::replace(&mut self.repeats, true) {
+                return Err("* repeats the row before it, and there is none".into());
+            }
+            return Ok(());
+        }
+        let offset = Offset::of(line).ok_or_else(|| {
+            format!("{} does not begin with an offset, as the rows before it do", quoted(line))
+        })?;
+        self.begin(&offset)?;
+        if offset.rest.trim_ascii().is_empty() {
+            self.is_over = true;
+            return Ok(());
+        }
+        let mut bytes = Vec::new();
+        let words = || {
+            format!(
+                "{} is written in words, whose byte order depends on the machine; dump single bytes: hexdump -C, xxd -g1, or \
+                 od -A x -t x1",
+                quoted(line)
+            )
+        };
+        let shape = row::parse(offset.rest, &mut bytes)
+            .map_err(|what| if !offset.colon && !self.any_row() { words() } else { what })?;
+        let Shape { group, is_proven, .. } = shape;
+        self.is_proven |= is_proven;
+        // xxd writes pairs in order; longer groups may be turned round (xxd -e).
+        if !offset.colon && group > 1 || group > 2 && !self.is_proven {
+            return Err(words());
+        }
+        for &byte in &bytes {
+            push(&mut self.recorder, byte)?;
+        }
+        for next in &mut self.next {
+            *next = next.and_then(|next| next.checked_add(bytes.len() as u64));
+        }
+        self.width = self.width.max(bytes.len() as u64);
+        self.row = bytes;
+        self.before = String::from_utf8_lossy(offset.digits).into_owned();
+        Ok(())
+    }
+
+    fn finish(mut self) -> (Capture, Result<(), String>) {
+        if self.short_rows > 0 {
+            self.recorder.leave_out(format!(
+                "rows that are shorter than their offsets say: {}; their bytes are taken as they are",
+                grouped(self.short_rows)
+            ));
+        }
+        let missing = if self.repeats {
+            Err("the dump ends with *, which says no number; dump again with its last line".into())
+        } else if self.recorder.capture.is_empty() {
+            Err("the file has no bytes".into())
+        } else {
+            Ok(())
+        };
+        (self.recorder.finish(), missing)
+    }
+}
+
+impl HexDump {
+    /// Whether a row was read.
+    const fn any_row(&self) -> bool {
+        !self.row.is_empty()
+    }
+}
