@@ -2,6 +2,7 @@
 //! a line, and in which cycle, the core decides.
 
 mod buttons;
+mod closed_peer;
 pub(crate) mod interrupt;
 mod keyboard;
 mod line_errors;

@@ -14,7 +14,7 @@ use std::{
 };
 use stepscope_core::peripheral::{
     protocol::{Kind, Reason, Reply, State, Status},
-    wire::frame::{Deframed, Deframer, Ticks},
+    wire::frame::{Deframed, Deframer, Ticks, emit},
 };
 
 /// Four ticks of two channels, the last one without steps, in one frame: no machine is too slow for them.
@@ -140,8 +140,9 @@ fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() 
 fn raw_packets_are_sent_and_never_said_to_be_done() {
     let scenario = file("raw.json", RAW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0"]);
-    let (code, out, _) = send(&scenario, &server.place, &["--lead", "3"]);
-    assert_eq!(code, Some(0), "{out}");
+    let (code, out, err) = send(&scenario, &server.place, &["--lead", "3"]);
+    assert_eq!(code, Some(3), "{out}");
+    assert!(err.contains("sent, not verified"), "{err}");
     assert!(out.contains("sent 4 of 4 packets; not verified") && !out.contains("done"), "{out}");
     thread::sleep(Duration::from_millis(100));
     let (code, out, err) = send(&scenario, &server.place, &["--json"]);
@@ -311,7 +312,7 @@ fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
 
 #[test]
 fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not() {
-    // The host sends 5 frames of 8 or 18 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
+    // The host sends 7 frames of 8 to 18 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
     let scenario = file("cut.json", FEW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", "max"]);
     for (to_device, to_host) in [
@@ -418,4 +419,176 @@ fn what_a_press_does_not_do_is_told_and_a_panel_has_no_line() {
     let arguments = ["serve", text(&scenario), "--tcp", "127.0.0.1:0"];
     let (code, _, err) = ended(command(&arguments).output().expect("it runs"));
     assert!(code == Some(2) && err.contains("has no line") && err.contains("leave out"), "{err}");
+}
+
+/// Frames of a server's replies that come within a generous time.
+fn reply(stream: &mut TcpStream) -> Vec<u8> {
+    let mut reply = Vec::new();
+    let mut byte = [1];
+    stream.set_read_timeout(Some(Duration::from_secs(60))).expect("it can be");
+    while byte != [0] {
+        stream.read_exact(&mut byte).expect("a reply");
+        reply.extend(byte);
+    }
+    reply
+}
+
+/// Resident memory of a process, in KiB.
+#[cfg(target_os = "linux")]
+fn memory(child: &Child) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).expect("it runs");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("a line");
+    line.trim().trim_end_matches(" kB").parse().expect("a number")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
+    let scenario = file("flood.json", FEW);
+    for pace in ["0.001", "1", "max"] {
+        let server =
+            Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", pace, "--lag", "60000"]);
+        let address = server.place.strip_prefix("tcp:").expect("an address");
+        let mut flood = TcpStream::connect(address).expect("it listens");
+        // STATUS again and again: replies, too.
+        let status = emit(0, Kind::Status as u8, &[]);
+        let chunk = status.repeat(1 << 13);
+        flood.set_write_timeout(Some(Duration::from_millis(300))).expect("it can be");
+        let (mut sent, mut refused) = (0, 0);
+        // Without a pace the model takes as much as it can.
+        let most = if pace == "max" { 6 << 20 } else { 50 << 20 };
+        while sent < most && refused < 3 {
+            match flood.write(&chunk) {
+                Ok(count) => sent += count,
+                Err(_) => refused += 1,
+            }
+        }
+        assert!(pace == "max" || sent < most, "{pace}: the server reads all of it");
+        assert!(memory(&server.child) < 60_000, "{pace}: {} KiB", memory(&server.child));
+        drop(flood);
+        if pace == "0.001" {
+            // A byte takes 87 ms.
+            server.signal(Signal::TERM);
+            continue;
+        }
+        // The first reply that the next client gets is that to its own frame.
+        let mut stream = loop {
+            let mut stream = TcpStream::connect(address).expect("it listens");
+            let positions = emit(0, Kind::Positions as u8, &[]);
+            // A frame that was cut when the client before was dropped ends here.
+            stream.write_all(&[&[0], &positions[..]].concat()).expect("it reads");
+            let mut first = [0];
+            if matches!(stream.peek(&mut first), Ok(1)) && first != *b"s" {
+                break stream;
+            }
+        };
+        let reply = reply(&mut stream);
+        assert_eq!(reply.len(), 17 + 4 * 2, "{pace}: {reply:?}");
+        drop(stream);
+        let (_, out, err) = server.end();
+        let dropped = err.contains("dropped ") && out.contains("bytes_dropped ");
+        assert!(pace == "max" || dropped, "{pace}: {out}{err}");
+    }
+}
+
+#[test]
+fn a_client_that_closes_its_sending_half_still_gets_its_replies() {
+    let scenario = file("half.json", FEW);
+    let mut server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--once", "--lag", "60000"]);
+    let address = server.place.strip_prefix("tcp:").expect("an address");
+    let mut stream = TcpStream::connect(address).expect("it listens");
+    stream.write_all(&emit(0, Kind::Status as u8, &[]).repeat(3)).expect("it reads");
+    stream.shutdown(Shutdown::Write).expect("it is open");
+    let mut replies = Vec::new();
+    stream.read_to_end(&mut replies).expect("replies");
+    // Sent back to back, the second one meets the reply to the first.
+    assert!(replies.len() >= 17 && replies.len() % 17 == 0, "{}", replies.len());
+    let (code, out, err) = server.wait();
+    assert_eq!(code, Some(0), "{out}{err}");
+    assert!(out.contains("bytes_heard 24\n"), "{out}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
+    let scenario = file("link.json", FEW);
+    let link = scenario.with_file_name("live-link-port");
+    let _ = fs::remove_file(&link);
+    let first = Server::start(&[text(&scenario), "--pty", text(&link)]);
+    let target = fs::read_link(&link).expect("it is there");
+    let (code, out, err) =
+        ended(command(&["serve", text(&scenario), "--pty", text(&link)]).output().expect("it runs"));
+    assert!(
+        code == Some(1) && err.contains("a running session") && err.contains("end that session"),
+        "{code:?} {out}{err}"
+    );
+    assert_eq!(fs::read_link(&link).expect("it is still there"), target);
+    first.signal(Signal::KILL);
+    drop(first);
+    assert!(link.is_symlink(), "one that was killed leaves it");
+    let second = Server::start(&[text(&scenario), "--pty", text(&link)]);
+    assert_eq!(second.place, format!("pty:{}", fs::read_link(&link).expect("it is there").display()));
+    drop(second.end());
+    assert!(!link.is_symlink());
+}
+
+#[test]
+fn ctrl_c_ends_the_wait_for_a_connection() {
+    // One that waits in the queue of a listener of length 0 is neither taken nor refused.
+    let listener =
+        rustix::net::socket(rustix::net::AddressFamily::INET, rustix::net::SocketType::STREAM, None)
+            .expect("a socket");
+    let any = std::net::SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 0);
+    rustix::net::bind(&listener, &any).expect("a port");
+    rustix::net::listen(&listener, 0).expect("it listens");
+    let listener = TcpListener::from(listener);
+    let address = listener.local_addr().expect("an address");
+    let filling: Vec<TcpStream> =
+        std::iter::repeat_with(|| TcpStream::connect_timeout(&address, Duration::from_millis(200)))
+            .map_while(Result::ok)
+            .take(64)
+            .collect();
+    let scenario = file("connect.json", FEW);
+    for signal in [Signal::INT, Signal::TERM] {
+        let sender = command(&["send", text(&scenario), "--port", &format!("tcp:{address}")])
+            .spawn()
+            .expect("it starts");
+        thread::sleep(Duration::from_millis(500));
+        signal_to(&sender, signal);
+        let (code, out, err) = ended(sender.wait_with_output().expect("it ends"));
+        assert_eq!(code, Some(130), "{out}{err}");
+    }
+    drop(filling);
+}
+
+#[test]
+fn a_closed_standard_output_costs_no_stop_and_no_recording() {
+    let scenario = file("closed.json", LONG);
+    let record = scenario.with_file_name("live-closed-recording.json");
+    let _ = fs::remove_file(&record);
+    let mut server = Server::start(&[
+        text(&scenario),
+        "--tcp",
+        "127.0.0.1:0",
+        "--record",
+        text(&record),
+        "--lag",
+        "60000",
+    ]);
+    let mut sender = command(&["send", text(&scenario), "--port", &server.place, "--slack", "1000"])
+        .spawn()
+        .expect("it starts");
+    drop(sender.stdout.take());
+    thread::sleep(Duration::from_millis(1000));
+    signal_to(&sender, Signal::INT);
+    let output = sender.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(141), "{}", String::from_utf8_lossy(&output.stderr));
+    // Nobody reads what the server prints at its end either.
+    server.out = BufReader::new(
+        Command::new("true").stdout(Stdio::piped()).spawn().expect("it runs").stdout.take().expect("piped"),
+    );
+    let (code, _, err) = server.end();
+    assert!(code == Some(141) && err.contains("recorded"), "{code:?} {err}");
+    let state = ended(command(&["run", text(&record)]).output().expect("it runs")).1;
+    assert!(state.contains("state STOPPED"), "{state}");
 }

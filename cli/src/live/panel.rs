@@ -18,6 +18,8 @@ use stepscope_core::{
 
 /// A line that is longer means nothing.
 const MAX_LINE: usize = 200;
+/// While so many lines wait no more are read.
+const MAX_LINES: usize = 256;
 
 /// What was typed and is to be done.
 #[derive(Default)]
@@ -32,6 +34,11 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
+    /// How many bytes may be typed.
+    pub(crate) fn room(&self) -> usize {
+        if self.lines.len() < MAX_LINES { usize::MAX } else { 0 }
+    }
+
     /// Bytes of lines.
     pub(crate) fn type_in(&mut self, bytes: &[u8]) {
         for &byte in bytes {

@@ -1,12 +1,16 @@
 //! Ports: a real one, a pseudo-terminal's side for others, a socket. Each reads for a while and writes what it can.
 
-use super::line_errors::{self, LineErrors};
+use super::{
+    closed_peer, interrupt,
+    line_errors::{self, LineErrors},
+};
 use crate::failure::Failure;
 use serial2::{CharSize, FlowControl, Parity, SerialPort, Settings, StopBits};
 use std::{
     io::{self, ErrorKind, Read, Write},
     net::{Shutdown, SocketAddr, TcpListener, TcpStream},
     path::{Path, PathBuf},
+    sync::mpsc::{RecvTimeoutError, sync_channel},
     thread,
     time::{Duration, Instant},
 };
@@ -15,6 +19,10 @@ use std::{
 const LEAST_WAIT: Duration = Duration::from_millis(1);
 /// How long a write waits for room before it is tried again later.
 const WRITE_WAIT: Duration = Duration::from_millis(1);
+/// How often it is looked whether Ctrl-C ends the wait for a connection.
+const CONNECT_WAIT: Duration = Duration::from_millis(20);
+/// How often the system is asked whether a client is closed whose bytes are not read.
+const ASK_TIME: Duration = Duration::from_millis(20);
 
 /// What came of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +31,11 @@ pub(crate) enum Heard {
     Nothing,
     /// So many bytes.
     Bytes(usize),
-    /// Who was at the other end has gone.
+    /// Another client is connected than before.
+    Connected,
+    /// No more bytes come. The other end may still read.
+    Ended,
+    /// The other end has disconnected, and what it sent and was not read is lost.
     Gone,
 }
 
@@ -31,6 +43,15 @@ pub(crate) enum Heard {
 pub(crate) trait Port {
     /// Reads what is there, or comes within `wait`.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard>;
+
+    /// Waits without reading: what is there stays in the system. Still sees that the other end disconnects.
+    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+        thread::sleep(wait);
+        Ok(Heard::Nothing)
+    }
+
+    /// Disconnects a client whose bytes have ended.
+    fn hang_up(&mut self) {}
 
     /// Writes as much as there is room for, now.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
@@ -183,11 +204,21 @@ fn kernel_turns(_port: &SerialPort) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// Waits for bytes, or for the end of them, to the nanosecond: timeouts of ports and sockets are those of the system's tick.
+/// Waits for bytes, or for the end of them.
 #[cfg(unix)]
 fn has_bytes(port: &impl std::os::fd::AsFd, wait: Duration) -> io::Result<bool> {
-    use rustix::event::{PollFd, PollFlags, Timespec, poll};
-    let mut fds = [PollFd::new(port, PollFlags::IN)];
+    poll_for(port, rustix::event::PollFlags::IN, wait)
+}
+
+/// Waits for what is asked for, and for errors, to the nanosecond: timeouts of ports and sockets are those of the system's tick.
+#[cfg(unix)]
+fn poll_for(
+    port: &impl std::os::fd::AsFd,
+    flags: rustix::event::PollFlags,
+    wait: Duration,
+) -> io::Result<bool> {
+    use rustix::event::{PollFd, Timespec, poll};
+    let mut fds = [PollFd::new(port, flags)];
     let timeout = Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
     match poll(&mut fds, Some(&timeout)) {
         Ok(found) => Ok(found > 0),
@@ -235,15 +266,28 @@ pub(crate) struct Socket(TcpStream);
 impl Socket {
     pub(crate) fn new(stream: TcpStream) -> io::Result<Self> {
         stream.set_nodelay(true)?;
-        stream.set_nonblocking(false)?;
+        // Where reads are preceded by a wait for bytes neither a read nor a write has to wait itself.
+        stream.set_nonblocking(cfg!(unix))?;
         stream.set_write_timeout(Some(WRITE_WAIT))?;
         Ok(Self(stream))
     }
 
-    /// Connects to an address of another program.
+    /// Connects to an address of another program. Ctrl-C ends the wait for the name and for the connection.
     pub(crate) fn connect(address: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
-        TcpStream::connect(address).and_then(Self::new).map_err(failed)
+        let (sender, connected) = sync_channel(1);
+        let to = address.to_owned();
+        // The system looks up names and connects without a way to be interrupted: in a thread, which ends with the command.
+        let connect = move || drop(sender.send(TcpStream::connect(to)));
+        thread::Builder::new().name("connect".to_owned()).spawn(connect).map_err(Failure::threads)?;
+        loop {
+            match connected.recv_timeout(CONNECT_WAIT) {
+                Ok(stream) => return stream.and_then(Self::new).map_err(failed),
+                Err(RecvTimeoutError::Timeout) if interrupt::count() > 0 => return Err(Failure::Interrupted),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Err(failed(ErrorKind::Other.into())),
+            }
+        }
     }
 }
 
@@ -252,8 +296,14 @@ impl Port for Socket {
         if !has_bytes(&self.0, wait)? {
             return Ok(Heard::Nothing);
         }
-        self.0.set_read_timeout(Some(wait.max(LEAST_WAIT)))?;
+        if !cfg!(unix) {
+            self.0.set_read_timeout(Some(wait.max(LEAST_WAIT)))?;
+        }
         heard(self.0.read(buffer))
+    }
+
+    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+        Ok(if is_broken(&self.0, wait)? { Heard::Gone } else { Heard::Nothing })
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -261,10 +311,42 @@ impl Port for Socket {
     }
 }
 
+/// Waits, and gives early whether the connection is broken.
+#[cfg(unix)]
+fn is_broken(stream: &TcpStream, wait: Duration) -> io::Result<bool> {
+    poll_for(stream, rustix::event::PollFlags::empty(), wait)
+}
+
+/// Shows when it is read.
+#[cfg(not(unix))]
+fn is_broken(_stream: &TcpStream, wait: Duration) -> io::Result<bool> {
+    thread::sleep(wait);
+    Ok(false)
+}
+
+/// A client of a [`Listener`].
+struct Client {
+    socket: Socket,
+    from: SocketAddr,
+    /// It sends no more, and may still read.
+    ended: bool,
+}
+
+impl Client {
+    /// Whether nobody has the other end any more, though bytes from it may still wait in the system.
+    fn is_closed(&self) -> bool {
+        self.socket.0.local_addr().is_ok_and(|here| closed_peer::is_closed(here, self.from))
+    }
+}
+
 /// A socket that waits for one client at a time.
 pub(crate) struct Listener {
     listener: TcpListener,
-    client: Option<Socket>,
+    client: Option<Client>,
+    /// Whether the client is one that was not told of.
+    is_new: bool,
+    /// When it was last asked whether the client is closed.
+    asked: Instant,
 }
 
 impl Listener {
@@ -279,31 +361,39 @@ impl Listener {
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        Ok((Self { listener, client: None }, address))
+        Ok((Self { listener, client: None, is_new: false, asked: Instant::now() }, address))
     }
 
     /// Takes a client that waits; one more than there may be is told and sent away.
     fn accept(&mut self) -> Option<String> {
         let (stream, from) = self.listener.accept().ok()?;
-        if self.client.is_some() {
+        if self.client.as_ref().is_some_and(|client| !client.ended && !client.is_closed()) {
             // It may speak another protocol: what it reads here it can show.
             let _ = (&stream).write_all(b"stepscope serve: another client is connected; one at a time\n");
             let _ = stream.shutdown(Shutdown::Both);
             return Some(format!("{from} was sent away: another client is connected"));
         }
-        self.client = Socket::new(stream).ok();
+        let socket = Socket::new(stream).ok()?;
+        self.client = Some(Client { socket, from, ended: false });
+        self.is_new = true;
         Some(format!("{from} is connected"))
     }
 }
 
 impl Port for Listener {
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
-        let Some(client) = &mut self.client else {
-            thread::sleep(wait.min(LEAST_WAIT));
-            return Ok(Heard::Nothing);
+        if std::mem::take(&mut self.is_new) {
+            return Ok(Heard::Connected);
+        }
+        let Some(client) = self.client.as_mut().filter(|client| !client.ended) else {
+            return self.wait(wait.min(LEAST_WAIT));
         };
-        match client.read(buffer, wait) {
-            Ok(Heard::Gone) | Err(_) => {
+        match client.socket.read(buffer, wait) {
+            Ok(Heard::Gone) => {
+                client.ended = true;
+                Ok(Heard::Ended)
+            }
+            Err(_) => {
                 self.client = None;
                 Ok(Heard::Gone)
             }
@@ -311,9 +401,35 @@ impl Port for Listener {
         }
     }
 
+    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+        if std::mem::take(&mut self.is_new) {
+            return Ok(Heard::Connected);
+        }
+        let Some(client) = &mut self.client else {
+            thread::sleep(wait);
+            return Ok(Heard::Nothing);
+        };
+        let is_broken = client.socket.wait(wait)? == Heard::Gone;
+        let asks = !client.ended && self.asked.elapsed() > ASK_TIME;
+        if asks {
+            self.asked = Instant::now();
+        }
+        if is_broken || asks && client.is_closed() {
+            let ended = client.ended;
+            self.client = None;
+            // All that one sent whose bytes have ended was read.
+            return Ok(if ended { Heard::Nothing } else { Heard::Gone });
+        }
+        Ok(Heard::Nothing)
+    }
+
+    fn hang_up(&mut self) {
+        self.client = None;
+    }
+
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // A reply that nobody hears is gone, as on a wire. A broken connection shows when it is read.
-        self.client.as_mut().map_or(Ok(bytes.len()), |client| client.write(bytes).or(Ok(bytes.len())))
+        // A reply that nobody reads is lost, as on a wire. A broken connection shows when it is read.
+        self.client.as_mut().map_or(Ok(bytes.len()), |client| client.socket.write(bytes).or(Ok(bytes.len())))
     }
 
     fn look(&mut self) -> Option<String> {
@@ -339,12 +455,43 @@ mod pty {
     };
     use std::{fs, os::fd::OwnedFd, os::unix::ffi::OsStringExt};
 
+    /// Maximum number of bytes that a system may hold of a client that closed its port.
+    const MAX_DISCARDED: usize = 1 << 20;
+
+    /// Claims a link for this session, until it ends, however it ends: a name among the system's abstract sockets, which leaves no
+    /// file behind. Whether the pseudo-terminal that the link leads to is there says nothing, as systems use its number again.
+    #[cfg(target_os = "linux")]
+    fn claim(link: &Path) -> Result<std::os::unix::net::UnixListener, Failure> {
+        use std::{
+            hash::{DefaultHasher, Hash as _, Hasher as _},
+            os::{linux::net::SocketAddrExt as _, unix::net::UnixListener},
+        };
+        let folder = link.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let failed = |error: io::Error| Failure::File(link.to_owned(), error);
+        let place = fs::canonicalize(folder).map_err(failed)?.join(link.file_name().unwrap_or_default());
+        // Names of sockets are short.
+        let mut hasher = DefaultHasher::new();
+        place.hash(&mut hasher);
+        let name = format!("stepscope-serve-pty-{:016x}", hasher.finish());
+        let address = std::os::unix::net::SocketAddr::from_abstract_name(name).map_err(failed)?;
+        UnixListener::bind_addr(&address).map_err(|error| match error.kind() {
+            ErrorKind::AddrInUse => Failure::Port(
+                link.display().to_string(),
+                "a running session of stepscope serve uses this link; end that session, or give --pty another link".to_owned(),
+            ),
+            _ => failed(error),
+        })
+    }
+
     /// A pseudo-terminal whose other end is a port to somebody.
     pub(crate) struct Pty {
         master: OwnedFd,
         /// Of the other end.
         pub(crate) path: PathBuf,
         link: Option<PathBuf>,
+        /// Held while the link is this session's.
+        #[cfg(target_os = "linux")]
+        _claim: Option<std::os::unix::net::UnixListener>,
         baud: u32,
         connected: bool,
         /// The rate that was warned of last.
@@ -370,11 +517,46 @@ mod pty {
                 Ok((master, PathBuf::from(std::ffi::OsString::from_vec(path.into_bytes()))))
             };
             let (master, path) = made().map_err(failed)?;
-            let mut pty = Self { master, path, link: None, baud, connected: false, warned: baud };
+            #[cfg(target_os = "linux")]
+            let claim = link.map(claim).transpose()?;
+            let mut pty = Self {
+                master,
+                path,
+                link: None,
+                #[cfg(target_os = "linux")]
+                _claim: claim,
+                baud,
+                connected: false,
+                warned: baud,
+            };
             if let Some(link) = link {
                 pty.link_to(link).map_err(|error| Failure::File(link.to_owned(), error))?;
             }
             Ok(pty)
+        }
+
+        /// Waits for the other end; whether bytes are there, and whether nobody has the other end open.
+        fn poll(&self, flags: PollFlags, wait: Duration) -> io::Result<(bool, bool)> {
+            let mut fds = [PollFd::new(&self.master, flags)];
+            let timeout =
+                Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
+            match poll(&mut fds, Some(&timeout)) {
+                Ok(_) => {}
+                Err(rustix::io::Errno::INTR) => return Ok((false, false)),
+                Err(error) => return Err(error.into()),
+            }
+            let [fd] = &fds;
+            Ok((fd.revents().contains(PollFlags::IN), fd.revents().contains(PollFlags::HUP)))
+        }
+
+        /// Drops what nobody will be answered for: at most what the system holds.
+        fn discard(&self) {
+            let mut buffer = [0; 4096];
+            for _ in 0..MAX_DISCARDED / buffer.len() {
+                if !matches!(rustix::io::read(&self.master, &mut buffer), Ok(1..)) {
+                    break;
+                }
+            }
         }
 
         /// Makes the link. One that a session left behind, and leads to no pseudo-terminal any more or to another one, is
@@ -401,18 +583,12 @@ mod pty {
 
     impl Port for Pty {
         fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
-            let mut fds = [PollFd::new(&self.master, PollFlags::IN)];
-            let timeout =
-                Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
-            match poll(&mut fds, Some(&timeout)) {
-                Ok(_) => {}
-                Err(rustix::io::Errno::INTR) => return Ok(Heard::Nothing),
-                Err(error) => return Err(error.into()),
+            let (has_bytes, is_closed) = self.poll(PollFlags::IN, wait)?;
+            let was_connected = std::mem::replace(&mut self.connected, has_bytes || !is_closed);
+            if self.connected && !was_connected {
+                return Ok(Heard::Connected);
             }
-            let [fd] = &fds;
-            let events = fd.revents();
-            if events.contains(PollFlags::IN) {
-                self.connected = true;
+            if has_bytes {
                 return match rustix::io::read(&self.master, buffer) {
                     Ok(count) => heard(Ok(count)),
                     // The other end was closed meanwhile.
@@ -420,15 +596,24 @@ mod pty {
                     Err(error) => heard(Err(error.into())),
                 };
             }
-            if events.contains(PollFlags::HUP) {
-                let gone = std::mem::replace(&mut self.connected, false);
-                if gone {
-                    return Ok(Heard::Gone);
+            if is_closed {
+                if was_connected {
+                    return Ok(Heard::Ended);
                 }
-                // Nobody has the other end open, which the system tells at once, again and again.
+                // The system reports it at once, again and again.
                 thread::sleep(wait.min(LEAST_WAIT));
-            } else {
-                self.connected = true;
+            }
+            Ok(Heard::Nothing)
+        }
+
+        fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+            let (_, is_closed) = self.poll(PollFlags::empty(), wait)?;
+            if is_closed && std::mem::replace(&mut self.connected, false) {
+                self.discard();
+                return Ok(Heard::Gone);
+            }
+            if is_closed {
+                thread::sleep(wait.min(LEAST_WAIT));
             }
             Ok(Heard::Nothing)
         }

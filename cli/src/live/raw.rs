@@ -58,7 +58,10 @@ pub(super) fn send(
     match lost {
         Some(why) => Err(Failure::LostPort(why)),
         None if interrupted => Err(Failure::Interrupted),
-        None => Ok(()),
+        None => Err(Failure::NotVerified(
+            "raw packets are sent, not verified: a raw controller does not reply; use the framed protocol for a verified result"
+                .to_owned(),
+        )),
     }
 }
 
@@ -75,8 +78,10 @@ fn wait_until(due_ns: u64, watch: StopWatch, wire: &mut Wire) -> Result<bool, Fa
             let heard = wire.port.read(&mut buffer, left.saturating_sub(Duration::from_millis(1)));
             match heard.map_err(|error| Failure::LostPort(error.to_string()))? {
                 Heard::Bytes(count) => drop(wire.without_echo(buffer.get(..count).unwrap_or_default())),
-                Heard::Gone => return Err(Failure::LostPort("the other end has closed it".to_owned())),
-                Heard::Nothing => {}
+                Heard::Gone | Heard::Ended => {
+                    return Err(Failure::LostPort("the other end has closed it".to_owned()));
+                }
+                Heard::Nothing | Heard::Connected => {}
             }
         } else {
             thread::sleep(left);

@@ -2,6 +2,7 @@
 
 use crate::{failure::Failure, output::Out};
 use std::{
+    fs::{self, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
 };
@@ -73,11 +74,59 @@ pub(crate) fn link(scenario: &Scenario) -> Option<String> {
 fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
     let mut places = Vec::new();
     for (path, text) in texts {
-        let elsewhere = std::env::temp_dir().join(path.file_name().unwrap_or_default());
-        if !elsewhere.exists() && std::fs::write(&elsewhere, text).is_ok() {
+        if let Some(elsewhere) = rescue_in(&std::env::temp_dir(), path, text) {
             places.push(elsewhere.display().to_string());
         }
     }
     let also = if places.is_empty() { "nothing could be written elsewhere" } else { "written instead:" };
     Failure::Port(path.display().to_string(), format!("{error}; {also} {}", places.join(" ")))
+}
+
+/// Maximum number of names tried for a rescued file.
+const MAX_NAMES: u32 = 100;
+
+/// Writes a new file into a folder in which others may write, too. A name that exists is never opened, also not if it is a symbolic
+/// link that leads nowhere: another name is tried.
+fn rescue_in(folder: &Path, path: &Path, text: &str) -> Option<PathBuf> {
+    let name = path.file_name()?.to_string_lossy().into_owned();
+    for number in 0..MAX_NAMES {
+        let name = if number == 0 { name.clone() } else { format!("{number}-{name}") };
+        let elsewhere = folder.join(name);
+        let created = OpenOptions::new().write(true).create_new(true).open(&elsewhere);
+        match created {
+            Ok(mut file) => {
+                if file.write_all(text.as_bytes()).is_ok() {
+                    return Some(elsewhere);
+                }
+                let _ = fs::remove_file(&elsewhere);
+                return None;
+            }
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(_) => return None,
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(unix)]
+    fn a_rescued_file_is_a_new_one_and_no_link_is_followed() {
+        let folder = std::env::temp_dir().join(format!("stepscope-rescue-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let (elsewhere, record) = (folder.join("elsewhere"), Path::new("/full/disk/session.json"));
+        std::os::unix::fs::symlink(&elsewhere, folder.join("session.json")).expect("a link");
+        let first = rescue_in(&folder, record, "first");
+        let second = rescue_in(&folder, record, "second");
+        assert_eq!(
+            (first, second),
+            (Some(folder.join("1-session.json")), Some(folder.join("2-session.json")))
+        );
+        assert!(!elsewhere.exists(), "the link was followed");
+        assert_eq!(fs::read_to_string(folder.join("1-session.json")).expect("it is there"), "first");
+        fs::remove_dir_all(&folder).expect("it is ours");
+    }
 }

@@ -69,6 +69,7 @@ pub(crate) struct Arguments {
 
 /// Sends the ticks, and says what is known of them.
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
+    interrupt::watch()?;
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
@@ -88,7 +89,9 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Option(format!("--lead: {why}")));
     }
     let raw = is_raw.then(|| raw::host(&experiment, arguments.lead)).transpose()?;
-    interrupt::watch()?;
+    if interrupt::count() > 0 {
+        return Err(Failure::Interrupted);
+    }
     wake_on_time();
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
@@ -172,8 +175,10 @@ impl Sender {
                     let bytes = wire.without_echo(buffer.get(..count).unwrap_or_default());
                     bytes.into_iter().for_each(|byte| self.host.hear(byte, now));
                 }
-                Heard::Gone => return Err(Failure::LostPort("the other end has closed it".to_owned())),
-                Heard::Nothing => {}
+                Heard::Gone | Heard::Ended => {
+                    return Err(Failure::LostPort("the other end has closed it".to_owned()));
+                }
+                Heard::Nothing | Heard::Connected => {}
             }
             let Self { line, host, .. } = self;
             line.tell(|| Standing::new(host).to_string());

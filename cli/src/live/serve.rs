@@ -63,13 +63,16 @@ fn pace(text: &str) -> Result<Pacing, String> {
 
 /// Serves until it is told to end.
 pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
+    interrupt::watch()?;
     let path = &arguments.scenario;
     let beside = arguments.record.as_deref().map(beside);
     let files = arguments.record.iter().chain(&beside).map(PathBuf::as_path);
     let mut outputs = Outputs::judge(Some(path), files)?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    interrupt::watch()?;
+    if interrupt::count() > 0 {
+        return Err(Failure::Interrupted);
+    }
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
     let files = match (&arguments.record, &beside) {
         (Some(record), Some(beside)) => Some((create(record)?, create(beside)?)),
@@ -80,17 +83,21 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let records = arguments.record.is_some();
     let mut server = Server::new(&Settings { pacing: pace, lag, records, once, progress }, session, port);
     let ended = server.run();
-    server.print_end().map_err(Failure::output)?;
+    // What is recorded does not depend on whether somebody reads standard output.
+    let printed = server.print_end().map_err(Failure::output);
     if let Some(files) = files {
         let record = files.0.0.clone();
         let verified = recording::write(&server.session, (&server.clock, &server.times), files)?;
         outputs.commit()?;
         verified.map_err(|why| Failure::NotRecorded(record, why.to_string()))?;
         server.line.note("recorded");
-        if let Some(link) = recording::link(&server.session.recording().scenario) {
+        if printed.is_ok()
+            && let Some(link) = recording::link(&server.session.recording().scenario)
+        {
             writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
         }
     }
+    printed?;
     ended?;
     let stretches = server.clock.stretches();
     if stretches.count > 0 {

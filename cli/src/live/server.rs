@@ -28,7 +28,7 @@ use stepscope_core::{
     sim::{
         Summary,
         lateness::Lateness,
-        session::{Pace, Session, SessionClock},
+        session::{Input, Pace, Session, SessionClock},
         session_times::SessionTimes,
     },
 };
@@ -41,6 +41,8 @@ const IDLE_WAIT: Duration = Duration::from_millis(5);
 const THINKING: Duration = Duration::from_millis(10);
 /// Bytes of replies that wait for a host that does not read. Then it misses the oldest, as it would of a real line.
 const MAX_WAITING: usize = 1 << 16;
+/// So many rounds' bytes are on the line ahead of the model, so that it wakes for a frame's end and not for each byte.
+const ROUNDS_AHEAD: u64 = 10;
 
 /// How a session's time goes.
 #[derive(Clone, Copy)]
@@ -71,6 +73,12 @@ pub(super) struct Server {
     pub(super) clock: SessionClock,
     watch: StopWatch,
     once: bool,
+    /// Bytes that the line has not taken. While there is no room nothing is read: the host has to wait.
+    input: Input,
+    /// The client sends no more; what it sent is still on its way.
+    is_leaving: bool,
+    /// Bytes that clients sent and that were dropped when they disconnected.
+    dropped: u64,
     /// Bytes of replies that the port has not taken.
     waiting: VecDeque<u8>,
     missed: u64,
@@ -98,6 +106,9 @@ impl Server {
             clock: SessionClock::new(clock_hz, pace, settings.lag * 1_000_000),
             watch: StopWatch::start(),
             once: settings.once,
+            input: Input::default(),
+            is_leaving: false,
+            dropped: 0,
             waiting: VecDeque::new(),
             missed: 0,
             late: Lateness::default(),
@@ -117,18 +128,32 @@ impl Server {
         while interrupt::count() == 0 && !(has_ended && self.is_over()) {
             let wait = self.round(silent_since);
             self.write_replies().map_err(lost)?;
-            let heard = self.port.read(&mut buffer, wait).map_err(lost)?;
-            match heard {
+            let room = self.room().min(buffer.len());
+            let heard = match buffer.get_mut(..room) {
+                Some(free @ [_, ..]) => self.port.read(free, wait),
+                _ => self.port.wait(wait),
+            };
+            match heard.map_err(lost)? {
                 Heard::Bytes(count) => {
                     silent_since = self.watch.elapsed();
                     self.catch_up(silent_since)?;
                     self.take(buffer.get(..count).unwrap_or_default());
                 }
+                Heard::Connected => {
+                    has_ended |= self.once && self.is_leaving;
+                    self.drop_input();
+                }
+                Heard::Ended => self.is_leaving = true,
                 Heard::Gone => {
                     has_ended = self.once;
                     self.gone();
                 }
                 Heard::Nothing => {}
+            }
+            if self.is_leaving && self.has_left() {
+                has_ended = self.once;
+                self.port.hang_up();
+                self.gone();
             }
             if let Some(panel) = &mut self.panel {
                 panel.obey(&mut self.session, &mut self.line);
@@ -168,16 +193,40 @@ impl Server {
             panel.type_in(bytes);
             return;
         }
-        self.session.receive(bytes);
+        self.input.push(bytes);
+    }
+
+    /// How many bytes may be read.
+    fn room(&self) -> usize {
+        self.panel.as_ref().map_or_else(|| self.input.room(), Panel::room)
     }
 
     /// Nobody is at the other end any more.
     fn gone(&mut self) {
-        match &mut self.panel {
-            Some(panel) => panel.end_line(),
-            None => self.line.note("the client has gone"),
+        if let Some(panel) = &mut self.panel {
+            return panel.end_line();
         }
+        self.line.note("client disconnected");
+        self.drop_input();
+    }
+
+    /// What is left of a client that has disconnected: nothing of it is for the next one.
+    fn drop_input(&mut self) {
+        let count = self.input.clear();
+        if count > 0 {
+            self.dropped += count as u64;
+            self.line
+                .note(&format!("dropped {count} bytes that the client sent faster than the line takes them"));
+        }
+        self.session.hang_up();
         self.waiting.clear();
+        self.is_leaving = false;
+    }
+
+    /// Whether all that a client sent has been on the line, and was answered as far as it reads.
+    fn has_left(&self) -> bool {
+        let replies = self.port.is_connected() && !self.waiting.is_empty();
+        self.input.is_empty() && !self.session.is_busy() && !replies
     }
 
     /// Whether a session that nobody says anything to any more has come to its end: a panel's when all is done that was typed.
@@ -210,9 +259,11 @@ impl Server {
                 self.behind = self.behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
                 let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
                 let to = target.min(Instant(now.0 + step)).min(waits);
+                self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
                 (to, if to < target { Duration::ZERO } else { IDLE_WAIT })
             }
-            Pacing::Max if self.deadline() != Instant::NEVER => {
+            Pacing::Max if !self.input.is_empty() || self.deadline() != Instant::NEVER => {
+                self.input.feed(&mut self.session, now + Cycles(MAX_ROUND));
                 (self.deadline().min(Instant(now.0.saturating_add(MAX_ROUND))), Duration::ZERO)
             }
             Pacing::Max if self.watch.elapsed().saturating_sub(silent_since) < THINKING => (now, THINKING),
@@ -288,6 +339,9 @@ impl Server {
         }
         if self.missed > 0 {
             writeln!(out, "reply_bytes_not_read {}", self.missed)?;
+        }
+        if self.dropped > 0 {
+            writeln!(out, "bytes_dropped {}", self.dropped)?;
         }
         out.flush()
     }

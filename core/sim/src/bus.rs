@@ -115,7 +115,7 @@ impl Bus {
         self.each_line(|line| line.extend(bytes));
     }
 
-    /// Forgets what has been sent, if nothing is left to be.
+    /// Forgets what has been sent.
     pub(super) fn forget_sent(&mut self) {
         self.each_line(Line::forget_sent);
     }

@@ -187,14 +187,14 @@ impl Experiment {
         run.host()?.acknowledged().nth(self.job(index)?)
     }
 
-    /// What a host says on a real line to have the ticks done (LIVE H3), from cycle `start` of its own clock on; `None` where
-    /// nobody waits for replies.
+    /// What a host says on a real line to have the ticks done (LIVE H3), from cycle `start` of its own clock on, an opening
+    /// tick without steps first; `None` where nobody waits for replies.
     #[must_use]
     pub fn conversation(&self, start: Instant) -> Option<Conversation> {
         let bit = Config::bit_of(self.config().clock_hz(), self.baud());
         let jobs = || controller_plan::jobs(&self.controllers);
         let waits = self.checked.waits_for_replies();
-        waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start))
+        waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start).with_opening_tick())
     }
 
     /// Which of the host's jobs controller `index` is: it has one for each that has ticks.

@@ -32,12 +32,14 @@
 //! ```
 
 mod clock;
+mod input;
 #[cfg(feature = "controller")]
 mod panel;
 #[cfg(test)]
 mod tests;
 
 pub use clock::{Pace, SessionClock, Stretches};
+pub use input::Input;
 #[cfg(feature = "controller")]
 pub use panel::MAX_RECORDED_INPUTS;
 
@@ -64,6 +66,9 @@ pub const MAX_RECORDED_BYTES: u64 = 4 << 20;
 /// Most sends that are recorded: their scenario has to be one that can be read, of up to 64 MiB of text.
 pub const MAX_RECORDED_SENDS: u64 = 400_000;
 
+/// Bit times from the last stop bit of a frame in which its reply has begun: 11, and what the controllers' clocks differ.
+const REPLY_BEGINS_BITS: u64 = 30;
+
 /// A byte of a controller's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplyByte {
@@ -89,6 +94,8 @@ pub struct Session {
     last_send: Option<(Instant, u64)>,
     heard: u64,
     replies: VecDeque<ReplyByte>,
+    /// Replies that begin before this cycle are for a host that has disconnected.
+    replies_from: Instant,
     digests: Vec<Digest>,
     /// What was recorded until there was no more room.
     cut: Option<Rc<Recording>>,
@@ -141,6 +148,7 @@ impl Session {
             last_send: None,
             heard: 0,
             replies: VecDeque::new(),
+            replies_from: Instant::RESET,
             digests: vec![Digest::default(); experiment.controllers()],
             experiment: Rc::new(experiment),
             cut: None,
@@ -216,14 +224,36 @@ impl Session {
         heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
     }
 
-    /// Bytes that are read while the model stands behind [`Self::now`]; none where there is no line.
+    /// How many of `most` bytes begin on the line by cycle `until` if they are received now.
+    #[must_use]
+    pub fn fits_until(&self, until: Instant, most: usize) -> usize {
+        let (start, sent) = self.joined_send().unwrap_or((self.now().next(), 0));
+        (0..most).take_while(|&byte| start + self.times.byte(sent + byte as u64) <= until).count()
+    }
+
+    /// The last send, where a byte that is received now joins it, and how many bytes it has.
+    fn joined_send(&self) -> Option<(Instant, u64)> {
+        let next = self.now().next();
+        self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next)
+    }
+
+    /// The host disconnects. Replies to what it has sent so far are dropped, also those that are still to come: the next host
+    /// must not take them for replies to its own frames.
+    pub fn hang_up(&mut self) {
+        self.replies.clear();
+        let end = self.last_send.map_or(self.now(), |(start, sent)| start + self.times.byte(sent));
+        self.replies_from = end.max(self.now()) + self.times.bit(REPLY_BEGINS_BITS);
+    }
+
+    /// Bytes that are read while the model stands behind [`Self::now`]; none where there is no line. All of them are on the
+    /// line from now on: who may send more than the line takes waits in an [`Input`].
     pub fn receive(&mut self, bytes: &[u8]) {
         let count = bytes.len() as u64;
         if count == 0 || !matches!(self.blank.source, Source::Line(_)) {
             return;
         }
         let next = self.now().next();
-        let joins = self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next);
+        let joins = self.joined_send();
         if self.cut.is_none() {
             let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
             if self.heard + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
@@ -232,13 +262,13 @@ impl Session {
         }
         self.heard += count;
         let bus = self.run.bus_mut();
+        if self.cut.is_some() {
+            bus.forget_sent();
+        }
         if let Some((start, sent)) = joins {
             bus.extend(bytes);
             self.last_send = Some((start, sent + count));
         } else {
-            if self.cut.is_some() {
-                bus.forget_sent();
-            }
             bus.send(next, bytes);
             self.last_send = Some((next, count));
         }
@@ -303,7 +333,7 @@ impl Session {
     }
 
     fn run_on<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
-        let Self { run, digests, replies, reply_times, .. } = self;
+        let Self { run, digests, replies, reply_times, replies_from, .. } = self;
         let mut sinks = sinks.iter_mut();
         let mut answers: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
         let taps = digests.iter_mut().zip(reply_times.iter()).zip(&mut answers).enumerate();
@@ -312,6 +342,7 @@ impl Session {
                 controller,
                 digest,
                 times: *times,
+                replies_from: *replies_from,
                 replies,
                 sink: sinks.next(),
             })
@@ -372,6 +403,7 @@ struct Tap<'a, S> {
     controller: usize,
     digest: &'a mut Digest,
     times: BitTimes,
+    replies_from: Instant,
     replies: &'a mut Vec<ReplyByte>,
     sink: Option<&'a mut S>,
 }
@@ -383,7 +415,9 @@ impl<S: Sink> Sink for Tap<'_, S> {
     }
 
     fn event(&mut self, at: Instant, event: Event) {
-        if let Event::Reply { start, reply, positions, .. } = &event {
+        if let Event::Reply { start, reply, positions, .. } = &event
+            && *start >= self.replies_from
+        {
             let bytes = (0..).zip(reply.emit(positions.as_ref()));
             let (controller, times) = (self.controller, self.times);
             self.replies.extend(bytes.map(|(index, byte)| ReplyByte {

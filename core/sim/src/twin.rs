@@ -301,7 +301,8 @@ mod tests {
             }
             assert_eq!(host.progress().next(), Some(crate::framed_host::Progress::Done));
             let (status, done, went) = twin.end(0).expect("there is one");
-            assert_eq!((status.state, done, went), (State::Ready, 200, vec![3200]));
+            // The opening tick is one more.
+            assert_eq!((status.state, done, went), (State::Ready, 201, vec![3200]));
         }
         found
     }
@@ -345,17 +346,17 @@ mod tests {
         type Spoil = fn(&mut Reply);
         let rows: [(usize, Spoil, &str); 5] = [
             (
-                3,
+                5,
                 |reply| reply.answer = Err(stepscope_peripheral::protocol::Reason::Busy),
                 "NAK BUSY, the model ACK TICKS",
             ),
-            (4, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
-            (5, |reply| reply.status.expected_seq = 9, "it has taken 9 frames of ticks"),
-            (6, |reply| reply.status.faults |= 1, "its new faults are"),
+            (6, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
+            (7, |reply| reply.status.expected_seq = 9, "it has taken 9 frames of ticks"),
+            (8, |reply| reply.status.faults |= 1, "its new faults are"),
             (
-                27,
+                29,
                 |reply| reply.status.ticks_done -= 1,
-                "it has done 199 ticks since it was opened, the model 200",
+                "it has done 200 ticks since it was opened, the model 201",
             ),
         ];
         for (at, change, expected) in rows {

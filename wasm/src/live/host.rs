@@ -279,10 +279,13 @@ impl LiveHost {
     pub fn report(&mut self, lost: Option<String>) -> Result<JsValue, JsError> {
         let report = Report::new(&self.experiment, &mut self.host, self.stopped);
         let beside = report.rows.iter().map(|row| {
-            let Known { opened, last, positions, opened_at, .. } = row.known;
+            let Known { opened, started, last, positions, opened_at, .. } = row.known;
+            let count = |status: Option<Status>| status.map_or(0, |status| status.ticks_done);
+            // The model did the opening ticks, too.
+            let opening_ticks = started.map_or(0, |_| count(started).wrapping_sub(count(opened)));
             let device = last.map(|last| End {
                 state: last.state.name(),
-                ticks_done: opened.map(|opened| last.ticks_done.wrapping_sub(opened.ticks_done)),
+                ticks_done: row.known.ticks_done(),
                 went: opened_at.zip(positions).map(|(began, now)| {
                     let pairs = now.as_slice().iter().zip(began.as_slice());
                     pairs.map(|(now, began)| now.wrapping_sub(*began)).collect()
@@ -290,7 +293,7 @@ impl LiveHost {
             });
             let model = opened.and(self.twin.end(row.controller)).map(|(status, done, went)| End {
                 state: status.state.name(),
-                ticks_done: Some(done),
+                ticks_done: Some(done.wrapping_sub(opening_ticks)),
                 went: Some(went),
             });
             Beside { controller: row.controller, address: row.address, ticks: row.ticks, device, model }

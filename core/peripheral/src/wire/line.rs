@@ -112,7 +112,7 @@ impl Line {
         self.find_heard();
     }
 
-    /// Forgets what has been sent, if nothing is left to be: a line without an end grows no more.
+    /// Forgets what has been sent, so that a line without an end does not grow.
     pub fn forget_sent(&mut self) {
         self.sender.forget_sent();
     }

@@ -31,7 +31,7 @@ use crate::wire::{
     BitTimes, Schedule,
     bit_times::{BYTE_BITS, ByteStarts},
 };
-use alloc::rc::Rc;
+use alloc::{rc::Rc, vec::Vec};
 use core::ops::Range;
 
 const _: () = assert!(BYTE_BITS <= u32::BITS as u64, "the edges of a byte have a bit each");
@@ -134,12 +134,16 @@ impl Sender {
         }
     }
 
-    /// Forgets what has been sent, if nothing is left to be.
+    /// Forgets what has been sent of the last send and before it.
     pub fn forget_sent(&mut self) {
-        if self.edges == 0 {
-            self.schedule = Rc::default();
-            (self.sends, self.places) = (0, 0..0);
+        if self.sends == 0 || self.sends < self.schedule.len() {
+            return;
         }
+        let rest: Vec<u8> = self.places.clone().filter_map(|place| self.schedule.byte(place)).collect();
+        let mut schedule = Schedule::default();
+        schedule.push(self.send_start, &rest);
+        (self.sends, self.places) = (1, 0..rest.len());
+        self.schedule = Rc::new(schedule);
     }
 
     /// What is sent now.
@@ -212,7 +216,6 @@ impl Sender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec::Vec;
 
     /// 10.5 cycles a bit.
     fn sender(start: u64, bytes: &[u8]) -> Sender {
@@ -241,8 +244,20 @@ mod tests {
             let (first, later) = bytes.split_at(known);
             let mut joined = sender(100, first);
             let mut found = edges(&mut joined, passed);
+            let mut forgetful = joined.clone();
             joined.extend(later);
-            found.extend(edges(&mut joined, usize::MAX));
+            let left = edges(&mut joined, usize::MAX);
+            if known > 0 {
+                forgetful.forget_sent();
+                assert!(forgetful.schedule().total_bytes() < known);
+                forgetful.extend(later);
+                assert_eq!(
+                    edges(&mut forgetful, usize::MAX),
+                    left,
+                    "{known} bytes known, {passed} edges passed"
+                );
+            }
+            found.extend(left);
             assert_eq!(found, all, "{known} bytes known, {passed} edges passed");
         }
     }

@@ -135,6 +135,14 @@ impl Conversation {
         self
     }
 
+    /// The same for a real line: each job begins with a tick without steps that the controller has to confirm. From then on a
+    /// reset shows in its sequence number and in its count of ticks, whenever it comes.
+    #[must_use]
+    pub fn with_opening_tick(mut self) -> Self {
+        self.peers.iter_mut().for_each(|peer| peer.opening_tick = true);
+        self
+    }
+
     /// How far it has come with each controller.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.peers.iter().map(|peer| peer.progress)
@@ -323,7 +331,7 @@ impl Conversation {
         let peer = self.peers.get_mut(index)?;
         let (kind, ticks) = peer.due();
         let body = match kind {
-            Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, peer.commands(ticks)),
+            Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, &peer.commands(ticks)),
             _ => Vec::new(),
         };
         let mut bytes = frame::emit(peer.job.address, kind as u8, &body);

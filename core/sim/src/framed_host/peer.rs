@@ -7,6 +7,7 @@ use core::fmt;
 use stepscope_peripheral::signal::Positions;
 use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::frame::{self, Kind, Reason, State, Status};
+use stepscope_peripheral::wire::packet::MAX_STEPS;
 use stepscope_scenario::Host as Settings;
 
 /// What one controller is to do.
@@ -45,6 +46,8 @@ pub enum Progress {
     Opening,
     /// It asks where the controller's motors stand before the next tick.
     Locating,
+    /// Real lines only: it sends a tick without steps and waits until the controller has done it.
+    Starting,
     /// It sends ticks.
     Filling,
     /// All ticks are acknowledged; it asks whether they were done.
@@ -90,6 +93,8 @@ pub enum GivenUp {
         /// Ticks of the job.
         ordered: u32,
     },
+    /// Its sequence number or its count of ticks went back.
+    Reset,
     /// It has another number of channels than its ticks are made for.
     OtherChannels {
         /// Those of the ticks.
@@ -104,13 +109,14 @@ pub enum GivenUp {
 }
 
 impl Progress {
-    /// Its name: `opening`, `locating`, `filling`, `confirming`, `verifying`, `done`, `counted`, `stopping` or
-    /// `given_up`.
+    /// Its name: `opening`, `locating`, `starting`, `filling`, `confirming`, `verifying`, `done`, `counted`, `stopping`
+    /// or `given_up`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opening => "opening",
             Self::Locating => "locating",
+            Self::Starting => "starting",
             Self::Filling => "filling",
             Self::Confirming => "confirming",
             Self::Verifying => "verifying",
@@ -143,6 +149,7 @@ impl fmt::Display for GivenUp {
                     "it counts {done} ticks since it was opened, and {ordered} were ordered: it was reset, or another host drives it"
                 )
             }
+            Self::Reset => f.write_str("it was reset during the job, or another host drives it"),
             Self::OtherChannels { expected, told } => {
                 write!(f, "it tells positions of {told} channels, and its ticks are for {expected}")
             }
@@ -168,8 +175,12 @@ impl fmt::Display for Progress {
 pub struct Known {
     /// Its status when it was opened, at rest before the first tick.
     pub opened: Option<Status>,
+    /// Its status when the tick without steps was done that begins a job on a real line.
+    pub started: Option<Status>,
     /// Its status in the last reply.
     pub last: Option<Status>,
+    /// Ticks of the job that it has done, by the last reply that can be right.
+    done: Option<u32>,
     /// Its positions when it was opened.
     pub opened_at: Option<Positions>,
     /// Its positions when they were told last.
@@ -181,10 +192,16 @@ pub struct Known {
 }
 
 impl Known {
-    /// Ticks that ended since it was opened, as far as it has told.
+    /// Ticks of the job that the controller reported as done. After a reset, those that it reported before.
     #[must_use]
-    pub fn ticks_done(&self) -> Option<u32> {
-        Some(self.last?.ticks_done.wrapping_sub(self.opened?.ticks_done))
+    pub const fn ticks_done(&self) -> Option<u32> {
+        self.done
+    }
+
+    /// Its count of ticks since the job's first one, modulo 2^32.
+    fn counted(&self, status: Status) -> Option<u32> {
+        let began = self.started.or(self.opened)?;
+        Some(status.ticks_done.wrapping_sub(began.ticks_done))
     }
 }
 
@@ -211,6 +228,11 @@ pub(super) struct Peer {
     pub(super) since_progress: u32,
     /// What was left of a broken frame may wait at the controller for a delimiter.
     pub(super) flush: bool,
+    /// Whether the job begins with a tick without steps, so that every later reset shows.
+    pub(super) opening_tick: bool,
+    /// Ticks without steps that were acknowledged, and whether the last of them waits to be done.
+    opening_ticks: u32,
+    awaits_opening_tick: bool,
 }
 
 impl Peer {
@@ -229,6 +251,9 @@ impl Peer {
             attempts: 0,
             since_progress: 0,
             flush: false,
+            opening_tick: false,
+            opening_ticks: 0,
+            awaits_opening_tick: false,
             job,
         }
     }
@@ -253,17 +278,24 @@ impl Peer {
     pub(super) fn due(&self) -> (Kind, u32) {
         match self.progress {
             Progress::Filling => (Kind::Ticks, self.most.min(self.free).min(self.left()).max(1)),
+            // None of the job's own.
+            Progress::Starting if !self.awaits_opening_tick => (Kind::Ticks, 0),
             Progress::Locating | Progress::Verifying => (Kind::Positions, 0),
             Progress::Stopping => (self.stop_stage, 0),
             _ => (Kind::Status, 0),
         }
     }
 
-    /// The next so many ticks' commands.
-    pub(super) fn commands(&self, ticks: u32) -> &[u8] {
+    /// The commands of the next so many ticks; of 0 ticks those of the opening tick.
+    pub(super) fn commands(&self, ticks: u32) -> Vec<u8> {
         let channels = usize::from(self.job.channels);
+        let commands = &self.job.commands;
+        if ticks == 0 {
+            // The directions of the first tick, so that no DIR line changes more often than without this tick.
+            return commands.iter().take(channels).map(|byte| byte & !MAX_STEPS).collect();
+        }
         let from = self.acknowledged as usize * channels;
-        self.job.commands.get(from..from + ticks as usize * channels).unwrap_or_default()
+        commands.get(from..from + ticks as usize * channels).unwrap_or_default().to_vec()
     }
 
     /// Ticks that the queue still holds take so long.
@@ -296,14 +328,20 @@ impl Peer {
         (status, positions): (Status, Option<Positions>),
         now: Instant,
     ) -> Cycles {
-        self.known.last = Some(status);
         self.known.positions = positions.or(self.known.positions);
         if kind == Kind::Ticks {
             self.acknowledged += ticks;
             debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
-            self.since_progress = 0;
             self.seq = self.seq.wrapping_add(1);
+            if ticks > 0 {
+                self.since_progress = 0;
+            } else {
+                self.opening_ticks += 1;
+                self.awaits_opening_tick = true;
+            }
         }
+        let before = self.known.done;
+        let counted = self.told(status);
         if self.progress == Progress::Stopping {
             self.after_stop(kind);
             return Cycles(0);
@@ -315,14 +353,30 @@ impl Peer {
         match self.progress {
             Progress::Opening if ready => self.open(status),
             Progress::Locating if ready && self.is_where_it_was(status) => {
-                self.progress = self.located(positions).map_or(Progress::Filling, Progress::GivenUp);
+                self.progress = self.located(positions).map_or(self.first_stage(), Progress::GivenUp);
             }
-            Progress::Confirming if self.done() == self.job.ticks() => {
+            Progress::Starting if kind == Kind::Ticks || !ready => {
+                return Cycles(self.queued(status.free.into()).0 + self.job.tick.0);
+            }
+            Progress::Starting if self.did_opening_ticks(status) => self.start(status),
+            // Nothing of the job has been sent.
+            Progress::Starting => {
+                self.forget();
+                return self.job.tick;
+            }
+            // Its queue was emptied: more than it had done is not done any more, or less is to come than it had taken.
+            Progress::Filling if counted < before || counted > Some(self.acknowledged) => {
+                self.progress = Progress::GivenUp(GivenUp::Reset);
+            }
+            Progress::Confirming if ready && status.expected_seq != self.seq => {
+                self.progress = Progress::GivenUp(GivenUp::Reset);
+            }
+            Progress::Confirming if counted == Some(self.job.ticks()) => {
                 let verified = !self.known.hides_positions;
                 self.progress = if verified { Progress::Verifying } else { Progress::Counted };
             }
             Progress::Confirming if ready => {
-                let (done, ordered) = (self.done(), self.job.ticks());
+                let (done, ordered) = (counted.unwrap_or(0), self.job.ticks());
                 let other = GivenUp::OtherTicks { done, ordered };
                 self.progress = Progress::GivenUp(if done < ordered { GivenUp::TicksMissing } else { other });
             }
@@ -334,7 +388,7 @@ impl Peer {
                 self.progress = Progress::Opening;
                 if self.known.opened_at.is_none() {
                     // None of those ticks was of the job.
-                    (self.known.opened, self.acknowledged) = (None, 0);
+                    self.forget();
                 }
                 return self.job.tick;
             }
@@ -360,21 +414,59 @@ impl Peer {
             self.since_progress = 0;
         }
         self.seq = status.expected_seq;
+        self.known.done = Some(self.acknowledged);
         self.progress = match self.known.hides_positions {
             _ if done > ordered => Progress::GivenUp(GivenUp::OtherTicks { done, ordered }),
-            true => Progress::Filling,
+            true => self.first_stage(),
             false => Progress::Locating,
         };
     }
 
-    /// Ticks of the job that are done.
-    fn done(&self) -> u32 {
-        self.known.ticks_done().unwrap_or(0)
+    /// What follows when it is known where the controller is.
+    const fn first_stage(&self) -> Progress {
+        if self.opening_tick && self.known.started.is_none() { Progress::Starting } else { Progress::Filling }
+    }
+
+    /// Whether the controller has done the opening ticks and nothing else since it was opened.
+    fn did_opening_ticks(&self, status: Status) -> bool {
+        let done = self.known.opened.map(|opened| status.ticks_done.wrapping_sub(opened.ticks_done));
+        done == Some(self.opening_ticks) && status.expected_seq == self.seq
+    }
+
+    /// The opening tick is done. A controller that was reset expects 0 and has done 0 ticks: where this one says the same,
+    /// another opening tick tells both apart.
+    fn start(&mut self, status: Status) {
+        self.awaits_opening_tick = false;
+        if status.expected_seq != 0 && status.ticks_done != 0 {
+            (self.known.started, self.known.done) = (Some(status), Some(0));
+            (self.progress, self.since_progress) = (Progress::Filling, 0);
+        }
+    }
+
+    /// Begins anew with a controller that has been sent nothing of the job.
+    fn forget(&mut self) {
+        self.progress = Progress::Opening;
+        (self.known.opened, self.known.opened_at, self.known.done) = (None, None, None);
+        (self.acknowledged, self.opening_ticks, self.awaits_opening_tick) = (0, 0, false);
+    }
+
+    /// Takes note of a status; gives its count of ticks since the job's first one, which is kept if it can be right.
+    fn told(&mut self, status: Status) -> Option<u32> {
+        self.known.last = Some(status);
+        let counted = self.known.counted(status);
+        // A host that crashed or was stopped may have missed that its last ticks were taken.
+        let knows_less = matches!(self.progress, Progress::Opening | Progress::Stopping);
+        let most = if knows_less { self.job.ticks() } else { self.acknowledged };
+        let can_be = knows_less || status.expected_seq == self.seq;
+        if can_be && counted.is_some_and(|counted| counted <= most) {
+            self.known.done = counted;
+        }
+        counted
     }
 
     /// Whether as many ticks are done as are acknowledged, and none else was taken.
     fn is_where_it_was(&self, status: Status) -> bool {
-        self.done() == self.acknowledged && status.expected_seq == self.seq
+        self.known.counted(status) == Some(self.acknowledged) && status.expected_seq == self.seq
     }
 
     /// At rest with all acknowledged ticks done: why its positions cannot be, if so. The first ones are where it begins.
@@ -443,12 +535,12 @@ impl Peer {
 
     /// Takes a refusal of a frame of `kind`; gives the time until the frame is sent again, or the next one.
     pub(super) fn refused(&mut self, kind: Kind, reason: Reason, status: Status) -> Cycles {
-        self.known.last = Some(status);
+        self.told(status);
         let unknown = kind == Kind::Positions && reason == Reason::UnknownKind;
         self.known.hides_positions |= unknown;
         match (self.progress, reason) {
             (Progress::Locating, _) if unknown => {
-                self.progress = Progress::Filling;
+                self.progress = self.first_stage();
                 return self.next_due();
             }
             (Progress::Verifying, _) if unknown => self.progress = Progress::Counted,
@@ -457,6 +549,8 @@ impl Peer {
                 return Cycles(0);
             }
             (_, Reason::QueueFull | Reason::Busy) => {}
+            (Progress::Starting, Reason::BadSeq) => self.forget(),
+            (_, Reason::BadSeq) => self.progress = Progress::GivenUp(GivenUp::Reset),
             (_, Reason::Stopped) => self.progress = Progress::GivenUp(GivenUp::Stopped),
             (_, other) => self.progress = Progress::GivenUp(GivenUp::Refused(other)),
         }

@@ -219,24 +219,41 @@ struct Told {
 /// Runs the job with a controller that answers at once, but for what `falsify` makes of it: its answer, or silence. Gives
 /// the kinds that were asked, and where the host ended.
 fn converse(
+    falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Told) -> Option<Result<Kind, Reason>>,
+) -> (Vec<Kind>, Progress, Known) {
+    let told = Told { seq: 7, ticks_done: 1000, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+    converse_with(told, false, falsify)
+}
+
+/// The same with a controller that has run before, and on request with an opening tick.
+fn converse_with(
+    mut told: Told,
+    opening_tick: bool,
     mut falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Told) -> Option<Result<Kind, Reason>>,
 ) -> (Vec<Kind>, Progress, Known) {
     let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
-    let mut host = Conversation::new(alloc::vec![job], &Settings::default(), Cycles(11), Instant(6));
-    let mut told =
-        Told { seq: 7, ticks_done: 1000, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+    let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
+    let settings = if opening_tick { settings } else { Settings::default() };
+    let mut host = Conversation::new(alloc::vec![job], &settings, Cycles(11), Instant(6));
+    if opening_tick {
+        host = host.with_opening_tick();
+    }
     let (mut asked, mut now) = (Vec::new(), Instant(6));
     while !host.is_over() {
         now = now.max(host.deadline());
         let Some(frame) = host.poll(now) else { continue };
         host.sent(now);
-        let mut deframer = Deframer::default();
+        let (mut deframer, mut refused) = (Deframer::default(), false);
         let kind = frame.iter().find_map(|&byte| match deframer.byte(byte) {
             Some(Deframed::Frame(Frame { kind, body, .. })) => {
                 let kind = Kind::parse(kind).expect("it is one of the contract's");
                 if let Some(ticks) = Ticks::parse(body, 2).filter(|_| kind == Kind::Ticks) {
+                    if ticks.seq != told.seq {
+                        refused = ticks.seq != told.seq.wrapping_sub(1);
+                        return Some(kind);
+                    }
                     told.seq = told.seq.wrapping_add(1);
-                    told.ticks_done += ticks.count() as u32;
+                    told.ticks_done = told.ticks_done.wrapping_add(ticks.count() as u32);
                     let orders = ticks.orders().chunks(2).flat_map(|tick| tick.iter().zip(0..));
                     for (&byte, channel) in orders {
                         let steps = i32::from(byte & 0x7f) * if byte & 0x80 == 0 { -1 } else { 1 };
@@ -253,6 +270,7 @@ fn converse(
         let kind = kind.expect("a frame");
         asked.push(kind);
         let Some(answer) = falsify(&mut host, asked.len() - 1, kind, &mut told) else { continue };
+        let answer = if refused { Err(Reason::BadSeq) } else { answer };
         let Told { seq: expected_seq, ticks_done, state, .. } = told;
         let status = Status { state, free: 16, expected_seq, faults: 0, ticks_done };
         let positions =
@@ -354,4 +372,68 @@ fn the_time_for_a_reply_is_that_of_its_longest_form() {
             "{kind:?} of {channels}"
         );
     }
+}
+
+#[test]
+fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_every_reset_shows() {
+    use Kind::{Positions, Status, Ticks};
+    // STATUS, POSITIONS, the opening tick, STATUS, two frames of ticks, STATUS, POSITIONS.
+    let whole = [Status, Positions, Ticks, Status, Ticks, Ticks, Status, Positions];
+    let numbers = [0, 1, 127, 254, 255];
+    let counts = [0, 1, 1000, u32::MAX - 4, u32::MAX - 1, u32::MAX];
+    for (seq, ticks_done) in numbers.into_iter().flat_map(|seq| counts.map(|count| (seq, count))) {
+        let what = alloc::format!("seq {seq} ticks {ticks_done}");
+        let told = || Told { seq, ticks_done, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+        let (asked, progress, known) = converse_with(told(), true, |_, _, kind, _| Some(Ok(kind)));
+        assert_eq!(progress, Progress::Done, "{what}");
+        assert_eq!(
+            (known.ticks_done(), known.positions.expect("told").as_slice()),
+            (Some(4), &[3, i32::MAX - 7][..])
+        );
+        // A controller that would look as after a reset gets another tick without steps.
+        let is_plain = seq != 255 && ticks_done != u32::MAX;
+        assert_eq!(asked == whole, is_plain, "{what}: {asked:?}");
+        assert!(asked.len() <= whole.len() + 4, "{what}: {asked:?}");
+
+        // Reset with its reply on the way, or lost, in one exchange or in two.
+        for (first, again) in
+            (0..asked.len()).flat_map(|first| (first..asked.len()).map(move |again| (first, again)))
+        {
+            for heard in [true, false] {
+                let mut steps = alloc::vec![0_i64; 2];
+                let mut before = told().positions;
+                let (_, progress, _) = converse_with(told(), true, |_, index, kind, told| {
+                    for ((steps, now), before) in steps.iter_mut().zip(&told.positions).zip(&before) {
+                        *steps += i64::from(now.wrapping_sub(*before));
+                    }
+                    let is_reset = index == first || index == again;
+                    if is_reset {
+                        *told =
+                            Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+                    }
+                    before = told.positions.clone();
+                    (heard || !is_reset).then_some(Ok(kind))
+                });
+                let right = steps == [6, -7];
+                assert!(
+                    progress != Progress::Done || right,
+                    "{what}, reset in {first} and {again}, {heard}: {steps:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn after_a_reset_the_report_has_the_ticks_that_were_reported_before() {
+    let told = Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+    let (_, progress, known) = converse_with(told, true, |_, index, kind, told| {
+        if index == 4 {
+            *told = Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+            return None;
+        }
+        Some(Ok(kind))
+    });
+    assert_eq!((progress, known.ticks_done()), (Progress::GivenUp(GivenUp::Reset), Some(0)));
+    assert_eq!(GivenUp::Reset.to_string(), "it was reset during the job, or another host drives it");
 }

@@ -202,7 +202,8 @@ fn beyond_its_limit_a_session_goes_on_and_the_recording_ends_before_it() {
     assert!(!session.records_all());
     session.advance::<Digest>(whole + Cycles(1_000_000), &mut []);
     session.receive(&[0x81]);
-    assert_eq!(sends(&session).len(), 1, "what has been sent is forgotten");
+    let kept: usize = sends(&session).iter().map(|&(_, bytes)| bytes).sum();
+    assert_eq!(kept, 1, "what has been sent is forgotten");
     session.advance::<Digest>(whole + Cycles(2_000_000), &mut []);
     let recording = session.recording();
     assert_eq!(recording.scenario.run_cycles, Some(at.0 + 1));
@@ -372,4 +373,177 @@ fn a_connection_that_is_cut_at_any_byte_leaves_a_beginning_and_no_word_of_more()
     }
     // 2 * 8 + 2 * 8 + 2 * 13 bytes there, 4 * 17 + 2 * 25 back.
     assert!(cuts > 150, "{cuts}");
+}
+
+/// A host and a soft device that is reset in each of these cycles. Gives where the host ended, and whether each STEP output had as
+/// many pulses as were ordered.
+fn with_resets(resets: &[u64], opening_tick: bool, restarts_with: u64) -> (Progress, bool, u64) {
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+        "line": { "protocol": "framed", "baud": 9000 } }"#;
+    let blank = session(json);
+    let mut device = blank.clone();
+    let orders: Vec<u8> = vec![0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
+    let job = Job { address: 0, channels: 2, tick: Cycles(450), queue_depth: 6, commands: orders.into() };
+    let settings = Host { ticks_per_frame: 2, ..Host::default() };
+    let mut host = Conversation::new(vec![job], &settings, Cycles(11), Instant(30));
+    if opening_tick {
+        host = host.with_opening_tick();
+    }
+    let mut pulses = [Pulses::default()];
+    // The device's cycle 0, and what is on its way to it.
+    let (mut powered, mut now, mut coming) = (0, 30_u64, VecDeque::<(u64, u8)>::new());
+    let mut resets = resets.iter().copied().peekable();
+    while !host.is_over() {
+        if let Some(bytes) = host.poll(Instant(now)) {
+            let places = (0..).map(|byte| now + 1 + 111 * byte);
+            coming.extend(places.zip(bytes.iter().copied()));
+            host.sent(Instant(now + 111 * bytes.len() as u64));
+        }
+        while coming.front().is_some_and(|&(at, _)| at <= now) {
+            coming.pop_front().into_iter().for_each(|(_, byte)| device.receive(&[byte]));
+        }
+        if resets.next_if(|&at| at <= now).is_some() {
+            (device, powered) = (blank.clone(), now + restarts_with);
+            pulses[0].high = 0;
+        }
+        device.advance(Instant(now.saturating_sub(powered)), &mut pulses);
+        device.take_replies().for_each(|reply| host.hear(reply.byte, Instant(now)));
+        let next = host.deadline().min(Instant(now + 37)).0.max(now + 1);
+        now = coming.front().map_or(next, |&(at, _)| next.min(at.max(now + 1)));
+        assert!(now < 100_000_000, "the host never ends");
+    }
+    // 1 + 3 + 2 and 2 + 4 + 1.
+    (host.progress().next().expect("one job"), pulses[0].counts[..2] == [6, 7], now)
+}
+
+/// Counts the pulses on each STEP output.
+#[derive(Default)]
+struct Pulses {
+    high: u16,
+    counts: [u32; MAX_CHANNELS],
+}
+
+impl Sink for Pulses {
+    fn record(&mut self, record: Record) {
+        let rising = record.levels.step() & !self.high;
+        for (channel, count) in self.counts.iter_mut().enumerate() {
+            *count += u32::from(rising >> channel & 1);
+        }
+        self.high = record.levels.step();
+    }
+
+    fn event(&mut self, _: Instant, _: Event) {}
+}
+
+#[test]
+fn a_device_that_is_reset_at_any_time_is_never_done_unless_all_steps_were_made_once() {
+    let (progress, right, end) = with_resets(&[], true, 0);
+    assert_eq!((progress, right), (Progress::Done, true));
+    let (mut done, mut wrong_without) = (0, 0);
+    // Single resets all along the job, and pairs.
+    let singles = (30..end).step_by(61).map(|at| vec![at]);
+    let pairs = (30..end).step_by(487).flat_map(|at| [90, 1700, 9000].map(|later| vec![at, at + later]));
+    for (index, resets) in singles.chain(pairs).enumerate() {
+        // Some devices are back at once, others take a while to start.
+        let restarts_with = [0, 4000][index % 2];
+        let (progress, right, _) = with_resets(&resets, true, restarts_with);
+        assert!(progress != Progress::Done || right, "{resets:?}: {progress}");
+        assert_ne!(progress, Progress::Counted, "{resets:?}");
+        done += u32::from(progress == Progress::Done);
+        let (progress, right, _) = with_resets(&resets, false, restarts_with);
+        wrong_without += u32::from(progress == Progress::Done && !right);
+    }
+    // Before its first step a device that was reset is begun with anew.
+    assert!(done > 50, "{done}");
+    assert!(wrong_without > 5, "without the opening tick {wrong_without} are wrong");
+}
+
+#[test]
+fn bytes_that_wait_for_the_line_are_in_the_same_cycles_as_if_they_had_been_received_at_once() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let json = random_scenario(&mut random);
+        let (mut at_once, mut waiting) = (session(&json), session(&json));
+        let mut input = Input::default();
+        for _ in 0..random.below(20) {
+            let chunk = random_chunk(&mut random);
+            at_once.receive(&chunk);
+            assert_eq!(input.push(&chunk), chunk.len());
+            let to = Instant(at_once.now().0 + random.below(3000));
+            at_once.advance::<Digest>(to, &mut []);
+            while waiting.now() < to {
+                let to = Instant(waiting.now().0 + 1 + random.below(700)).min(to);
+                input.feed(&mut waiting, to + Cycles(random.below(500)));
+                waiting.advance::<Digest>(to, &mut []);
+            }
+        }
+        input.feed(&mut waiting, Instant(1 << 40));
+        assert!(input.is_empty());
+        assert_eq!(sends(&waiting), sends(&at_once), "seed {seed}: {json}");
+        assert_eq!(waiting.recording(), at_once.recording(), "seed {seed}: {json}");
+    }
+}
+
+#[test]
+fn a_flood_is_taken_at_the_rate_of_the_line_and_what_is_kept_of_it_is_bounded() {
+    for protocol in ["raw", "framed"] {
+        let json =
+            format!(r#"{{ "clock_hz": 1000000, "line": {{ "baud": 50000, "protocol": "{protocol}" }} }}"#);
+        let mut session = session(&json);
+        let (mut input, mut read, flood) = (Input::default(), 0, vec![0; 4096]);
+        // 200 cycles per byte: 50 s take 250 000 bytes.
+        let round = Cycles(50_000);
+        for _ in 0..1000 {
+            while input.room() > 0 {
+                read += input.push(&flood) as u64;
+            }
+            let to = session.now() + round;
+            input.feed(&mut session, to);
+            session.advance::<Digest>(to, &mut []);
+            session.take_replies().for_each(drop);
+            assert!(session.heard() <= session.now().0 / 200 + 1, "{protocol}");
+        }
+        assert_eq!(session.heard() + input.len() as u64, read);
+        assert!(session.heard() >= 249_999, "{protocol}: {}", session.heard());
+        assert!(session.records_all());
+        // Once there is no more room in the recording, nothing is kept of a send without an end.
+        session.cut_recording();
+        for _ in 0..3 {
+            while input.room() > 0 {
+                input.push(&flood);
+            }
+            let to = session.now() + round;
+            input.feed(&mut session, to);
+            session.advance::<Digest>(to, &mut []);
+            let kept: usize = session.run().schedule().iter().map(|send| send.bytes.len()).sum();
+            assert!(kept <= 1000, "{protocol}: {kept}");
+        }
+        session.recording().verify().expect("the same");
+    }
+}
+
+#[test]
+fn a_host_never_hears_a_reply_to_the_host_before_it() {
+    let json =
+        r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" }, "bus": { "boot_cycles": 0 } }"#;
+    let status = frame::emit(0, 4, &[]);
+    // 8 bytes of 160 cycles, then a reply of 17.
+    for hangs_up in (0..5000).step_by(97) {
+        let mut session = session(json);
+        session.receive(&status);
+        session.advance::<Digest>(Instant(hangs_up), &mut []);
+        session.take_replies().for_each(drop);
+        session.hang_up();
+        // What the first host began to send ends, and the next one begins.
+        let begins = session.deadline().min(Instant(5000)).max(Instant(hangs_up + 1));
+        session.advance::<Digest>(begins, &mut []);
+        assert_eq!(session.take_replies().count(), 0, "{hangs_up}");
+        session.receive(&status);
+        session.advance::<Digest>(Instant(20_000), &mut []);
+        let replies: Vec<ReplyByte> = session.take_replies().collect();
+        // A frame that comes while the controller still replies to the first host is lost, as on any such line.
+        assert!([0, 17].contains(&replies.len()), "{hangs_up}: {}", replies.len());
+        let earliest = begins + Cycles(160 * status.len() as u64);
+        assert!(replies.iter().all(|reply| reply.end > earliest), "{hangs_up}");
+    }
 }
