@@ -241,14 +241,14 @@ fn a_map_that_cannot_be_is_told() {
     asks(&[
         (DUMP, &["--map", "STEP0=STEP,DIR0=#1"], 0, ""),
         (DUMP, &["--map", "step0=!a.STEP"], 0, ""),
-        (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is no pair; write SIGNAL=CHANNEL"),
-        (DUMP, &["--map", "STEP16=STEP"], 2, "STEP16 is no signal; there are STEP0 to STEP15"),
+        (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is not a pair; write SIGNAL=CHANNEL"),
+        (DUMP, &["--map", "STEP16=STEP"], 2, "STEP16 is not a signal; use STEP0 to STEP15"),
         (DUMP, &["--map", "STEP0=PUL"], 2, "there is no channel PUL; the file has a.STEP, a.D, b.D"),
         (
             DUMP,
             &["--map", "STEP0=STEP,DIR0=D"],
             2,
-            "more than one channel is called D; write its place, #0 for the first",
+            "more than one channel is called D; use its number, #0 for the first",
         ),
         (DUMP, &["--map", "STEP0=STEP,DIR0=STEP"], 2, "channel a.STEP is STEP0 already"),
         (DUMP, &["--map", "STEP0=#0,STEP0=#1"], 2, "STEP0 has two channels"),

@@ -113,6 +113,8 @@ struct Asked {
     clock_hz: Option<u32>,
     sample_rate_hz: Option<u64>,
     baud: Option<u32>,
+    /// Whether drivers step on both edges.
+    both_edges: Option<bool>,
     /// When one of its steps, or bytes, is to come, in s.
     at_s: Option<f64>,
     /// Of this channel.
@@ -181,15 +183,15 @@ impl CaptureFile {
         })
     }
 
-    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned, most, from_s, to_s}`,
+    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, both_edges, at_s, channel, aligned, most, from_s, to_s}`,
     /// each of which may be left out: `{map, clock_hz, rounding, end_s, records, kept, notes, steps, lines}`.
     ///
     /// # Errors
     /// With what is missing, or wrong.
     pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
-        let Asked { map, clock_hz, sample_rate_hz, baud, at_s, channel, aligned, most, from_s, to_s } =
+        let Asked { map, clock_hz, sample_rate_hz, baud, both_edges, at_s, channel, aligned, most, from_s, to_s } =
             serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
-        let ask = Ask { map, clock_hz, sample_rate_hz, baud };
+        let ask = Ask { map, clock_hz, sample_rate_hz, baud, both_edges: both_edges.unwrap_or(false) };
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
         let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));
         let mut opened = match known {

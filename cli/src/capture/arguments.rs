@@ -17,10 +17,16 @@ pub(crate) struct Arguments {
     /// bytes in hexadecimal, a table of times and positions, or our own edges; or recorded-step-table, recorded-late-packet;
     /// `-` reads standard input.
     pub(super) file: PathBuf,
-    /// Which channel is which signal: STEP0=CH1,DIR0=CH2,EN=!nEN (`!`: inverted; #0 is the first channel). Without it names
-    /// and behaviour propose a map, which is printed.
+    /// Assign channels to signals: STEP0=CH1,DIR0=CH2,EN=!nEN
+    ///
+    /// `!` inverts a channel; `#0` is the first one. Motors can share a DIR channel (DIR0=DIR,DIR1=DIR). In place of STEP0:
+    /// DEDGE0 for a driver that steps on both edges, CW0 and CCW0 for one pulse input per direction, A0 and B0 for a
+    /// quadrature encoder. Without a map, one is proposed from names and behavior, and printed.
     #[arg(long, value_name = "MAP")]
     pub(super) map: Option<String>,
+    /// Count a step on both edges of each STEP: DEDGE in place of STEP in the map
+    #[arg(long)]
+    pub(super) both_edges: bool,
     /// Clock that times become cycles of, in Hz; without it the file's own, of which each time is a whole cycle.
     #[arg(long, value_name = "HZ")]
     pub(super) clock: Option<u32>,
@@ -115,7 +121,13 @@ impl Arguments {
 
     /// What is said of the recording.
     pub(super) fn ask(&self) -> Ask {
-        Ask { map: self.map.clone(), clock_hz: self.clock, sample_rate_hz: self.sample_rate, baud: self.baud }
+        Ask {
+            map: self.map.clone(),
+            clock_hz: self.clock,
+            sample_rate_hz: self.sample_rate,
+            baud: self.baud,
+            both_edges: self.both_edges,
+        }
     }
 
     /// The file's name without its folders.

@@ -1,7 +1,11 @@
-//! Which channel of a capture is which signal of the bus.
+//! Which channel of a capture is which signal.
 //!
 //! ```text
-//! STEP0=CH1,DIR0=CH2,EN=!nEN     a signal, a channel by its name or its place (#0, #1, …), ! where it is inverted
+//! STEP0=CH1,DIR0=CH2,EN=!nEN     a signal, a channel by its name or its number (#0, #1, …), ! where it is inverted
+//! STEP0=A,STEP1=B,DIR0=C,DIR1=C  one DIR channel for several motors
+//! DEDGE0=CH1,DIR0=CH2            a driver that steps on both edges
+//! CW0=CH1,CCW0=CH2               one pulse input per direction
+//! A0=CH1,B0=CH2                  a quadrature encoder: one count per edge
 //! ```
 //!
 //! ```
@@ -14,17 +18,115 @@
 //! assert_eq!(ChannelMap::parse(&map.to_text(&capture), &capture), Ok(map));
 //! ```
 
+pub use crate::spacing::EdgeHint;
+
 use crate::capture::{Capture, Channel};
 use core::fmt;
-use stepscope_peripheral::signal::{self, MAX_CHANNELS};
+use stepscope_peripheral::signal::{self, Levels, MAX_CHANNELS};
 
-/// Bits of the signals (DESIGN A3).
-pub(crate) const SIGNALS: u32 = 36;
+/// Bits of the signals on the bus (DESIGN A3).
+pub(crate) const BUS_SIGNALS: u32 = 36;
+/// Motors of a map.
+const MOTORS: u32 = MAX_CHANNELS as u32;
+/// Names of channels that an error lists.
+const MAX_LISTED: usize = 20;
+
+/// A signal of one motor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Input {
+    Step,
+    /// STEP of a driver that steps on both edges.
+    BothEdges,
+    Cw,
+    Ccw,
+    /// Phases of a quadrature encoder.
+    A,
+    B,
+    Dir,
+}
+
+impl Input {
+    /// Those that are no signals of the bus, in the order of their bits.
+    const MADE: [Self; 5] = [Self::BothEdges, Self::Cw, Self::Ccw, Self::A, Self::B];
+
+    /// The bit of this signal of a motor.
+    pub(crate) const fn bit(self, motor: u32) -> u32 {
+        motor
+            + match self {
+                Self::Step => 0,
+                Self::Dir => Levels::DIR_SHIFT,
+                Self::BothEdges => BUS_SIGNALS,
+                Self::Cw => BUS_SIGNALS + MOTORS,
+                Self::Ccw => BUS_SIGNALS + 2 * MOTORS,
+                Self::A => BUS_SIGNALS + 3 * MOTORS,
+                Self::B => BUS_SIGNALS + 4 * MOTORS,
+            }
+    }
+
+    /// The signal of a bit, and its motor.
+    pub(crate) fn of(bit: u32) -> Option<(Self, u32)> {
+        let motor = |first: u32| bit - first;
+        match bit {
+            0..MOTORS => Some((Self::Step, motor(0))),
+            Levels::DIR_SHIFT..32 => Some((Self::Dir, motor(Levels::DIR_SHIFT))),
+            ..BUS_SIGNALS => None,
+            _ => {
+                let at = bit - BUS_SIGNALS;
+                Self::MADE.get((at / MOTORS) as usize).map(|input| (*input, at % MOTORS))
+            }
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Step => "STEP",
+            Self::Dir => "DIR",
+            Self::BothEdges => "DEDGE",
+            Self::Cw => "CW",
+            Self::Ccw => "CCW",
+            Self::A => "A",
+            Self::B => "B",
+        }
+    }
+
+    /// The signal that this one is useless without.
+    const fn partner(self) -> Option<Self> {
+        match self {
+            Self::Cw => Some(Self::Ccw),
+            Self::Ccw => Some(Self::Cw),
+            Self::A => Some(Self::B),
+            Self::B => Some(Self::A),
+            Self::Step | Self::BothEdges | Self::Dir => None,
+        }
+    }
+}
+
+/// The name of a signal in a map.
+fn signal_name(bit: u32) -> String {
+    match Input::of(bit) {
+        Some((input, motor)) => format!("{}{motor}", input.name()),
+        None => signal::name(bit).unwrap_or_default(),
+    }
+}
+
+/// What the STEP pulses of a motor are made from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PulseSource {
+    /// STEP itself.
+    Step,
+    /// Both edges of STEP: a pulse for each.
+    BothEdges,
+    /// One pulse input per direction, which also gives DIR.
+    CwCcw,
+    /// The edges of a quadrature encoder, whose phase gives DIR.
+    Quadrature,
+}
 
 /// A signal and the channel that it was recorded on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Bit of the signal (DESIGN A3): 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE.
+    /// Bit of the signal (DESIGN A3): 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each, what pulses are
+    /// made from: DEDGE, CW, CCW, A and B.
     pub bit: u32,
     /// Index of the channel.
     pub channel: usize,
@@ -32,13 +134,20 @@ pub struct Entry {
     pub inverted: bool,
 }
 
-/// Signals and their channels, by the signals' bits; each signal, and each channel, at most once.
+impl Entry {
+    /// The level of the signal, by those of all channels.
+    pub(crate) const fn level(&self, channels: u64) -> bool {
+        (channels >> self.channel & 1 == 1) != self.inverted
+    }
+}
+
+/// Signals and their channels; each signal at most once, and each channel too, except that motors may share a DIR channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelMap {
     entries: Vec<Entry>,
 }
 
-/// Why a text is no map.
+/// Why a text is not a map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MapError {
@@ -54,24 +163,41 @@ pub enum MapError {
     Twice(String),
     /// A channel that is another signal already.
     Taken(String, String),
+    /// A signal that needs another one.
+    Partner(String, String),
+    /// Two signals that both make the steps, or the direction, of a motor.
+    Conflict(String, String),
 }
 
 impl fmt::Display for MapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoPair(given) => {
-                write!(f, "\"{given}\" is no pair; write SIGNAL=CHANNEL, several with commas between")
+                write!(
+                    f,
+                    "\"{given}\" is not a pair; write SIGNAL=CHANNEL, separated by commas, such as STEP0=CH1,DIR0=CH2"
+                )
             }
             Self::Signal(given) => {
-                write!(f, "{given} is no signal; there are STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX and DE")
+                write!(
+                    f,
+                    "{given} is not a signal; use STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX or DE, or in place of STEP0: \
+                     DEDGE0 (a step on both edges), CW0 and CCW0, or A0 and B0 (an encoder)"
+                )
             }
             Self::Channel(given, there) => write!(f, "there is no channel {given}; the file has {there}"),
             Self::Ambiguous(given) => {
-                write!(f, "more than one channel is called {given}; write its place, #0 for the first")
+                write!(f, "more than one channel is called {given}; use its number, #0 for the first")
             }
             Self::Twice(signal) => write!(f, "{signal} has two channels; give it one"),
             Self::Taken(channel, signal) => {
-                write!(f, "channel {channel} is {signal} already; a channel is one signal")
+                write!(f, "channel {channel} is {signal} already; only several DIR signals can share a channel")
+            }
+            Self::Partner(signal, partner) => {
+                write!(f, "{signal} needs {partner}; add {partner}=CHANNEL, or use STEP in place of {signal}")
+            }
+            Self::Conflict(one, other) => {
+                write!(f, "{one} and {other} are both given for one motor; remove one of them")
             }
         }
     }
@@ -81,7 +207,11 @@ impl core::error::Error for MapError {}
 
 impl ChannelMap {
     pub(crate) fn of(mut entries: Vec<Entry>) -> Self {
-        entries.sort_unstable_by_key(|entry| entry.bit);
+        // What makes steps first, then DIR, then the other signals of the bus.
+        entries.sort_unstable_by_key(|entry| match Input::of(entry.bit) {
+            Some((input, motor)) => (0, Some(input), motor),
+            None => (1, None, entry.bit),
+        });
         Self { entries }
     }
 
@@ -94,8 +224,8 @@ impl ChannelMap {
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
             let (signal, channel) = pair.split_once('=').ok_or_else(|| MapError::NoPair(pair.to_owned()))?;
             let signal = signal.trim().to_ascii_uppercase();
-            let bit = (0..SIGNALS)
-                .find(|bit| signal::name(*bit).is_some_and(|name| name == signal))
+            let bit = (0..Input::B.bit(MOTORS))
+                .find(|bit| signal_name(*bit) == signal)
                 .ok_or_else(|| MapError::Signal(signal.clone()))?;
             let channel = channel.trim();
             let (inverted, name) = match channel.strip_prefix('!') {
@@ -104,24 +234,82 @@ impl ChannelMap {
             };
             map.add(Entry { bit, channel: place(name, &capture.channels)?, inverted }, capture)?;
         }
+        map.check_motors()?;
         Ok(Self::of(map.entries))
     }
 
+    /// Each motor has one source of steps, whole, and one of its direction.
+    fn check_motors(&self) -> Result<(), MapError> {
+        for entry in &self.entries {
+            let Some((input, motor)) = Input::of(entry.bit) else { continue };
+            if let Some(partner) = input.partner().filter(|partner| !self.has(partner.bit(motor))) {
+                return Err(MapError::Partner(signal_name(entry.bit), signal_name(partner.bit(motor))));
+            }
+            let rivals: &[Input] = match input {
+                Input::Step => &[Input::BothEdges, Input::Cw, Input::A],
+                Input::BothEdges => &[Input::Cw, Input::A],
+                Input::Cw => &[Input::A, Input::Dir],
+                Input::A => &[Input::Dir],
+                Input::Ccw | Input::B | Input::Dir => &[],
+            };
+            if let Some(rival) = rivals.iter().find(|rival| self.has(rival.bit(motor))) {
+                return Err(MapError::Conflict(signal_name(entry.bit), signal_name(rival.bit(motor))));
+            }
+        }
+        Ok(())
+    }
+
+    /// The same map for drivers that step on both edges: DEDGE in place of each STEP.
+    #[must_use]
+    pub fn with_both_edges(self) -> Self {
+        let both = |entry: Entry| match Input::of(entry.bit) {
+            Some((Input::Step, motor)) => Entry { bit: Input::BothEdges.bit(motor), ..entry },
+            _ => entry,
+        };
+        Self::of(self.entries.into_iter().map(both).collect())
+    }
+
+    /// What the steps of a motor are made from.
+    #[must_use]
+    pub fn pulses(&self, motor: u8) -> PulseSource {
+        let has = |input: Input| self.has(input.bit(motor.into()));
+        match () {
+            () if has(Input::BothEdges) => PulseSource::BothEdges,
+            () if has(Input::Cw) => PulseSource::CwCcw,
+            () if has(Input::A) => PulseSource::Quadrature,
+            () => PulseSource::Step,
+        }
+    }
+
+    /// Whether the direction of a motor is known.
+    #[must_use]
+    pub fn has_direction(&self, motor: u8) -> bool {
+        self.has(Input::Dir.bit(motor.into()))
+            || matches!(self.pulses(motor), PulseSource::CwCcw | PulseSource::Quadrature)
+    }
+
+    /// The entry of a motor's signal.
+    pub(crate) fn input(&self, input: Input, motor: u32) -> Option<Entry> {
+        self.entries.iter().copied().find(|entry| entry.bit == input.bit(motor))
+    }
+
     fn add(&mut self, entry: Entry, capture: &Capture) -> Result<(), MapError> {
+        let is_dir = |entry: &Entry| matches!(Input::of(entry.bit), Some((Input::Dir, _)));
         for other in &self.entries {
-            let signal = signal::name(other.bit).unwrap_or_default();
+            let signal = signal_name(other.bit);
             if other.bit == entry.bit {
                 return Err(MapError::Twice(signal));
             }
-            if other.channel == entry.channel {
-                return Err(MapError::Taken(capture.channels[entry.channel].name.clone(), signal));
+            if other.channel == entry.channel && !(is_dir(other) && is_dir(&entry)) {
+                let name = capture.channels.get(entry.channel).map(|channel| channel.name.clone());
+                return Err(MapError::Taken(name.unwrap_or_default(), signal));
             }
         }
         self.entries.push(entry);
         Ok(())
     }
 
-    /// The pairs, by the signals' bits.
+    /// The pairs: what makes steps, then DIR, then the other signals.
     #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries
@@ -133,18 +321,18 @@ impl ChannelMap {
         self.entries.iter().any(|entry| entry.bit == bit)
     }
 
-    /// Channels of the bus up to the last one that STEP or DIR has a channel for; at least 1.
+    /// Channels of the bus up to the last motor of the map; at least 1.
     #[must_use]
     pub fn bus_channels(&self) -> u8 {
-        let motor = self.entries.iter().map(|entry| entry.bit).filter(|bit| *bit < 2 * MAX_CHANNELS as u32);
-        motor.map(|bit| bit as u8 % MAX_CHANNELS as u8 + 1).max().unwrap_or(1)
+        let motors = self.entries.iter().filter_map(|entry| Input::of(entry.bit));
+        motors.map(|(_, motor)| motor as u8 + 1).max().unwrap_or(1)
     }
 
     /// As [`Self::parse`] reads it.
     #[must_use]
     pub fn to_text(&self, capture: &Capture) -> String {
         let pair = |entry: &Entry| {
-            let signal = signal::name(entry.bit).unwrap_or_default();
+            let signal = signal_name(entry.bit);
             let mark = if entry.inverted { "!" } else { "" };
             format!("{signal}={mark}{}", written(entry.channel, &capture.channels))
         };
@@ -165,8 +353,12 @@ fn written(index: usize, channels: &[Channel]) -> String {
 /// The channel of a name: the whole name; or its last part; or its place after `#`.
 fn place(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
     let unknown = || {
-        let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
-        MapError::Channel(name.to_owned(), names.join(", "))
+        let names: Vec<&str> = channels.iter().take(MAX_LISTED).map(|channel| channel.name.as_str()).collect();
+        let more = match channels.len() - names.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        MapError::Channel(name.to_owned(), names.join(", ") + &more)
     };
     if let Some(index) = name.strip_prefix('#').and_then(|digits| digits.parse::<usize>().ok()) {
         return if index < channels.len() { Ok(index) } else { Err(unknown()) };
@@ -203,19 +395,28 @@ mod tests {
             ("STEP0=A, dir0 = !B", "STEP0=top.A,DIR0=!B"),
             ("EN=#4,STEP3=top.B", "STEP3=top.B,EN=#4"),
             ("", ""),
+            ("DIR1=A,DIR0=A,STEP1=B,STEP0=#3", "STEP0=#3,STEP1=B,DIR0=top.A,DIR1=top.A"),
+            ("dedge0=A,DIR0=!B", "DEDGE0=top.A,DIR0=!B"),
+            ("CCW0=A,CW0=B,A15=#3,b15=#4", "CW0=B,CCW0=top.A,A15=#3,B15=#4"),
         ] {
             let map = ChannelMap::parse(text, &capture).expect("a map");
             assert_eq!(map.to_text(&capture), expected);
             assert_eq!(ChannelMap::parse(expected, &capture), Ok(map));
         }
         for (text, expected) in [
-            ("STEP0", "\"STEP0\" is no pair"),
-            ("STEP16=A", "STEP16 is no signal; there are STEP0 to STEP15"),
+            ("STEP0", "\"STEP0\" is not a pair"),
+            ("STEP16=A", "STEP16 is not a signal; use STEP0 to STEP15"),
             ("STEP0=D", "there is no channel D; the file has top.A, top.B, B, C, C"),
             ("STEP0=#5", "there is no channel #5"),
-            ("STEP0=C", "more than one channel is called C; write its place"),
+            ("STEP0=C", "more than one channel is called C; use its number"),
             ("STEP0=A,STEP0=B", "STEP0 has two channels"),
-            ("STEP0=A,DIR0=A", "channel top.A is STEP0 already"),
+            ("STEP0=A,DIR0=A", "channel top.A is STEP0 already; only several DIR signals can share a channel"),
+            ("DIR0=A,STEP1=A", "channel top.A is DIR0 already"),
+            ("CW0=A", "CW0 needs CCW0; add CCW0=CHANNEL"),
+            ("B3=A", "B3 needs A3; add A3=CHANNEL"),
+            ("STEP0=A,DEDGE0=B", "STEP0 and DEDGE0 are both given for one motor; remove one of them"),
+            ("CW0=A,CCW0=B,DIR0=#3", "CW0 and DIR0 are both given for one motor"),
+            ("A1=A,B1=B,STEP1=#3", "STEP1 and A1 are both given for one motor"),
         ] {
             let error = ChannelMap::parse(text, &capture).expect_err("no map").to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -27,6 +27,10 @@ pub mod read;
 
 mod proposal;
 
+mod made_pulses;
+
+mod spacing;
+
 pub mod channel_map;
 
 pub mod recorded;

@@ -17,7 +17,8 @@
 use crate::{
     capture::{Capture, Change},
     changes,
-    channel_map::{ChannelMap, Entry},
+    channel_map::{BUS_SIGNALS, ChannelMap, Entry},
+    made_pulses::{MadePulses, Steps},
     timebase::Timebase,
 };
 use core::fmt;
@@ -26,6 +27,8 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
+/// Pulses that are made are a part of a second wide at most: 2.5 us.
+const WIDEST: u64 = 400_000;
 /// Last cycle that a run may have (DESIGN A9).
 const LAST_CYCLE: u64 = 9_000_000_000_000_000;
 
@@ -52,8 +55,10 @@ pub struct Rounding {
     pub rounded: u64,
     /// Records of the file that share a cycle with the one before.
     pub met: u64,
-    /// Of those, single signals that changed there and back.
+    /// Single signals that changed there and back within a cycle, and steps that no pulse could be made for.
     pub lost: u64,
+    /// How often both inputs of an encoder changed at once, or CW and CCW were high together: no step is counted.
+    pub ambiguous: u64,
 }
 
 impl fmt::Display for Rounding {
@@ -114,7 +119,8 @@ impl Recorded {
             cycle(timebase, last.tick, clock_hz)?;
         }
         let signals = Signals::new(map);
-        let count = capture.changes.len();
+        // A pulse that is made has a fall that no change stands for.
+        let count = capture.changes.len() * if signals.made.is_some() { 2 } else { 1 };
         let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
         // At once, since a doubled vector may not fit beside the old one.
         let mut all: Vec<Record> = Vec::with_capacity(count);
@@ -140,6 +146,9 @@ pub struct Records<'m, I> {
     before: Option<Record>,
     /// Levels of the last one that was given.
     last: Option<Levels>,
+    /// STEP signals whose pulses are made and high in `before`; and the end of those of the last one that was given.
+    high: u64,
+    fall: Option<Record>,
     /// What the clock does to the times, as far as they are read.
     pub rounding: Rounding,
 }
@@ -186,16 +195,8 @@ impl<'m> Records<'m, changes::Iter<'m>> {
 impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
     fn new(changes: I, signals: Signals<'m>, timebase: Timebase, clock_hz: u32) -> Self {
         let cycles = timebase.cycles(clock_hz);
-        Self {
-            changes,
-            signals,
-            timebase,
-            clock_hz,
-            cycles,
-            before: None,
-            last: None,
-            rounding: Rounding::default(),
-        }
+        let (before, last, high, fall, rounding) = (None, None, 0, None, Rounding::default());
+        Self { changes, signals, timebase, clock_hz, cycles, before, last, high, fall, rounding }
     }
 
     /// The one before, if this change is of another cycle and the levels are others.
@@ -212,16 +213,42 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
             .unwrap_or(LAST_CYCLE),
             None => 0,
         };
-        let now = Record { cycle: Instant(at), levels: self.signals.levels(levels) };
-        let shown = self.before.replace(now)?;
+        let mut now = Record { cycle: Instant(at), levels: self.signals.levels(levels) };
+        let mut high = 0;
+        if let Some(made) = &mut self.signals.made {
+            let Steps { pulses, levels, ambiguous } = made.take(levels);
+            self.rounding.ambiguous += u64::from(ambiguous);
+            let since = self.before.map_or(u64::MAX, |before| at - before.cycle.0);
+            // A pulse ends a cycle later at the earliest, so it holds up a step that comes before.
+            let held = if since < 2 { self.high & pulses } else { 0 };
+            self.rounding.lost += u64::from(held.count_ones());
+            high = pulses & !held | if since == 0 { self.high } else { 0 };
+            now.levels.0 |= high | levels;
+        }
+        let (shown, falling) = (self.before.replace(now)?, core::mem::replace(&mut self.high, high));
         if shown.cycle == now.cycle {
             let since = self.last.unwrap_or(Levels::RESET).0;
+            let recorded = !self.signals.made.as_ref().map_or(0, MadePulses::signals);
             self.rounding.met += u64::from(shown.levels != now.levels);
             self.rounding.lost +=
-                u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0)).count_ones());
+                u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0) & recorded).count_ones());
             return None;
         }
-        (self.last.replace(shown.levels) != Some(shown.levels)).then_some(shown)
+        self.show(shown, falling, at - shown.cycle.0)
+    }
+
+    /// Gives a record, if its levels are others than those before, and then the end of the pulses that are made: half way to
+    /// the next record, at most [`WIDEST`].
+    fn show(&mut self, shown: Record, falling: u64, room: u64) -> Option<Record> {
+        let is_new = self.last.replace(shown.levels) != Some(shown.levels);
+        if falling != 0 && room > 1 {
+            let width = (room / 2).min(u64::from(self.clock_hz) / WIDEST).max(1);
+            let fall =
+                Record { cycle: Instant(shown.cycle.0 + width), levels: Levels(shown.levels.0 & !falling) };
+            self.last = Some(fall.levels);
+            self.fall = Some(fall);
+        }
+        is_new.then_some(shown)
     }
 }
 
@@ -230,13 +257,17 @@ impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
 
     #[inline]
     fn next(&mut self) -> Option<Record> {
+        if let Some(fall) = self.fall.take() {
+            return Some(fall);
+        }
         while let Some(change) = self.changes.next() {
             if let Some(record) = self.take(change) {
                 return Some(record);
             }
         }
         let last = self.before.take()?;
-        (self.last != Some(last.levels)).then_some(last)
+        let falling = core::mem::take(&mut self.high);
+        self.show(last, falling, u64::MAX)
     }
 }
 
@@ -246,22 +277,25 @@ struct Signals<'m> {
     entries: &'m [Entry],
     /// Levels of the signals that have no channel.
     rest: u64,
+    /// Motors without STEP and DIR of their own.
+    made: Option<MadePulses>,
 }
 
 impl<'m> Signals<'m> {
     fn new(map: &'m ChannelMap) -> Self {
         let right = 0xffff << Levels::DIR_SHIFT;
-        let mapped = map.entries().iter().fold(0, |mask, entry| mask | 1 << entry.bit);
+        let made = MadePulses::new(map);
+        let bus = map.entries().iter().filter(|entry| entry.bit < BUS_SIGNALS);
+        let mapped = bus.fold(made.as_ref().map_or(0, MadePulses::signals), |mask, entry| mask | 1 << entry.bit);
         // Of channels that are not in use DIR is low, as on any bus.
         let used = (1_u64 << map.bus_channels()) - 1;
         let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
-        Self { entries: map.entries(), rest }
+        Self { entries: map.entries(), rest, made }
     }
 
     fn levels(&self, channels: u64) -> Levels {
-        let level =
-            |entry: &Entry| u64::from((channels >> entry.channel & 1 == 1) != entry.inverted) << entry.bit;
-        Levels(self.entries.iter().fold(self.rest, |levels, entry| levels | level(entry)))
+        let bus = self.entries.iter().filter(|entry| entry.bit < BUS_SIGNALS);
+        Levels(bus.fold(self.rest, |levels, entry| levels | u64::from(entry.level(channels)) << entry.bit))
     }
 }
 
@@ -315,7 +349,7 @@ mod tests {
             recorded(&[(0, 0), (21, 1), (23, 0), (51, 2), (53, 3), (70, 2)], 100_000);
         let cycles: Vec<u64> = records.iter().map(|(cycle, _)| *cycle).collect();
         assert_eq!(cycles, [0, 5, 7]);
-        assert_eq!(rounding, Rounding { rounded: 4, met: 2, lost: 1 });
+        assert_eq!(rounding, Rounding { rounded: 4, met: 2, lost: 1, ambiguous: 0 });
         assert!(rounding.to_string().contains("1 pulses within one are lost"), "{rounding}");
         // A channel that is no signal changes in the same cycle, first.
         let (records, rounding, _) = recorded(&[(0, 0), (20, 1), (21, 0b1001), (22, 0b1000)], 100_000);
@@ -332,5 +366,69 @@ mod tests {
         let none =
             Recorded::new(Capture::new(Format::Vcd), &ChannelMap::default(), base, 1).expect("it fits");
         assert_eq!(none.records.len(), 1);
+    }
+
+    /// Records of STEP0 and DIR0 by a map, at 1 MHz: cycle, STEP, DIR.
+    fn made(map: &str, changes: &[(u64, u64)]) -> (Vec<(u64, u64, u64)>, Rounding) {
+        let capture = capture(changes);
+        let map = ChannelMap::parse(map, &capture).expect("a map");
+        let base = Timebase::new(1, 1_000_000).expect("it has a length");
+        let found = Recorded::new(capture.clone(), &map, base, 1_000_000).expect("it fits");
+        let streamed = Records::of(&capture, &map, base, 1_000_000).expect("it fits");
+        assert!(streamed.eq(found.records.iter().copied()));
+        let levels = |record: &Record| {
+            (record.cycle.0, record.levels.0 & 1, u64::from(record.levels.0 & RIGHT != 0))
+        };
+        (found.records.iter().map(levels).collect(), found.rounding)
+    }
+
+    #[test]
+    fn both_edges_make_a_pulse_each() {
+        // The edge at 31 comes a cycle after the one at 30, whose pulse cannot end before; so does the second one at 60.
+        let edges = [(0, 0b10), (20, 0b11), (23, 0b01), (30, 0b00), (31, 0b01), (50, 0b00), (60, 0b01)];
+        let (records, rounding) = made("DEDGE0=STEP,DIR0=DIR", &edges);
+        let expected = [
+            (0, 0, 1),
+            (20, 1, 1),
+            (21, 0, 1),
+            (23, 0, 0),
+            (30, 1, 0),
+            (31, 0, 0),
+            (50, 1, 0),
+            (52, 0, 0),
+            (60, 1, 0),
+            (62, 0, 0),
+        ];
+        assert_eq!((records, rounding.lost), (expected.to_vec(), 1));
+        // In one cycle two edges are one step, and one is lost.
+        let slow = Timebase::new(1, 10_000_000).expect("it has a length");
+        let twice = capture(&[(0, 0), (100, 1), (104, 0), (300, 1)]);
+        let map = ChannelMap::parse("DEDGE0=STEP", &twice).expect("a map");
+        let found = Recorded::new(twice, &map, slow, 1_000_000).expect("it fits");
+        assert_eq!((found.records.len(), found.rounding.lost), (5, 1));
+    }
+
+    #[test]
+    fn cw_and_ccw_pulses_keep_their_width_and_give_dir() {
+        let pulses = [(0, 0), (20, 1), (25, 0), (40, 2), (43, 0), (60, 1), (62, 3), (64, 0)];
+        let (records, rounding) = made("CW0=STEP,CCW0=DIR", &pulses);
+        let expected =
+            [(0, 0, 1), (20, 1, 1), (25, 0, 1), (40, 1, 0), (43, 0, 0), (60, 1, 1), (64, 0, 1)];
+        // Both are high at 62.
+        assert_eq!((records, rounding.ambiguous, rounding.lost), (expected.to_vec(), 1, 0));
+        let (records, _) = made("CW0=!STEP,CCW0=!DIR", &[(0, 3), (20, 2), (25, 3)]);
+        assert_eq!(records, [(0, 0, 1), (20, 1, 1), (25, 0, 1)]);
+    }
+
+    #[test]
+    fn each_edge_of_an_encoder_counts_by_its_phase() {
+        let phases = [(0, 0), (10, 1), (20, 3), (30, 2), (40, 0), (50, 2), (60, 3), (70, 0)];
+        let (records, rounding) = made("A0=STEP,B0=DIR", &phases);
+        let rises: Vec<(u64, u64)> =
+            records.iter().filter(|record| record.1 == 1).map(|record| (record.0, record.2)).collect();
+        // Four steps ahead, two back, and then both lines at once.
+        assert_eq!(rises, [(10, 1), (20, 1), (30, 1), (40, 1), (50, 0), (60, 0)]);
+        assert_eq!((rounding.ambiguous, rounding.lost), (1, 0));
+        assert_eq!(made("A0=!STEP,B0=DIR", &phases).0[1], (10, 1, 0));
     }
 }

@@ -177,6 +177,8 @@ pub struct TimingCheck {
     enabled: Instant,
     /// Channels that have not stepped since; none while EN is low.
     waking: u16,
+    /// Channels that each rule leaves out.
+    left_out: [u16; Rule::ALL.len()],
 }
 
 impl TimingCheck {
@@ -197,6 +199,14 @@ impl TimingCheck {
             edges: [Edges::default(); MAX_CHANNELS],
             enabled: Instant::RESET,
             waking: u16::MAX,
+            left_out: [0; Rule::ALL.len()],
+        }
+    }
+
+    /// Leaves a rule out for a channel whose edges were made and not recorded.
+    pub fn leave_out(&mut self, channel: u8, rule: Rule) {
+        if let Some(channels) = self.left_out.get_mut(rule as usize) {
+            *channels |= 1 << (channel & 15);
         }
     }
 
@@ -288,6 +298,9 @@ impl TimingCheck {
     /// A time that began at `from`, if it did, and ends at `at`.
     fn measure(&mut self, rule: Rule, channel: usize, from: Option<Instant>, at: Instant) {
         let (Some(from), Some(result)) = (from, self.results.get_mut(rule as usize)) else { return };
+        if self.left_out.get(rule as usize).is_some_and(|channels| channels >> channel & 1 == 1) {
+            return;
+        }
         let (measured, number) = (at - from, channel as u8);
         if result.least.is_none_or(|least| measured < least.measured) {
             result.least = Some(Least { measured, at, channel: number });

@@ -160,12 +160,14 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
     let baud = some(bytes, &[1, 9600, 115_200, 12_000_000])?;
     let mut pairs = Vec::new();
     for _ in 0..bytes.int_in_range(0..=4_u8)? {
-        let signal = *bytes.choose(&["STEP0", "DIR0", "STEP1", "DIR15", "EN", "RX", "TX", "DE", "x"])?;
+        let signals = ["STEP0", "DIR0", "STEP1", "DIR15", "EN", "RX", "TX", "DE", "DEDGE0", "CW0", "CCW0", "A1", "B1", "x"];
+        let signal = *bytes.choose(&signals)?;
         let mark = if bytes.arbitrary()? { "!" } else { "" };
         // One more than there is, now and then.
         pairs.push(format!("{signal}={mark}#{}", bytes.int_in_range(0..=channels)?));
     }
-    Ok(Ask { map: (!pairs.is_empty()).then(|| pairs.join(",")), clock_hz, sample_rate_hz, baud })
+    let map = (!pairs.is_empty()).then(|| pairs.join(","));
+    Ok(Ask { map, clock_hz, sample_rate_hz, baud, both_edges: bytes.arbitrary()? })
 }
 
 /// What a file holds, in order, the same again, and with room for a few rows no more than those.

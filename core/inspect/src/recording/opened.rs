@@ -20,7 +20,10 @@ use super::{
     scenario::{self, Bytes, Made, Refused, Steps},
     serial::{Heard, HeardByte},
 };
-use crate::curves::{Actual, Window};
+use crate::{
+    curves::{Actual, Window},
+    timing::Rule,
+};
 use alloc::{
     borrow::ToOwned,
     format,
@@ -32,7 +35,7 @@ use serde::Serialize;
 use stepscope_capture::{
     Capture, ChannelMap, Recorded,
     capture::TimedByte,
-    channel_map::MapError,
+    channel_map::{MapError, PulseSource},
     recorded::{Records, Rounding, TooLate},
     timebase::Timebase,
 };
@@ -67,6 +70,8 @@ pub struct Ask {
     pub sample_rate_hz: Option<u64>,
     /// Bit rate of RX and TX; measured without it.
     pub baud: Option<u32>,
+    /// Whether the drivers step on both edges: each STEP of the map becomes DEDGE.
+    pub both_edges: bool,
 }
 
 /// Why a capture cannot be looked at as yet.
@@ -236,6 +241,8 @@ pub struct Opened {
     pub report: Report,
     /// Steps that positions stand for.
     made_steps: Option<Vec<Step>>,
+    /// Motors whose pulses are made, and from what.
+    made_pulses: Vec<(u8, PulseSource)>,
 }
 
 impl Opened {
@@ -376,6 +383,7 @@ impl Opened {
             Some(text) => ChannelMap::parse(text, capture).map_err(OpenError::Map)?,
             None => ChannelMap::proposed(capture),
         };
+        let map = if ask.both_edges { map.with_both_edges() } else { map };
         let names: Vec<String> = capture.channels.iter().map(|channel| channel.name.clone()).collect();
         if !capture.changes.is_empty() && map.entries().is_empty() {
             return Err(OpenError::NoMap(names));
@@ -401,7 +409,11 @@ impl Opened {
             end_s: 0.0,
             report: Report { channels: Vec::new(), lines: Vec::new() },
             made_steps: None,
+            made_pulses: Vec::new(),
         };
+        if !capture.changes.is_empty() {
+            opened.hint(capture, &map);
+        }
         let told =
             ask.sample_rate_hz.map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate)).transpose()?;
         let base = capture.timebase.or(told);
@@ -417,6 +429,13 @@ impl Opened {
     fn rounded(&mut self, mut rounding: Rounding, others: u64) {
         rounding.rounded += others;
         (self.rounding, self.is_rounded) = (rounding.to_string(), rounding.rounded > 0);
+        if rounding.ambiguous > 0 {
+            let (s, verb) = if rounding.ambiguous == 1 { ("", "counts") } else { ("s", "count") };
+            self.notes.push(format!(
+                "{} change{s} of an encoder or of CW and CCW {verb} no step, since both lines changed or were high at once: use a higher sample rate, or check the map",
+                rounding.ambiguous
+            ));
+        }
     }
 
     /// The figures of the steps in the file's own ticks, where its own clock would round them: an interval would vary by a
@@ -428,7 +447,9 @@ impl Opened {
         base: Timebase,
         ask: &Ask,
     ) -> Option<Vec<ChannelReport>> {
-        if capture.changes.is_empty() || ask.clock_hz.is_some() || base.is_exact(self.clock_hz) {
+        // In ticks there may be no room for pulses that are made.
+        let are_made = self.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
+        if capture.changes.is_empty() || ask.clock_hz.is_some() || base.is_exact(self.clock_hz) || are_made {
             return None;
         }
         let (numerator, denominator) = base.parts();
@@ -477,7 +498,7 @@ impl Opened {
     fn lines_of<'c>(&mut self, capture: &'c Capture, map: &ChannelMap) -> Vec<(u64, Vec<&'c TimedByte>)> {
         let lines = [Levels::RX, Levels::TX];
         let of = |line: u64| {
-            let entry = map.entries().iter().find(|entry| 1_u64 << entry.bit == line);
+            let entry = map.entries().iter().find(|entry| entry.bit == line.trailing_zeros());
             let bytes = entry.map(|entry| {
                 capture.bytes.iter().filter(|byte| usize::from(byte.channel) == entry.channel).collect()
             });
@@ -496,11 +517,60 @@ impl Opened {
         found
     }
 
+    /// Notes what STEP is made from, and what else its edges may mean.
+    fn hint(&mut self, capture: &Capture, map: &ChannelMap) {
+        let sources = (0..self.channels).map(|motor| (motor, map.pulses(motor)));
+        self.made_pulses = sources.filter(|(_, source)| *source != PulseSource::Step).collect();
+        for (motor, source) in &self.made_pulses {
+            let note = match source {
+                PulseSource::Step => continue,
+                PulseSource::BothEdges => format!(
+                    "channel {motor} steps on both edges of its STEP line: the timing check leaves out pulse width and low time"
+                ),
+                PulseSource::CwCcw => format!(
+                    "channel {motor} has CW and CCW pulses: the timing check leaves out DIR set-up and hold time"
+                ),
+                PulseSource::Quadrature => format!(
+                    "channel {motor} counts each edge of an encoder: the timing check leaves out its pulses"
+                ),
+            };
+            self.notes.push(note);
+        }
+        for hint in map.edge_hints(capture) {
+            let motor = hint.motor;
+            let name = capture.channels.get(hint.channel).map_or("", |channel| channel.name.as_str());
+            if hint.both_edges {
+                let steps = hint.edges.map_or("twice as many".to_owned(), |edges| edges.to_string());
+                self.notes.push(format!(
+                    "both edges of STEP{motor} are evenly spaced: a driver that steps on both edges makes {steps} steps of it; for such a driver use --both-edges, or DEDGE{motor}={name} in the map"
+                ));
+            }
+            if hint.idles_high {
+                self.notes.push(format!(
+                    "STEP{motor} idles high and has low pulses: steps are counted where a pulse ends; if the driver steps where it begins, use STEP{motor}=!{name} in the map"
+                ));
+            }
+        }
+    }
+
+    /// Rules that say nothing of a channel, since the edges that they are about were made and not recorded.
+    pub fn unchecked(&self) -> impl Iterator<Item = (u8, Rule)> {
+        self.made_pulses.iter().flat_map(|(channel, source)| {
+            let rules: &[Rule] = match source {
+                PulseSource::Step => &[],
+                PulseSource::BothEdges => &[Rule::StepHigh, Rule::StepLow],
+                PulseSource::CwCcw => &[Rule::DirSetup, Rule::DirHold],
+                PulseSource::Quadrature => &Rule::ALL,
+            };
+            rules.iter().map(|rule| (*channel, *rule))
+        })
+    }
+
     /// Tells what it comes to.
     fn told(&mut self, report: Report, map: &ChannelMap) {
         self.report = report;
         for channel in &self.report.channels {
-            if self.has_levels() && !map.has(16 + u32::from(channel.channel)) {
+            if self.has_levels() && !map.has_direction(channel.channel) {
                 let number = channel.channel;
                 self.notes.push(format!(
                     "no channel is DIR{number}: all steps of channel {number} count to the right"
@@ -651,6 +721,11 @@ impl Opened {
                 scenario::of_bytes(&line.heard, &asked, base)
             }
             (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &asked),
+            // Pulses that were made have no width to take over.
+            (None, None) if self.unchecked().any(|(_, rule)| rule == Rule::StepHigh) => {
+                let all: Vec<Vec<Step>> = (0..channels).map(|channel| self.steps_of(channel)).collect();
+                scenario::of_step_times(&all, &asked)
+            }
             (None, None) => scenario::of_steps(&self.records, &asked),
         }?;
         let mut scenario = Scenario { note: scenario::note(file, &made), ..made.scenario };

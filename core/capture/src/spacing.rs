@@ -1,0 +1,135 @@
+//! What the edges of STEP say about its driver: whether it may step on both edges, and whether its pulses are low.
+
+use crate::{
+    capture::Capture,
+    channel_map::{ChannelMap, Entry, Input},
+};
+
+/// Changes that are inspected.
+const MAX_CHANGES: usize = 1_000_000;
+/// Fewest intervals between edges that say something.
+const MIN_INTERVALS: u64 = 14;
+
+/// What the edges of a motor's STEP look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeHint {
+    /// The motor.
+    pub motor: u8,
+    /// Index of its channel.
+    pub channel: usize,
+    /// Rising and falling edges are evenly spaced: a driver that steps on both edges makes a step of each.
+    pub both_edges: bool,
+    /// It idles high and its pulses are low.
+    pub idles_high: bool,
+    /// Its edges; `None` where there are more changes than were inspected.
+    pub edges: Option<u64>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Edges {
+    last: Option<u64>,
+    /// The two intervals before, the later one first.
+    before: [u64; 2],
+    intervals: u64,
+    even: u64,
+    high: u64,
+    low: u64,
+}
+
+impl Edges {
+    fn take(&mut self, tick: u64, was_high: bool) {
+        let Some(last) = self.last.replace(tick) else { return };
+        let interval = tick - last;
+        let total = if was_high { &mut self.high } else { &mut self.low };
+        *total = total.saturating_add(interval);
+        self.intervals += 1;
+        let [middle, first] = self.before;
+        if self.intervals > 2 {
+            let sum = first.saturating_add(interval);
+            let off = sum.abs_diff(middle.saturating_mul(2));
+            // An eighth of the interval, or a sample where the interval has many.
+            self.even += u64::from(off.saturating_mul(8) <= sum || off <= 2 && sum >= 16);
+        }
+        self.before = [interval, middle];
+    }
+
+    const fn is_even(&self) -> bool {
+        self.intervals >= MIN_INTERVALS && self.even * 10 >= (self.intervals - 2) * 9
+    }
+}
+
+impl ChannelMap {
+    /// What the edges of each STEP say, where they say something.
+    #[must_use]
+    pub fn edge_hints(&self, capture: &Capture) -> Vec<EdgeHint> {
+        let step = |entry: &Entry| match Input::of(entry.bit) {
+            Some((Input::Step, motor)) => Some((motor as u8, *entry, Edges::default())),
+            _ => None,
+        };
+        let mut motors: Vec<(u8, Entry, Edges)> = self.entries().iter().filter_map(step).collect();
+        let Some(first) = capture.changes.first().filter(|_| !motors.is_empty()) else { return Vec::new() };
+        let mut before = first.levels;
+        for change in capture.changes.iter().take(MAX_CHANGES) {
+            let changed = core::mem::replace(&mut before, change.levels) ^ change.levels;
+            for (_, entry, edges) in &mut motors {
+                if changed >> entry.channel & 1 == 1 {
+                    edges.take(change.tick, !entry.level(change.levels));
+                }
+            }
+        }
+        let hint = |(motor, entry, edges): (u8, Entry, Edges)| {
+            let idles_high = edges.intervals >= MIN_INTERVALS / 2
+                && entry.level(first.levels)
+                && entry.level(before)
+                && edges.low.saturating_mul(4) < edges.high;
+            let both_edges = edges.is_even();
+            let count = (capture.changes.len() <= MAX_CHANGES).then_some(edges.intervals + 1);
+            let hint = EdgeHint { motor, channel: entry.channel, both_edges, idles_high, edges: count };
+            (hint.both_edges || hint.idles_high).then_some(hint)
+        };
+        motors.into_iter().filter_map(hint).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capture::{Change, Channel, Format};
+
+    /// Whether STEP seems to step on both edges, and whether it idles high, by the times between its edges.
+    fn hint(first: u64, intervals: &[u64]) -> (bool, bool) {
+        let mut at = 0;
+        let edges = intervals.iter().zip(1..).map(|(interval, index)| {
+            at += interval;
+            Change { tick: at, levels: first ^ (index & 1) }
+        });
+        let changes = [Change { tick: 0, levels: first }].into_iter().chain(edges).collect();
+        let channels = vec![Channel { name: "S".into() }];
+        let capture = Capture { channels, changes, ..Capture::new(Format::Vcd) };
+        let map = ChannelMap::parse("STEP0=S", &capture).expect("a map");
+        let found = map.edge_hints(&capture).first().map(|hint| (hint.both_edges, hint.idles_high));
+        found.unwrap_or_default()
+    }
+
+    #[test]
+    fn evenly_spaced_edges_and_low_pulses_are_found() {
+        let ramp: Vec<u64> = (0..40).map(|k| 4000 - 60 * k).collect();
+        let period_ramp: Vec<u64> = (0..40).map(|k| 4000 - 60 * (k / 2)).collect();
+        let fixed_width: Vec<u64> = (0..40).map(|k| if k % 2 == 1 { 500 } else { 2000 - 30 * k }).collect();
+        for (first, intervals, expected) in [
+            (0, &ramp[..], (true, false)),
+            (0, &period_ramp, (true, false)),
+            (0, &[100; 40], (true, false)),
+            (0, &[100; 10], (false, false)),
+            (0, &fixed_width, (false, false)),
+            (0, &[60, 40].repeat(20), (false, false)),
+            // Within a sample of each other.
+            (0, &[8, 9].repeat(20), (true, false)),
+            (0, &[90, 10].repeat(20), (false, false)),
+            (1, &[90, 10].repeat(20), (false, true)),
+            (1, &[90, 10].repeat(2), (false, false)),
+        ] {
+            assert_eq!(hint(first, intervals), expected, "{first} {intervals:?}");
+        }
+    }
+}
