@@ -26,6 +26,7 @@ use std::{
 };
 use stepscope_core::{
     capture::{
+        ChannelMap,
         read::{self, Limits, Reading},
         samples::sample,
     },
@@ -114,12 +115,13 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     let path = &arguments.file;
     let failed = |error: io::Error| Failure::File(path.clone(), error);
     let limits = Limits::default();
+    let wanted = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
     let mut progress = Progress::new("capture", arguments.progress);
     if path == Path::new(STANDARD) {
         let mut bytes = Vec::new();
         io::stdin().take(MAX_STANDARD).read_to_end(&mut bytes).map_err(failed)?;
         let all = bytes.len() as u64;
-        return Ok(read::read(Cursor::new(bytes), &limits, &mut |read| {
+        return Ok(read::read_wanted(Cursor::new(bytes), &limits, &wanted, &mut |read| {
             progress.tell(read, all);
             true
         }));
@@ -133,7 +135,7 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
         }
     };
     let all = file.metadata().map_err(failed)?.len();
-    Ok(read::read(BufReader::with_capacity(1 << 16, file), &limits, &mut |read| {
+    Ok(read::read_wanted(BufReader::with_capacity(1 << 16, file), &limits, &wanted, &mut |read| {
         progress.tell(read, all);
         true
     }))

@@ -7,7 +7,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
-        read::{Limits, Reading, read},
+        read::{Limits, Reading, read, read_wanted},
         samples,
     },
     inspect::{
@@ -146,14 +146,16 @@ struct Looked<'a> {
 #[wasm_bindgen]
 impl CaptureFile {
     /// Reads a file of `size` bytes. `read(at, length)` gives its bytes; `watch(bytes)` hears how far it is. At most `most`
-    /// changes, bytes or positions are kept.
+    /// changes, bytes or positions are kept. Of more than 64 channels those that a map names are read before all others.
     #[wasm_bindgen(constructor)]
     #[must_use]
-    pub fn new(read_piece: Function, size: f64, watch: &Function, most: u32) -> Self {
+    pub fn new(read_piece: Function, size: f64, watch: &Function, most: u32, map: Option<String>) -> Self {
         let pieces = Pieces { read: read_piece, at: 0, size: size.max(0.0) as u64 };
         let mut tell = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
         let limits = Limits { most: most as usize };
-        let Reading { capture, error } = read(BufReader::with_capacity(PIECE, pieces), &limits, &mut tell);
+        let wanted = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
+        let input = BufReader::with_capacity(PIECE, pieces);
+        let Reading { capture, error } = read_wanted(input, &limits, &wanted, &mut tell);
         Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None }
     }
 

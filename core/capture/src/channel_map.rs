@@ -238,6 +238,16 @@ impl ChannelMap {
         Ok(Self::of(map.entries))
     }
 
+    /// The names of channels in a map's text, for a file of which not all can be read.
+    #[must_use]
+    pub fn channel_names(text: &str) -> Vec<String> {
+        let name = |pair: &str| {
+            let (_, channel) = pair.split_once('=')?;
+            Some(channel.trim().trim_start_matches('!').trim().to_owned())
+        };
+        text.split(',').filter_map(name).collect()
+    }
+
     /// Each motor has one source of steps, whole, and one of its direction.
     fn check_motors(&self) -> Result<(), MapError> {
         for entry in &self.entries {

@@ -29,6 +29,8 @@ mod proposal;
 
 mod made_pulses;
 
+mod names;
+
 mod spacing;
 
 pub mod channel_map;

@@ -1,7 +1,7 @@
 //! Small files of each kind, and what is read of them.
 
 use crate::common::{check, read_bytes, told};
-use stepscope_capture::read::{Limits, read};
+use stepscope_capture::read::{Limits, Reading, read, read_wanted};
 
 #[test]
 fn dumps_of_any_program_are_read() {
@@ -673,13 +673,47 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.capture.changes.first().expect("a row").levels, 1 << 63);
     assert_eq!(
         reading.capture.left_out,
-        ["more than 64 channels: W4, W5, W6, W7, W8, W9 and 100 000 more left out"]
+        [
+            "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, those with a \
+             telling name first; to read another one, name it in the channel map (--map STEP0=NAME)"
+        ]
     );
     let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));
     let reading = read_bytes(table);
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.changes.first().expect("a row").levels, u64::MAX);
-    assert_eq!(reading.capture.left_out, ["more than 64 channels: A, A, A, A, A, A left out"]);
+    assert_eq!(reading.capture.left_out.len(), 1);
+    assert!(reading.capture.left_out[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read"));
+}
+
+#[test]
+fn of_more_than_64_channels_those_that_are_wanted_or_telling_are_read_first() {
+    let names = |reading: &Reading| -> Vec<String> {
+        reading.capture.channels.iter().map(|channel| channel.name.clone()).collect()
+    };
+    let dump = "$scope module tb $end $var wire 32 a pc [31:0] $end $var wire 40 b instr [39:0] $end $var wire 1 c STEP $end \
+        $var wire 1 d DIR $end $var wire 1 e last $end $var wire 4000000000 f wide $end $upscope $end $enddefinitions $end\n\
+        #0 b0 a 0c #5 1c b1000000000000000000000000000000000000000 b 1e #6 b1 f";
+    let reading = read_bytes(dump);
+    let found = names(&reading);
+    assert_eq!((found.len(), &found[62], &found[63]), (64, &"tb.STEP".to_owned(), &"tb.DIR".to_owned()));
+    assert_eq!(reading.capture.changes.last().expect("a row").levels, 1 << 62);
+    assert!(reading.capture.left_out[0].starts_with("4 000 000 011 of 4 000 000 075 channels left out (tb.instr["), "{:?}", reading.capture.left_out);
+    let wanted = ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);
+    let reading = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true);
+    let found = names(&reading);
+    assert_eq!(found[59..], ["tb.instr[39]", "tb.STEP", "tb.DIR", "tb.last", "tb.wide[3999999999]"]);
+    assert_eq!(reading.capture.changes.last().expect("a row").levels, 0b1011 << 59);
+    // Tables, too.
+    let mut head: Vec<String> = (0..70).map(|at| format!("W{at}")).collect();
+    head.push("X_STEP".into());
+    let table = format!("Time [s],{}\n0{},1\n", head.join(","), ",0".repeat(70));
+    let samples = format!("{}\n{},1\n", head.join(","), vec!["0"; 70].join(","));
+    for table in [table, samples] {
+        let reading = read_bytes(table);
+        assert_eq!((reading.error.as_ref(), names(&reading)[63].as_str()), (None, "X_STEP"));
+        assert_eq!(reading.capture.changes.first().expect("a row").levels, 1 << 63);
+    }
 }
 
 #[test]

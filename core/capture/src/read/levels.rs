@@ -12,6 +12,7 @@ use super::{
     fields::{Fields, fields, separator},
     reading::Reader,
     recorder::{Recorder, quoted},
+    selection::select,
     sigrok::parse_rate,
     times::{TimeUnit, Times},
 };
@@ -51,7 +52,7 @@ enum Column {
     /// Another column of times, or of sample numbers.
     Other,
     /// A channel, whose name errors give.
-    Level(u32, String),
+    Level(Option<u8>, String),
 }
 
 impl LevelsTable {
@@ -86,7 +87,7 @@ impl LevelsTable {
                 "the table does not name its columns: the first is taken as the time, each other as a channel".into(),
             );
         }
-        let mut list = Vec::new();
+        let (mut list, mut channels) = (Vec::new(), Vec::new());
         let mut bit = 0;
         for (at, name) in names.iter().enumerate() {
             if at == time || others.contains(&at) {
@@ -95,12 +96,18 @@ impl LevelsTable {
             }
             let name = if has_head { name.clone() } else { format!("D{bit}") };
             let numbered = format!("Channel {bit}");
-            self.recorder.channel(if name.is_empty() { &numbered } else { &name });
-            list.push(Column::Level(bit, name));
+            channels.push(if name.is_empty() { numbered } else { name.clone() });
+            list.push(Column::Level(None, name));
             bit += 1;
         }
         if bit == 0 {
             return Err("the head of the table names no channel; name the time and then each channel".into());
+        }
+        let mut bits = select(channels.iter().map(String::as_str), &mut self.recorder).into_iter();
+        for column in &mut list {
+            if let Column::Level(place, _) = column {
+                *place = bits.next().flatten();
+            }
         }
         self.columns = Some(Columns { separator, times: Times::new(unit), list, first_row: true });
         Ok(has_head)
@@ -284,7 +291,7 @@ fn row<'l>(
             Column::Other => {}
             Column::Level(bit, name) => match field {
                 b"0" => {}
-                b"1" => levels |= 1_u64.checked_shl(*bit).unwrap_or(0),
+                b"1" => levels |= bit.map_or(0, |bit| 1 << bit),
                 b"X" | b"x" => *unknown += 1,
                 _ => return Err(not_a_level(name, field)),
             },

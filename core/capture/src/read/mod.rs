@@ -26,6 +26,7 @@ mod fields;
 mod reading;
 mod recorder;
 mod row;
+mod selection;
 mod source;
 mod times;
 
@@ -60,6 +61,26 @@ pub use reading::{Limits, ReadError, Reading};
 /// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”; "));
 /// ```
 pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(u64) -> bool) -> Reading {
+    read_wanted(input, limits, &[], watch)
+}
+
+/// Reads a file as [`read`] does; where it has more than [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS) channels, those of
+/// these names are read before all others: whole names, or their last parts.
+///
+/// ```
+/// use stepscope_capture::read::{Limits, read_wanted};
+///
+/// let dump = "$var wire 100 ! bus [99:0] $end $enddefinitions $end #0 b0 ! #1 b1 !";
+/// let wanted = ["bus[99]".to_owned()];
+/// let capture = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true).capture;
+/// assert_eq!(capture.channels.last().map(|channel| channel.name.as_str()), Some("bus[99]"));
+/// ```
+pub fn read_wanted<R: BufRead + Seek>(
+    input: R,
+    limits: &Limits,
+    wanted: &[String],
+    watch: &mut dyn FnMut(u64) -> bool,
+) -> Reading {
     let mut source = match Source::open(input, watch) {
         Ok(source) => source,
         Err(what) => return refusal(ReadError::whole(what)),
@@ -68,7 +89,8 @@ pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(
         Ok(found) => found,
         Err(what) => return refusal(ReadError::whole(what)),
     };
-    let recorder = Recorder::new(format, limits.most);
+    let mut recorder = Recorder::new(format, limits.most);
+    recorder.wanted = wanted.to_vec();
     match format {
         Format::Vcd => {
             let mut reader = vcd::Vcd::new(recorder);

@@ -20,11 +20,13 @@ pub(super) struct Recorder {
     latest: Option<Change>,
     /// Channels for which there is no bit.
     beyond: Names,
+    /// Names of channels that are read before all others.
+    pub(super) wanted: Vec<String>,
 }
 
 impl Recorder {
     pub(super) const fn new(format: Format, most: usize) -> Self {
-        Self { capture: Capture::new(format), most, latest: None, beyond: Names::new() }
+        Self { capture: Capture::new(format), most, latest: None, beyond: Names::new(), wanted: Vec::new() }
     }
 
     /// How many changes, bytes or positions are read at most.
@@ -36,11 +38,16 @@ impl Recorder {
     pub(super) fn channel(&mut self, name: &str) -> Option<u8> {
         let bit = self.capture.channels.len();
         if bit >= MAX_CHANNELS {
-            self.beyond.add(name);
+            self.beyond(name);
             return None;
         }
         self.capture.channels.push(Channel { name: cut(name).into() });
         u8::try_from(bit).ok()
+    }
+
+    /// A channel has no bit.
+    pub(super) fn beyond(&mut self, name: &str) {
+        self.beyond.add(name);
     }
 
     /// As many more channels have no bit.
@@ -130,7 +137,12 @@ impl Recorder {
     pub(super) fn finish(mut self) -> Capture {
         self.settle();
         if !self.beyond.is_empty() {
-            let sentence = format!("more than {MAX_CHANNELS} channels: {} left out", self.beyond.told());
+            let sentence = format!(
+                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, those with a telling name first; to read another one, name it in the channel map (--map STEP0=NAME)",
+                grouped(self.beyond.count),
+                grouped(self.beyond.count.saturating_add(self.capture.channels.len() as u64)),
+                self.beyond.told()
+            );
             self.leave_out(sentence);
         }
         self.capture

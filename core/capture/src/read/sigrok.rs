@@ -21,6 +21,7 @@ use super::{
     levels::not_a_level,
     reading::Reader,
     recorder::{Names, Recorder, quoted},
+    selection::select,
 };
 use crate::capture::Capture;
 use head::{Head, RowClock};
@@ -65,13 +66,18 @@ impl Samples {
         let mut fields = Fields::new();
         fields.split(row, separator)?;
         let kinds = self.head.columns(&fields);
+        let levels = kinds.iter().filter_map(|kind| match kind {
+            head::Kind::Level(name) => Some(name.as_str()),
+            _ => None,
+        });
+        let mut bits = select(levels, &mut self.recorder).into_iter();
         let mut list = Vec::new();
         let mut analogue = Names::new();
         for kind in kinds {
             list.push(match kind {
                 head::Kind::Time => Column::Time,
                 head::Kind::Trigger => Column::Other,
-                head::Kind::Level(name) => self.recorder.channel(&name).map_or(Column::Other, Column::Level),
+                head::Kind::Level(_) => bits.next().flatten().map_or(Column::Other, Column::Level),
                 head::Kind::Analogue(name) => {
                     analogue.add(&name);
                     Column::Other

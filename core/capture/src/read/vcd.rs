@@ -72,13 +72,21 @@ impl Vcd {
         }
     }
 
+    /// The definitions are over: what is read of them is selected.
+    fn begin(&mut self) {
+        if !self.body {
+            self.body = true;
+            self.header.select(&mut self.variables, &mut self.recorder);
+        }
+    }
+
     /// A word of which nothing is expected.
     fn any(&mut self, word: &[u8]) -> Result<(), String> {
         let (&kind, rest) = word.split_first().unwrap_or((&b' ', &[]));
         if kind == b'$' {
             return self.keyword(word);
         }
-        self.body = true;
+        self.begin();
         if let Some(value) = Value::parse(kind) {
             if rest.is_empty() {
                 self.expected = Expected::Scalar(value);
@@ -114,9 +122,10 @@ impl Vcd {
     fn keyword(&mut self, word: &[u8]) -> Result<(), String> {
         self.expected = Expected::Any;
         match word {
-            b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.body = true,
+            b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.begin(),
             b"$dumpoff" => {
-                (self.body, self.off) = (true, true);
+                self.begin();
+                self.off = true;
                 self.offs += 1;
             }
             b"$end" => self.off = false,
@@ -143,11 +152,16 @@ impl Vcd {
         }
         self.expected = Expected::Any;
         match keyword {
-            Keyword::EndDefinitions => self.body = true,
+            Keyword::EndDefinitions => self.begin(),
             Keyword::Timescale => self.recorder.capture.timebase = Some(self.header.timescale()?),
             Keyword::Scope => self.header.enter()?,
             Keyword::Upscope => self.header.leave(),
-            Keyword::Var => self.header.variable(&mut self.variables, &mut self.recorder)?,
+            Keyword::Var => {
+                self.header.variable(&mut self.recorder)?;
+                if self.body {
+                    self.header.select(&mut self.variables, &mut self.recorder);
+                }
+            }
             Keyword::Skipped => {}
         }
         Ok(())
@@ -211,12 +225,14 @@ impl Reader for Vcd {
     }
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
+        let is_whole = self.body;
+        self.begin();
         let mut missing = match self.expected {
             Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is not whole")),
             Expected::Scalar(_) | Expected::Vector | Expected::Other => {
                 Err("the file ends within a value change; it is not whole".into())
             }
-            _ if !self.body => Err("the file ends before $enddefinitions; it is not whole".into()),
+            _ if !is_whole => Err("the file ends before $enddefinitions; it is not whole".into()),
             _ if self.recorder.capture.channels.is_empty() => {
                 Err("the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR"
                     .into())

@@ -4,6 +4,7 @@ use super::metadata::Metadata;
 use crate::read::{
     reading::ReadError,
     recorder::{Recorder, grouped},
+    selection::select,
     source::WATCH_EVERY,
 };
 
@@ -46,9 +47,10 @@ impl<'a> SampleStream<'a> {
             if *bit >= 8 * unit {
                 return Err(format!("{name} is bit {bit} of samples of {unit} bytes (unitsize)"));
             }
-            if let Some(channel) = recorder.channel(name) {
-                bits.push((*bit, channel));
-            }
+        }
+        let channels = select(metadata.probes.iter().map(|(_, name)| name.as_str()), recorder);
+        for ((bit, _), channel) in metadata.probes.iter().zip(channels) {
+            bits.extend(channel.map(|channel| (*bit, channel)));
         }
         if bits.is_empty() {
             return Err("the session has no logic channels; record STEP and DIR as logic channels".into());

@@ -6,9 +6,11 @@
 
 use super::variables::Variables;
 use crate::{
+    capture::MAX_CHANNELS,
     read::{
         decimal::{power_of_ten, whole},
         recorder::{Names, Recorder, quoted},
+        selection::Selection,
     },
     timebase::Timebase,
 };
@@ -66,11 +68,19 @@ pub(super) struct Header {
     scopes: Vec<usize>,
     /// Variables that are no lines.
     others: Names,
+    /// The channels that may be read: code of the variable, and bit of its value.
+    selection: Selection<(Box<[u8]>, u32)>,
 }
 
 impl Default for Header {
     fn default() -> Self {
-        Self { command: Vec::new(), path: String::new(), scopes: Vec::new(), others: Names::new() }
+        Self {
+            command: Vec::new(),
+            path: String::new(),
+            scopes: Vec::new(),
+            others: Names::new(),
+            selection: Selection::new(),
+        }
     }
 }
 
@@ -135,11 +145,7 @@ impl Header {
     }
 
     /// `wire 8 " speed [7:0]`: a channel for each bit.
-    pub(super) fn variable(
-        &mut self,
-        variables: &mut Variables,
-        recorder: &mut Recorder,
-    ) -> Result<(), String> {
+    pub(super) fn variable(&mut self, recorder: &mut Recorder) -> Result<(), String> {
         let text = || quoted(&self.command);
         let mut words = self.words();
         let (Some(kind), Some(size), Some(code), Some(name)) =
@@ -158,23 +164,35 @@ impl Header {
             self.others.add(&format!("{name} ({kind})"));
             return Ok(());
         }
+        let code: Box<[u8]> = code.into();
         if size == 1 {
-            if let Some(channel) = recorder.channel(&name) {
-                variables.add(code, 0, channel);
-            }
+            self.selection.offer(name, (code, 0), recorder);
             return Ok(());
         }
         let (base, first, step) = bits(&name, size);
-        for bit in 0..size {
-            let index = first + step * i64::from(bit);
-            let Some(channel) = recorder.channel(&format!("{base}[{index}]")) else {
-                // The rest of a vector of any size, in one go.
-                recorder.more_beyond(u64::from(size - bit - 1));
-                break;
-            };
-            variables.add(code, bit, channel);
+        // Of a vector of any size no more bits than there is room for, and those that are asked for.
+        let all = size.min(MAX_CHANNELS as u32);
+        let last = base.rsplit('.').next().unwrap_or_default();
+        let asked = |wanted: &String| {
+            let (vector, index) = wanted.strip_suffix(']')?.rsplit_once('[')?;
+            let bit = index.parse::<i64>().ok()?.checked_sub(first)?.checked_mul(step)?;
+            let is_this = vector == base || vector.eq_ignore_ascii_case(last);
+            u32::try_from(bit).ok().filter(|bit| is_this && (all..size).contains(bit))
+        };
+        let mut more: Vec<u32> = recorder.wanted.iter().filter_map(asked).collect();
+        more.sort_unstable();
+        more.dedup();
+        recorder.more_beyond(u64::from(size - all) - more.len() as u64);
+        for bit in (0..all).chain(more) {
+            let name = format!("{base}[{}]", first + step * i64::from(bit));
+            self.selection.offer(name, (code.clone(), bit), recorder);
         }
         Ok(())
+    }
+
+    /// Selects the channels of the variables so far.
+    pub(super) fn select(&mut self, variables: &mut Variables, recorder: &mut Recorder) {
+        self.selection.finish(recorder, |(code, bit), channel| variables.add(&code, bit, channel));
     }
 
     /// The variables that are no lines.

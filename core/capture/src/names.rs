@@ -1,0 +1,318 @@
+//! What the name of a channel says: which signal it is, and of which motor.
+//!
+//! ```text
+//! signal   STEP STP PUL PULSE PLS PU, DIR DIRECTION DR SIGN, CW, CCW, EN ENA ENABLE, RX RXD, TX TXD, DE
+//! motor    what is left of the name: X_STEP, STEP (Y axis), stepper_z1.step_pin, motor1_step, stepgen.0.step, RA_STEP
+//! other    step_count, LED, BUSY: neither
+//! ```
+
+/// Which signal a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Step,
+    Dir,
+    Cw,
+    Ccw,
+    /// STEP only beside DIR: any clock is called so.
+    Clock,
+    A,
+    B,
+    En,
+    Rx,
+    Tx,
+    De,
+}
+
+/// What a name says of a signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Named {
+    pub(crate) kind: Kind,
+    /// The name says that it is active low.
+    pub(crate) inverted: bool,
+    /// The negative line of a pair, as in `PUL-`.
+    pub(crate) negative: bool,
+    /// A pulse input per direction that is called a pulse, too, as in `PUL/CW`.
+    pub(crate) pulse: bool,
+    /// What tells its motor from others: a number, a letter, a word, or nothing.
+    pub(crate) axis: String,
+    /// What it stands in.
+    pub(crate) scope: String,
+}
+
+/// What a name says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Meaning {
+    Signal(Named),
+    /// Something that is no signal of a motor or its line.
+    Other,
+    /// Nothing that is known.
+    Unknown,
+}
+
+const WORDS: [(&str, Kind); 33] = [
+    ("STEP", Kind::Step),
+    ("STEPS", Kind::Step),
+    ("STP", Kind::Step),
+    ("PUL", Kind::Step),
+    ("PULS", Kind::Step),
+    ("PULSE", Kind::Step),
+    ("PULSES", Kind::Step),
+    ("PLS", Kind::Step),
+    ("PU", Kind::Step),
+    ("DIR", Kind::Dir),
+    ("DIRECTION", Kind::Dir),
+    ("DR", Kind::Dir),
+    ("SIGN", Kind::Dir),
+    ("CW", Kind::Cw),
+    ("UP", Kind::Cw),
+    ("CCW", Kind::Ccw),
+    ("DOWN", Kind::Ccw),
+    ("DN", Kind::Ccw),
+    ("CLK", Kind::Clock),
+    ("CLOCK", Kind::Clock),
+    ("CP", Kind::Clock),
+    ("EN", Kind::En),
+    ("ENA", Kind::En),
+    ("ENABLE", Kind::En),
+    ("ENN", Kind::En),
+    ("NEN", Kind::En),
+    ("NENABLE", Kind::En),
+    ("RX", Kind::Rx),
+    ("RXD", Kind::Rx),
+    ("TX", Kind::Tx),
+    ("TXD", Kind::Tx),
+    ("DE", Kind::De),
+    ("TXEN", Kind::De),
+];
+/// Words of an enable that is active low.
+const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
+/// Words that only stand for a direction's pulses where the other direction has some, too.
+const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
+/// Phases of an encoder, in one word or after one of `ENCODER`.
+const PHASES: [(&str, Kind); 8] = [
+    ("ENCA", Kind::A),
+    ("PHA", Kind::A),
+    ("PHASEA", Kind::A),
+    ("QA", Kind::A),
+    ("ENCB", Kind::B),
+    ("PHB", Kind::B),
+    ("PHASEB", Kind::B),
+    ("QB", Kind::B),
+];
+const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
+/// Words that say nothing of the motor; with a number they are one: `MOTOR1`.
+const NOISE: [&str; 24] = [
+    "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN", "BIT",
+    "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS",
+];
+/// What a number makes the name of a pin or a probe.
+const PINS: [&str; 16] =
+    ["D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG", "LOGIC"];
+/// Words of what is no signal, whatever stands beside them.
+const OTHERS: [&str; 60] = [
+    "ACK", "ALARM", "ALM", "BUSY", "CNT", "COUNT", "COUNTER", "CS", "DELAY", "DIAG", "DONE", "END", "ENDSTOP", "ERR",
+    "ERROR", "FAULT", "FLT", "FREQ", "HOME", "IDX", "INDEX", "INT", "INTERVAL", "IRQ", "LAST", "LED", "LEN", "LENGTH",
+    "LIMIT", "MICRO", "MICROSTEP", "MISO", "MODE", "MOSI", "NEXT", "NUM", "PERIOD", "POS", "POSITION", "PREV", "RATE",
+    "READY", "REQ", "RESET", "RST", "SCK", "SCL", "SCLK", "SDA", "SIZE", "SLEEP", "SPEED", "STALL", "STATE", "TOTAL",
+    "TRIG", "TRIGGER", "VALID", "WIDTH", "PWM",
+];
+/// Letters of axes, in the order of their channels.
+pub(crate) const AXES: &str = "XYZABCUVWE";
+
+impl Meaning {
+    /// What a name says; `indexed` where the number that it begins with only counts the channels of the file.
+    pub(crate) fn of(name: &str, indexed: bool) -> Self {
+        let name = without_index(name, indexed);
+        let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
+        let words = words(last);
+        if words.iter().any(|word| OTHERS.contains(&letters(word))) {
+            return Self::Other;
+        }
+        let mut kinds: Vec<(Kind, &str)> = Vec::new();
+        let (mut axis, mut rest) = (None::<String>, Vec::new());
+        let is_encoder = words.iter().any(|word| ENCODER.contains(&letters(word)));
+        let mut low = false;
+        for word in &words {
+            let phase = |word: &str| match word {
+                "A" if is_encoder => Some(Kind::A),
+                "B" if is_encoder => Some(Kind::B),
+                _ => PHASES.iter().find(|(phase, _)| *phase == word).map(|(_, kind)| *kind),
+            };
+            if let Some(kind) = phase(letters(word)) {
+                kinds.push((kind, "PHASE"));
+                axis = axis.or_else(|| digits(word));
+            } else if let Some((known, kind, own)) = signal(word) {
+                kinds.push((kind, known));
+                axis = axis.or(own);
+            } else if let Some((known, kind, own)) = word.strip_prefix('N').and_then(signal) {
+                low = true;
+                kinds.push((kind, known));
+                axis = axis.or(own);
+            } else {
+                rest.push(word.as_str());
+            }
+        }
+        let has = |kind: Kind| kinds.iter().any(|(one, _)| *one == kind);
+        let is_bus = has(Kind::Dir) && words.iter().any(|word| word == "RS485" || word == "485");
+        let kind = match () {
+            () if has(Kind::De) || has(Kind::En) && has(Kind::Tx) || is_bus => Kind::De,
+            () if has(Kind::En) => Kind::En,
+            () if has(Kind::Dir) => Kind::Dir,
+            () if has(Kind::Cw) && !has(Kind::Ccw) => Kind::Cw,
+            () if has(Kind::Ccw) && !has(Kind::Cw) => Kind::Ccw,
+            () if has(Kind::Step) => Kind::Step,
+            () => match kinds.first() {
+                Some((kind, _)) => *kind,
+                None => return Self::Unknown,
+            },
+        };
+        let marked = low
+            || last.starts_with(['/', '~', '!'])
+            || last.to_ascii_uppercase().ends_with("_N")
+            || last.ends_with('#');
+        let inverted = match kind {
+            Kind::En => marked || kinds.iter().any(|(_, word)| ACTIVE_LOW.contains(word)),
+            Kind::Step | Kind::Cw | Kind::Ccw => marked,
+            _ => false,
+        };
+        let negative = last.trim_end().trim_end_matches(')').ends_with('-')
+            || last.to_ascii_uppercase().ends_with("_N")
+            || words.iter().any(|word| word == "MINUS");
+        let axis = axis.or_else(|| axis_of(&rest)).or_else(|| axis_of_scope(scope)).unwrap_or_default();
+        let weak = kinds.iter().all(|(_, word)| UP_DOWN.contains(word));
+        let pulse = has(Kind::Step) || has(Kind::Clock);
+        // UP and DOWN are pulses only where they are called so, or stand alone in the name.
+        if weak && !rest.iter().all(|word| is_noise(word) || is_axis(word)) {
+            return Self::Unknown;
+        }
+        Self::Signal(Named { kind, inverted, negative, pulse, axis, scope: scope.to_owned() })
+    }
+
+    /// Whether a name, of any file, speaks for a signal of a motor or its line.
+    pub(crate) fn is_telling(name: &str) -> bool {
+        matches!(Self::of(name, false), Self::Signal(Named { kind, .. }) if kind != Kind::Clock)
+    }
+}
+
+/// Whether the number that each name begins with only counts the channels.
+pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
+    let (mut seen, mut count) = (std::collections::BTreeSet::new(), 0);
+    for name in names {
+        let rest = name.trim_start_matches(|c: char| c.is_ascii_digit());
+        let digits = &name[..name.len() - rest.len()];
+        if digits.is_empty() || !seen.insert(digits) {
+            return false;
+        }
+        count += 1;
+    }
+    count > 1
+}
+
+/// A name without what only counts channels: `2: STEP`, `D2: STEP`.
+fn without_index(name: &str, indexed: bool) -> &str {
+    if let Some((index, rest)) = name.split_once(':') {
+        let index = index.trim();
+        let is_pin = PINS.iter().any(|pin| index.to_ascii_uppercase().trim_end_matches(|c: char| c.is_ascii_digit()).trim() == *pin);
+        let is_number = !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit());
+        if (is_pin || is_number) && !rest.trim().is_empty() {
+            return rest.trim();
+        }
+    }
+    let rest = name.trim_start_matches(|c: char| c.is_ascii_digit());
+    if indexed && rest.contains(|c: char| c.is_ascii_alphabetic()) { rest } else { name }
+}
+
+/// The words of a name, in capitals: between marks, where small letters are followed by a capital, and, as far as it is no word
+/// that is known, where digits are followed by a letter.
+fn words(name: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {
+        let upper = part.to_ascii_uppercase();
+        let is_low = upper.strip_prefix('N').is_some_and(|word| signal(word).is_some());
+        if is_low || signal(&upper).is_some() || PHASES.iter().any(|(phase, _)| *phase == letters(&upper)) {
+            all.push(upper);
+            continue;
+        }
+        let bytes = part.as_bytes();
+        let mut start = 0;
+        for at in 1..bytes.len() {
+            let (Some(before), Some(now)) = (bytes.get(at - 1), bytes.get(at)) else { continue };
+            let after = bytes.get(at + 1);
+            let is_start = before.is_ascii_lowercase() && now.is_ascii_uppercase()
+                || before.is_ascii_digit() && now.is_ascii_alphabetic()
+                || before.is_ascii_uppercase() && now.is_ascii_uppercase() && after.is_some_and(u8::is_ascii_lowercase);
+            if is_start {
+                all.push(part.get(start..at).unwrap_or_default().to_ascii_uppercase());
+                start = at;
+            }
+        }
+        all.push(part.get(start..).unwrap_or_default().to_ascii_uppercase());
+    }
+    all
+}
+
+fn letters(word: &str) -> &str {
+    word.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// The number that a word ends with.
+fn digits(word: &str) -> Option<String> {
+    let digits = word.get(letters(word).len()..)?;
+    (!digits.is_empty()).then(|| digits.to_owned())
+}
+
+/// The signal of a word: STEP, STEP1, STEPX, XSTEP2; with what it says of the axis.
+fn signal(word: &str) -> Option<(&'static str, Kind, Option<String>)> {
+    let text = letters(word);
+    let known = |text: &str| WORDS.iter().find(|(known, _)| *known == text).copied();
+    if let Some((known, kind)) = known(text) {
+        return Some((known, kind, digits(word)));
+    }
+    if ENCODER.contains(&text) {
+        return None;
+    }
+    let axis = |letter: &str| letter.len() == 1 && AXES.contains(letter);
+    let (first, rest) = text.split_at_checked(1)?;
+    let (start, end) = text.split_at_checked(text.len().checked_sub(1)?)?;
+    let (letter, found) = match (axis(first).then(|| known(rest)).flatten(), axis(end).then(|| known(start)).flatten()) {
+        (Some(found), _) => (first, found),
+        (None, Some(found)) => (end, found),
+        (None, None) => return None,
+    };
+    let is_motor = matches!(found.1, Kind::Step | Kind::Dir | Kind::En) && found.0.len() > 2 || found.0 == "EN";
+    is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(word).unwrap_or_default()))))
+}
+
+/// Whether a word is an axis by itself: `X`, `2`, `E1`.
+fn is_axis(word: &str) -> bool {
+    let text = letters(word);
+    text.is_empty() || text.len() == 1 && AXES.contains(text)
+}
+
+fn is_noise(word: &str) -> bool {
+    NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&letters(word))
+}
+
+/// The axis of the words that are no signal.
+fn axis_of(words: &[&str]) -> Option<String> {
+    if let Some(axis) = words.iter().find(|word| is_axis(word)) {
+        return Some((*axis).to_owned());
+    }
+    // `MOTOR1`, `AXIS2`, `ENC1`.
+    let numbered = |word: &&&str| NOISE.contains(&letters(word)) || ENCODER.contains(&letters(word));
+    if let Some(number) = words.iter().filter(numbered).find_map(|word| digits(word)) {
+        return Some(number);
+    }
+    let left: Vec<&str> = words.iter().copied().filter(|word| !is_noise(word)).collect();
+    (!left.is_empty()).then(|| left.join("_"))
+}
+
+/// The axis that the name of a scope ends with: `axis2`, `motor_x`.
+fn axis_of_scope(scope: &str) -> Option<String> {
+    let last = scope.rsplit('.').next().unwrap_or_default().to_ascii_uppercase();
+    let last = last.rsplit(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
+    if last.is_empty() {
+        return None;
+    }
+    if is_axis(last) { Some(last.to_owned()) } else { digits(last) }
+}

@@ -1,0 +1,96 @@
+//! Which channels are read of a file that has more than there is room for: those that are asked for, then those whose names
+//! tell what they are, then the others, each in the order of the file.
+
+use super::recorder::Recorder;
+use crate::{capture::MAX_CHANNELS, names::Meaning};
+
+/// How much a channel is wanted, the most first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rank {
+    /// Asked for by its whole name.
+    Named,
+    /// Asked for by the last part of its name.
+    Meant,
+    /// Its name says that it is a signal of a motor or its line.
+    Telling,
+    /// Such a name of a bit of a vector.
+    TellingBit,
+    Other,
+}
+
+impl Rank {
+    pub(super) fn of(name: &str, wanted: &[String]) -> Self {
+        let last = name.rsplit('.').next().unwrap_or_default();
+        match () {
+            () if wanted.iter().any(|wanted| wanted == name) => Self::Named,
+            () if wanted.iter().any(|wanted| wanted.eq_ignore_ascii_case(last)) => Self::Meant,
+            () if !Meaning::is_telling(name) => Self::Other,
+            () if name.ends_with(']') => Self::TellingBit,
+            () => Self::Telling,
+        }
+    }
+}
+
+/// A channel that may be read.
+struct Candidate<T> {
+    rank: Rank,
+    order: u64,
+    name: String,
+    what: T,
+}
+
+/// The channels that are wanted most, of those that were offered; no more are kept.
+pub(super) struct Selection<T> {
+    best: Vec<Candidate<T>>,
+    offered: u64,
+}
+
+impl<T> Selection<T> {
+    pub(super) const fn new() -> Self {
+        Self { best: Vec::new(), offered: 0 }
+    }
+
+    /// Offers a channel, and what is to be known of it.
+    pub(super) fn offer(&mut self, name: String, what: T, recorder: &mut Recorder) {
+        let rank = Rank::of(&name, &recorder.wanted);
+        let order = self.offered;
+        self.offered += 1;
+        let at = self.best.partition_point(|other| other.rank <= rank);
+        if at >= MAX_CHANNELS {
+            return recorder.beyond(&name);
+        }
+        self.best.insert(at, Candidate { rank, order, name, what });
+        if self.best.len() > MAX_CHANNELS
+            && let Some(last) = self.best.pop()
+        {
+            recorder.beyond(&last.name);
+        }
+    }
+
+    /// Gives each selected channel its bit, in the order of the file.
+    pub(super) fn finish(&mut self, recorder: &mut Recorder, mut each: impl FnMut(T, u8)) {
+        self.best.sort_unstable_by_key(|candidate| candidate.order);
+        for Candidate { name, what, .. } in self.best.drain(..) {
+            if let Some(bit) = recorder.channel(&name) {
+                each(what, bit);
+            }
+        }
+    }
+}
+
+/// The bits of the channels of a table; `None` where one is left out.
+pub(super) fn select<'a>(names: impl Iterator<Item = &'a str>, recorder: &mut Recorder) -> Vec<Option<u8>> {
+    let mut selection = Selection::new();
+    let mut count = 0;
+    for name in names {
+        selection.offer(name.to_owned(), count, recorder);
+        count += 1;
+    }
+    let mut bits = vec![None; count];
+    selection.finish(recorder, |at, bit| {
+        if let Some(place) = bits.get_mut(at) {
+            *place = Some(bit);
+        }
+    });
+    bits
+}
