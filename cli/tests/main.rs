@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod capture;
+mod capture_maps;
 mod command;
 mod controller;
 mod exports;

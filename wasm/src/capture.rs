@@ -191,8 +191,19 @@ impl CaptureFile {
     /// # Errors
     /// With what is missing, or wrong.
     pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
-        let Asked { map, clock_hz, sample_rate_hz, baud, both_edges, at_s, channel, aligned, most, from_s, to_s } =
-            serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
+        let Asked {
+            map,
+            clock_hz,
+            sample_rate_hz,
+            baud,
+            both_edges,
+            at_s,
+            channel,
+            aligned,
+            most,
+            from_s,
+            to_s,
+        } = serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
         let ask = Ask { map, clock_hz, sample_rate_hz, baud, both_edges: both_edges.unwrap_or(false) };
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
         let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));

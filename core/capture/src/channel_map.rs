@@ -69,7 +69,7 @@ impl Input {
         match bit {
             0..MOTORS => Some((Self::Step, motor(0))),
             Levels::DIR_SHIFT..32 => Some((Self::Dir, motor(Levels::DIR_SHIFT))),
-            ..BUS_SIGNALS => None,
+            32..BUS_SIGNALS => None,
             _ => {
                 let at = bit - BUS_SIGNALS;
                 Self::MADE.get((at / MOTORS) as usize).map(|input| (*input, at % MOTORS))
@@ -191,7 +191,10 @@ impl fmt::Display for MapError {
             }
             Self::Twice(signal) => write!(f, "{signal} has two channels; give it one"),
             Self::Taken(channel, signal) => {
-                write!(f, "channel {channel} is {signal} already; only several DIR signals can share a channel")
+                write!(
+                    f,
+                    "channel {channel} is {signal} already; only several DIR signals can share a channel"
+                )
             }
             Self::Partner(signal, partner) => {
                 write!(f, "{signal} needs {partner}; add {partner}=CHANNEL, or use STEP in place of {signal}")
@@ -363,7 +366,8 @@ fn written(index: usize, channels: &[Channel]) -> String {
 /// The channel of a name: the whole name; or its last part; or its place after `#`.
 fn place(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
     let unknown = || {
-        let names: Vec<&str> = channels.iter().take(MAX_LISTED).map(|channel| channel.name.as_str()).collect();
+        let names: Vec<&str> =
+            channels.iter().take(MAX_LISTED).map(|channel| channel.name.as_str()).collect();
         let more = match channels.len() - names.len() {
             0 => String::new(),
             more => format!(" and {more} more"),
@@ -420,7 +424,10 @@ mod tests {
             ("STEP0=#5", "there is no channel #5"),
             ("STEP0=C", "more than one channel is called C; use its number"),
             ("STEP0=A,STEP0=B", "STEP0 has two channels"),
-            ("STEP0=A,DIR0=A", "channel top.A is STEP0 already; only several DIR signals can share a channel"),
+            (
+                "STEP0=A,DIR0=A",
+                "channel top.A is STEP0 already; only several DIR signals can share a channel",
+            ),
             ("DIR0=A,STEP1=A", "channel top.A is DIR0 already"),
             ("CW0=A", "CW0 needs CCW0; add CCW0=CHANNEL"),
             ("B3=A", "B3 needs A3; add A3=CHANNEL"),

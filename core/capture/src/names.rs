@@ -101,20 +101,77 @@ const PHASES: [(&str, Kind); 8] = [
 ];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
 /// Words that say nothing of the motor; with a number they are one: `MOTOR1`.
-const NOISE: [&str; 24] = [
-    "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN", "BIT",
-    "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS",
+const NOISE: [&str; 26] = [
+    "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN",
+    "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I",
 ];
 /// What a number makes the name of a pin or a probe.
-const PINS: [&str; 16] =
-    ["D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG", "LOGIC"];
+const PINS: [&str; 16] = [
+    "D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG",
+    "LOGIC",
+];
 /// Words of what is no signal, whatever stands beside them.
 const OTHERS: [&str; 60] = [
-    "ACK", "ALARM", "ALM", "BUSY", "CNT", "COUNT", "COUNTER", "CS", "DELAY", "DIAG", "DONE", "END", "ENDSTOP", "ERR",
-    "ERROR", "FAULT", "FLT", "FREQ", "HOME", "IDX", "INDEX", "INT", "INTERVAL", "IRQ", "LAST", "LED", "LEN", "LENGTH",
-    "LIMIT", "MICRO", "MICROSTEP", "MISO", "MODE", "MOSI", "NEXT", "NUM", "PERIOD", "POS", "POSITION", "PREV", "RATE",
-    "READY", "REQ", "RESET", "RST", "SCK", "SCL", "SCLK", "SDA", "SIZE", "SLEEP", "SPEED", "STALL", "STATE", "TOTAL",
-    "TRIG", "TRIGGER", "VALID", "WIDTH", "PWM",
+    "ACK",
+    "ALARM",
+    "ALM",
+    "BUSY",
+    "CNT",
+    "COUNT",
+    "COUNTER",
+    "CS",
+    "DELAY",
+    "DIAG",
+    "DONE",
+    "END",
+    "ENDSTOP",
+    "ERR",
+    "ERROR",
+    "FAULT",
+    "FLT",
+    "FREQ",
+    "HOME",
+    "IDX",
+    "INDEX",
+    "INT",
+    "INTERVAL",
+    "IRQ",
+    "LAST",
+    "LED",
+    "LEN",
+    "LENGTH",
+    "LIMIT",
+    "MICRO",
+    "MICROSTEP",
+    "MISO",
+    "MODE",
+    "MOSI",
+    "NEXT",
+    "NUM",
+    "PERIOD",
+    "POS",
+    "POSITION",
+    "PREV",
+    "RATE",
+    "READY",
+    "REQ",
+    "RESET",
+    "RST",
+    "SCK",
+    "SCL",
+    "SCLK",
+    "SDA",
+    "SIZE",
+    "SLEEP",
+    "SPEED",
+    "STALL",
+    "STATE",
+    "TOTAL",
+    "TRIG",
+    "TRIGGER",
+    "VALID",
+    "WIDTH",
+    "PWM",
 ];
 /// Letters of axes, in the order of their channels.
 pub(crate) const AXES: &str = "XYZABCUVWE";
@@ -212,7 +269,9 @@ pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
 fn without_index(name: &str, indexed: bool) -> &str {
     if let Some((index, rest)) = name.split_once(':') {
         let index = index.trim();
-        let is_pin = PINS.iter().any(|pin| index.to_ascii_uppercase().trim_end_matches(|c: char| c.is_ascii_digit()).trim() == *pin);
+        let is_pin = PINS.iter().any(|pin| {
+            index.to_ascii_uppercase().trim_end_matches(|c: char| c.is_ascii_digit()).trim() == *pin
+        });
         let is_number = !index.is_empty() && index.bytes().all(|byte| byte.is_ascii_digit());
         if (is_pin || is_number) && !rest.trim().is_empty() {
             return rest.trim();
@@ -240,7 +299,9 @@ fn words(name: &str) -> Vec<String> {
             let after = bytes.get(at + 1);
             let is_start = before.is_ascii_lowercase() && now.is_ascii_uppercase()
                 || before.is_ascii_digit() && now.is_ascii_alphabetic()
-                || before.is_ascii_uppercase() && now.is_ascii_uppercase() && after.is_some_and(u8::is_ascii_lowercase);
+                || before.is_ascii_uppercase()
+                    && now.is_ascii_uppercase()
+                    && after.is_some_and(u8::is_ascii_lowercase);
             if is_start {
                 all.push(part.get(start..at).unwrap_or_default().to_ascii_uppercase());
                 start = at;
@@ -274,12 +335,14 @@ fn signal(word: &str) -> Option<(&'static str, Kind, Option<String>)> {
     let axis = |letter: &str| letter.len() == 1 && AXES.contains(letter);
     let (first, rest) = text.split_at_checked(1)?;
     let (start, end) = text.split_at_checked(text.len().checked_sub(1)?)?;
-    let (letter, found) = match (axis(first).then(|| known(rest)).flatten(), axis(end).then(|| known(start)).flatten()) {
-        (Some(found), _) => (first, found),
-        (None, Some(found)) => (end, found),
-        (None, None) => return None,
-    };
-    let is_motor = matches!(found.1, Kind::Step | Kind::Dir | Kind::En) && found.0.len() > 2 || found.0 == "EN";
+    let (letter, found) =
+        match (axis(first).then(|| known(rest)).flatten(), axis(end).then(|| known(start)).flatten()) {
+            (Some(found), _) => (first, found),
+            (None, Some(found)) => (end, found),
+            (None, None) => return None,
+        };
+    let is_motor =
+        matches!(found.1, Kind::Step | Kind::Dir | Kind::En) && found.0.len() > 2 || found.0 == "EN";
     is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(word).unwrap_or_default()))))
 }
 

@@ -186,7 +186,10 @@ impl<'a> Proposal<'a> {
         for (one, named) in &phases.0 {
             let partner = phases.1.iter().filter(|(_, of)| of.axis == named.axis);
             let partner = partner.max_by_key(|(other, of)| (of.scope == named.scope, usize::MAX - other));
-            let is_free = self.motors.iter().all(|motor| !matches!(motor.source, Source::Encoder(..)) || motor.axis != named.axis);
+            let is_free = self
+                .motors
+                .iter()
+                .all(|motor| !matches!(motor.source, Source::Encoder(..)) || motor.axis != named.axis);
             if let Some((other, _)) = partner.filter(|_| is_free) {
                 self.motors.push(Motor::new(&named.axis, &named.scope, Source::Encoder(*one, *other)));
             }
@@ -216,9 +219,11 @@ impl<'a> Proposal<'a> {
     /// Each DIR goes to the motor of its name; one without an axis to all that have none.
     fn dirs_by_name(&mut self) {
         let mut dirs = self.named(Kind::Dir);
-        dirs.extend(self.named(Kind::Cw).into_iter().filter(|(channel, named)| {
-            !named.pulse && self.motors.iter().all(|motor| !motor.has(*channel))
-        }));
+        dirs.extend(
+            self.named(Kind::Cw).into_iter().filter(|(channel, named)| {
+                !named.pulse && self.motors.iter().all(|motor| !motor.has(*channel))
+            }),
+        );
         let mut pairs: Vec<(bool, usize, usize, usize)> = Vec::new();
         for (at, motor) in self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()) {
             for (place, (channel, named)) in dirs.iter().enumerate() {
@@ -248,9 +253,14 @@ impl<'a> Proposal<'a> {
             ([motor], [(channel, _)]) if motor.axis.is_empty() => Some(*channel),
             _ => None,
         };
+        // X1 and X2 share the DIR of X.
+        let of_stem = |axis: &str| {
+            let found = left.iter().find(|(_, named)| !named.axis.is_empty() && stem(axis) == named.axis);
+            found.map(|(channel, _)| *channel)
+        };
         let mut taken = Vec::new();
         for motor in self.motors.iter_mut().filter(|motor| motor.lacks_dir()) {
-            motor.dir = common.or(sole);
+            motor.dir = of_stem(&motor.axis).or(common).or(sole);
             taken.extend(motor.dir);
         }
         // What is left are motors of their own, whose STEP is not known.
@@ -270,17 +280,19 @@ impl<'a> Proposal<'a> {
             .motors
             .iter()
             .enumerate()
-            .filter_map(|(at, motor)| Some(((0..self.meanings.len()).find(|channel| motor.has(*channel))?, at)))
+            .filter_map(|(at, motor)| {
+                Some(((0..self.meanings.len()).find(|channel| motor.has(*channel))?, at))
+            })
             .collect();
         channels.sort_unstable();
-        let stem = |axis: &str| axis.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
         for (_, at) in &channels {
-            stems.extend(self.motors.get(*at).map(|motor| stem(&motor.axis)));
+            stems.extend(self.motors.get(*at).map(|motor| stem(&motor.axis).to_owned()));
         }
         let key = |motor: &Motor| {
             let stem = stem(&motor.axis);
-            let number: u64 = motor.axis.get(stem.len()..).and_then(|digits| digits.parse().ok()).unwrap_or(0);
-            let letter = AXES.find(stem.as_str()).filter(|_| stem.len() == 1);
+            let number: u64 =
+                motor.axis.get(stem.len()..).and_then(|digits| digits.parse().ok()).unwrap_or(0);
+            let letter = AXES.find(stem).filter(|_| stem.len() == 1);
             let place = stems.iter().position(|other| *other == stem);
             let class = if stem.is_empty() { 0 } else { letter.map_or(2, |_| 1) };
             (class, if class == 2 { place } else { letter }, number)
@@ -342,7 +354,8 @@ impl<'a> Proposal<'a> {
             for other in free.iter().skip(at + 1) {
                 let (a, b) = (self.behavior(*one).changes(), self.behavior(*other).changes());
                 let is_free = !used.contains(one) && !used.contains(other);
-                if is_free && a.abs_diff(b) * 20 <= a + b && alternate(&self.edges(*one), &self.edges(*other)) {
+                if is_free && a.abs_diff(b) * 20 <= a + b && alternate(&self.edges(*one), &self.edges(*other))
+                {
                     used.extend([*one, *other]);
                     self.motors.push(Motor::new("", "", Source::Encoder(*one, *other)));
                 }
@@ -356,13 +369,17 @@ impl<'a> Proposal<'a> {
         }
         let busy = |channel: &usize| self.behavior(*channel).changes() >= 2 * MIN_STEPS;
         let free: Vec<usize> = self.free_of_lines().into_iter().filter(busy).collect();
-        let busiest =
-            free.iter().copied().max_by_key(|channel| (self.behavior(*channel).changes(), usize::MAX - channel));
+        let busiest = free
+            .iter()
+            .copied()
+            .max_by_key(|channel| (self.behavior(*channel).changes(), usize::MAX - channel));
         let Some(first) = busiest else { return };
+        let first_edges = self.edges(first);
         let widest = self.behavior(first).longest_pulse().saturating_mul(MAX_WIDTH_RATIO);
         for channel in free {
             let own = self.behavior(channel);
-            if channel != first && own.longest_pulse() > widest {
+            let is_slow = || has_steps_between(&self.edges(channel), &first_edges, 80);
+            if channel != first && (own.longest_pulse() > widest || is_slow()) {
                 continue;
             }
             let source = Source::Step(channel);
@@ -396,7 +413,8 @@ impl<'a> Proposal<'a> {
                     continue;
                 }
                 let own = near.get(place).copied().unwrap_or(u64::MAX);
-                let others = near.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, near)| *near);
+                let others =
+                    near.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, near)| *near);
                 let others = others.min().unwrap_or(u64::MAX);
                 let fit = Fit {
                     is_others: others.saturating_mul(2) < own,
@@ -405,7 +423,7 @@ impl<'a> Proposal<'a> {
                     while_high: !self.changes_between_pulses(*channel, *step),
                     distance: step.abs_diff(*channel),
                 };
-                if !fit.while_high || has_steps_between(&changes, edges) {
+                if !fit.while_high || has_steps_between(&changes, edges, 50) {
                     pairs.push((fit, *channel, *at));
                 }
             }
@@ -467,7 +485,8 @@ impl<'a> Proposal<'a> {
     /// The map: motors that are numbered in the file keep their numbers, the others are counted.
     fn entries(self, named: usize) -> ChannelMap {
         let number = |motor: &Motor| if motor.axis.is_empty() { Ok(0) } else { motor.axis.parse::<u32>() };
-        let numbers: Vec<u32> = self.motors.iter().take(named).filter_map(|motor| number(motor).ok()).collect();
+        let numbers: Vec<u32> =
+            self.motors.iter().take(named).filter_map(|motor| number(motor).ok()).collect();
         let is_distinct = numbers.windows(2).all(|pair| matches!(pair, [one, next] if one < next));
         let keep = numbers.len() == named
             && is_distinct
@@ -508,6 +527,11 @@ impl<'a> Proposal<'a> {
     }
 }
 
+/// An axis without its number.
+fn stem(axis: &str) -> &str {
+    axis.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
 /// How well a channel fits as DIR of a motor: the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Fit {
@@ -531,12 +555,12 @@ fn nearness(changes: &[u64], edges: &[u64]) -> u64 {
     changes.iter().map(near).fold(0, u64::saturating_add)
 }
 
-/// Whether there are steps between most changes of a channel.
-fn has_steps_between(changes: &[u64], edges: &[u64]) -> bool {
+/// Whether there are steps between so many percent of the changes of a channel.
+fn has_steps_between(changes: &[u64], edges: &[u64], percent: usize) -> bool {
     let place = |at: &u64| edges.partition_point(|edge| edge <= at);
     let between = changes.iter().zip(changes.iter().skip(1));
     let with_steps = between.filter(|(from, to)| place(to) > place(from) + 1).count();
-    with_steps * 2 >= changes.len().saturating_sub(1)
+    with_steps * 100 >= changes.len().saturating_sub(1) * percent
 }
 
 /// Whether the edges of two channels alternate, as evenly as those of an encoder do.
@@ -548,9 +572,7 @@ fn alternate(one: &[u64], other: &[u64]) -> bool {
     let (count, same) = (all.len(), pairs().filter(|(edge, next)| edge.1 == next.1).count());
     let at_once = pairs().filter(|(edge, next)| edge.0 == next.0).count();
     let intervals: Vec<u64> = pairs().map(|(edge, next)| next.0 - edge.0).collect();
-    let is_even = |pair: &&[u64]| {
-        matches!(pair, [one, next] if one.saturating_mul(4) >= *next && next.saturating_mul(4) >= *one)
-    };
+    let is_even = |pair: &&[u64]| matches!(pair, [one, next] if one.saturating_mul(4) >= *next && next.saturating_mul(4) >= *one);
     let even = intervals.windows(2).filter(is_even).count();
     count >= MIN_ENCODER_EDGES
         && same * 20 <= count
@@ -695,19 +717,40 @@ mod tests {
             // An axis before, behind, in brackets, as a word, in the scope, and one DIR.
             (&["STEP (Y axis)", "DIR (Y axis)"], "STEP0=STEP (Y axis),DIR0=DIR (Y axis)"),
             (&["STEP (Y axis)", "DIR"], "STEP0=STEP (Y axis),DIR0=DIR"),
-            (&["RA_STEP", "RA_DIR", "DEC_STEP", "DEC_DIR"], "STEP0=RA_STEP,STEP1=DEC_STEP,DIR0=RA_DIR,DIR1=DEC_DIR"),
-            (&["dec_dir", "ra_dir", "ra_step", "dec_step"], "STEP0=dec_step,STEP1=ra_step,DIR0=dec_dir,DIR1=ra_dir"),
+            (
+                &["RA_STEP", "RA_DIR", "DEC_STEP", "DEC_DIR"],
+                "STEP0=RA_STEP,STEP1=DEC_STEP,DIR0=RA_DIR,DIR1=DEC_DIR",
+            ),
+            (
+                &["dec_dir", "ra_dir", "ra_step", "dec_step"],
+                "STEP0=dec_step,STEP1=ra_step,DIR0=dec_dir,DIR1=ra_dir",
+            ),
             (&["2: STEP", "3: DIR"], "STEP0=2: STEP,DIR0=3: DIR"),
             (&["0 STEP", "1 DIR"], "STEP0=0 STEP,DIR0=1 DIR"),
             (&["D2: X_STEP", "D3: Y_STEP"], "STEP0=D2: X_STEP,STEP1=D3: Y_STEP"),
-            (&["motor10_step", "motor2_step", "motor2_dir"], "STEP2=motor2_step,STEP10=motor10_step,DIR2=motor2_dir"),
-            (&["motor20_step", "motor3_step", "motor3_dir"], "STEP0=motor3_step,STEP1=motor20_step,DIR0=motor3_dir"),
+            (
+                &["motor10_step", "motor2_step", "motor2_dir"],
+                "STEP2=motor2_step,STEP10=motor10_step,DIR2=motor2_dir",
+            ),
+            (
+                &["motor20_step", "motor3_step", "motor3_dir"],
+                "STEP0=motor3_step,STEP1=motor20_step,DIR0=motor3_dir",
+            ),
             (&["feed12_step", "feed3_step"], "STEP0=feed3_step,STEP1=feed12_step"),
             (&["step_en", "step", "dir"], "STEP0=step,DIR0=dir,EN=step_en"),
-            (&["motorStep", "motorDir", "StepX", "DirX"], "STEP0=motorStep,STEP1=StepX,DIR0=motorDir,DIR1=DirX"),
+            (
+                &["motorStep", "motorDir", "StepX", "DirX"],
+                "STEP0=motorStep,STEP1=StepX,DIR0=motorDir,DIR1=DirX",
+            ),
             (&["X_STEP_PIN", "X_DIR_PIN", "X_ENABLE_PIN"], "STEP0=X_STEP_PIN,DIR0=X_DIR_PIN,EN=X_ENABLE_PIN"),
-            (&["stepper_x_step", "stepper_x_dir", "stepper_z1_step"], "STEP0=stepper_x_step,STEP1=stepper_z1_step,DIR0=stepper_x_dir"),
-            (&["stepgen.0.step", "stepgen.0.dir", "stepgen.1.step"], "STEP0=stepgen.0.step,STEP1=stepgen.1.step,DIR0=stepgen.0.dir"),
+            (
+                &["stepper_x_step", "stepper_x_dir", "stepper_z1_step"],
+                "STEP0=stepper_x_step,STEP1=stepper_z1_step,DIR0=stepper_x_dir",
+            ),
+            (
+                &["stepgen.0.step", "stepgen.0.dir", "stepgen.1.step"],
+                "STEP0=stepgen.0.step,STEP1=stepgen.1.step,DIR0=stepgen.0.dir",
+            ),
             (&["PUL-", "DIR-", "ENA-"], "STEP0=PUL-,DIR0=DIR-,EN=ENA-"),
             (&["PUL-", "PUL+", "DIR+"], "STEP0=PUL+,DIR0=DIR+"),
             (&["CLK", "DIR"], "STEP0=CLK,DIR0=DIR"),
@@ -721,6 +764,7 @@ mod tests {
             (&["X_STEP", "Y_DIR"], "STEP0=X_STEP,DIR1=Y_DIR"),
             (&["X_STEP", "Y_STEP", "DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR,DIR1=DIR"),
             (&["X_STEP", "Y_STEP", "Y_DIR", "DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR,DIR1=Y_DIR"),
+            (&["X1_STEP", "X2_STEP", "X_DIR"], "STEP0=X1_STEP,STEP1=X2_STEP,DIR0=X_DIR,DIR1=X_DIR"),
             (&["motion.STEP", "ctrl.DIR"], "STEP0=motion.STEP,DIR0=ctrl.DIR"),
             // The same signal in two scopes.
             (&["tb.STEP", "tb.DIR", "tb.dut.STEP", "tb.dut.DIR"], "STEP0=tb.STEP,DIR0=tb.DIR"),
@@ -731,7 +775,10 @@ mod tests {
             (&["power_up", "power_down"], ""),
             (&["ENC_A", "ENC_B", "ENC_Z"], "A0=ENC_A,B0=ENC_B"),
             (&["PHA", "PHB", "STEP"], "STEP0=STEP,A1=PHA,B1=PHB"),
-            (&["X_STEP", "X_DIR", "SPINDLE_ENC_A", "SPINDLE_ENC_B"], "STEP0=X_STEP,A1=SPINDLE_ENC_A,B1=SPINDLE_ENC_B,DIR0=X_DIR"),
+            (
+                &["X_STEP", "X_DIR", "SPINDLE_ENC_A", "SPINDLE_ENC_B"],
+                "STEP0=X_STEP,A1=SPINDLE_ENC_A,B1=SPINDLE_ENC_B,DIR0=X_DIR",
+            ),
             (&["step_count[0]", "step_count[1]", "microstep", "step_led", "next_step"], ""),
             (&["DE/RE", "RS485_TX", "RS485_RX"], "RX=RS485_RX,TX=RS485_TX,DE=DE/RE"),
         ] {
@@ -776,7 +823,8 @@ mod tests {
             (&["D0", "D1", "D2"], 0, &[&step, &[50, 4200], &[2050]], "STEP0=D0,DIR0=D2"),
             (&["RX", "D1"], 0, &[&step, &late], "STEP0=RX,DIR0=D1"),
             (&["D0", "DIR"], 0, &[&step, &late], "STEP0=D0,DIR0=DIR"),
-            // The busier one is no DIR.
+            // A DIR that turns every two steps of a square wave, and a busier channel that is no DIR.
+            (&["D0", "D1"], 0, &[&pulses(100, 60, 20, 10), &pulses(95, 15, 80, 40)], "STEP0=D0,DIR0=D1"),
             (&["D0", "D1"], 0, &[&step, &pulses(130, 39, 100, 7)], "STEP0=D0,STEP1=D1"),
         ] {
             assert_eq!(proposed(names, &levels(high, edges)), expected, "{names:?}");
@@ -802,9 +850,12 @@ mod tests {
     #[test]
     fn an_idle_level_that_is_high_inverts_what_no_name_says() {
         let step = pulses(100, 40, 100, 10);
-        for (name, expected) in
-            [("D0", "STEP0=!D0"), ("PUL-", "STEP0=!PUL-"), ("STEP", "STEP0=STEP"), ("STEP_N", "STEP0=!STEP_N")]
-        {
+        for (name, expected) in [
+            ("D0", "STEP0=!D0"),
+            ("PUL-", "STEP0=!PUL-"),
+            ("STEP", "STEP0=STEP"),
+            ("STEP_N", "STEP0=!STEP_N"),
+        ] {
             assert_eq!(proposed(&[name], &levels(1, &[&step])), expected);
         }
         let both = levels(3, &[&step, &pulses(9000, 20, 100, 10)]);

@@ -286,7 +286,8 @@ impl<'m> Signals<'m> {
         let right = 0xffff << Levels::DIR_SHIFT;
         let made = MadePulses::new(map);
         let bus = map.entries().iter().filter(|entry| entry.bit < BUS_SIGNALS);
-        let mapped = bus.fold(made.as_ref().map_or(0, MadePulses::signals), |mask, entry| mask | 1 << entry.bit);
+        let mapped =
+            bus.fold(made.as_ref().map_or(0, MadePulses::signals), |mask, entry| mask | 1 << entry.bit);
         // Of channels that are not in use DIR is low, as on any bus.
         let used = (1_u64 << map.bus_channels()) - 1;
         let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
@@ -376,9 +377,8 @@ mod tests {
         let found = Recorded::new(capture.clone(), &map, base, 1_000_000).expect("it fits");
         let streamed = Records::of(&capture, &map, base, 1_000_000).expect("it fits");
         assert!(streamed.eq(found.records.iter().copied()));
-        let levels = |record: &Record| {
-            (record.cycle.0, record.levels.0 & 1, u64::from(record.levels.0 & RIGHT != 0))
-        };
+        let levels =
+            |record: &Record| (record.cycle.0, record.levels.0 & 1, u64::from(record.levels.0 & RIGHT != 0));
         (found.records.iter().map(levels).collect(), found.rounding)
     }
 
@@ -412,8 +412,7 @@ mod tests {
     fn cw_and_ccw_pulses_keep_their_width_and_give_dir() {
         let pulses = [(0, 0), (20, 1), (25, 0), (40, 2), (43, 0), (60, 1), (62, 3), (64, 0)];
         let (records, rounding) = made("CW0=STEP,CCW0=DIR", &pulses);
-        let expected =
-            [(0, 0, 1), (20, 1, 1), (25, 0, 1), (40, 1, 0), (43, 0, 0), (60, 1, 1), (64, 0, 1)];
+        let expected = [(0, 0, 1), (20, 1, 1), (25, 0, 1), (40, 1, 0), (43, 0, 0), (60, 1, 1), (64, 0, 1)];
         // Both are high at 62.
         assert_eq!((records, rounding.ambiguous, rounding.lost), (expected.to_vec(), 1, 0));
         let (records, _) = made("CW0=!STEP,CCW0=!DIR", &[(0, 3), (20, 2), (25, 3)]);

@@ -683,7 +683,9 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.changes.first().expect("a row").levels, u64::MAX);
     assert_eq!(reading.capture.left_out.len(), 1);
-    assert!(reading.capture.left_out[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read"));
+    assert!(
+        reading.capture.left_out[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read")
+    );
 }
 
 #[test]
@@ -698,8 +700,14 @@ fn of_more_than_64_channels_those_that_are_wanted_or_telling_are_read_first() {
     let found = names(&reading);
     assert_eq!((found.len(), &found[62], &found[63]), (64, &"tb.STEP".to_owned(), &"tb.DIR".to_owned()));
     assert_eq!(reading.capture.changes.last().expect("a row").levels, 1 << 62);
-    assert!(reading.capture.left_out[0].starts_with("4 000 000 011 of 4 000 000 075 channels left out (tb.instr["), "{:?}", reading.capture.left_out);
-    let wanted = ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);
+    assert!(
+        reading.capture.left_out[0]
+            .starts_with("4 000 000 011 of 4 000 000 075 channels left out (tb.instr["),
+        "{:?}",
+        reading.capture.left_out
+    );
+    let wanted =
+        ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);
     let reading = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true);
     let found = names(&reading);
     assert_eq!(found[59..], ["tb.instr[39]", "tb.STEP", "tb.DIR", "tb.last", "tb.wide[3999999999]"]);

@@ -160,7 +160,10 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
     let baud = some(bytes, &[1, 9600, 115_200, 12_000_000])?;
     let mut pairs = Vec::new();
     for _ in 0..bytes.int_in_range(0..=4_u8)? {
-        let signals = ["STEP0", "DIR0", "STEP1", "DIR15", "EN", "RX", "TX", "DE", "DEDGE0", "CW0", "CCW0", "A1", "B1", "x"];
+        let signals = [
+            "STEP0", "DIR0", "STEP1", "DIR15", "EN", "RX", "TX", "DE", "DEDGE0", "CW0", "CCW0", "A1", "B1",
+            "x",
+        ];
         let signal = *bytes.choose(&signals)?;
         let mark = if bytes.arbitrary()? { "!" } else { "" };
         // One more than there is, now and then.

@@ -1,0 +1,151 @@
+//! Channel maps of `stepscope capture`: what is proposed, and what a map can say.
+
+use crate::program::stepscope;
+use std::fmt::Write;
+
+/// A dump, in us, of channels whose levels change at these times; all are low at first, those of `high` high.
+fn dump(names: &[&str], high: u64, edges: &[&[u64]]) -> String {
+    let mut text = String::from("$timescale 1 us $end $scope module top $end\n");
+    let mut rows: Vec<(u64, usize)> = Vec::new();
+    for (channel, name) in names.iter().enumerate() {
+        let _ = writeln!(text, "$var wire 1 c{channel} {name} $end");
+        rows.extend(edges[channel].iter().map(|at| (*at, channel)));
+    }
+    text.push_str("$upscope $end $enddefinitions $end\n#0\n");
+    let mut levels: Vec<bool> = (0..names.len()).map(|channel| high >> channel & 1 == 1).collect();
+    for (channel, level) in levels.iter().enumerate() {
+        let _ = writeln!(text, "{}c{channel}", u8::from(*level));
+    }
+    rows.sort_unstable();
+    for (at, channel) in rows {
+        levels[channel] = !levels[channel];
+        let _ = writeln!(text, "#{at}\n{}c{channel}", u8::from(levels[channel]));
+    }
+    text
+}
+
+fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
+    (0..count).flat_map(|k| [from + k * interval, from + k * interval + width]).collect()
+}
+
+/// What a recording comes to with these options.
+fn told(input: &str, options: &[&str]) -> String {
+    let (code, out, err) = stepscope(&[&["capture", "-"], options].concat(), input);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+    out
+}
+
+fn all_of(out: &str, expected: &[&str]) {
+    for line in expected {
+        assert!(out.contains(line), "{line} in {out}");
+    }
+}
+
+#[test]
+fn steps_on_both_edges_are_counted_where_asked_for_and_hinted_at_otherwise() {
+    let edges: Vec<u64> = (0..40).map(|k| 1000 + 100 * k).collect();
+    let file = dump(&["STEP", "DIR"], 0b10, &[&edges, &[]]);
+    let hint =
+        "both edges of STEP0 are evenly spaced: a driver that steps on both edges makes 40 steps of it";
+    all_of(&told(&file, &[]), &["channel 0  20 steps: 20 right", "rate at most 5000.0 steps/s", hint]);
+    for options in [&["--both-edges"][..], &["--map", "DEDGE0=STEP,DIR0=DIR"]] {
+        let out = told(&file, options);
+        all_of(
+            &out,
+            &["map       DEDGE0=top.STEP,DIR0=top.DIR", "channel 0  40 steps: 40 right", "10000.0 steps/s"],
+        );
+        assert!(!out.contains(hint), "{out}");
+    }
+    // A pulse that is made has no width to check, and is none of the scenario's.
+    let out = told(&file, &["--both-edges", "--driver", "tb6600-class", "--strict"]);
+    all_of(&out, &["leaves out pulse width and low time", "violations 0"]);
+    let scenario = told(&file, &["--both-edges", "--scenario", "-"]);
+    let (code, out, err) = stepscope(&["run", "-"], &scenario);
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    assert!(out.contains("40"), "{out}");
+    let steps = told(&file, &["--both-edges", "--steps", "-"]);
+    assert_eq!(steps.lines().count(), 41);
+}
+
+#[test]
+fn cw_and_ccw_pulses_and_encoders_have_a_direction() {
+    let file = dump(&["CW", "CCW"], 0, &[&pulses(1000, 20, 100, 5), &pulses(5000, 12, 100, 5)]);
+    for options in [&[][..], &["--map", "CW0=CW,CCW0=CCW"]] {
+        let out = told(&file, &[options, &["--driver", "drv8825", "--strict"]].concat());
+        all_of(
+            &out,
+            &[
+                "channel 0  32 steps: 20 right, 12 left, 1 turn; position 8 (0 to 20)",
+                "step_high           1900         5000",
+            ],
+        );
+    }
+    let (a, b): (Vec<u64>, Vec<u64>) =
+        ((0..10).map(|k| 100 + 20 * k).collect(), (0..10).map(|k| 110 + 20 * k).collect());
+    let file = dump(&["ENC_A", "ENC_B"], 0, &[&a, &b]);
+    all_of(&told(&file, &[]), &["map       A0=top.ENC_A,B0=top.ENC_B ", "channel 0  20 steps: 20 right"]);
+    all_of(&told(&file, &["--map", "A0=ENC_B,B0=ENC_A"]), &["channel 0  20 steps: 0 right, 20 left"]);
+    let at_once =
+        dump(&["ENC_A", "ENC_B"], 0, &[&a, &[&b[..], &[400]].concat()]).replace("#400\n", "#400\n1c0\n");
+    all_of(&told(&at_once, &[]), &["1 change of an encoder or of CW and CCW counts no step"]);
+}
+
+#[test]
+fn motors_can_share_a_dir_and_it_is_proposed_by_name_and_by_behavior() {
+    let (x, y) = (pulses(100, 50, 100, 10), pulses(140, 50, 100, 10));
+    for (names, map) in [
+        (["X_STEP", "DIR", "Y_STEP"], "STEP0=top.X_STEP,STEP1=top.Y_STEP,DIR0=top.DIR,DIR1=top.DIR"),
+        (["X_STEP", "D1", "Y_STEP"], "STEP0=top.X_STEP,STEP1=top.Y_STEP,DIR0=top.D1,DIR1=top.D1"),
+    ] {
+        let file = dump(&names, 0b10, &[&x, &[2575], &y]);
+        let proposed = told(&file, &[]);
+        assert_eq!(
+            told(&file, &["--map", map]).replace(map, ""),
+            proposed.replace(&format!("{map}   (proposed; --map sets another)"), "")
+        );
+        all_of(
+            &proposed,
+            &["channel 0  50 steps: 25 right, 25 left", "channel 1  50 steps: 25 right, 25 left"],
+        );
+    }
+}
+
+#[test]
+fn low_pulses_are_inverted_or_told() {
+    let step = pulses(100, 20, 100, 5);
+    let out = told(&dump(&["PUL-"], 1, &[&step]), &["--steps", "-"]);
+    assert!(out.lines().nth(1).is_some_and(|row| row.starts_with("100,")), "{out}");
+    all_of(
+        &told(&dump(&["STEP"], 1, &[&step]), &[]),
+        &["STEP0 idles high and has low pulses", "use STEP0=!top.STEP in the map"],
+    );
+}
+
+#[test]
+fn any_of_more_than_64_signals_can_be_named() {
+    let names: Vec<String> = (0..70).map(|at| format!("w{at}")).chain(["STEP".to_owned()]).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let (step, other) = (pulses(100, 30, 10, 2), pulses(100, 12, 10, 2));
+    let edges: Vec<&[u64]> = (0..71)
+        .map(|at| {
+            if at == 70 {
+                &step[..]
+            } else if at == 69 {
+                &other
+            } else {
+                &[]
+            }
+        })
+        .collect();
+    let file = dump(&names, 0, &edges);
+    all_of(
+        &told(&file, &[]),
+        &["map       STEP0=top.STEP ", "channel 0  30 steps", "7 of 71 channels left out (top.w69"],
+    );
+    for name in ["top.w69", "w69"] {
+        all_of(&told(&file, &["--map", &format!("STEP0={name}")]), &["channel 0  12 steps"]);
+    }
+    let (code, _, err) = stepscope(&["capture", "-", "--map", "STEP0=w71"], &file);
+    assert!(code == Some(2) && err.contains("there is no channel w71; the file has top.w0, "), "{err}");
+    assert!(err.contains(" and 44 more"), "{err}");
+}
