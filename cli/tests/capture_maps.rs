@@ -12,7 +12,8 @@ fn dump(names: &[&str], high: u64, edges: &[&[u64]]) -> String {
         rows.extend(edges[channel].iter().map(|at| (*at, channel)));
     }
     text.push_str("$upscope $end $enddefinitions $end\n#0\n");
-    let mut levels: Vec<bool> = (0..names.len()).map(|channel| high >> channel & 1 == 1).collect();
+    let mut levels: Vec<bool> =
+        (0..names.len()).map(|channel| high.checked_shr(channel as u32).unwrap_or(0) & 1 == 1).collect();
     for (channel, level) in levels.iter().enumerate() {
         let _ = writeln!(text, "{}c{channel}", u8::from(*level));
     }
@@ -57,7 +58,7 @@ fn steps_on_both_edges_are_counted_where_asked_for_and_hinted_at_otherwise() {
         assert!(!out.contains(hint), "{out}");
     }
     // A pulse that is made has no width to check, and is none of the scenario's.
-    let out = told(&file, &["--both-edges", "--driver", "tb6600-class", "--strict"]);
+    let out = told(&file, &["--both-edges", "--driver", "tb6600_class", "--strict"]);
     all_of(&out, &["leaves out pulse width and low time", "violations 0"]);
     let scenario = told(&file, &["--both-edges", "--scenario", "-"]);
     let (code, out, err) = stepscope(&["run", "-"], &scenario);
@@ -131,7 +132,7 @@ fn any_of_more_than_64_signals_can_be_named() {
             if at == 70 {
                 &step[..]
             } else if at == 69 {
-                &other
+                &other[..]
             } else {
                 &[]
             }
