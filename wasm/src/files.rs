@@ -104,7 +104,11 @@ impl Simulation {
             let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
             return Err(JsError::new(&lines.join("; ")));
         }
-        Ok(scripted.to_json())
+        scripted.to_file_json().ok_or_else(|| {
+            JsError::new(
+                "the scenario takes more bytes than can be read again: end the run sooner with run_cycles, or give a shorter motion",
+            )
+        })
     }
 }
 

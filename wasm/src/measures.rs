@@ -8,9 +8,10 @@ use stepscope_core::{
     inspect::{
         actual_motion::Pulses,
         measures::{Measures, within_bounds},
+        recorded_run::record_run,
         recording::figures::StepFigures,
     },
-    peripheral::trace::{Recording, steps, steps_in},
+    peripheral::trace::{steps, steps_in},
     sim::axes_of,
 };
 use wasm_bindgen::prelude::*;
@@ -27,8 +28,8 @@ impl Judged {
             return Ok(JsValue::NULL);
         };
         within_bounds([plan]).map_err(|cause| JsError::new(&cause.to_string()))?;
-        let mut recordings = vec![Recording::default(); controller + 1];
-        experiment.run_each(&mut recordings);
+        let (_, mut recordings) =
+            record_run(experiment, controller + 1).map_err(|why| JsError::new(&why.to_string()))?;
         let Some(recording) = recordings.get_mut(controller) else { return Ok(JsValue::NULL) };
         recording.packets.finish();
         let made = steps(&recording.trace, axis);

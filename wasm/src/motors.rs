@@ -13,6 +13,7 @@ use stepscope_core::{
         plant::settling_with,
         plant_log::{PlantLog, Stretch},
         plant_report::PlantReport,
+        recorded_run::{MAX_RECORDS, TooLong},
         torque::{Machine, TorqueCurve},
     },
     peripheral::{trace::Recording, units::Instant},
@@ -25,6 +26,9 @@ use stepscope_core::{
     scenario::{Scenario, to_json},
 };
 use wasm_bindgen::prelude::*;
+
+/// Records between two looks at how many there are.
+const SLICE: u64 = 1 << 16;
 
 /// A motor or a driver, without its figures.
 #[derive(Serialize)]
@@ -179,7 +183,12 @@ impl Judged {
             logs.push(PlantLog::new(plant));
         }
         let mut recordings: Vec<Recording> = logs.iter().map(|_| Recording::default()).collect();
-        while !run.advance_observed((Instant::NEVER, u64::MAX), &mut recordings, &mut logs) {}
+        while !run.advance_observed((Instant::NEVER, SLICE), &mut recordings, &mut logs) {
+            let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
+            if records > MAX_RECORDS {
+                return Err(JsError::new(&TooLong::Edges.to_string()));
+            }
+        }
         let (Some(log), Some(report), Some(recording)) =
             (logs.get(controller), PlantReport::of(experiment, &run, controller), recordings.get(controller))
         else {

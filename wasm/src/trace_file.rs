@@ -6,7 +6,7 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    inspect::trace_diff::TraceDiff,
+    inspect::{recorded_run::record_run, trace_diff::TraceDiff},
     peripheral::{signal, trace::Recording},
 };
 use wasm_bindgen::prelude::*;
@@ -45,8 +45,8 @@ impl Judged {
     /// If the scenario has problems.
     pub fn trace_file(&self, controller: usize) -> Result<TraceFile, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
-        let mut recordings = vec![Recording::default(); experiment.controllers()];
-        experiment.run_each(&mut recordings);
+        let (_, mut recordings) =
+            record_run(experiment, experiment.controllers()).map_err(|why| JsError::new(&why.to_string()))?;
         let index = controller.min(recordings.len() - 1);
         let diff = TraceDiff::new(config(experiment, index).channels());
         Ok(TraceFile { recording: recordings.swap_remove(index), diff })

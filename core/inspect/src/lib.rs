@@ -56,6 +56,7 @@ pub mod plant_log;
 #[cfg(feature = "plant")]
 pub mod plant_report;
 pub mod position_error;
+pub mod recorded_run;
 pub mod recording;
 pub mod remedies;
 pub mod run_fingerprint;

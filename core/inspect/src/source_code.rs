@@ -119,9 +119,15 @@ impl Source<'_> {
     fn head(&self, out: &mut impl Write, mark: &str) -> fmt::Result {
         let format = self.table.format;
         let error = self.table.error;
-        // A comment in C must not end before its end, nor may a line be continued.
+        // A comment in C must not end before its end, nor may a line be continued, or its order be changed for who reads it.
         let plain = |c: char| {
-            if c.is_control() || matches!(c, '*' | '\\' | '\u{2028}' | '\u{2029}') { ' ' } else { c }
+            if c.is_control()
+                || matches!(c, '*' | '\\' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+            {
+                ' '
+            } else {
+                c
+            }
         };
         write!(out, "{mark}")?;
         self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;

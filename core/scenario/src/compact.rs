@@ -57,15 +57,19 @@ pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
 }
 
 /// Writes a value with all its fields in the order of their declaration, as
-/// `serde_json::to_string_pretty` does; `indent` is the depth of the line that it begins in.
-pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize) {
+/// `serde_json::to_string_pretty` does; `indent` is the depth of the line that it begins in. A text that gets longer than `most`
+/// bytes is left where it is.
+pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, most: usize) {
+    if out.len() > most {
+        return;
+    }
     let begin_line = |out: &mut String, first: bool| {
         out.push_str(if first { "\n" } else { ",\n" });
         (0..=indent).for_each(|_| out.push_str("  "));
     };
     let named = |out: &mut String, name: &str, value: &dyn ToParts| {
         out.push_str(&alloc::format!("\"{name}\": "));
-        write_whole(out, value, indent + 1);
+        write_whole(out, value, indent + 1, most);
     };
     let brackets = match value.parts() {
         Parts::Whole(value) => return out.push_str(&value.to_string()),
@@ -76,7 +80,7 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize) 
             out.push('[');
             for (index, entry) in entries.into_iter().enumerate() {
                 begin_line(out, index == 0);
-                write_whole(out, entry, indent + 1);
+                write_whole(out, entry, indent + 1, most);
             }
             ']'
         }
@@ -100,6 +104,49 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize) 
     out.push('\n');
     (0..indent).for_each(|_| out.push_str("  "));
     out.push(brackets);
+}
+
+/// The name of the field that says which names the others have: it is written wherever a text stands by itself.
+const VERSION: &str = "version";
+
+/// Writes a value without the fields that are at their defaults, and without indentation: the entries of a list one per line,
+/// numbers side by side. Half as long as the whole form or less. A text that gets longer than `most` bytes is left where it is.
+pub(super) fn write_short(out: &mut String, value: &dyn ToParts, most: usize) {
+    if out.len() > most {
+        return;
+    }
+    match value.parts() {
+        Parts::Whole(value) => out.push_str(&value.to_string()),
+        Parts::Number(number) => out.push_str(&Value::from(number + 0.0).to_string()),
+        Parts::List(entries) => {
+            let is_plain = |entry: &&dyn ToParts| matches!(entry.parts(), Parts::Whole(_) | Parts::Number(_));
+            let between = if entries.first().is_none_or(is_plain) { "" } else { "\n" };
+            out.push('[');
+            for (index, entry) in entries.into_iter().enumerate() {
+                out.push_str(if index == 0 { "" } else { "," });
+                out.push_str(between);
+                write_short(out, entry, most);
+            }
+            out.push_str(between);
+            out.push(']');
+        }
+        Parts::Fields(group, values) => {
+            out.push('{');
+            let written = group.fields.iter().zip(values);
+            let written = written.filter(|(field, (_, differs))| *differs || field.name == VERSION);
+            for (index, (field, (value, _))) in written.enumerate() {
+                out.push_str(if index == 0 { "" } else { "," });
+                out.push_str(&alloc::format!("\"{}\":", field.name));
+                write_short(out, value, most);
+            }
+            out.push('}');
+        }
+        Parts::Kind(name, value) => {
+            out.push_str(&alloc::format!("{{\"{name}\":"));
+            write_short(out, value, most);
+            out.push('}');
+        }
+    }
 }
 
 macro_rules! plain {

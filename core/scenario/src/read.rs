@@ -1,11 +1,17 @@
 //! Reads a scenario from JSON text, of any version, and writes it.
 
-use crate::{Cause, Compact, Json, Problem, Read, Scenario, ToParts, VERSION, compact, reader::read_into};
+use crate::{
+    Cause, Compact, Json, MAX_TEXT_BYTES, Problem, Read, Scenario, ToParts, VERSION, compact,
+    reader::read_into,
+};
 use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
 use stepscope_motion::problem::MAX_PROBLEMS;
+
+/// Longest text of a scenario with every field written, in bytes: a longer one is for programs.
+const MAX_WHOLE_BYTES: usize = 4 << 20;
 
 impl Scenario {
     /// Reads a scenario from JSON text of any version up to [`VERSION`].
@@ -37,6 +43,23 @@ impl Scenario {
         to_json(self)
     }
 
+    /// The scenario as a file that can be read again: every field written where that is short, else without defaults and
+    /// indentation. `None` if it has more than [`MAX_TEXT_BYTES`] even so.
+    #[must_use]
+    pub fn to_file_json(&self) -> Option<String> {
+        self.within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
+    }
+
+    fn within(&self, whole: usize, most: usize) -> Option<String> {
+        let mut text = String::new();
+        compact::write_whole(&mut text, self, 0, whole);
+        if text.len() > whole {
+            text.clear();
+            compact::write_short(&mut text, self, most);
+        }
+        (text.len() <= most).then_some(text)
+    }
+
     /// The same without what is at its default, in fixed order: as a link has it.
     #[must_use]
     pub fn to_compact_json(&self) -> String {
@@ -62,7 +85,7 @@ pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
 #[must_use]
 pub fn to_json(part: &dyn ToParts) -> String {
     let mut text = String::new();
-    compact::write_whole(&mut text, part, 0);
+    compact::write_whole(&mut text, part, 0, usize::MAX);
     text
 }
 
@@ -184,6 +207,30 @@ mod tests {
             expected.sort_unstable();
             assert_eq!(found, expected, "{given}");
         }
+    }
+
+    #[test]
+    fn a_file_is_written_shorter_where_it_would_be_long_and_not_at_all_where_it_could_not_be_read() {
+        let texts = [
+            "{}",
+            r#"{"title":"ü\u001b","source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12}},{"dwell":{}}]},{}]}}}"#,
+            r#"{"source":{"motion":{"axes":[{"moves":[{"points":{"points":[[0,0],[0.5,12.5]]}}]}]}}}"#,
+            r#"{"source":{"line":{"sends":[{"start_cycle":7,"bytes":"8a05"},{"start_cycle":9000}]}}}"#,
+        ];
+        for text in texts {
+            let scenario = Scenario::from_json(text).expect("it reads");
+            assert_eq!(scenario.to_file_json(), Some(scenario.to_json()));
+            let short = scenario.within(10, 4096).expect("it is short");
+            assert!(
+                short.len() < scenario.to_json().len() / 2 && short.starts_with(r#"{"version":2"#),
+                "{short}"
+            );
+            assert_eq!(Scenario::from_json(&short), Ok(scenario.clone()));
+            assert_eq!(scenario.within(10, short.len()), Some(short.clone()));
+            assert_eq!(scenario.within(10, short.len() - 1), None);
+        }
+        let points = Scenario::from_json(texts[2]).expect("it reads");
+        assert!(points.within(10, 4096).is_some_and(|short| short.contains("[\n[0.0,0.0],\n[0.5,12.5]\n]")));
     }
 
     #[test]

@@ -4,10 +4,15 @@
 use crate::{Experiment, Run};
 use stepscope_scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend, Source};
 
-/// The scenario with its host's schedule as its source, or with its lists of segments. A long noisy run
-/// may have more forced levels than a scenario may have: it is judged as any other.
+/// The scenario with its host's schedule as its source, or with its lists of segments. Stand-alone controllers have no line:
+/// their source, with the inputs that they get, stays as it is. A long noisy run may have more forced levels than a scenario
+/// may have: it is validated as any other.
 #[must_use]
 pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
+    #[cfg(feature = "controller")]
+    if run.stand_alone().is_some() {
+        return scenario;
+    }
     if let Some(segments) = experiment.segments() {
         scenario.source = Source::Segments(segments.into());
         return scenario;
