@@ -1,6 +1,6 @@
 //! `stepscope calibrate`: steps a millimetre from measured lengths (DESIGN B3, Zhang 2012).
 
-use crate::{failure::Failure, json::Tables, scenarios};
+use crate::{failure::Failure, json::Tables, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -82,7 +82,7 @@ fn pairs(text: &str) -> Result<Vec<Pair>, String> {
 }
 
 fn print(found: &Calibration, pairs: &[Pair]) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     writeln!(out, "pairs               {}", pairs.len())?;
     writeln!(out, "steps = k*length")?;
     fit(&found.through_origin, pairs, &mut out)?;

@@ -35,13 +35,12 @@ use stepscope_core::{
     scenario::{Scenario, SegmentLists, Source},
 };
 
-/// Most bytes that are read of standard input, which cannot be read twice.
-const MAX_STANDARD: u64 = 1 << 30;
+/// Maximum bytes of a recording from standard input or a pipe, which is kept in memory: it cannot be read twice.
+const MAX_PIPED: u64 = 1 << 30;
 
 /// Reads the recording, tells what it comes to and writes what was asked for.
 pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
-    let table = arguments.json.then_some(Path::new(STANDARD));
-    let mut outputs = Outputs::judge(Some(&arguments.file), arguments.outputs().chain(table))?;
+    let mut outputs = Outputs::default();
     let Reading { capture, error } = read(arguments)?;
     if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
         return Err(arguments.wrong(error));
@@ -117,16 +116,22 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     let limits = Limits::default();
     let wanted = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
     let mut progress = Progress::new("capture", arguments.progress);
-    if path == Path::new(STANDARD) {
+    let mut piped = |input: &mut dyn Read| {
         let mut bytes = Vec::new();
-        io::stdin().take(MAX_STANDARD).read_to_end(&mut bytes).map_err(failed)?;
+        input.take(MAX_PIPED + 1).read_to_end(&mut bytes).map_err(failed)?;
         let all = bytes.len() as u64;
-        return Ok(read::read_wanted(Cursor::new(bytes), &limits, &wanted, &mut |read| {
+        if all > MAX_PIPED {
+            return Err(Failure::TooLong(path.clone(), MAX_PIPED));
+        }
+        Ok(read::read_wanted(Cursor::new(bytes), &limits, &wanted, &mut |read| {
             progress.tell(read, all);
             true
-        }));
+        }))
+    };
+    if path == Path::new(STANDARD) {
+        return piped(&mut io::stdin());
     }
-    let file = match File::open(path) {
+    let mut file = match File::open(path) {
         Ok(file) => file,
         // A sample of that name, where there is no such file.
         Err(error) => {
@@ -134,7 +139,14 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
             return Ok(read::read(Cursor::new(sample.bytes), &limits, &mut |_| true));
         }
     };
-    let all = file.metadata().map_err(failed)?.len();
+    let known = file.metadata().map_err(failed)?;
+    if known.is_dir() {
+        return Err(failed(io::ErrorKind::IsADirectory.into()));
+    }
+    if !known.is_file() {
+        return piped(&mut file);
+    }
+    let all = known.len();
     Ok(read::read_wanted(BufReader::with_capacity(1 << 16, file), &limits, &wanted, &mut |read| {
         progress.tell(read, all);
         true

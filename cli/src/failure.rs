@@ -1,12 +1,14 @@
 //! Why a command has no result, in words and as an exit code.
 
+use crate::{interrupt, terminal::Escaped};
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
-    inspect::{run_fingerprint::RunFingerprintError, vcd::TooCoarse},
-    scenario::{Problem, link::LinkError},
+    inspect::{recorded_run::TooLong, run_fingerprint::RunFingerprintError, vcd::TooCoarse},
+    scenario::{MAX_TEXT_BYTES, Problem, link::LinkError},
 };
 
 /// Why there is no result.
+#[derive(Debug)]
 pub(crate) enum Failure {
     /// A file could not be read or written.
     File(PathBuf, io::Error),
@@ -15,7 +17,9 @@ pub(crate) enum Failure {
     /// The dump's timescale does not go with the clock.
     Timescale(TooCoarse),
     /// The file is longer than this many bytes.
-    TooLong(PathBuf, usize),
+    TooLong(PathBuf, u64),
+    /// A scenario would be longer than one that can be read; what makes it shorter.
+    LongScenario(PathBuf, &'static str),
     /// The scenario's file is not text.
     NotText(PathBuf),
     /// The scenario is wrong.
@@ -28,6 +32,8 @@ pub(crate) enum Failure {
     RunFingerprint(RunFingerprintError),
     /// The run is not the one that a link's sender saw; where they part.
     OtherRun(String),
+    /// A run is too long to be analyzed.
+    LongAnalysis(PathBuf, TooLong),
     /// There is no such preset.
     Preset(String),
     /// Records of a panel, where there is none.
@@ -97,11 +103,13 @@ impl Failure {
             _ if self.is_closed_pipe() => ExitCode::from(141),
             Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
-            Self::Interrupted => ExitCode::from(130),
+            Self::Interrupted => ExitCode::from(interrupt::EXIT_CODE),
             Self::Output(..)
             | Self::Timescale(_)
             | Self::TooLong(..)
             | Self::NotText(_)
+            | Self::LongAnalysis(..)
+            | Self::LongScenario(..)
             | Self::Scenario(..)
             | Self::Link(_)
             | Self::NoProof
@@ -132,22 +140,33 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::Output(path, detail) => write!(f, "{}: {detail}", path.display()),
+            Self::File(path, error) => write!(f, "{}: {error}", Escaped::path(path)),
+            Self::Output(path, detail) => write!(f, "{}: {detail}", Escaped::path(path)),
             Self::Timescale(error) => write!(f, "--vcd-timescale: {error}"),
             Self::TooLong(path, most) => write!(
                 f,
-                "{}: more than {most} bytes; give a shorter text: no scenario or table needs as many",
-                path.display()
+                "{}: more than {most} bytes; {}",
+                Escaped::path(path),
+                if *most > MAX_TEXT_BYTES as u64 {
+                    "save it to a file, which may have any length"
+                } else {
+                    "give a shorter text: no scenario or table needs as many"
+                }
+            ),
+            Self::LongAnalysis(path, why) => write!(f, "{}: {why}", Escaped::path(path)),
+            Self::LongScenario(path, help) => write!(
+                f,
+                "{}: not written: the scenario takes more than the {MAX_TEXT_BYTES} bytes that can be read again; {help}",
+                Escaped::path(path)
             ),
             Self::NotText(path) => {
-                write!(f, "{}: not UTF-8 text; save it as UTF-8", path.display())
+                write!(f, "{}: not UTF-8 text; save it as UTF-8", Escaped::path(path))
             }
             Self::Scenario(path, problems) => {
                 let count = problems.len();
                 let s = if count == 1 { "" } else { "s" };
-                write!(f, "{}: {count} problem{s}", path.display())?;
-                problems.iter().try_for_each(|problem| write!(f, "\n  {problem}"))
+                write!(f, "{}: {count} problem{s}", Escaped::path(path))?;
+                problems.iter().try_for_each(|problem| write!(f, "\n  {}", Escaped(problem)))
             }
             Self::Link(error) => write!(f, "{error}"),
             Self::NoProof => f.write_str(
@@ -156,22 +175,22 @@ impl fmt::Display for Failure {
             Self::RunFingerprint(error) => write!(f, "{error}"),
             Self::OtherRun(how) => f.write_str(how),
             Self::Preset(id) => {
-                write!(f, "{id}: no such preset; `stepscope presets` lists them")
+                write!(f, "{}: no such preset; `stepscope presets` lists them", Escaped(id))
             }
             Self::NoPanel(path) => write!(
                 f,
                 "{}: --panel writes what stand-alone controllers show, and there is none; take it out, or give a source standalone",
-                path.display()
+                Escaped::path(path)
             ),
             Self::LongRun(path) => write!(
                 f,
                 "{}: the run makes more than 4 000 000 edges, or comes to no end; give run_cycles or a shorter program",
-                path.display()
+                Escaped::path(path)
             ),
             Self::NoStandAlone(path) => write!(
                 f,
                 "{}: powercut cuts the power of stand-alone controllers, and there is none; give a source standalone, or a preset such as zhang-2012-controller",
-                path.display()
+                Escaped::path(path)
             ),
             Self::SilentlyWrong(count) => write!(
                 f,
@@ -180,29 +199,29 @@ impl fmt::Display for Failure {
             Self::NoDriver(path) => write!(
                 f,
                 "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",
-                path.display()
+                Escaped::path(path)
             ),
             Self::Controller(path, given, 1) => {
-                write!(f, "{}: there is no controller {given}; the scenario has one, 0", path.display())
+                write!(f, "{}: there is no controller {given}; the scenario has one, 0", Escaped::path(path))
             }
             Self::Controller(path, given, count) => {
                 let most = count - 1;
-                write!(f, "{}: there is no controller {given}; give 0 to {most}", path.display())
+                write!(f, "{}: there is no controller {given}; give 0 to {most}", Escaped::path(path))
             }
             Self::Axis(path, given, count) => {
                 let axes = if *count == 1 { "axis" } else { "axes" };
                 write!(
                     f,
                     "{}: there is no axis {given}; the scenario has {count} {axes}, from 0",
-                    path.display()
+                    Escaped::path(path)
                 )
             }
-            Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", path.display()),
+            Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", Escaped::path(path)),
             Self::PartOnly(path, why) => {
-                write!(f, "{}: not read to its end: {why}; what stands above is of what could be read", path.display())
+                write!(f, "{}: not read to its end: {why}; what stands above is of what could be read", Escaped::path(path))
             }
             Self::NotTheModel(how) | Self::Option(how) | Self::NotVerified(how) => f.write_str(how),
-            Self::Port(name, why) => write!(f, "{name}: {why}"),
+            Self::Port(name, why) => write!(f, "{}: {why}", Escaped(name)),
             Self::LostPort(why) => write!(f, "the port is lost: {why}"),
             Self::NotRealTime(count, ms) => {
                 let times = if *count == 1 { "once" } else { "several times" };
@@ -211,7 +230,7 @@ impl fmt::Display for Failure {
                     "this machine did not keep up: the session's clock was set back {times} ({count}), by {ms:.0} ms in all. The run is exact for what it was given, but was not in real time; give a longer --lag or a lower --pace"
                 )
             }
-            Self::NotRecorded(path, why) => write!(f, "{}: written, but it is not the session: {why}", path.display()),
+            Self::NotRecorded(path, why) => write!(f, "{}: written, but it is not the session: {why}", Escaped::path(path)),
             Self::Interrupted => f.write_str("ended by Ctrl-C"),
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };

@@ -1,13 +1,15 @@
 //! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
 
-use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios};
+use crate::{
+    failure::Failure, json::Tables, parallel, progress::Progress, scenario_file, scenarios, terminal,
+};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::{
     io::{self, Write},
     num::NonZero,
     ops::Range,
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 use stepscope_core::{
     peripheral::config::Protocol,
@@ -17,6 +19,8 @@ use stepscope_core::{
 
 /// Seeds that a thread takes at once.
 const BATCH: u64 = 64;
+/// The number of seeds that there are: of 32 bits.
+const SEEDS: u64 = 1 << 32;
 /// The name of the protocol that nothing may go wrong with.
 const FRAMED: &str = "framed";
 /// Seeds that are named where something went wrong.
@@ -30,7 +34,7 @@ pub(crate) struct Arguments {
     /// other for 40 ticks.
     file: Option<PathBuf>,
     /// How many seeds to run.
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
     seeds: u32,
     /// The first of them.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
@@ -116,14 +120,19 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(seed) = arguments.seed.filter(|_| arguments.scenario || arguments.link) {
         let scenarios: Result<Vec<_>, _> =
             protocols.iter().map(|&protocol| Ok(sweep(protocol)?.scenario(seed))).collect();
-        return write(&scenarios?, arguments.link);
+        return write(&path, &scenarios?, arguments.link);
     }
     let seeds = match arguments.seed {
         Some(seed) => u64::from(seed)..u64::from(seed) + 1,
         None => u64::from(arguments.from)..u64::from(arguments.from) + u64::from(arguments.seeds),
     };
-    // Seeds are numbers of 32 bits.
-    let seeds = seeds.start..seeds.end.min(1 << 32);
+    if seeds.end > SEEDS {
+        let (from, count, most) = (arguments.from, arguments.seeds, SEEDS - seeds.start);
+        return Err(Failure::Option(format!(
+            "--from {from} with --seeds {count}: the last seed is {}; use --seeds 1 to {most}, or a lower --from",
+            SEEDS - 1
+        )));
+    }
     let mut reports = Vec::new();
     for &protocol in protocols {
         let (name, sweep) = (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
@@ -151,18 +160,15 @@ fn run(
     progress: Progress,
 ) -> io::Result<Result<Report, Vec<Problem>>> {
     let batches = (seeds.end - seeds.start).div_ceil(BATCH);
-    let reports = parallel::each(batches, threads, progress, |index| {
+    let make = |index| {
         let from = seeds.start + index * BATCH;
         batch(sweep, from..seeds.end.min(from + BATCH))
-    })?;
-    let mut whole = Report::default();
-    for report in reports {
-        match report {
-            Ok(report) => whole.join(report),
-            Err(problems) => return Ok(Err(problems)),
-        }
-    }
-    Ok(Ok(whole))
+    };
+    parallel::sum(batches, threads, progress, make, |whole: Result<Report, Vec<Problem>>, report| {
+        let mut whole = whole?;
+        whole.join(report?);
+        Ok(whole)
+    })
 }
 
 fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
@@ -174,16 +180,14 @@ fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> 
 }
 
 /// Writes the scenarios of a seed, one for each protocol.
-fn write(scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
-    for scenario in scenarios {
-        let text = if as_links {
-            format!("#{}", link::encode(scenario).map_err(Failure::Link)?)
-        } else {
-            scenario.to_json()
-        };
-        writeln!(io::stdout(), "{text}").map_err(Failure::output)?;
-    }
-    Ok(())
+fn write(path: &Path, scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
+    scenarios.iter().try_for_each(|scenario| {
+        if !as_links {
+            return scenario_file::print(path, scenario, "give a shorter scenario");
+        }
+        let link = link::encode(scenario).map_err(Failure::Link)?;
+        writeln!(terminal::out(), "#{link}").map_err(Failure::output)
+    })
 }
 
 /// The table's rows: a name, whether raw lines have it, too, and what of a tally it shows.
@@ -231,7 +235,7 @@ fn tables(reports: &[(&str, Report)]) -> Tables {
 }
 
 fn print(reports: &[(&str, Report)]) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     write!(out, "{:30}", "")?;
     reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
     writeln!(out)?;

@@ -7,7 +7,7 @@
 //! A table is a list of rows, a row a map with the table's columns, all of them in each row; a cell is a number, a text, a
 //! truth value, or null where there is none. Units stand in the columns' names.
 
-use crate::failure::Failure;
+use crate::{failure::Failure, terminal};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
@@ -33,7 +33,7 @@ impl Tables {
     pub(crate) fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let version = env!("CARGO_PKG_VERSION");
         let whole = json!({ "stepscope": version, "command": self.command, "tables": self.tables });
-        writeln!(out, "{whole:#}")
+        writeln!(out, "{}", terminal::json(&format!("{whole:#}")))
     }
 
     /// Writes them to standard output.

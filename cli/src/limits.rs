@@ -8,6 +8,8 @@ use crate::{
     parallel,
     plant::no_plant,
     progress::Progress,
+    quantity::{Acceleration, PeakPart, Rate},
+    scenario_file, terminal,
 };
 use clap::Args;
 use serde_json::json;
@@ -24,7 +26,7 @@ use stepscope_core::{
         rates::{RAMP_STEPS_S2, Resonance, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
-    scenario::{Cause, Problem, Scenario, to_json},
+    scenario::{Cause, Problem, Scenario},
     sim::Experiment,
 };
 
@@ -55,8 +57,8 @@ pub(crate) struct SettlingArguments {
     #[command(flatten)]
     common: Common,
     /// The part of the peak that still counts as settled.
-    #[arg(long, default_value_t = 0.2)]
-    share: f64,
+    #[arg(long, default_value = "0.2", allow_negative_numbers = true)]
+    share: PeakPart,
     /// T_step, how long a step is looked at, in cycles; without it the slot of the bus.
     #[arg(long, value_name = "CYCLES")]
     t_step: Option<NonZero<u32>>,
@@ -75,8 +77,8 @@ pub(crate) struct LimitsArguments {
     #[arg(long, value_name = "N")]
     steps: Option<NonZero<u64>>,
     /// Acceleration of the ramp to the pull-out rate, in steps/s^2.
-    #[arg(long, value_name = "A", default_value_t = RAMP_STEPS_S2)]
-    ramp: f64,
+    #[arg(long, value_name = "A", default_value = "200000", allow_negative_numbers = true)]
+    ramp: Acceleration,
 }
 
 /// What `stepscope resonance` takes.
@@ -85,15 +87,18 @@ pub(crate) struct ResonanceArguments {
     #[command(flatten)]
     common: Common,
     /// The least rate in full steps/s.
-    #[arg(long, value_name = "RATE", default_value_t = 20.0)]
-    from: f64,
+    #[arg(long, value_name = "RATE", default_value = "20", allow_negative_numbers = true)]
+    from: Rate,
     /// The greatest.
-    #[arg(long, value_name = "RATE", default_value_t = 400.0)]
-    to: f64,
+    #[arg(long, value_name = "RATE", default_value = "400", allow_negative_numbers = true)]
+    to: Rate,
     /// From one rate to the next.
-    #[arg(long, value_name = "RATE", default_value_t = 4.0)]
-    rung: f64,
+    #[arg(long, value_name = "RATE", default_value = "4", allow_negative_numbers = true)]
+    rung: Rate,
 }
+
+// The default of --ramp.
+const _: () = assert!(RAMP_STEPS_S2 == 200_000.0);
 
 /// Most rates of a map.
 const MAX_RATES: f64 = 100_000.0;
@@ -158,12 +163,9 @@ fn channels(alone: &Alone) -> String {
 /// Measures how long each motor's supply current takes to settle after a step.
 pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
-    if !(0.0..1.0).contains(&arguments.share) {
-        return Err(wrong_option(path, "--share is a part of the peak; give 0 to below 1, such as 0.2"));
-    }
+    let share = arguments.share.get();
     let to_standard = arguments.write.as_deref() == Some(Path::new(output::STANDARD));
-    let json = (common.json && arguments.write.is_some()).then_some(Path::new(output::STANDARD));
-    let outputs = Outputs::judge(Some(path), arguments.write.as_deref().into_iter().chain(json))?;
+    let outputs = Outputs::default();
     let (mut scenario, experiment, motors) = motors(common)?;
     let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
@@ -179,9 +181,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         }
     }
     let all = on_threads(common, "settling", motors.len(), |index| {
-        motors
-            .get(index)
-            .map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, arguments.share))
+        motors.get(index).map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, share))
     })?;
     let all: Vec<StepResponse> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
@@ -191,7 +191,8 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         // As the self-test: T_step where one does not settle.
         let cycles = greatest.filter(|_| settled).unwrap_or(t_step);
         scenario.bus.settle_cycles = u32::try_from(cycles).unwrap_or(u32::MAX);
-        output::write_whole(outputs, file, |out| writeln!(out, "{}", to_json(&scenario)))?;
+        let text = scenario_file::text(file, &scenario, "give a shorter scenario")?;
+        output::write_whole(outputs, file, |out| out.write_all(text.as_bytes()))?;
     }
     if to_standard {
         return Ok(());
@@ -201,7 +202,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         let rows = motors.iter().zip(&all).flat_map(|(alone, found)| {
             alone.channels.iter().map(move |channel| {
                 json!({
-                    "channel": channel, "t_step_cycles": t_step, "share": arguments.share, "rest_a": found.rest_a,
+                    "channel": channel, "t_step_cycles": t_step, "share": share, "rest_a": found.rest_a,
                     "least_a": found.least_a, "greatest_a": found.greatest_a, "reached_cycles": found.reached,
                     "settled_cycles": found.settled,
                 })
@@ -209,7 +210,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         });
         return Tables::of("settling").with("settling", rows).print();
     }
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     let time = |cycles: Option<u64>| {
         cycles.map_or_else(
             || "not within T_step".to_owned(),
@@ -235,9 +236,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
 /// Searches the start-stop rate and the pull-out rate of each motor.
 pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
-    if !(MIN_RAMP..=1e9).contains(&arguments.ramp) {
-        return Err(wrong_option(path, "--ramp is an acceleration in steps/s^2; give 1000 to 1000000000"));
-    }
+    let ramp = arguments.ramp.get();
     if arguments.steps.is_some_and(|steps| steps.get() > MAX_STEPS) {
         return Err(wrong_option(path, "--steps are those of each try; give 1 to 10000000"));
     }
@@ -249,7 +248,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
         let setup = &alone.setup;
         let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
         if index % 2 == 0 {
-            search(|rate| pulls(setup, rate, arguments.ramp))
+            search(|rate| pulls(setup, rate, ramp))
         } else {
             search(|rate| starts(setup, rate, steps))
         }
@@ -264,7 +263,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     if common.json {
         let rows = rows.iter().flat_map(|(alone, start_stop, pull_out)| {
             alone.channels.iter().map(move |channel| {
-                json!({ "channel": channel, "start_stop_steps_s": start_stop, "pull_out_steps_s": pull_out, "ramp_steps_s2": arguments.ramp })
+                json!({ "channel": channel, "start_stop_steps_s": start_stop, "pull_out_steps_s": pull_out, "ramp_steps_s2": ramp })
             })
         });
         return Tables::of("limits").with("limits", rows).print();
@@ -272,14 +271,14 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let rate = |found: Option<f64>| {
         found.map_or_else(|| "not even 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
     };
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     for (alone, start_stop, pull_out) in rows {
         let text = format!(
             "motor {}\n  start-stop rate  {}\n  pull-out rate    {}, by a ramp of {} steps/s^2\n",
             channels(alone),
             rate(start_stop),
             rate(pull_out),
-            arguments.ramp
+            ramp
         );
         out.write_all(text.as_bytes()).map_err(Failure::output)?;
     }
@@ -290,8 +289,6 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
 const MAX_SAMPLES: u64 = 10_000_000;
 /// Steps of a search at one rate, at most.
 const MAX_STEPS: u64 = 10_000_000;
-/// Least ramp of a search in steps/s^2.
-const MIN_RAMP: f64 = 1000.0;
 /// Motor-steps of a map, at most (PLANT F1), and how long each rate runs, in s.
 const MAX_MOTOR_STEPS: f64 = 1e10;
 const RATE_S: f64 = 0.6;
@@ -299,11 +296,13 @@ const RATE_S: f64 = 0.6;
 /// Maps where each motor resonates, as CSV.
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
-    let &ResonanceArguments { from, to, rung, .. } = arguments;
+    let [from, to, rung] = [arguments.from, arguments.to, arguments.rung].map(Rate::get);
     let count = (to - from) / rung + 1e-9;
-    if !(from > 0.0 && rung > 0.0 && to >= from && count < MAX_RATES && to <= 1e6) {
-        let what = "--from, --to and --rung make no map; give rates above 0, at most 1000000, rising, and 100000 at most";
-        return Err(wrong_option(path, what));
+    if !(to >= from && count < MAX_RATES) {
+        let what = format!(
+            "--from {from} --to {to} --rung {rung}: give rates that rise, and at most {MAX_RATES} of them"
+        );
+        return Err(wrong_option(path, &what));
     }
     let (_, _, motors) = motors(common)?;
     let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * rung).collect();
@@ -337,7 +336,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
         });
         return Tables::of("resonance").with("resonance", rows).print();
     }
-    let mut out = io::BufWriter::new(io::stdout().lock());
+    let mut out = io::BufWriter::new(terminal::out());
     let write = || -> io::Result<()> {
         writeln!(out, "channel,rate_full_steps_s,swing_full_steps,loses_steps")?;
         for (channel, rate, found) in rows {

@@ -1,6 +1,6 @@
 //! `stepscope run --line`: what was done to the line in a run, as a scenario of its own.
 
-use crate::{failure::Failure, output::Out};
+use crate::{failure::Failure, output::Out, scenario_file};
 use std::{io::Write, path::Path};
 use stepscope_core::{
     scenario::Scenario,
@@ -16,7 +16,8 @@ pub(crate) fn write(
 ) -> Result<(), Failure> {
     let scripted = scripted(scenario, experiment, run);
     // A long noisy run may have more forced levels than a scenario may.
-    scripted.check().map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
-    let written = writeln!(out, "{}", scripted.to_json()).and_then(|()| out.flush());
+    let text =
+        scenario_file::text(path, &scripted, "end the run sooner with run_cycles, or give a shorter motion")?;
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     written.map_err(|error| Failure::File(path.to_owned(), error))
 }

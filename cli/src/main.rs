@@ -7,7 +7,9 @@ mod capture;
 mod failure;
 mod faults;
 mod files;
+mod interrupt;
 mod json;
+mod kept_run;
 mod limits;
 mod line;
 mod live;
@@ -17,21 +19,25 @@ mod motors;
 mod output;
 mod panel;
 mod parallel;
+mod paths;
 mod plant;
 mod points;
 mod powercut;
 mod progress;
 mod quantity;
 mod run;
+mod scenario_file;
 mod scenarios;
 mod sine;
 mod status;
 mod steps;
 mod tables;
+mod terminal;
 mod timing;
 mod torque;
 mod verify;
 
+use crate::failure::Failure;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::{
     io::{self, Write},
@@ -147,8 +153,33 @@ fn command_line() -> clap::Command {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::from_arg_matches(&command_line().get_matches());
-    let result = match arguments.unwrap_or_else(|error| error.exit()).command {
+    interrupt::install();
+    let arguments = command_line().try_get_matches().and_then(|matches| {
+        let arguments = Arguments::from_arg_matches(&matches)?;
+        Ok((matches, arguments))
+    });
+    let result = match arguments {
+        Ok((matches, arguments)) => paths::check(&matches).and_then(|()| run(arguments.command)),
+        Err(error) => match usage(&error) {
+            Ok(code) => return code,
+            Err(error) => Err(Failure::output(error)),
+        },
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if !failure.is_closed_pipe() {
+                // Who has closed standard error has the exit code.
+                let _ = writeln!(terminal::err(), "{failure}");
+            }
+            failure.exit_code()
+        }
+    }
+}
+
+/// Runs a command.
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Serve(arguments) => live::serve::serve(&arguments),
         Command::Send(arguments) => live::send::send(&arguments),
@@ -170,15 +201,20 @@ fn main() -> ExitCode {
         Command::Drivers { json } => timing::drivers(json),
         Command::Completions { shell } => manual::completions(shell, command_line()),
         Command::Man { dir } => manual::pages(dir.as_deref(), command_line()),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            if !failure.is_closed_pipe() {
-                // Who has closed standard error has the exit code.
-                let _ = writeln!(io::stderr(), "{failure}");
-            }
-            failure.exit_code()
-        }
     }
+}
+
+/// Prints help, the version, or what is wrong with the command line, and gives the exit code.
+fn usage(error: &clap::Error) -> io::Result<ExitCode> {
+    // What was typed is repeated, also to a terminal.
+    let is_unsafe = |c| terminal::is_unsafe(c) && c != '\n' && c != '\t';
+    if !error.use_stderr() {
+        error.print()?;
+        io::stdout().flush()?;
+    } else if std::env::args_os().any(|word| word.to_string_lossy().contains(is_unsafe)) {
+        let _ = write!(terminal::err(), "{}", error.render());
+    } else {
+        let _ = error.print();
+    }
+    Ok(ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)))
 }

@@ -5,7 +5,7 @@ mod distortion;
 mod table;
 mod unplanned;
 
-use crate::{failure::Failure, scenarios};
+use crate::{failure::Failure, kept_run, scenarios, terminal};
 pub(crate) use arguments::Arguments;
 use arguments::Written;
 use distortion::Distortion;
@@ -15,7 +15,7 @@ use stepscope_core::{
         actual_motion::Pulses,
         measures::{Measures, within_bounds},
     },
-    peripheral::trace::{Recording, steps},
+    peripheral::trace::steps,
     scenario::{Problem, Source},
 };
 
@@ -33,8 +33,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     // The recording has the steps of all axes.
     let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
     within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;
-    let mut recording = Recording::default();
-    experiment.run(&mut recording);
+    let recording = kept_run::of(path, &experiment)?;
     // There are at most 16 axes.
     let channel = axis as u8;
     let steps = steps(&recording.trace, channel);
@@ -47,7 +46,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     );
     let found = Measures::of(plan, &run, motion.axes.get(axis));
     let distortion = Distortion::of(plan, &run, &scenario.analysis);
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     let written = match arguments.format {
         _ if arguments.json => table::tables(axis, &found, distortion.as_ref()).write(&mut out),
         Written::Text => table::text(axis, &found, distortion.as_ref(), &mut out),

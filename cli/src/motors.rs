@@ -1,6 +1,6 @@
 //! `--motor` and `--drive`, and `stepscope plant --motors`: motors and drivers out of the list.
 
-use crate::{failure::Failure, json::Tables, scenarios};
+use crate::{failure::Failure, json::Tables, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -114,7 +114,7 @@ pub(crate) fn list(as_json: bool) -> Result<(), Failure> {
         let tables = Tables::of("plant").with("motors", MOTORS.iter().map(motor));
         return tables.with("drives", DRIVES.iter().map(drive)).print();
     }
-    write(&mut io::stdout().lock()).map_err(Failure::output)
+    write(&mut terminal::out()).map_err(Failure::output)
 }
 
 fn write(out: &mut impl Write) -> io::Result<()> {

@@ -15,14 +15,12 @@ use std::{
     fs,
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
-    sync::{Mutex, Once, PoisonError},
+    sync::{Mutex, PoisonError},
 };
 use tempfile::TempPath;
 
 /// What stands for standard input or output in place of a path.
 pub(crate) const STANDARD: &str = "-";
-/// Exit code of a command that Ctrl-C, or a request to end, has ended.
-const INTERRUPTED: i32 = 130;
 /// Links that are followed before a path is taken to be a circle.
 const MAX_LINKS: u32 = 40;
 
@@ -55,8 +53,14 @@ enum Identity {
 
 impl Identity {
     fn of_input(path: &Path) -> Option<Self> {
-        let handle = if path == Path::new(STANDARD) { Handle::stdin() } else { Handle::from_path(path) };
-        handle.ok().map(Self::There)
+        if path == Path::new(STANDARD) {
+            return Handle::stdin().ok().map(Self::There);
+        }
+        // Opening a pipe would take it from who reads it afterwards.
+        if !is_file(path) {
+            return None;
+        }
+        Handle::from_path(path).ok().map(Self::There)
     }
 
     fn of_output(path: &Path) -> Option<Self> {
@@ -68,7 +72,9 @@ impl Identity {
         if name == Path::new("/dev/null") {
             return None;
         }
-        if let Ok(handle) = Handle::from_path(&name) {
+        if !is_pipe(&name)
+            && let Ok(handle) = Handle::from_path(&name)
+        {
             return Some(Self::There(handle));
         }
         let folder = fs::canonicalize(folder(&name)).ok()?;
@@ -80,12 +86,13 @@ impl Outputs {
     /// Judges where the outputs of a command go before any of them is written.
     ///
     /// # Errors
-    /// [`Failure::Output`] if two of them, or one and the input, are the same.
+    /// [`Failure::Output`] if two of them, or one and an input, are the same.
     pub(crate) fn judge<'p>(
-        input: Option<&Path>,
+        inputs: impl IntoIterator<Item = &'p (impl AsRef<Path> + ?Sized + 'p)>,
         outputs: impl IntoIterator<Item = &'p Path>,
     ) -> Result<Self, Failure> {
-        let input = input.and_then(|path| Some((path, Identity::of_input(path)?)));
+        let inputs: Vec<Identity> =
+            inputs.into_iter().filter_map(|path| Identity::of_input(path.as_ref())).collect();
         let mut before: Vec<(&Path, Option<Identity>)> = Vec::new();
         for path in outputs {
             let identity = Identity::of_output(path);
@@ -102,7 +109,7 @@ impl Outputs {
                 return Err(Failure::Output(path.to_owned(), detail));
             }
             // A terminal is what many commands read and write.
-            if input.as_ref().is_some_and(|(_, known)| identity.as_ref() == Some(known)) && is_file(path) {
+            if identity.as_ref().is_some_and(|identity| inputs.contains(identity)) && is_file(path) {
                 return Err(Failure::Output(
                     path.to_owned(),
                     "is what is read, and would be overwritten; give another file",
@@ -125,14 +132,13 @@ impl Outputs {
         }
         let name = followed(path);
         let known = fs::metadata(&name).ok();
-        if known.as_ref().is_some_and(|known| !known.is_file()) || of_system(&name) {
+        if known.as_ref().is_some_and(|known| !known.is_file()) || is_open_file(&name) {
             return Ok(Box::new(fs::OpenOptions::new().write(true).open(&name)?));
         }
         if known.is_some() {
             // What may not be written may not be replaced.
             fs::OpenOptions::new().append(true).open(&name)?;
         }
-        remove_when_interrupted();
         let mut start = name.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_owned();
         // A name may have 255 bytes, and this one becomes longer.
         if start.len() > 200 {
@@ -191,7 +197,7 @@ fn folder(path: &Path) -> &Path {
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {
-        if of_system(&path) {
+        if is_open_file(&path) {
             break;
         }
         let Ok(target) = fs::read_link(&path) else { break };
@@ -200,9 +206,25 @@ fn followed(path: &Path) -> PathBuf {
     path
 }
 
-/// What the system shows as files: `/dev/stdout` leads to a file that somebody else has open.
-fn of_system(path: &Path) -> bool {
-    cfg!(unix) && (path.starts_with("/dev") || path.starts_with("/proc"))
+/// Whether a path is a file that some process has open, as `/dev/stdout` is in the end: it is written where it stands, and
+/// not replaced.
+fn is_open_file(path: &Path) -> bool {
+    let folder = fs::canonicalize(folder(path)).unwrap_or_default();
+    cfg!(unix) && (folder.starts_with("/proc") || folder.starts_with("/dev/fd"))
+}
+
+/// Whether a path is a pipe with a name: opening it waits for the other end.
+fn is_pipe(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        !is_open_file(path) && fs::metadata(path).is_ok_and(|known| known.file_type().is_fifo())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = path;
+        false
+    }
 }
 
 /// Whether a path, or standard output for `-`, leads to a plain file.
@@ -220,18 +242,12 @@ fn lock() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on Ctrl-C, and a request to end, take the temporary files away first.
-fn remove_when_interrupted() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        // Where such a signal is ignored, as by nohup, it stays so; nothing but temporary names may be left then.
-        let _ = ctrlc::try_set_handler(|| {
-            // The lock is not given back: no file begins or gets its name any more.
-            let temporary = lock();
-            for path in temporary.iter() {
-                let _ = fs::remove_file(path);
-            }
-            std::process::exit(INTERRUPTED);
-        });
-    });
+/// Removes the temporary files of a command that is ended. No file begins or gets its name any more.
+pub(crate) fn remove_temporary() {
+    let temporary = lock();
+    for path in temporary.iter() {
+        let _ = fs::remove_file(path);
+    }
+    // The lock stays.
+    std::mem::forget(temporary);
 }

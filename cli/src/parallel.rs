@@ -1,16 +1,38 @@
 //! Work on all cores. What is made of each number comes back in the numbers' order, so that how many threads there are
 //! shows in nothing but the time.
 
-use crate::progress::Progress;
+use crate::{progress::Progress, terminal};
 use rayon::{
-    ThreadPoolBuilder,
+    ThreadPool, ThreadPoolBuilder,
     iter::{IntoParallelIterator, ParallelIterator},
 };
 use std::{
-    io,
+    io::{self, Write},
     num::NonZero,
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, Once, PoisonError},
+    thread::available_parallelism,
 };
+
+/// Threads per core, at most: more of them take memory, and time from everybody else, and gain nothing.
+const MAX_THREADS_PER_CORE: usize = 4;
+
+/// The number of threads to use: as many as there are cores for `None`, at most four times as many for a number. Each thread
+/// takes memory, so more are not started; standard error says so.
+fn threads(wanted: Option<NonZero<usize>>) -> usize {
+    let cores = available_parallelism().map_or(1, NonZero::get);
+    let most = MAX_THREADS_PER_CORE * cores;
+    let wanted = wanted.map_or(cores, NonZero::get);
+    if wanted > most {
+        static ONCE: Once = Once::new();
+        ONCE.call_once(|| {
+            let _ = writeln!(
+                terminal::err(),
+                "--threads: {wanted} is more than {MAX_THREADS_PER_CORE} per core; {most} are used, the result is the same"
+            );
+        });
+    }
+    wanted.min(most)
+}
 
 /// What `make` makes of each number below `count`, on so many threads or on as many as there are cores.
 ///
@@ -22,25 +44,55 @@ pub(crate) fn each<R: Send>(
     progress: Progress,
     make: impl Fn(u64) -> R + Sync,
 ) -> io::Result<Vec<R>> {
+    let made = shown(count, progress, make);
+    Ok(pool(threads)?.install(|| (0..count).into_par_iter().map(&made).collect()))
+}
+
+/// The sum of all that `make` makes, in memory that does not grow with `count`. Parts are added as they come, so `add` must
+/// give the same in any order.
+///
+/// # Errors
+/// The system has no threads to give.
+pub(crate) fn sum<R: Default + Send, E: Send>(
+    count: u64,
+    threads: Option<NonZero<usize>>,
+    progress: Progress,
+    make: impl Fn(u64) -> Result<R, E> + Sync,
+    add: impl Fn(Result<R, E>, Result<R, E>) -> Result<R, E> + Sync,
+) -> io::Result<Result<R, E>> {
+    let made = shown(count, progress, make);
+    let pool = pool(threads)?;
+    Ok(pool.install(|| (0..count).into_par_iter().map(&made).reduce(|| Ok(R::default()), &add)))
+}
+
+fn pool(wanted: Option<NonZero<usize>>) -> io::Result<ThreadPool> {
+    ThreadPoolBuilder::new().num_threads(threads(wanted)).build().map_err(io::Error::other)
+}
+
+/// The same, with its progress.
+fn shown<R>(count: u64, progress: Progress, make: impl Fn(u64) -> R + Sync) -> impl Fn(u64) -> R + Sync {
     let progress = Mutex::new((progress, 0));
-    let pool = ThreadPoolBuilder::new()
-        // As many as there are cores for 0.
-        .num_threads(threads.map_or(0, NonZero::get))
-        .build()
-        .map_err(io::Error::other)?;
-    let made = |number| {
+    move |number| {
         let made = make(number);
         let (progress, done) = &mut *progress.lock().unwrap_or_else(PoisonError::into_inner);
         *done += 1;
         progress.tell(*done, count);
         made
-    };
-    Ok(pool.install(|| (0..count).into_par_iter().map(made).collect()))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_more_than_four_threads_per_core_are_used() {
+        let cores = available_parallelism().map_or(1, NonZero::get);
+        assert_eq!(threads(None), cores);
+        assert_eq!(threads(NonZero::new(1)), 1);
+        assert_eq!(threads(NonZero::new(4 * cores)), 4 * cores);
+        assert_eq!(threads(NonZero::new(100_000_000)), 4 * cores);
+    }
 
     #[test]
     fn the_order_is_that_of_the_numbers_on_any_number_of_threads() {

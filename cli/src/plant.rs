@@ -6,6 +6,7 @@ use crate::{
     motors::{self, Replacing},
     output::{Out, Outputs, STANDARD},
     progress::Progress,
+    terminal,
 };
 use clap::Args;
 use serde::Serialize;
@@ -128,9 +129,7 @@ impl Observer for Files {
 /// Runs the scenario with its plants and tells what they did.
 pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     let Some(path) = &arguments.scenario else { return motors::list(arguments.json) };
-    let table = arguments.json.then_some(Path::new(STANDARD));
-    let files = [&arguments.csv, &arguments.vcd].into_iter().flatten().map(PathBuf::as_path);
-    let mut outputs = Outputs::judge(Some(path), files.chain(table))?;
+    let mut outputs = Outputs::default();
     let (_, experiment) = arguments.replacing.judged(path)?;
     let (controllers, chosen) = (experiment.controllers(), arguments.controller);
     if chosen >= controllers {
@@ -153,7 +152,7 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     let setups = experiment.plants().map(|plants| plants.setups.as_slice());
     let Some(setup) = setups.and_then(|setups| setups.get(chosen)) else { return Ok(()) };
     if arguments.digest {
-        return writeln!(io::stdout(), "{:016x}", result.digest).map_err(Failure::output);
+        return writeln!(terminal::out(), "{:016x}", result.digest).map_err(Failure::output);
     }
     if arguments.json {
         return PlantReport::of(&experiment, &run, chosen).map_or(Ok(()), |report| tables(&report).print());
@@ -210,7 +209,7 @@ fn print<S: Sink, O: Observer>(
     setup: &Setup,
 ) -> io::Result<()> {
     let clock_hz = setup.clock_hz;
-    let mut out = io::BufWriter::new(io::stdout().lock());
+    let mut out = io::BufWriter::new(terminal::out());
     writeln!(out, "plant digest     {:016x}", result.digest)?;
     writeln!(out, "points to        {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
     let (load, bus) = (&result.load_a, &result.bus_v);

@@ -1,6 +1,6 @@
 //! `stepscope points`: a table of times and positions as a scenario whose one move is the curve through them.
 
-use crate::{failure::Failure, scenarios};
+use crate::{failure::Failure, quantity::Millimeters, scenario_file, scenarios};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use stepscope_core::{
@@ -22,8 +22,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value = "steps")]
     unit: UnitName,
     /// Length of one step in mm, for positions in mm.
-    #[arg(long, required_if_eq("unit", "mm"))]
-    step_mm: Option<f64>,
+    #[arg(long, required_if_eq("unit", "mm"), allow_negative_numbers = true)]
+    step_mm: Option<Millimeters>,
     /// Straight from point to point, in place of a smooth curve from rest to rest.
     #[arg(long)]
     straight: bool,
@@ -49,7 +49,7 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     };
     let interpolation = if arguments.straight { Interpolation::Straight } else { Interpolation::Smooth };
     let mechanics = match arguments.step_mm {
-        Some(step_mm) => Mechanics::Direct(Direct { step_mm }),
+        Some(step_mm) => Mechanics::Direct(Direct { step_mm: step_mm.get() }),
         None => Mechanics::default(),
     };
     let moves = vec![Move::Points(Points { unit, interpolation, points })];
@@ -59,5 +59,6 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let title =
         path.file_name().map_or_else(String::new, |name| name.to_string_lossy().chars().take(120).collect());
     let source = Source::Motion(Motion { axes: vec![axis], ..Motion::default() });
-    scenarios::print(&Scenario { title, source, ..Scenario::default() }.to_json())
+    let scenario = Scenario { title, source, ..Scenario::default() };
+    scenario_file::print(path, &scenario, "give fewer points")
 }

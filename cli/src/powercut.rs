@@ -1,6 +1,6 @@
 //! `stepscope powercut`: what a stand-alone controller knows of its position after the power went away, cut by cut.
 
-use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios};
+use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios, terminal};
 use clap::Args;
 use serde_json::{Value, json};
 use std::{
@@ -159,7 +159,7 @@ const fn name(policy: Policy) -> &'static str {
 }
 
 fn print(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)], checked: &Checked) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     writeln!(
         out,
         "{:<12} {:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}",

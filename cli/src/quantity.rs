@@ -45,6 +45,20 @@ macro_rules! quantities {
 quantities! {
     /// A time in us.
     Microseconds: 0.0..=1e9, "microseconds";
+    /// A time in s that something divides by.
+    Seconds: 1e-6..=1e9, "seconds";
+    /// A frequency in Hz.
+    Hertz: 1e-6..=1e9, "Hz";
+    /// A length in mm that something divides by.
+    Millimeters: 1e-9..=1e6, "mm";
+    /// A rate in steps/s.
+    Rate: 1e-6..=1e6, "steps/s";
+    /// An acceleration in steps/s^2 of a ramp from rest.
+    Acceleration: 1000.0..=1e9, "steps/s^2";
+    /// A part of an amplitude.
+    AmplitudePart: 1e-6..=1.0, "of the amplitude";
+    /// A part of a peak, less than all of it.
+    PeakPart: 0.0..=0.999_999, "of the peak";
 }
 
 /// Reads a number and checks its range.
@@ -77,6 +91,26 @@ impl FromStr for ExactMicroseconds {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A new option of a number takes a type of this file.
+    #[test]
+    fn no_option_is_an_unchecked_number() {
+        fn check(command: &clap::Command) {
+            for argument in command.get_arguments() {
+                let parsed = argument.get_value_parser().type_id();
+                let unchecked =
+                    parsed == std::any::TypeId::of::<f64>() || parsed == std::any::TypeId::of::<f32>();
+                assert!(
+                    !unchecked,
+                    "{} --{}: use a type of quantity.rs",
+                    command.get_name(),
+                    argument.get_id()
+                );
+            }
+            command.get_subcommands().for_each(check);
+        }
+        check(&crate::command_line());
+    }
 
     #[test]
     fn only_finite_numbers_in_range_are_taken() {

@@ -5,16 +5,16 @@ use crate::{
     files::{self, Files, Output, Station},
     json::Tables,
     line,
-    output::{Out, Outputs, STANDARD},
+    output::{Out, Outputs},
     panel,
     progress::Progress,
-    scenarios, status, timing,
+    scenarios, status, terminal, timing,
 };
 use clap::Args;
 use serde_json::json;
 use std::{
     io::{self, Write},
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 use stepscope_core::{
     controller::{Checked, StandAlone},
@@ -89,14 +89,6 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    /// Where the files go.
-    fn outputs(&self) -> impl Iterator<Item = &Path> {
-        [&self.trace, &self.vcd, &self.csv, &self.packets, &self.panel, &self.line, &self.timing.violations]
-            .into_iter()
-            .flatten()
-            .map(PathBuf::as_path)
-    }
-
     /// Whether something else than digest and status was asked for.
     const fn asks_for_a_file(&self) -> bool {
         self.trace.is_some()
@@ -113,8 +105,7 @@ impl Arguments {
 /// Runs the scenario and writes what was asked for; digest and status if nothing was.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let table = arguments.json.then_some(Path::new(STANDARD));
-    let mut outputs = Outputs::judge(Some(path), arguments.outputs().chain(table))?;
+    let mut outputs = Outputs::default();
     let (scenario, experiment) = scenarios::judged(path)?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
@@ -133,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (line, violations) = (create(&arguments.line)?, create(&arguments.timing.violations)?);
     for warned in experiment.stand_alone().iter().flat_map(|controllers| controllers.warnings()) {
         // Who has closed standard error hears no warnings.
-        let _ = writeln!(io::stderr(), "warning: {warned}");
+        let _ = writeln!(terminal::err(), "warning: {warned}");
     }
     let finished = go(&experiment, &mut stations, arguments.progress);
     if let Some(work) = finished.stand_alone().and_then(StandAlone::work) {
@@ -173,7 +164,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         tables.print()?;
     } else {
         if let Some(link) = link {
-            writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+            writeln!(terminal::out(), "#{link}").map_err(Failure::output)?;
         }
         if arguments.digest && !arguments.status {
             status::digests(&summary).map_err(Failure::output)?;

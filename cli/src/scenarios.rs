@@ -1,6 +1,6 @@
 //! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
 
-use crate::{failure::Failure, json, verify};
+use crate::{failure::Failure, json, scenario_file, terminal, verify};
 use serde_json::json;
 use std::{
     fs,
@@ -58,7 +58,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let mut bytes = Vec::new();
     input.take(MAX_TEXT_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
     if bytes.len() > MAX_TEXT_BYTES {
-        return Err(Failure::TooLong(path.to_owned(), MAX_TEXT_BYTES));
+        return Err(Failure::TooLong(path.to_owned(), MAX_TEXT_BYTES as u64));
     }
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
 }
@@ -77,7 +77,10 @@ fn preset(id: &str) -> Option<&'static Preset> {
 pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
     let scenario = link::decode(fragment).map_err(Failure::Link)?;
-    print(&scenario.to_json())?;
+    // As a run refuses it.
+    let path = Path::new("the link");
+    Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
+    scenario_file::print(path, &scenario, "open the link in the page")?;
     if verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
 }
 
@@ -85,7 +88,7 @@ pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
 pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
     if let Some(id) = id {
         let preset = preset(id).ok_or_else(|| Failure::Preset(id.to_owned()))?;
-        return print(preset.json.trim_end());
+        return print(&terminal::json(preset.json.trim_end()));
     }
     if as_json {
         let row = |preset: &Preset| json!({ "id": preset.id, "title": preset.scenario().title });
@@ -97,5 +100,5 @@ pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
 
 /// Writes a text to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    writeln!(io::stdout(), "{text}").map_err(Failure::output)
+    writeln!(terminal::out(), "{text}").map_err(Failure::output)
 }

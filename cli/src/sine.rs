@@ -6,6 +6,7 @@ use crate::{
     output::{self, Outputs},
     parallel,
     progress::Progress,
+    quantity::{AmplitudePart, Hertz, Seconds},
     scenarios,
 };
 use clap::{Args, Subcommand};
@@ -72,25 +73,26 @@ pub(crate) enum Command {
 #[derive(Args)]
 pub(crate) struct Range {
     /// Least d1, in parts of the amplitude.
-    #[arg(long, value_name = "D1", default_value = "0.002", value_parser = part)]
-    from: f64,
+    #[arg(long, value_name = "D1", default_value = "0.002", allow_negative_numbers = true)]
+    from: AmplitudePart,
     /// Greatest d1.
-    #[arg(long, value_name = "D1", default_value = "0.06", value_parser = part)]
-    to: f64,
+    #[arg(long, value_name = "D1", default_value = "0.06", allow_negative_numbers = true)]
+    to: AmplitudePart,
     /// Bandwidth (-3 dB, first order) of the accelerometer on the rig, in Hz: one more column tells the
     /// distortion of the acceleration that it feels.
-    #[arg(long, value_name = "HZ", value_parser = positive, requires = "period_s")]
-    sensor_hz: Option<f64>,
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "period_s")]
+    sensor_hz: Option<Hertz>,
     /// Time of one period in s, which the sensor's bandwidth is held against.
-    #[arg(long, value_name = "S", value_parser = positive, requires = "sensor_hz")]
-    period_s: Option<f64>,
+    #[arg(long, value_name = "S", allow_negative_numbers = true, requires = "sensor_hz")]
+    period_s: Option<Seconds>,
     #[command(flatten)]
     common: Common,
 }
 
 impl Range {
     fn bounds(&self) -> Bounds {
-        let sensor = self.sensor_hz.zip(self.period_s).map(|(sensor_hz, period_s)| sensor_hz * period_s);
+        let sensor =
+            self.sensor_hz.zip(self.period_s).map(|(sensor_hz, period_s)| sensor_hz.get() * period_s.get());
         Bounds { order: self.common.order, sensor }
     }
 }
@@ -116,16 +118,6 @@ pub(crate) struct Written {
     json: bool,
 }
 
-fn part(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
-    if (1e-6..=1.0).contains(&value) { Ok(value) } else { Err("give 0.000001 to 1".to_owned()) }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
-    if (1e-6..=1e9).contains(&value) { Ok(value) } else { Err("give 0.000001 to 1e9".to_owned()) }
-}
-
 /// Writes the table.
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     let written = match command {
@@ -133,9 +125,7 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         Command::Vertices { common, .. } => &common.written,
         Command::Segments { written, .. } => written,
     };
-    let input =
-        if let Command::Segments { scenario, .. } = command { Some(scenario.as_path()) } else { None };
-    let outputs = Outputs::judge(input, [written.out.as_path()])?;
+    let outputs = Outputs::default();
     let sines = match command {
         Command::Segments { scenario, axis, .. } => sines(scenario, *axis)?,
         _ => Vec::new(),
@@ -143,7 +133,7 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     output::write_whole(outputs, &written.out, |out| match command {
         Command::Sweep { range, points } => sweep(range, *points, out),
         Command::Best { range, segments } => {
-            let rows = Distinct::new(range.from, range.to, range.bounds());
+            let rows = Distinct::new(range.from.get(), range.to.get(), range.bounds());
             let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
             let best = sine_polyline::best(rows.filter(asked));
             if written.json {
@@ -243,7 +233,7 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
     let (progress, measure) = (Progress::new("sweep", false), Measure::new(range.bounds()));
     let rows = parallel::each(points.into(), None, progress, |index| {
-        measure.row(swept(range.from, range.to, points, index as u32))
+        measure.row(swept(range.from.get(), range.to.get(), points, index as u32))
     })?;
     if range.common.written.json {
         return json_of("sine sweep", "polylines", rows.iter().map(cells)).write(out);

@@ -1,6 +1,6 @@
 //! What `stepscope run` prints: digests, and what controllers and host have come to.
 
-use crate::json::Tables;
+use crate::{json::Tables, terminal};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::{
@@ -10,13 +10,13 @@ use stepscope_core::{
 
 /// One digest a line.
 pub(crate) fn digests(summary: &Summary) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     summary.controllers.iter().try_for_each(|controller| writeln!(out, "{:016x}", controller.digest))
 }
 
 /// Digests, and the summary below them.
 pub(crate) fn print(summary: &Summary) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     for controller in &summary.controllers {
         writeln!(out, "digest {:016x}", controller.digest)?;
     }

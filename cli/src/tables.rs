@@ -3,17 +3,19 @@
 use crate::{
     failure::Failure,
     json::Tables,
+    kept_run,
     output::{self, Outputs},
     quantity::Microseconds,
     scenarios,
     steps::steps_of_table,
+    terminal,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::{
     io::{self, Write},
     num::NonZeroU32,
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 use stepscope_core::{
     inspect::{
@@ -28,11 +30,7 @@ use stepscope_core::{
         },
         round_half_up,
     },
-    peripheral::{
-        config::Config,
-        segment::PulseTimes,
-        trace::{Recording, steps},
-    },
+    peripheral::{config::Config, segment::PulseTimes, trace::steps},
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
     sim::Experiment,
 };
@@ -204,7 +202,7 @@ impl Axes {
         // Without a motion the steps are those of its run.
         let made = match (&scenario.source, &arguments.steps) {
             (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
-            _ => Some(made(&scenario).map_err(wrong)?),
+            _ => Some(made(&path, &scenario)?),
         };
         let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
@@ -258,10 +256,10 @@ impl Axes {
 }
 
 /// The steps that a scenario's run makes, of each channel that steps up to the last of them, from cycle 1 on.
-fn made(scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Vec<Problem>> {
-    let experiment = Experiment::new(scenario)?;
-    let mut recording = Recording::default();
-    experiment.run(&mut recording);
+fn made(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Failure> {
+    let wrong = |problems| Failure::Scenario(path.to_owned(), problems);
+    let experiment = Experiment::new(scenario).map_err(wrong)?;
+    let recording = kept_run::of(path, &experiment)?;
     let of = |channel| scheduled(&steps(&recording.trace, channel));
     let mut all: Vec<_> = (0..experiment.config().channels()).map(of).collect();
     while all.last().is_some_and(Vec::is_empty) {
@@ -270,17 +268,14 @@ fn made(scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Vec<Problem>> {
     if all.is_empty() {
         let detail =
             "nothing steps, so there is nothing to make tables of; give a scenario that moves, or --steps";
-        return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+        return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
     }
     Ok(all)
 }
 
 /// Writes the table, or the summary.
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
-    for input in [&arguments.scenario, &arguments.steps].into_iter().flatten() {
-        Outputs::judge(Some(input), [arguments.out.as_path()])?;
-    }
-    let outputs = Outputs::judge(None, [arguments.out.as_path()])?;
+    let outputs = Outputs::default();
     let axes = Axes::new(arguments)?;
     let Some(language) = arguments.format.language() else {
         return output::write_whole(outputs, &arguments.out, |out| {
@@ -303,7 +298,7 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     for warning in source.warnings(language) {
         // The same stands in the file.
-        let _ = writeln!(io::stderr(), "warning: {warning}");
+        let _ = writeln!(terminal::err(), "warning: {warning}");
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `stepscope run --timing` and `stepscope drivers`: could a driver follow the pulses?
 
-use crate::{failure::Failure, json::Tables, output::Out};
+use crate::{failure::Failure, json::Tables, output::Out, terminal};
 use clap::Args;
 use serde_json::{Value, json};
 use std::{
@@ -142,7 +142,7 @@ pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
             writeln!(out, "{:14} {}", "", sheet.source)
         })
     };
-    list(&mut io::stdout().lock()).map_err(Failure::output)
+    list(&mut terminal::out()).map_err(Failure::output)
 }
 
 /// What rules ask for, in words.
@@ -166,7 +166,7 @@ pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, clock_hz: u32)
 }
 
 fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     writeln!(out, "rule         required_ns     least_ns     spare_ns        at_cycle  channel  violations")?;
     for result in check.results() {
         let (required, least, spare, at, channel) = columns(result, clock_hz);

@@ -1,10 +1,7 @@
 //! `stepscope open --verify`: whether a run is the one that the sender of a link saw.
 
-use crate::{failure::Failure, progress::Progress};
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
+use crate::{failure::Failure, progress::Progress, terminal};
+use std::{io::Write, path::PathBuf};
 use stepscope_core::{
     inspect::{
         fingerprint::Shorter,
@@ -39,8 +36,11 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
             let digests: Vec<String> =
                 proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
             // Who has closed standard error has the exit code.
-            let _ =
-                writeln!(io::stderr(), "identical, bit for bit: {edges} edges, digest {}", digests.join(" "));
+            let _ = writeln!(
+                terminal::err(),
+                "identical, bit for bit: {edges} edges, digest {}",
+                digests.join(" ")
+            );
             return Ok(());
         }
         Verification::Differs { controller, after, until, shorter } => (controller, after, until, shorter),

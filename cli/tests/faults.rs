@@ -43,9 +43,10 @@ fn seeds_add_up_from_wherever_they_begin() {
     let parts = frames(&["--seeds", "70"]) + frames(&["--from", "70", "--seeds", "80"]);
     assert_eq!(parts, frames(&["--seeds", "150"]));
     assert_eq!(frames(&["--seed", "149"]), frames(&["--from", "149", "--seeds", "1"]));
-    // Seeds have 32 bits; those beyond do not come again from 0.
-    let (_, table, _) = stepscope(&["faults", "--from", "4294967290", "--seeds", "100"]);
+    // Seeds have 32 bits; those beyond are refused.
+    let (_, table, _) = stepscope(&["faults", "--from", "4294967290", "--seeds", "6"]);
     assert_eq!(row(&table, "seeds"), [6, 6]);
+    assert_eq!(stepscope(&["faults", "--from", "4294967290", "--seeds", "7"]).0, Some(2));
 }
 
 #[test]

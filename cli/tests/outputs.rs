@@ -89,6 +89,40 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
     assert_eq!(fs::read_to_string(folder.join("old.csv")).expect("a file"), "old");
 }
 
+/// What is compared with is an input, too.
+#[test]
+fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
+    let folder = folder("compared");
+    fs::write(folder.join("s.json"), "{}").expect("a file");
+    for output in ["--scenario", "--late", "--vcd"] {
+        let arguments = ["capture", "recorded-step-table", "--against", "s.json", output, "s.json"];
+        let (code, out, err) = in_folder(&folder, &arguments);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{output}");
+        assert!(err.starts_with("s.json: is what is read, and would be overwritten"), "{err}");
+    }
+    let (code, _, err) = in_folder(&folder, &["tables", "in.json", "--steps", "s.json", "--out", "./s.json"]);
+    assert!(code == Some(2) && err.contains("is what is read"), "{err}");
+    assert_eq!(fs::read_to_string(folder.join("s.json")).expect("a file"), "{}");
+}
+
+/// A device is what the system says is one, not what lies in a folder of devices.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_in_a_folder_of_devices_is_a_file() {
+    let path = PathBuf::from(format!("/dev/shm/stepscope-test-{}.trace", std::process::id()));
+    let name = path.display().to_string();
+    let (code, _, err) = stepscope(&["run", "-", "--trace", &name], "{}");
+    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let text = fs::read_to_string(&path).expect("it is written");
+    fs::remove_file(&path).expect("it was there");
+    for standard in ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "-"] {
+        assert_eq!(
+            stepscope(&["run", "-", "--trace", standard], "{}"),
+            (Some(0), text.clone(), String::new())
+        );
+    }
+}
+
 #[test]
 fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
     let folder = folder("replaced");

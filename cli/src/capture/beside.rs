@@ -1,15 +1,12 @@
 //! A recording beside a scenario's run.
 
 use super::arguments::Arguments;
-use crate::{failure::Failure, scenarios};
+use crate::{failure::Failure, kept_run, scenarios};
 use std::path::Path;
-use stepscope_core::{
-    inspect::recording::{
-        events::{self, Events},
-        opened::Opened,
-        tolerance::Tolerance,
-    },
-    peripheral::trace::Recording,
+use stepscope_core::inspect::recording::{
+    events::{self, Events},
+    opened::Opened,
+    tolerance::Tolerance,
 };
 
 /// A recording's steps, or bytes, beside a model's.
@@ -24,8 +21,7 @@ impl Beside {
     /// The recording beside the run of a scenario.
     pub(super) fn of(arguments: &Arguments, recording: &Opened, path: &Path) -> Result<Self, Failure> {
         let (scenario, experiment) = scenarios::judged(path)?;
-        let mut run = Recording::default();
-        experiment.run(&mut run);
+        let run = kept_run::of(path, &experiment)?;
         let recorded = recording.events(arguments.channel);
         let baud = recording.report.rx().map_or(scenario.line.baud, |line| line.baud);
         let (kind, clock_hz) = (recorded.kind, experiment.config().clock_hz());

@@ -5,10 +5,11 @@ use crate::{
     failure::Failure,
     output::{Out, Outputs},
     quantity::Microseconds,
+    scenario_file,
 };
 use std::{
     io::{self, Write},
-    path::PathBuf,
+    path::{Path, PathBuf},
 };
 use stepscope_core::{
     inspect::{
@@ -34,16 +35,15 @@ pub(super) fn write(
     if arguments.vcd.is_some() {
         arguments.vcd_timescale.of_clock(recording.clock_hz).map_err(Failure::Timescale)?;
     }
-    // Judged before a file is begun.
-    let made = arguments.scenario.as_ref().map(|_| scenario(arguments, recording, base)).transpose()?;
+    // Validated before a file is begun.
+    let made =
+        arguments.scenario.as_ref().map(|path| scenario(path, arguments, recording, base)).transpose()?;
     let mut file = |path: &Option<PathBuf>, write: &dyn Fn(&mut Out) -> io::Result<()>| {
         let Some(path) = path else { return Ok(()) };
         let mut out = outputs.create(path)?;
         write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.clone(), error))
     };
-    file(&arguments.scenario, &|out| {
-        made.as_ref().map_or(Ok(()), |scenario| writeln!(out, "{}", scenario.to_json()))
-    })?;
+    file(&arguments.scenario, &|out| made.as_ref().map_or(Ok(()), |text| out.write_all(text.as_bytes())))?;
     file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, arguments.align, beside)))?;
     file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
     file(&arguments.bytes, &|out| bytes(out, recording))?;
@@ -82,16 +82,26 @@ pub(super) fn write(
     })
 }
 
-/// The scenario that gives the recording again.
-fn scenario(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Result<Scenario, Failure> {
-    recording
+/// The text of the scenario that gives the recording again.
+fn scenario(
+    path: &Path,
+    arguments: &Arguments,
+    recording: &Opened,
+    base: Option<&Scenario>,
+) -> Result<String, Failure> {
+    let scenario = recording
         .scenario(
             &arguments.name(),
             arguments.of_steps,
             arguments.error_us.map_or(0.0, Microseconds::get),
             base,
         )
-        .map_err(|refused| arguments.wrong(format!("no scenario can be made of it: {refused}")))
+        .map_err(|refused| arguments.wrong(format!("no scenario can be made of it: {refused}")))?;
+    scenario_file::text(
+        path,
+        &scenario,
+        "allow larger errors of its steps with --error-us, which takes fewer segments",
+    )
 }
 
 /// How late each step is.

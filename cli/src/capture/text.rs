@@ -3,6 +3,7 @@
 use super::beside::Beside;
 use crate::{
     json::Tables,
+    terminal,
     torque::{self, Driven},
 };
 use serde_json::{Value, json};
@@ -16,7 +17,7 @@ pub(super) fn print(
     beside: Option<&Beside>,
     driven: &[Driven],
 ) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     let Opened { format, count, what, end_s, .. } = recording;
     writeln!(out, "file      {format}, {count} {what} in {end_s} s")?;
     if !recording.names.is_empty() {

@@ -1,7 +1,7 @@
 //! Steps of which no plan is known, measured by themselves: of packets, line scripts, lists of segments.
 
 use super::arguments::{Arguments, Written};
-use crate::{failure::Failure, json::Tables};
+use crate::{failure::Failure, json::Tables, kept_run, terminal};
 use serde_json::{Map, Value};
 use std::io::{self, Write};
 use stepscope_core::{
@@ -11,7 +11,7 @@ use stepscope_core::{
         spectra::Spectra,
         spectrum::{Harmonics, Spectrum},
     },
-    peripheral::trace::{Recording, steps},
+    peripheral::trace::steps,
     scenario::{Problem, Scenario, ValueError},
     sim::Experiment,
 };
@@ -26,8 +26,7 @@ pub(super) fn measures(
     let channels = experiment.config().channels();
     let own = u8::try_from(channel).ok().filter(|channel| *channel < channels);
     let own = own.ok_or_else(|| Failure::Axis(arguments.scenario.clone(), channel, channels.into()))?;
-    let mut recording = Recording::default();
-    experiment.run(&mut recording);
+    let recording = kept_run::of(&arguments.scenario, experiment)?;
     let steps = steps(&recording.trace, own);
     let clock_hz = experiment.config().clock_hz();
     let figures = StepFigures::of(steps.iter().copied(), clock_hz).ok_or_else(|| {
@@ -37,7 +36,7 @@ pub(super) fn measures(
     })?;
     let spectra = Spectra::of(scenario, None, &Pulses::recorded(own, &steps, clock_hz));
     let rows = rows(&figures, spectra.actual.as_ref()).map_err(Failure::output)?;
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     let written = match arguments.format {
         _ if arguments.json => {
             let row =

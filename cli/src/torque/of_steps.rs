@@ -1,10 +1,10 @@
 //! Torque that steps ask for without a plan: of packets, line scripts, lists of segments.
 
 use super::{arguments::Arguments, driven::Driven};
-use crate::failure::Failure;
+use crate::{failure::Failure, kept_run};
 use stepscope_core::{
     inspect::torque::Machine,
-    peripheral::trace::{Recording, steps},
+    peripheral::trace::steps,
     scenario::{Problem, Scenario, ValueError},
     sim::Experiment,
 };
@@ -24,8 +24,7 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
         let detail = "no motor; give one, such as \"plant\": {} for that of Song, Han and Lu 2021, or --motor (stepscope plant --motors lists them)";
         return Err(refused("plant", detail));
     }
-    let mut recording = Recording::default();
-    experiment.run(&mut recording);
+    let recording = kept_run::of(path, &experiment)?;
     let clock_hz = experiment.config().clock_hz();
     let asked =
         (0..channels).filter(|channel| arguments.axis.is_none_or(|only| only == usize::from(*channel)));

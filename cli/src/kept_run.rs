@@ -1,0 +1,15 @@
+//! Runs that a command keeps in memory: all of them go through here, and have one limit.
+
+use crate::failure::Failure;
+use std::path::Path;
+use stepscope_core::{inspect::recorded_run::record_run, peripheral::trace::Recording, sim::Experiment};
+
+/// What the first controller of a scenario's run does.
+///
+/// # Errors
+/// [`Failure::LongAnalysis`].
+pub(crate) fn of(path: &Path, experiment: &Experiment) -> Result<Recording, Failure> {
+    let (_, recordings) =
+        record_run(experiment, 1).map_err(|why| Failure::LongAnalysis(path.to_owned(), why))?;
+    Ok(recordings.into_iter().next().unwrap_or_default())
+}

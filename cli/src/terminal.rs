@@ -1,0 +1,152 @@
+//! Text for standard output and standard error. Names and values come from files, links and other machines, so control
+//! characters in them are printed as `\u{1b}`: they can neither steer a terminal nor reorder its text.
+//!
+//! Data that a command writes to standard output in place of a file (`output.rs`) stays as it is.
+
+use std::{
+    fmt::{self, Write as _},
+    io::{self, StderrLock, StdoutLock, Write},
+    path::Path,
+};
+
+/// Standard output for text.
+pub(crate) fn out() -> Text<StdoutLock<'static>> {
+    Text { to: io::stdout().lock(), split: Vec::new() }
+}
+
+/// Standard error for text.
+pub(crate) fn err() -> Text<StderrLock<'static>> {
+    Text { to: io::stderr().lock(), split: Vec::new() }
+}
+
+/// Whether a character can steer a terminal, or change the order in which text is shown.
+pub(crate) fn is_unsafe(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
+}
+
+/// A writer of text that escapes what is unsafe in it. Line feeds and tabs stay.
+pub(crate) struct Text<W> {
+    to: W,
+    /// The beginning of a character whose other bytes have not come yet.
+    split: Vec<u8>,
+}
+
+impl<W: Write> Text<W> {
+    fn put(&mut self, text: &str) -> io::Result<()> {
+        let mut rest = text;
+        while let Some(at) = rest.find(|c| is_unsafe(c) && !matches!(c, '\n' | '\t')) {
+            let (plain, from) = rest.split_at(at);
+            self.to.write_all(plain.as_bytes())?;
+            let mut chars = from.chars();
+            if let Some(c) = chars.next() {
+                write!(self.to, "{}", c.escape_unicode())?;
+            }
+            rest = chars.as_str();
+        }
+        self.to.write_all(rest.as_bytes())
+    }
+}
+
+impl<W: Write> Write for Text<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut joined = std::mem::take(&mut self.split);
+        joined.extend_from_slice(bytes);
+        for chunk in joined.utf8_chunks() {
+            self.put(chunk.valid())?;
+            let invalid = chunk.invalid();
+            let is_last = invalid.as_ptr_range().end == joined.as_ptr_range().end;
+            // Up to three bytes at the end may be a character's beginning.
+            if is_last && std::str::from_utf8(invalid).is_err_and(|error| error.error_len().is_none()) {
+                self.split = invalid.to_vec();
+            } else {
+                invalid.iter().try_for_each(|byte| write!(self.to, "\\x{byte:02x}"))?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
+    }
+}
+
+/// A name or a message inside a line of text: everything unsafe is escaped, line feeds and tabs among it.
+pub(crate) struct Escaped<T>(pub(crate) T);
+
+impl Escaped<std::path::Display<'_>> {
+    /// Of a path.
+    pub(crate) fn path(path: &Path) -> Escaped<std::path::Display<'_>> {
+        Escaped(path.display())
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for Escaped<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        struct Escape<'a, 'b>(&'a mut fmt::Formatter<'b>);
+
+        impl fmt::Write for Escape<'_, '_> {
+            fn write_str(&mut self, text: &str) -> fmt::Result {
+                text.chars().try_for_each(|c| {
+                    if is_unsafe(c) { write!(self.0, "{}", c.escape_unicode()) } else { self.0.write_char(c) }
+                })
+            }
+        }
+
+        write!(Escape(f), "{}", self.0)
+    }
+}
+
+/// JSON text with the same characters escaped as JSON has it: it means the same. Outside of its texts there are none but line
+/// feeds.
+pub(crate) fn json(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        if is_unsafe(c) && c != '\n' {
+            // All of them are below U+10000. A String takes everything.
+            let _ = write!(safe, "\\u{:04x}", u32::from(c));
+        } else {
+            safe.push(c);
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(pieces: &[&[u8]]) -> String {
+        let mut text = Text { to: Vec::new(), split: Vec::new() };
+        pieces.iter().for_each(|piece| text.write_all(piece).expect("memory takes it"));
+        String::from_utf8(text.to).expect("it is text")
+    }
+
+    #[test]
+    fn control_characters_are_printed_as_their_numbers() {
+        let rows: [(&str, &str); 6] = [
+            ("a\tb\n", "a\tb\n"),
+            ("\u{1b}]0;x\u{7}", "\\u{1b}]0;x\\u{7}"),
+            ("\u{7f}\u{9b}2J\r", "\\u{7f}\\u{9b}2J\\u{d}"),
+            ("\u{202e}txt\u{2066}", "\\u{202e}txt\\u{2066}"),
+            ("µs, Zähler, 電", "µs, Zähler, 電"),
+            ("", ""),
+        ];
+        for (given, expected) in rows {
+            assert_eq!(written(&[given.as_bytes()]), expected);
+            // However it comes.
+            let bytes: Vec<&[u8]> = given.as_bytes().chunks(1).collect();
+            assert_eq!(written(&bytes), expected);
+        }
+        assert_eq!(written(&[b"a\xffb"]), "a\\xffb");
+        assert_eq!(Escaped("a\nb\u{1b}").to_string(), "a\\u{a}b\\u{1b}");
+    }
+
+    #[test]
+    fn escaped_json_means_the_same() {
+        let given = serde_json::json!({ "title": "\u{9b}2J\u{202e}\u{7f} ü \u{1b}\n" });
+        let text = json(&format!("{given:#}"));
+        assert!(!text.chars().any(|c| is_unsafe(c) && c != '\n'), "{text}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).expect("JSON"), given);
+    }
+}

@@ -1,0 +1,301 @@
+//! Exit codes as docs/command.md has them, for every command.
+
+use crate::program::stepscope;
+use std::{
+    fs,
+    path::PathBuf,
+    process::{Command, Stdio},
+};
+
+/// Every command that reads a file: what stands before the file, and behind it.
+const READERS: &[(&[&str], &[&str])] = &[
+    (&["run"], &[]),
+    (&["serve"], &["--tcp", "127.0.0.1:0"]),
+    (&["send"], &["--port", "/dev/null"]),
+    (&["faults"], &["--seeds", "1"]),
+    (&["tables"], &[]),
+    (&["tables", "--steps"], &[]),
+    (&["measures"], &[]),
+    (&["torque"], &[]),
+    (&["plant"], &[]),
+    (&["settling"], &[]),
+    (&["limits"], &[]),
+    (&["resonance"], &[]),
+    (&["capture"], &[]),
+    (&["capture", "recorded-step-table", "--against"], &[]),
+    (&["powercut"], &[]),
+    (&["calibrate"], &[]),
+    (&["sine", "segments"], &[]),
+    (&["points"], &[]),
+];
+
+/// The link of `{}`.
+const LINK: &str = "#c=2.j.e30.90f7e4f5";
+
+/// A call of each command that prints something and ends soon.
+const PRINTERS: &[&[&str]] = &[
+    &["--help"],
+    &["run", "--help"],
+    &["--version"],
+    &["run", "-"],
+    &["run", "-", "--json"],
+    &["run", "-", "--link"],
+    &["run", "-", "--trace", "-"],
+    &["run", "-", "--line", "-"],
+    &["run", "-", "--timing", "--driver", "a4988"],
+    &["faults", "--seeds", "1"],
+    &["faults", "--seed", "1", "--scenario"],
+    &["tables", "-"],
+    &["measures", "-"],
+    &["torque", "-", "--motor", "song-2021"],
+    &["plant", "--motors"],
+    &["capture", "recorded-step-table"],
+    &["sine", "sweep", "--points", "2"],
+    &["sine", "vertices", "--segments", "2"],
+    &["open", LINK],
+    &["presets"],
+    &["presets", "zhang-2012-controller"],
+    &["presets", "--json"],
+    &["drivers"],
+    &["completions", "bash"],
+    &["man"],
+];
+
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("exit-codes-{name}"));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// The exit code and standard error of a reader with this file.
+fn read(reader: &(&[&str], &[&str]), file: &str) -> (Option<i32>, String) {
+    let (code, out, err) = stepscope(&[reader.0, &[file], reader.1].concat(), "");
+    assert_eq!(out, "", "{reader:?} {file}");
+    (code, err)
+}
+
+#[test]
+fn a_file_that_cannot_be_read_ends_every_command_with_1() {
+    let folder = folder("unreadable");
+    let (missing, directory) = (folder.join("missing"), folder.clone());
+    for reader in READERS {
+        for path in [&missing, &directory] {
+            let path = path.display().to_string();
+            let (code, err) = read(reader, &path);
+            assert_eq!(code, Some(1), "{reader:?} {path}: {err}");
+            assert!(err.starts_with(&format!("{path}: ")), "{reader:?}: {err}");
+        }
+    }
+}
+
+#[test]
+fn a_file_of_something_else_ends_every_command_with_2() {
+    let folder = folder("else");
+    for (name, held) in [("zero", r#"{"clock_hz":0}"#.as_bytes()), ("binary", &[0xff, 0x00, 0xfe, 0x80])] {
+        let path = folder.join(name);
+        fs::write(&path, held).expect("a file");
+        let path = path.display().to_string();
+        for reader in READERS {
+            let (code, err) = read(reader, &path);
+            assert_eq!(code, Some(2), "{reader:?} {name}: {err}");
+            assert!(err.starts_with(&path), "{reader:?}: {err}");
+        }
+    }
+}
+
+#[test]
+fn seeds_that_are_not_there_are_refused() {
+    for (options, expected) in [
+        (&["--seeds", "0"] as &[&str], "0 is not in 1..="),
+        (
+            &["--from", "4294967295"],
+            "--from 4294967295 with --seeds 1000: the last seed is 4294967295; use --seeds 1 to 1",
+        ),
+        (&["--from", "4294967294", "--seeds", "3"], "use --seeds 1 to 2, or a lower --from"),
+        (&["--from", "4294967296"], "4294967296 is not in "),
+    ] {
+        let (code, out, err) = stepscope(&[&["faults"], options].concat(), "");
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}");
+        assert!(err.contains(expected), "{err}");
+    }
+    let (code, out, _) = stepscope(&["faults", "--from", "4294967294", "--seeds", "2"], "");
+    assert!(code == Some(0) && out.contains("2             2\n"), "{out}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_by_every_option() {
+    let options: &[&[&str]] = &[
+        &["capture", "recorded-step-table", "--against", "{}", "--within-us"],
+        &["capture", "recorded-step-table", "--scenario", "-", "--error-us"],
+        &["tables", "-", "--error-us"],
+        &["settling", "-", "--share"],
+        &["limits", "-", "--ramp"],
+        &["resonance", "-", "--from"],
+        &["resonance", "-", "--to"],
+        &["resonance", "-", "--rung"],
+        &["points", "-", "--unit", "mm", "--step-mm"],
+        &["sine", "sweep", "--from"],
+        &["sine", "best", "--to"],
+        &["sine", "sweep", "--period-s", "1", "--sensor-hz"],
+        &["sine", "sweep", "--sensor-hz", "1", "--period-s"],
+    ];
+    for option in options {
+        for value in ["NaN", "-nan", "inf", "-inf", "-1", "1e999", "", "1e400"] {
+            let name = option.last().expect("an option");
+            // As one word: "-nan" alone would be another option.
+            let given = format!("{name}={value}");
+            let all = [&option[..option.len() - 1], &[given.as_str()]].concat();
+            let (code, out, err) = stepscope(&all, "{}");
+            assert_eq!((code, out.as_str()), (Some(2), ""), "{all:?}");
+            assert!(err.contains(name) && (value.is_empty() || err.contains("; use ")), "{all:?}: {err}");
+        }
+    }
+    // Rates that fall, too many of them, and numbers that are whole.
+    for arguments in [
+        &["resonance", "resonance-full-steps", "--from", "100", "--to", "50"] as &[&str],
+        &["resonance", "resonance-full-steps", "--to", "1000000", "--rung", "0.000001"],
+        &["capture", "recorded-step-table", "--clock", "0"],
+        &["capture", "recorded-step-table", "--sample-rate", "-1"],
+        &["run", "-", "--controller", "-1"],
+        &["powercut", "zhang-2012-controller", "--cuts", "0"],
+        &["limits", "-", "--threads", "0"],
+        &["limits", "resonance-full-steps", "--steps", "10000001"],
+    ] {
+        let (code, out, err) = stepscope(arguments, "{}");
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}: {err}");
+    }
+}
+
+/// Analyses that keep a run are refused before it begins where it is too long; a run itself takes any length.
+#[test]
+fn an_analysis_of_four_thousand_million_steps_is_refused_with_numbers() {
+    let long = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":4294967295}}]}]}}}"#;
+    for arguments in [
+        &["tables", "-"] as &[&str],
+        &["measures", "-"],
+        &["torque", "-", "--motor", "song-2021"],
+        &["capture", "recorded-step-table", "--against", "-"],
+    ] {
+        let (code, out, err) = stepscope(arguments, long);
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}");
+        assert!(
+            err.starts_with("-: 4294967295 steps; up to 24000000 are analyzed: "),
+            "{arguments:?}: {err}"
+        );
+    }
+}
+
+#[test]
+fn more_threads_than_four_per_core_are_not_started() {
+    let (code, out, err) = stepscope(&["faults", "--seeds", "1", "--threads", "100000"], "");
+    assert_eq!(code, Some(0));
+    assert!(err.starts_with("--threads: 100000 is more than 4 per core; "), "{err}");
+    assert_eq!(out, stepscope(&["faults", "--seeds", "1"], "").1);
+}
+
+/// As `| head` does, but before the first byte.
+#[test]
+fn a_closed_standard_output_ends_every_command_silently_with_141() {
+    for arguments in PRINTERS {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let folder = folder("closed");
+        fs::write(folder.join("in.json"), "{}").expect("a file");
+        let input = fs::File::open(folder.join("in.json")).expect("a file");
+        let output = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+            .args(*arguments)
+            .stdin(input)
+            .stdout(writer)
+            .stderr(Stdio::piped())
+            .output()
+            .expect("it starts");
+        let err = String::from_utf8(output.stderr).expect("text");
+        assert_eq!((output.status.code(), err.as_str()), (Some(141), ""), "{arguments:?}");
+    }
+}
+
+/// A link whose scenario a run refuses is refused as well.
+#[test]
+fn open_checks_the_scenario_as_a_run_does() {
+    // A motion of more ticks than a run may have.
+    let scenario = r#"{"source":{"motion":{"axes":[{"moves":[{"dwell":{"duration_s":86400}},{"dwell":{"duration_s":86400}},{"constant":{}}]}]}}}"#;
+    let (code, _, err) = stepscope(&["run", "-"], scenario);
+    assert_eq!(code, Some(2), "{err}");
+    let scenario = stepscope_core::scenario::Scenario::from_json(scenario).expect("it reads");
+    let link = stepscope_core::scenario::link::encode(&scenario).expect("it is short");
+    let (code, out, opened) = stepscope(&["open", &format!("#{link}")], "");
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert_eq!(opened.lines().skip(1).collect::<Vec<_>>(), err.lines().skip(1).collect::<Vec<_>>());
+}
+
+/// A command that waits for a pipe nobody writes to has not begun to write.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
+    use std::{thread, time::Duration};
+    let folder = folder("signals");
+    let pipe = folder.join("pipe");
+    let made = Command::new("mkfifo").arg(&pipe).status().expect("mkfifo starts");
+    assert!(made.success());
+    for (reader, signal) in READERS.iter().flat_map(|reader| [(reader, "-TERM"), (reader, "-INT")]) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
+            .args(reader.0)
+            .arg(&pipe)
+            .args(reader.1)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        // From its second thread on it listens.
+        let tasks = format!("/proc/{}/task", child.id());
+        while fs::read_dir(&tasks).map_or(0, Iterator::count) < 2 {
+            assert!(child.try_wait().expect("a child").is_none(), "{reader:?} has ended");
+            thread::sleep(Duration::from_millis(2));
+        }
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill");
+        assert!(killed.success());
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130), "{reader:?} {signal}");
+        assert_eq!((output.stdout, output.stderr), (vec![], vec![]), "{reader:?} {signal}");
+    }
+}
+
+/// A shell lets what it runs in the background ignore Ctrl-C; a request to end still counts.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_command_in_the_background_ends_with_130_by_a_request() {
+    let folder = folder("background");
+    let script = format!(
+        "cd '{}' && mkfifo pipe && {{ '{}' run pipe & }}; p=$!; \
+         until [ \"$(ls /proc/$p/task | wc -l)\" -ge 2 ]; do sleep 0.01; done; \
+         kill -INT $p; kill -TERM $p; wait $p; echo $?",
+        folder.display(),
+        env!("CARGO_BIN_EXE_stepscope")
+    );
+    let output = Command::new("sh").args(["-c", &script]).output().expect("sh starts");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "130\n", "{output:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_read_like_a_file() {
+    let scenario = r#"{"title":"through a pipe"}"#;
+    let expected = stepscope(&["run", "-", "--digest"], scenario).1;
+    let trace = stepscope(&["run", "-", "--vcd", "-"], scenario).1;
+    let folder = folder("pipes");
+    fs::write(folder.join("in.json"), scenario).expect("a file");
+    fs::write(folder.join("edges.vcd"), trace).expect("a file");
+    let through = |held: &str, command: &str| {
+        let program = env!("CARGO_BIN_EXE_stepscope");
+        let script = format!("rm -f pipe; mkfifo pipe; cat {held} > pipe & '{program}' {command}; wait");
+        let output =
+            Command::new("sh").args(["-c", &script]).current_dir(&folder).output().expect("sh starts");
+        (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+    };
+    assert_eq!(through("in.json", "run pipe --digest"), (Some(0), expected));
+    let steps = stepscope(&["capture", &folder.join("edges.vcd").display().to_string(), "--steps", "-"], "");
+    assert!(steps.0 == Some(0) && steps.1.lines().count() > 3000, "{steps:?}");
+    assert_eq!(through("edges.vcd", "capture pipe --steps -").1, steps.1);
+}
