@@ -1,6 +1,6 @@
 //! `stepscope run --timing` and `stepscope drivers`: could a driver follow the pulses?
 
-use crate::{failure::Failure, json::Tables, output::Out, terminal};
+use crate::{failure::Failure, json::Tables, output::Out, scenarios, terminal};
 use clap::Args;
 use serde_json::{Value, json};
 use std::{
@@ -28,9 +28,10 @@ pub(crate) struct Options {
     /// and the first violations.
     #[arg(long)]
     timing: bool,
-    /// Check against this driver, whatever the scenario names; `stepscope drivers` lists them.
+    /// Check against this driver, whatever the scenario names: one that `stepscope drivers` lists, limits of your own such as
+    /// custom:step_high_ns=1000,dir_setup_ns=200, or a JSON file with them.
     #[arg(long, value_name = "DRIVER", value_parser = driver)]
-    driver: Option<&'static DataSheet>,
+    driver: Option<Rules>,
     /// Write a table of the violations, up to a million.
     #[arg(long, value_name = "FILE")]
     pub(crate) violations: Option<PathBuf>,
@@ -39,10 +40,69 @@ pub(crate) struct Options {
     strict: bool,
 }
 
-/// The driver of that name.
-fn driver(id: &str) -> Result<&'static DataSheet, String> {
-    let found = DRIVERS.into_iter().find(|sheet| sheet.id == id);
-    found.ok_or_else(|| "no such driver; `stepscope drivers` lists them".to_owned())
+/// The limits that a driver has.
+#[derive(Clone)]
+struct Rules(TimingRules);
+
+/// What limits of one's own begin with.
+const CUSTOM: &str = "custom:";
+
+/// The limits of a driver that is listed, of `custom:field=ns,...`, or of a JSON file.
+fn driver(text: &str) -> Result<Rules, String> {
+    if let Some(sheet) = DRIVERS.into_iter().find(|sheet| sheet.id == text) {
+        return Ok(Rules(sheet.rules.clone()));
+    }
+    if let Some(fields) = text.strip_prefix(CUSTOM) {
+        return custom(fields);
+    }
+    if !Path::new(text).is_file() {
+        let ids = DRIVERS.map(|sheet| sheet.id).join(", ");
+        return Err(format!(
+            "neither a driver nor a file; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file"
+        ));
+    }
+    let read = scenarios::text(Path::new(text)).map_err(|error| error.to_string())?;
+    rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
+}
+
+/// Limits as `field=ns`, with commas between.
+fn custom(fields: &str) -> Result<Rules, String> {
+    let mut rules = serde_json::Map::new();
+    for field in fields.split(',') {
+        let (name, ns) =
+            field.split_once('=').ok_or_else(|| format!("{field:?} has no \"=\"; {}", allowed()))?;
+        let (name, ns) = (name.trim(), ns.trim());
+        let value: u64 =
+            ns.parse().map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed()))?;
+        if rules.insert(name.to_owned(), value.into()).is_some() {
+            return Err(format!("{name} is given twice; give it once"));
+        }
+    }
+    rules_of(Value::Object(rules))
+}
+
+/// Limits from JSON: a scenario's `driver_timing`, with or without that name and `rules` around the limits.
+fn rules_of(found: Value) -> Result<Rules, String> {
+    let inner = found.get("driver_timing").cloned().unwrap_or(found);
+    let is_whole = inner.get("rules").is_some() || inner.get("preset").is_some();
+    let timing = if is_whole { inner } else { json!({ "rules": inner }) };
+    let (scenario, mut problems) =
+        Scenario::from_json_lenient(&json!({ "driver_timing": timing }).to_string());
+    problems.extend(scenario.check().err().unwrap_or_default());
+    match scenario.driver_timing.as_ref().filter(|_| problems.is_empty()) {
+        Some(driver) => Ok(Rules(drivers::rules(driver))),
+        None => {
+            let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
+            let problems = if problems.is_empty() { "no limits".to_owned() } else { problems.join("; ") };
+            Err(format!("{problems}; {}", allowed()))
+        }
+    }
+}
+
+/// The fields of limits.
+fn allowed() -> String {
+    let fields = Rule::ALL.map(|rule| format!("{}_ns", rule.name())).join(", ");
+    format!("use {fields}, each 0 to 1000000000")
 }
 
 impl Options {
@@ -67,7 +127,7 @@ impl Options {
             return Ok(None);
         }
         let own = || scenario.driver_timing.as_ref().map(drivers::rules);
-        let rules = self.driver.map(|sheet| sheet.rules.clone()).or_else(own);
+        let rules = self.driver.as_ref().map(|driver| driver.0.clone()).or_else(own);
         let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
         let kept = if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN };
         let new = if rounded { TimingCheck::of_rounded } else { TimingCheck::new };
@@ -99,11 +159,11 @@ pub(crate) fn tables(tables: Tables, check: &TimingCheck, clock_hz: u32) -> Tabl
     let rule = |result: &RuleResult| {
         let least = result.least.as_ref();
         let asked = (result.nanos > 0).then_some(result.nanos);
-        let spare = asked.and_then(|asked| Some(Tenths::over(least?.measured, asked, clock_hz).nanos()));
+        let spare = asked.and_then(|asked| Some(Picoseconds::over(least?.measured, asked, clock_hz).nanos()));
         json!({
             "rule": result.rule.name(),
             "required_ns": asked,
-            "least_ns": least.map(|least| Tenths::over(least.measured, 0, clock_hz).nanos()),
+            "least_ns": least.map(|least| Picoseconds::over(least.measured, 0, clock_hz).nanos()),
             "spare_ns": spare,
             "at_cycle": least.map(|least| least.at.0),
             "channel": least.map(|least| least.channel),
@@ -140,9 +200,17 @@ pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
             writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
             writeln!(out, "{:14} {}", "", figures(&sheet.rules))?;
             writeln!(out, "{:14} {}", "", sheet.source)
-        })
+        })?;
+        writeln!(out, "{:14} limits of your own, in ns: --driver {}", "custom", example())?;
+        writeln!(out, "{:14} or a JSON file: {{\"step_high_ns\": 1000, \"dir_setup_ns\": 200}}", "")
     };
     list(&mut terminal::out()).map_err(Failure::output)
+}
+
+/// Every limit, as `--driver` takes it.
+fn example() -> String {
+    let fields = Rule::ALL.map(|rule| format!("{}_ns={}", rule.name(), rule.nanos(&drivers::DRV8825.rules)));
+    format!("{CUSTOM}{}", fields.join(","))
 }
 
 /// What rules ask for, in words.
@@ -159,7 +227,7 @@ pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, clock_hz: u32)
         let (time, channel, rule) = (found.at.seconds(clock_hz), found.channel, found.rule.name());
         let (measured, required) = (found.measured.0, found.required.0);
         let asked = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
-        let nanos = Tenths::over(found.measured, 0, clock_hz);
+        let nanos = Picoseconds::over(found.measured, 0, clock_hz);
         writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{asked}")?;
     }
     out.flush()
@@ -194,38 +262,37 @@ fn columns(result: &RuleResult, clock_hz: u32) -> (String, String, String, Strin
     let asked = result.nanos > 0;
     let required = if asked { result.nanos.to_string() } else { none() };
     let Some(least) = result.least else { return (required, none(), none(), none(), none()) };
-    let spare = Tenths::over(least.measured, result.nanos, clock_hz);
+    let spare = Picoseconds::over(least.measured, result.nanos, clock_hz);
     (
         required,
-        Tenths::over(least.measured, 0, clock_hz).to_string(),
+        Picoseconds::over(least.measured, 0, clock_hz).to_string(),
         if asked { spare.to_string() } else { none() },
         least.at.0.to_string(),
         least.channel.to_string(),
     )
 }
 
-/// Tenths of a nanosecond, rounded down: what is below zero stays below.
-struct Tenths(i128);
+/// A time in ns with three decimal places. All times in a row are whole picoseconds, so what is printed adds up; rounded down, so
+/// that what is below zero stays below.
+struct Picoseconds(i128);
 
-impl Tenths {
+impl Picoseconds {
     /// What `measured` has over `nanos`.
     fn over(measured: Cycles, nanos: u32, clock_hz: u32) -> Self {
-        let clock = i128::from(clock_hz.max(1));
-        Self((i128::from(measured.0) * 10_000_000_000 - i128::from(nanos) * 10 * clock).div_euclid(clock))
+        let measured = i128::from(measured.0) * 1_000_000_000_000 / i128::from(clock_hz.max(1));
+        Self(measured - i128::from(nanos) * 1000)
     }
 
     /// In ns.
     fn nanos(&self) -> f64 {
-        self.0 as f64 / 10.0
+        self.0 as f64 / 1000.0
     }
 }
 
-impl std::fmt::Display for Tenths {
+impl std::fmt::Display for Picoseconds {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (sign, size) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
-        match size % 10 {
-            0 => write!(f, "{sign}{}", size / 10),
-            tenth => write!(f, "{sign}{}.{tenth}", size / 10),
-        }
+        let digits = format!("{}.{:03}", size / 1000, size % 1000);
+        write!(f, "{sign}{}", digits.trim_end_matches('0').trim_end_matches('.'))
     }
 }

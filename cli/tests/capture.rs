@@ -118,21 +118,22 @@ fn a_step_that_comes_late_is_found_by_its_number() {
     let line = ["capture", &changed, "--sample-rate", "16000000", "--against", &motion];
     let (code, _, err) = stepscope(&[&line[..], &["--late", &table]].concat(), "");
     assert_eq!(code, Some(3), "{err}");
-    assert!(
-        err.starts_with("not the model's steps: 1 differ, first step 123 at ")
-            && err.contains(", 6.250 us late"),
-        "{err}"
-    );
+    assert!(err.starts_with("the recording differs from the plan: step 123 is 6.250 us late, at "), "{err}");
     let late = fs::read_to_string(&table).expect("a table");
-    let off: Vec<&str> = late.lines().skip(1).filter(|row| !row.contains(",0e0,0")).collect();
-    assert!(matches!(off[..], [row] if row.starts_with("123,") && row.contains(",6.25e-6,0")), "{off:?}");
+    let off: Vec<&str> = late.lines().skip(1).filter(|row| !row.contains(",0e0,0,")).collect();
+    assert!(
+        matches!(off[..], [row] if row.starts_with("123,123,") && row.contains(",6.25e-6,0,")),
+        "{off:?}"
+    );
     // Within 7 us it is not different.
     let (code, out, _) = stepscope(&[&line[..], &["--within-us", "7"]].concat(), "");
     assert_eq!(code, Some(0), "{out}");
     // Aligned on itself it is all the others that differ.
     let (code, _, err) = stepscope(&[&line[..], &["--align", "123"]].concat(), "");
     assert!(
-        code == Some(3) && err.contains("499 differ, first step 0 at ") && err.contains("6.250 us early"),
+        code == Some(3)
+            && err.contains("123 steps off by up to 6.250 us (early) from step 0, at ")
+            && err.contains("; 2 differences in all"),
         "{err}"
     );
 }
@@ -422,7 +423,7 @@ fn as_json_it_has_the_tables_of_the_document() {
     assert_eq!(all["command"], "capture");
     let tables = all["tables"].as_object().expect("tables");
     let names: Vec<&str> = tables.keys().map(String::as_str).collect();
-    assert_eq!(names, ["channels", "comparison", "lines", "notes", "recording", "steps"]);
+    assert_eq!(names, ["channels", "comparison", "events", "lines", "notes", "recording", "steps"]);
     assert_eq!(tables["recording"][0]["map"], "STEP0=a.STEP");
     assert_eq!(
         (&tables["recording"][0]["count"], &tables["recording"][0]["map_proposed"]),
@@ -527,4 +528,146 @@ fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
     let row = &beside["tables"]["torque"][0];
     assert!(row["axis"] == 0 && row["enough"] == false && row["load_mn_m"] == 1000.0, "{row}");
     assert_eq!(beside["tables"]["shortages"][0]["axis"], 0);
+}
+
+/// A recording of the default motion's steps, changed by `edit`: each step with its index and its cycle of 16 MHz makes as
+/// many as are returned, as cycles with a direction.
+fn edited(folder: &Path, name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool)>) -> (String, String) {
+    let (plan, trace) = (file(folder, "plan.json", "{}"), text(&folder.join("plan.trace")));
+    run(&plan, &["--trace", &trace]);
+    let cycles = steps(&trace, &["--sample-rate", "16000000"]);
+    assert_eq!(cycles.len(), 3200);
+    let mut dump = String::from(
+        "$timescale 1 ps $end $var wire 1 s STEP $end $var wire 1 d DIR $end $enddefinitions $end\n",
+    );
+    let mut was = true;
+    dump.push_str("#0 0s 1d\n");
+    for (cycle, right) in cycles.iter().enumerate().flat_map(|(index, cycle)| edit(index, *cycle)) {
+        let ps = cycle * 62_500;
+        if right != was {
+            dump.push_str(&format!("#{} {}d\n", ps - 1_000_000, u8::from(right)));
+            was = right;
+        }
+        dump.push_str(&format!("#{ps} 1s\n#{} 0s\n", ps + 2_000_000));
+    }
+    (plan, file(folder, name, dump))
+}
+
+#[test]
+fn missing_extra_and_turned_steps_are_named() {
+    let folder = folder("events");
+    let (plan, lacks) =
+        edited(&folder, "lacks.vcd", |k, at| if k == 2000 { Vec::new() } else { vec![(at, true)] });
+    let table = text(&folder.join("late.csv"));
+    let (code, out, err) = stepscope(&["capture", &lacks, "--against", &plan, "--late", &table], "");
+    assert_eq!(code, Some(3), "{out}{err}");
+    assert_eq!(err, "the recording differs from the plan: 1 step missing after step 1999, at 225.6 ms\n");
+    for told in [
+        "compared with the plan: 3199 steps recorded, 3200 planned, 3199 in both, 1 missing, 0 extra\n",
+        "  late: 0.000 us at most",
+        "  drift 0.00 ppm; jitter 0.000 us at most",
+        "\n  1 step missing after step 1999, at 225.6 ms\n",
+    ] {
+        assert!(out.contains(told), "{told}: {out}");
+    }
+    let late = fs::read_to_string(&table).expect("a table");
+    assert_eq!(
+        late.lines().filter(|row| row.ends_with(",missing")).collect::<Vec<_>>(),
+        ["2000,,,,,missing"]
+    );
+    assert!(late.lines().any(|row| row.starts_with("2001,2000,")), "{late}");
+    let event = row(&["capture", &lacks, "--against", &plan], "events");
+    assert_eq!(
+        (&event["what"], &event["step"], &event["count"]),
+        (&"missing".into(), &2000.into(), &1.into())
+    );
+
+    let (plan, several) = edited(&folder, "several.vcd", |k, at| match k {
+        0 | 3150.. => Vec::new(),
+        700 => vec![(at, true), (at + 500, true)],
+        1500..1540 => vec![(at, false)],
+        _ => vec![(at + if k == 2500 { 400 } else { 0 }, true)],
+    });
+    let (code, out, err) = stepscope(&["capture", &several, "--against", &plan, "--within-us", "20"], "");
+    assert_eq!(code, Some(3), "{out}{err}");
+    let rows: Vec<&str> = out.lines().skip_while(|row| !row.contains("before the first")).collect();
+    let begin = [
+        "  1 step missing before the first recorded step, at ",
+        "  1 extra step after step 700, at ",
+        "  40 steps in the wrong direction from step 1500, at ",
+        "  step 2500 is 25.000 us late, at ",
+        "  50 steps missing after step 3149, at ",
+    ];
+    assert!(rows.len() == 5 && rows.iter().zip(begin).all(|(row, begin)| row.starts_with(begin)), "{out}");
+    assert!(err.ends_with("; 5 differences in all\n"), "{err}");
+}
+
+#[test]
+fn exactly_the_allowed_time_is_no_difference() {
+    let folder = folder("exactly");
+    let (plan, late) =
+        edited(&folder, "late.vcd", |k, at| vec![(at + if k == 2500 { 320 } else { 0 }, true)]);
+    for (within, code) in [("20", 0), ("20.0", 0), ("2e1", 0), ("19.999999999999", 3), ("0", 3)] {
+        let line = ["capture", &late, "--against", &plan, "--within-us", within];
+        assert_eq!(stepscope(&line, "").0, Some(code), "{within}");
+    }
+    for within in ["NaN", "inf", "-1", "1e999", "20us", ""] {
+        let line = ["capture", &late, "--against", &plan, "--within-us", within];
+        let (code, _, err) = stepscope(&line, "");
+        assert_eq!(code, Some(2), "{within}: {err}");
+        assert!(err.contains("--within-us") && err.contains("use 0 to 1000000000 microseconds"), "{err}");
+    }
+    let (code, _, err) = stepscope(&["capture", &late, "--scenario", "-", "--error-us", "-1"], "");
+    assert!(code == Some(2) && err.contains("out of range; use 0 to 1000000000 microseconds"), "{err}");
+}
+
+#[test]
+fn timing_limits_of_ones_own_need_no_scenario() {
+    let folder = folder("limits");
+    // A step generator that changes DIR while STEP may follow too soon: twice 0.5 ms and 10 ms before a step.
+    let dump = file(
+        &folder,
+        "stepgen.vcd",
+        "$timescale 1 us $end $var wire 1 s step $end $var wire 1 d dir $end $enddefinitions $end
+#0 0s 0d\n#20000 1s\n#21000 0s\n#24000 1s\n#25000 0s\n#25500 1d\n#26000 1s\n#27000 0s\n#30000 1s\n#31000 0s
+#34000 0d\n#44000 1s\n#45000 0s\n",
+    );
+    let nested = r#"{"driver_timing":{"rules":{"dir_setup_ns":10000000}}}"#;
+    let files = [
+        file(&folder, "whole.json", nested),
+        file(&folder, "rules.json", r#"{"rules":{"dir_setup_ns":10000000}}"#),
+        file(&folder, "plain.json", r#"{"dir_setup_ns":10000000}"#),
+    ];
+    let given = ["custom:dir_setup_ns=10000000", "custom:dir_setup_ns=10000000, dir_hold_ns=0"];
+    for driver in files.iter().map(String::as_str).chain(given) {
+        let (code, out, err) = stepscope(&["capture", &dump, "--driver", driver, "--strict"], "");
+        assert_eq!(
+            (code, err.as_str()),
+            (Some(3), "2 violations of the driver's timing\n"),
+            "{driver}: {out}"
+        );
+        assert!(out.contains("dir_setup       10000000       500000     -9500000"), "{out}");
+        let (code, _, err) = stepscope(&["capture", &dump, "--driver", driver, "--timing"], "");
+        assert_eq!((code, err.as_str()), (Some(0), ""), "{driver}");
+    }
+    for driver in [
+        "custom:step_us=1",
+        "custom:step_high_ns",
+        "custom:",
+        "custom:dir_hold_ns=-1",
+        "custom:dir_hold_ns=2000000000",
+    ] {
+        let (code, _, err) = stepscope(&["capture", &dump, "--driver", driver], "");
+        assert_eq!(code, Some(2), "{driver}: {err}");
+        assert!(
+            err.contains("use step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns"),
+            "{driver}: {err}"
+        );
+    }
+    let (code, _, err) = stepscope(&["run", "framed-link", "--driver", "nonesuch"], "");
+    assert!(code == Some(2) && err.contains("use one of a4988, a4979, drv8825"), "{err}");
+    let (code, out, _) =
+        stepscope(&["run", "framed-link", "--driver", "custom:step_high_ns=2001", "--strict"], "");
+    assert!(code.is_some_and(|code| [0, 3].contains(&code)) && out.contains("2001"), "{out}");
+    assert!(stepscope(&["drivers"], "").1.contains("--driver custom:step_high_ns="));
 }

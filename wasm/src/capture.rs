@@ -13,7 +13,8 @@ use stepscope_core::{
     inspect::{
         curves::Actual,
         recording::{
-            events::Events,
+            differences::Difference,
+            events::{Beside, Events},
             opened::{Ask, Kept, Opened, Part},
             packets::{LinePacket, Packets},
             replies::{self, Dealt},
@@ -27,6 +28,8 @@ use wasm_bindgen::prelude::*;
 
 /// Most columns of an overview.
 const MAX_COLUMNS: u32 = 10_000;
+/// Differences from a plan that are listed in words.
+const MAX_DIFFERENCES: usize = 100;
 /// Bytes that are asked for at a time.
 const PIECE: usize = 1 << 20;
 
@@ -309,8 +312,9 @@ impl CaptureFile {
         Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).at_s(aligned)
     }
 
-    /// How it stands to such a run, step, or byte, `aligned` of both taken for the same instant: the core's `Beside`; null
-    /// where one of both has none.
+    /// How it compares with such a run, the run's step, or byte, `aligned` and the recorded one that it is taken for the same
+    /// instant: the core's `Beside`, and in `rows` the first 100 differences in words, with their times; null where one of
+    /// both has none.
     ///
     /// # Errors
     /// Never in practice.
@@ -322,11 +326,35 @@ impl CaptureFile {
         baud: u32,
         aligned: usize,
     ) -> Result<JsValue, JsError> {
+        #[derive(Serialize)]
+        struct Row {
+            text: String,
+            recorded_s: f64,
+        }
+        #[derive(Serialize)]
+        struct Told {
+            rows: Vec<Row>,
+            #[serde(flatten)]
+            beside: Beside,
+        }
+        let rows = |found: &Beside| {
+            let listed = found.differences.listed.iter();
+            let row = |difference: &Difference| Row {
+                text: difference.to_text(found.kind),
+                recorded_s: difference.recorded_s,
+            };
+            listed.map(row).collect()
+        };
         let found = self.opened.as_ref().and_then(|opened| {
             let own = opened.events(channel);
             let model =
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
-            own.beside(&model, aligned, Tolerance::cycle(own.clock_hz, model.clock_hz))
+            let within = Tolerance::cycle(own.clock_hz, model.clock_hz);
+            // A step that is missing in the recording cannot be aligned: then the first that both have is.
+            let aligned = own.beside(&model, Some(aligned), within);
+            let mut found = aligned.or_else(|| own.beside(&model, None, within))?;
+            found.differences.listed.truncate(MAX_DIFFERENCES);
+            Some(Told { rows: rows(&found), beside: found })
         });
         object(&found)
     }

@@ -37,6 +37,8 @@ const [MAX_LISTED, MAX_LISTED_BYTES] = [100, 32];
 const MANY = 2_000_000;
 /** Greatest drift that is told of two clocks. */
 const MAX_DRIFT_PPM = 50_000;
+/** Differences from the baseline that the message names. */
+const MAX_DIFFERENCES = 3;
 /** Characters that a note can have; a longer one would be refused. */
 const MAX_NOTE = 2000;
 /** How long the experiment before may run, in ms. */
@@ -491,15 +493,22 @@ function compared(
     rms_jitter_s,
     outliers,
     other_values,
+    missing,
+    extra,
+    differences,
+    rows,
   },
   aligned,
 ) {
   const one = kind.slice(0, -1);
   const by = aligned > 0 ? `, aligned by ${one} ${count(aligned)}` : "";
   const all =
-    recorded === model
+    missing + extra === 0
       ? `all ${count(recorded)} ${kind}`
-      : `${count(recorded)} ${kind}, the baseline has ${count(model)};`;
+      : `${count(recorded)} ${kind}, the baseline has ${count(model)}, ${count(missing)} missing, ${count(extra)} extra; the others`;
+  const listed = rows.slice(0, MAX_DIFFERENCES).map((/** @type {{text: string}} */ { text }) => text);
+  const more = differences.count > listed.length ? `; ${count(differences.count)} differences in all` : "";
+  const each = missing + extra + differing > 0 ? ` ${listed.join("; ")}${more}.` : "";
   const { step, late_s } = largest;
   const late =
     late_s === 0
@@ -510,8 +519,8 @@ function compared(
   const drift =
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
-      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm; without it ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${outliers > 0 ? `, ${counted(outliers, one)} far off left out` : ""}.`;
-  return `Beside the baseline${by}: ${all} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${drift}`;
+      : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm; without it ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${outliers > 0 ? `, ${counted(outliers, "outlier")} excluded` : ""}.`;
+  return `Beside the baseline${by}: ${all} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${each}${drift}`;
 }
 
 /** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */

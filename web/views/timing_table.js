@@ -1,7 +1,7 @@
 /** What the timing check found, as tables: a row a rule with what was measured, what is required and the slack; and the violations. */
 import { byId, element, fill, say } from "../dom.js";
 import { ruleName } from "../form/schema.js";
-import { count, si, time } from "../state/number.js";
+import { count, time } from "../state/number.js";
 import { required } from "./required.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -13,7 +13,7 @@ const HEADS = {
     ["rule"],
     ["least"],
     ["required"],
-    ["slack", "What was measured beyond what is required, in whole clock cycles"],
+    ["slack", "Measured time minus required time"],
     ["count", "Violations"],
   ],
   violations: [["ch", "Channel"], ["rule"], ["time"], ["measured"], ["required"]],
@@ -27,7 +27,8 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   for (const [table, columns] of Object.entries(HEADS)) heads(byId(table), columns);
   const clock = state.result?.summary.clock_hz ?? 1;
-  const at = (/** @type {number} */ cycles) => si(cycles / clock, "s");
+  // With all digits, so that measured minus required is the slack that is shown.
+  const at = (/** @type {number} */ cycles) => time(cycles / clock);
   const sheet = drivers.find(({ id }) => id === timing?.driver);
   const total = timing?.total ?? 0;
   const kept = timing?.violations.length ?? 0;
@@ -56,12 +57,12 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   say(
     byId("timing-rounding"),
     example
-      ? `Slack counts whole cycles of ${at(1)}: what a rule asks for is rounded up to them, as ${si(example.required_ns * 1e-9, "s")} to ${count(example.required_cycles)} cycles = ${at(example.required_cycles)}.`
+      ? `Pulses last whole cycles of ${at(1)}: ${time(example.required_ns * 1e-9)} needs at least ${count(example.required_cycles)} cycles (${at(example.required_cycles)}).`
       : "",
   );
   byId("violations").hidden = total === 0;
-  const rows = (timing?.rules ?? []).map(({ rule, required_cycles, required_ns, least, violations }) => {
-    const slack = least === null ? null : least.measured_cycles - required_cycles;
+  const rows = (timing?.rules ?? []).map(({ rule, required_ns, least, violations }) => {
+    const slack = least === null ? null : (least.measured_cycles * 1e9 - required_ns * clock) / clock;
     const bad = violations > 0;
     return element(
       "tr",
@@ -69,8 +70,8 @@ export function paintTiming(timing, { state, drivers, toRule }) {
       element("th", { scope: "row" }, ruleButton(rule, bad, toRule)),
       ...[
         least ? at(least.measured_cycles) : "–",
-        required_ns === 0 ? "–" : si(required_ns * 1e-9, "s"),
-        slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${at(slack)}`,
+        required_ns === 0 ? "–" : time(required_ns * 1e-9),
+        slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${time(slack * 1e-9)}`,
         bad ? count(violations) : required_ns === 0 ? "–" : "0",
       ].map((text) => element("td", { class: "number" }, text)),
     );

@@ -37,19 +37,19 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "BAUD")]
     pub(super) baud: Option<u32>,
     /// Compare with the run of this scenario, step by step, or byte by byte where no channel steps: a JSON file, or a
-    /// preset's name. Ends with 3 if one differs.
+    /// preset's name. Reports missing, extra and late ones; ends with 3 if there are any.
     #[arg(long, value_name = "SCENARIO")]
     pub(super) against: Option<PathBuf>,
     /// The channel that is compared.
     #[arg(long, value_name = "K", default_value_t = 0, requires = "against")]
     pub(super) channel: u8,
-    /// The step, or byte, that both have at one time, from 0.
-    #[arg(long, value_name = "STEP", default_value_t = 0, requires = "against")]
-    pub(super) align: usize,
-    /// How far a step, or byte, may be from the model's, in us; without it a cycle of the slower clock.
+    /// The scenario's step, or byte, from 0, that comes at one time in both; without it the first that both have.
+    #[arg(long, value_name = "STEP", requires = "against")]
+    pub(super) align: Option<usize>,
+    /// How far a step, or byte, may be off, in us, that time included; without it a cycle of the slower clock.
     #[arg(long, value_name = "US", requires = "against", allow_negative_numbers = true)]
     pub(super) within_us: Option<ExactMicroseconds>,
-    /// Write how late each step, or byte, is: a table.
+    /// Write how late each step, or byte, is: a table, with a row for each missing or extra one.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
     /// Write the scenario that gives the recording again: its bytes, where RX has some, sent to the controllers of

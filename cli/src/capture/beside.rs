@@ -1,4 +1,4 @@
-//! A recording beside a scenario's run.
+//! A recording compared with a scenario's run.
 
 use super::arguments::Arguments;
 use crate::{failure::Failure, kept_run, scenarios};
@@ -9,7 +9,7 @@ use stepscope_core::inspect::recording::{
     tolerance::Tolerance,
 };
 
-/// A recording's steps, or bytes, beside a model's.
+/// A recording's steps, or bytes, compared with a plan's.
 pub(super) struct Beside {
     pub(super) recorded: Events,
     pub(super) model: Events,
@@ -18,7 +18,7 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// The recording beside the run of a scenario.
+    /// The recording compared with the run of a scenario.
     pub(super) fn of(arguments: &Arguments, recording: &Opened, path: &Path) -> Result<Self, Failure> {
         let (scenario, experiment) = scenarios::judged(path)?;
         let run = kept_run::of(path, &experiment)?;
@@ -29,16 +29,16 @@ impl Beside {
         let cycle = Tolerance::cycle(recorded.clock_hz, clock_hz);
         let within = arguments.within_us.map_or(cycle, |given| given.0);
         let found = recorded.beside(&model, arguments.align, within).ok_or_else(|| {
-            arguments.wrong(format!(
-                "channel {} has {} {} recorded and {} in the model: there is no {} {} in both; map a channel to STEP{}, or give another --channel or --align",
-                arguments.channel,
-                recorded.len(),
-                kind.plural(),
-                model.len(),
-                kind.singular(),
-                arguments.align,
-                arguments.channel,
-            ))
+            let (what, one) = (kind.plural(), kind.singular());
+            let (channel, own, planned) = (arguments.channel, recorded.len(), model.len());
+            arguments.wrong(match arguments.align {
+                Some(step) if own > 0 && planned > 0 => format!(
+                    "--align {step}: the plan has {planned} {what}, from 0, and the recording {own}; this {one} is not in both; give another"
+                ),
+                _ => format!(
+                    "channel {channel} has {own} {what} recorded and {planned} in the plan, so there is nothing to compare; map a channel to STEP{channel}, or give another --channel"
+                ),
+            })
         })?;
         Ok(Self { recorded, model, found, within })
     }

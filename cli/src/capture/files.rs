@@ -44,7 +44,7 @@ pub(super) fn write(
         write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.clone(), error))
     };
     file(&arguments.scenario, &|out| made.as_ref().map_or(Ok(()), |text| out.write_all(text.as_bytes())))?;
-    file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, arguments.align, beside)))?;
+    file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, beside)))?;
     file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
     file(&arguments.bytes, &|out| bytes(out, recording))?;
     file(&arguments.packets, &|out| {
@@ -104,13 +104,27 @@ fn scenario(
     )
 }
 
-/// How late each step is.
-fn late(out: &mut Out, aligned: usize, beside: &Beside) -> io::Result<()> {
-    writeln!(out, "{},recorded_s,late_s,other_direction", beside.recorded.kind.singular())?;
-    let late = beside.recorded.late(&beside.model, aligned);
-    (0..beside.found.comparison.compared).filter_map(|index| late.off(index)).try_for_each(|off| {
-        writeln!(out, "{},{},{:e},{}", off.step, off.recorded_s, off.late_s, u8::from(off.other_direction))
-    })
+/// How late each step is; one that is missing, or extra, has a row without a time of the other side.
+fn late(out: &mut Out, beside: &Beside) -> io::Result<()> {
+    let one = beside.recorded.kind.singular();
+    writeln!(out, "{one},recorded_{one},recorded_s,late_s,other_direction,event")?;
+    let alignment = beside.recorded.alignment(&beside.model, &beside.found);
+    let (mut step, mut recorded_step, mut index) = (0, 0, 0);
+    let ends = [(beside.model.len(), beside.recorded.len(), 0)];
+    let runs = alignment.matching.runs().iter().map(|run| (run.model, run.recorded, run.count));
+    for (model, recorded, count) in runs.chain(ends) {
+        (step..model).try_for_each(|step| writeln!(out, "{step},,,,,missing"))?;
+        for extra in recorded_step..recorded {
+            writeln!(out, ",{extra},{},,,extra", beside.recorded.at_s(extra).unwrap_or(0.0))?;
+        }
+        for off in (index..index + count).filter_map(|index| alignment.off(index)) {
+            let (step, recorded, way) = (off.step, off.recorded_step, u8::from(off.other_direction));
+            let event = if off.other_value { "value" } else { "" };
+            writeln!(out, "{step},{recorded},{},{:e},{way},{event}", off.recorded_s, off.late_s)?;
+        }
+        (step, recorded_step, index) = (model + count, recorded + count, index + count);
+    }
+    Ok(())
 }
 
 /// As `stepscope tables --steps` reads them.

@@ -8,7 +8,10 @@ use crate::{
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
-use stepscope_core::inspect::recording::{alignment::Off, opened::Opened, report::ChannelReport};
+use stepscope_core::inspect::recording::{opened::Opened, report::ChannelReport};
+
+/// Differences from the plan that the screen shows.
+const MAX_SHOWN: usize = 10;
 
 /// For the eye.
 pub(super) fn print(
@@ -88,13 +91,13 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
     let (what, one) = (beside.found.kind.plural(), beside.found.kind.singular());
     writeln!(
         out,
-        "beside the model: {} {what} recorded, {} in the model, {} compared",
-        found.recorded, found.model, found.compared
+        "compared with the plan: {} {what} recorded, {} planned, {} in both, {} missing, {} extra",
+        found.recorded, found.model, found.compared, found.missing, found.extra
     )?;
     let us = |seconds: f64| seconds * 1e6;
     writeln!(
         out,
-        "  late: {:.3} us at most ({one} {}, at {} s), {:.3} us r.m.s., {:.3} us in the mean",
+        "  late: {:.3} us at most ({one} {}, at {} s), {:.3} us r.m.s., {:.3} us mean",
         us(found.largest.late_s),
         found.largest.step,
         found.largest.recorded_s,
@@ -103,54 +106,44 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
     )?;
     writeln!(
         out,
-        "  drift {:.2} ppm; without it {:.3} us at most, {:.3} us r.m.s.{}",
+        "  drift {:.2} ppm; jitter {:.3} us at most, {:.3} us r.m.s.{}",
         found.drift_ppm,
         us(found.largest_jitter_s),
         us(found.rms_jitter_s),
-        if found.outliers > 0 {
-            format!(" of all but {}, too far off to count for the clock", found.outliers)
-        } else {
-            String::new()
+        match found.outliers {
+            0 => String::new(),
+            1 => " (1 outlier excluded)".to_owned(),
+            more => format!(" ({more} outliers excluded)"),
         }
     )?;
-    if beside.found.other_values > 0 {
-        writeln!(out, "  {} {what} have another value", beside.found.other_values)?;
-    }
-    match found.first_difference {
-        None => writeln!(out, "  no {one} is off by more than {:.3} us", us(beside.within.seconds())),
-        Some(first) => writeln!(
+    let within = us(beside.within.seconds());
+    match found.differing {
+        0 => writeln!(out, "  no {one} is off by more than {within:.3} us")?,
+        _ => writeln!(
             out,
-            "  {} {what} are off by more than {:.3} us; first {one} {}",
-            found.differing,
-            us(beside.within.seconds()),
-            off(first)
-        ),
+            "  {} of {} {what} differ, or are off by more than {within:.3} us",
+            found.differing, found.compared
+        )?,
+    }
+    let differences = &beside.found.differences;
+    for difference in differences.listed.iter().take(MAX_SHOWN) {
+        writeln!(out, "  {}", difference.to_text(beside.found.kind))?;
+    }
+    match differences.count.saturating_sub(MAX_SHOWN) {
+        0 => Ok(()),
+        more => writeln!(out, "  and {more} more"),
     }
 }
 
-fn off(Off { step, recorded_s, late_s, other_direction }: Off) -> String {
-    let way = if other_direction { ", in the other direction" } else { "" };
-    let late = if late_s < 0.0 { "early" } else { "late" };
-    format!("{step} at {recorded_s} s, {:.3} us {late}{way}", late_s.abs() * 1e6)
-}
-
-/// Why the recording is not what the model makes.
+/// Why the recording is not what was planned.
 pub(super) fn difference(beside: &Beside) -> String {
-    let found = &beside.found.comparison;
-    let (what, one) = (beside.found.kind.plural(), beside.found.kind.singular());
-    let missing = match (found.recorded, found.model) {
-        (recorded, model) if recorded < model => {
-            format!("{} {what} fewer than the model; ", model - recorded)
-        }
-        (recorded, model) if recorded > model => format!("{} {what} more than the model; ", recorded - model),
-        _ => String::new(),
+    let found = &beside.found.differences;
+    let first = found.listed.first().map_or_else(String::new, |first| first.to_text(beside.found.kind));
+    let more = match found.count {
+        0 | 1 => String::new(),
+        count => format!("; {count} differences in all"),
     };
-    match found.first_difference {
-        Some(first) => {
-            format!("not the model's {what}: {missing}{} differ, first {one} {}", found.differing, off(first))
-        }
-        None => format!("not the model's {what}: {missing}those that both have are the same"),
-    }
+    format!("the recording differs from the plan: {first}{more}")
 }
 
 /// As tables.
@@ -191,7 +184,9 @@ pub(super) fn tables(
         let found = &beside.found.comparison;
         json!({
             "compares": beside.found.kind.plural(),
-            "other_values": beside.found.other_values,
+            "other_values": found.other_values,
+            "missing": found.missing,
+            "extra": found.extra,
             "recorded": found.recorded,
             "model": found.model,
             "compared": found.compared,
@@ -210,6 +205,14 @@ pub(super) fn tables(
             "first_difference_s": found.first_difference.map(|first| first.recorded_s),
         })
     });
+    let events = beside.into_iter().flat_map(|beside| {
+        let kind = beside.found.kind;
+        beside.found.differences.listed.iter().map(move |difference| {
+            let mut row = serde_json::to_value(difference).unwrap_or_default();
+            row["text"] = difference.to_text(kind).into();
+            row
+        })
+    });
     tables
         .with("recording", [file])
         .with("channels", channels)
@@ -217,4 +220,5 @@ pub(super) fn tables(
         .with("steps", steps)
         .with("lines", lines)
         .with("comparison", comparison)
+        .with("events", events)
 }

@@ -7,13 +7,15 @@
 //!                        overview    all of it at a glance, a column a pixel
 //!                        packets     what RX and TX say, packet by packet
 //!                        replies     what TX says, for the table of packets
-//!                        alignment   each step beside the model's
+//!                        matching    which recorded step is which planned step
+//!                        alignment   each step compared with the plan's
+//!                        differences what is missing, extra, late, ...
 //!                        drift       the clocks' line through how late they are
 //!                        scenario    a list of segments, or a line script
 //! ```
 //!
 //! ```
-//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, report::Report, tolerance::Tolerance};
+//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, report::Report, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::{Recording, steps};
 //! use stepscope_sim::Experiment;
 //!
@@ -26,15 +28,17 @@
 //! let (own, model) = (recorded(r#"{"bus":{"boot_cycles":4000}}"#), recorded("{}"));
 //! assert_eq!(Report::of(&own, 16_000_000, 1, None).channels[0].figures.steps, 3200);
 //! let (own, model) = (steps(&own, 0), steps(&model, 0));
-//! let side = |steps| Side { steps, clock_hz: 16_000_000 };
-//! let found = Comparison::of(side(&own), side(&model), 0, Tolerance::ZERO).expect("both have steps");
+//! let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };
+//! let found = Alignment::of(side(&own), side(&model), None).expect("both have steps").comparison(Tolerance::ZERO);
 //! assert!(found.is_same(), "{found:?}");
 //! ```
 
 pub mod alignment;
+pub mod differences;
 pub mod drift;
 pub mod events;
 pub mod figures;
+pub mod matching;
 #[cfg(feature = "capture")]
 pub mod opened;
 pub mod overview;

@@ -18,7 +18,7 @@ use stepscope_core::{
         actual_motion::Pulses,
         curves::{Window, actual},
         recording::{
-            alignment::{Comparison, Side},
+            alignment::{Alignment, Side},
             opened::{Ask, Opened, Part},
             scenario::{Made, Steps, of_step_times, of_steps},
             tolerance::Tolerance,
@@ -295,8 +295,9 @@ fn look_at(opened: &Opened) {
         assert_eq!((figures.steps, figures.right + figures.left), (steps.len() as u64, steps.len() as u64));
         let rates = [figures.greatest_rate_steps_s, figures.greatest_acceleration_steps_s2];
         assert!(rates.into_iter().flatten().all(f64::is_finite), "{figures:?}");
-        let side = Side { steps: &steps, clock_hz: opened.clock_hz };
-        let found = Comparison::of(side, side, steps.len() / 2, Tolerance::ZERO);
+        let side = Side { steps: &steps, clock_hz: opened.clock_hz, values: &[] };
+        let found =
+            Alignment::of(side, side, Some(steps.len() / 2)).map(|found| found.comparison(Tolerance::ZERO));
         assert!(found.is_some_and(|found| found.is_same() && found.drift_ppm == 0.0), "{found:?}");
     }
     let shown = opened.shown_scenario("file", false);

@@ -1,51 +1,66 @@
-//! Recorded steps beside a model's, step by step, from a step that both have at one time.
+//! Recorded steps compared with a plan's, each with the one that it is ([`super::matching`]): steps may be missing from the
+//! recording, or additional in it.
 //!
 //! ```text
-//! recorded     |   |  | | |        late = time since the aligned step, recorded less model's
-//! model        |   | |  | |        drift: the straight line through most of late over time
+//! recorded     |   |  | | |        late = time since the aligned step, recorded minus planned
+//! plan         |   | |  | |        drift: the straight line through most of late over time
 //!              ^ aligned           jitter: what is left of late without it
 //! ```
 //!
-//! Two clocks never agree: a crystal is off by some tens of ppm, which grows to milliseconds in a minute. So the drift is
-//! told by itself, and the jitter without it; a few steps that are far off tilt neither ([`super::drift`]), and are counted.
+//! Two clocks never agree: a crystal is off by some tens of ppm, which grows to milliseconds in a minute. So drift is
+//! reported by itself, and jitter without it; a few steps that are far off tilt neither ([`super::drift`]), and are counted.
 //!
 //! ```
-//! use stepscope_inspect::recording::{alignment::{Comparison, Side}, tolerance::Tolerance};
+//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::Step;
 //!
-//! let steps = |cycles: [u64; 4]| cycles.map(|cycle| Step { cycle, position: 1 });
-//! // Recorded at 1 MHz, planned at 2 MHz; the third step comes 3 us late.
-//! let (recorded, model) = (steps([100, 200, 303, 400]), steps([0, 200, 400, 600]));
-//! let found = Comparison::of(
-//!     Side { steps: &recorded, clock_hz: 1_000_000 },
-//!     Side { steps: &model, clock_hz: 2_000_000 },
-//!     0,
-//!     Tolerance::from_micros(1, 0).expect("a time"),
+//! let steps = |cycles: &[u64]| cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>();
+//! // Recorded at 1 MHz, planned at 2 MHz; the third step is missing.
+//! let (recorded, plan) = (steps(&[100, 200, 400, 500]), steps(&[0, 200, 400, 600, 800]));
+//! let found = Alignment::of(
+//!     Side { steps: &recorded, clock_hz: 1_000_000, values: &[] },
+//!     Side { steps: &plan, clock_hz: 2_000_000, values: &[] },
+//!     None,
 //! ).expect("both have steps");
-//! assert_eq!((found.largest.step, found.first_difference.map(|first| first.step)), (2, Some(2)));
-//! assert!((found.largest.late_s - 3e-6).abs() < 1e-12);
+//! let compared = found.comparison(Tolerance::ZERO);
+//! assert_eq!((compared.missing, compared.extra, compared.largest.late_s), (1, 0, 0.0));
 //! ```
 
-use super::{drift::Drift, tolerance::Tolerance};
+use super::{drift::Drift, matching::Matching, tolerance::Tolerance};
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
-/// Steps by a clock of their own.
+/// Steps, or bytes, by a clock of their own.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
     /// All of a channel.
     pub steps: &'a [Step],
-    /// Cycles a second.
+    /// Cycles per second.
     pub clock_hz: u32,
+    /// The values of bytes; empty for steps.
+    pub values: &'a [u8],
 }
 
 impl Side<'_> {
-    /// Cycles from a step to another, to the left of it where it is earlier.
-    fn since(&self, aligned: usize, index: usize) -> Option<i128> {
-        Some(i128::from(self.steps.get(index)?.cycle) - i128::from(self.steps.get(aligned)?.cycle))
+    /// Cycles from a step to another, negative where that is earlier.
+    fn since(&self, from: usize, index: usize) -> Option<i128> {
+        Some(i128::from(self.steps.get(index)?.cycle) - i128::from(self.steps.get(from)?.cycle))
     }
 
-    fn way(&self, index: usize) -> i32 {
+    /// Seconds from the first step to a step of the side.
+    pub(super) fn seconds(&self, step: &Step) -> f64 {
+        let first = self.steps.first().map_or(0, |first| first.cycle);
+        // Times that go back, which no recording has, stay times.
+        step.cycle.wrapping_sub(first).cast_signed() as f64 / f64::from(self.clock_hz.max(1))
+    }
+
+    /// Seconds from the first step to step `index`.
+    pub(super) fn at_s(&self, index: usize) -> Option<f64> {
+        self.steps.get(index).map(|step| self.seconds(step))
+    }
+
+    /// The sign of a step's direction.
+    pub(super) fn direction(&self, index: usize) -> i32 {
         Step::direction(self.steps, index).signum()
     }
 }
@@ -53,26 +68,34 @@ impl Side<'_> {
 /// A step that is off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Off {
-    /// Which step, from 0.
+    /// Which step of the plan, from 0.
     pub step: usize,
+    /// Which step of the recording, from 0.
+    pub recorded_step: usize,
     /// When it was recorded, in s of the recording.
     pub recorded_s: f64,
-    /// How much later than the model's it comes, in s; below 0 earlier.
+    /// How much later than planned it comes, in s; below 0 earlier.
     pub late_s: f64,
-    /// Whether it goes the other way.
+    /// Whether it goes in the other direction.
     pub other_direction: bool,
+    /// Whether the byte has another value.
+    pub other_value: bool,
 }
 
-/// How recorded steps stand to a model's.
+/// A recording compared with a plan, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Steps of the recording.
     pub recorded: usize,
-    /// Steps of the model.
+    /// Steps of the plan.
     pub model: usize,
     /// Steps that both have.
     pub compared: usize,
-    /// What the recording's time has over the model's at the aligned step, in s.
+    /// Planned steps that were not recorded.
+    pub missing: usize,
+    /// Recorded steps that were not planned.
+    pub extra: usize,
+    /// What the recording's time has over the plan's at the aligned step, in s.
     pub offset_s: f64,
     /// The step that is off most.
     pub largest: Off,
@@ -80,7 +103,7 @@ pub struct Comparison {
     pub rms_s: f64,
     /// Mean of how late they are, in s.
     pub mean_s: f64,
-    /// How much longer the recording takes than the model, in millionths: above 0, the recorded clock is the slower one.
+    /// How much longer the recording takes than the plan, in millionths: above 0, the recorded clock is the slower one.
     pub drift_ppm: f64,
     /// Greatest magnitude of what is left without drift and offset, in s.
     pub largest_jitter_s: f64,
@@ -88,29 +111,105 @@ pub struct Comparison {
     pub rms_jitter_s: f64,
     /// Steps that are so far off that they do not count for drift and jitter.
     pub outliers: usize,
-    /// The first step that is off by more than was allowed, or goes the other way.
+    /// The first step that is off by more than is allowed, or goes in the other direction.
     pub first_difference: Option<Off>,
-    /// Steps that are off by more, or go the other way.
+    /// Steps that are off by more, or go in the other direction.
     pub differing: usize,
+    /// Bytes that have another value.
+    pub other_values: usize,
 }
 
 impl Comparison {
-    /// Compares step by step; step `aligned` of both, from 0, is taken for the same instant. A step that is off by
-    /// exactly `within` is not different. `None` where one of them has no such step.
+    /// Whether every step is there, in its direction and within what is allowed, and every byte has its value.
     #[must_use]
-    pub fn of(recorded: Side<'_>, model: Side<'_>, aligned: usize, within: Tolerance) -> Option<Self> {
-        let late = Late { recorded, model, aligned };
-        let compared = recorded.steps.len().min(model.steps.len());
-        let first = late.off(aligned)?;
-        let seconds = |side: Side<'_>| {
-            side.steps.get(aligned).map_or(0.0, |step| step.cycle as f64 / f64::from(side.clock_hz))
+    pub const fn is_same(&self) -> bool {
+        self.differing == 0 && self.missing == 0 && self.extra == 0 && self.other_values == 0
+    }
+}
+
+/// A recording's steps matched with a plan's, and a time that both have in common.
+#[derive(Clone, Debug)]
+pub struct Alignment<'a> {
+    /// What was recorded.
+    pub recorded: Side<'a>,
+    /// What was planned.
+    pub model: Side<'a>,
+    /// Which is which.
+    pub matching: Matching,
+    /// The planned and the recorded step that come at one time.
+    pub aligned: (usize, usize),
+}
+
+impl<'a> Alignment<'a> {
+    /// Matches the steps; planned step `aligned` and the recorded one that it is are taken for the same instant, or, where
+    /// none is given, the first that both have. `None` where one of them has no such step.
+    #[must_use]
+    pub fn of(recorded: Side<'a>, model: Side<'a>, aligned: Option<usize>) -> Option<Self> {
+        let matching = Matching::of(recorded, model);
+        let aligned = match aligned {
+            Some(step) => (step, matching.recorded(step)?),
+            None => matching.pair(0)?,
         };
-        let mut found = Self {
+        Some(Self { recorded, model, matching, aligned })
+    }
+
+    /// How late matched step `index` is, exactly, in units of 1/(clock * clock) s.
+    fn units(&self, index: usize) -> Option<i128> {
+        let (step, recorded_step) = self.matching.pair(index)?;
+        let (due, came) =
+            (self.model.since(self.aligned.0, step)?, self.recorded.since(self.aligned.1, recorded_step)?);
+        Some(came * i128::from(self.model.clock_hz) - due * i128::from(self.recorded.clock_hz))
+    }
+
+    /// How far matched step `index` is off; `None` where there are not so many.
+    #[must_use]
+    pub fn off(&self, index: usize) -> Option<Off> {
+        let Self { recorded, model, .. } = self;
+        let (step, recorded_step) = self.matching.pair(index)?;
+        let (own, other) = (f64::from(recorded.clock_hz.max(1)), f64::from(model.clock_hz.max(1)));
+        Some(Off {
+            step,
+            recorded_step,
+            recorded_s: recorded.steps.get(recorded_step)?.cycle as f64 / own,
+            // Exact up to the one division.
+            late_s: self.units(index)? as f64 / (own * other),
+            other_direction: recorded.direction(recorded_step) != model.direction(step),
+            other_value: recorded.values.get(recorded_step) != model.values.get(step),
+        })
+    }
+
+    /// Whether matched step `index` is off by more than is allowed.
+    #[must_use]
+    pub fn is_late(&self, index: usize, within: Tolerance) -> bool {
+        let most = within.units(self.recorded.clock_hz, self.model.clock_hz);
+        self.units(index).is_none_or(|units| units.unsigned_abs() > most)
+    }
+
+    /// The comparison in numbers; a step that is off by exactly `within` is not different.
+    #[must_use]
+    pub fn comparison(&self, within: Tolerance) -> Comparison {
+        let (recorded, model) = (self.recorded, self.model);
+        let compared = self.matching.len();
+        let seconds = |side: Side<'_>, index: usize| {
+            let cycle = side.steps.get(index).map_or(0, |step| step.cycle);
+            cycle as f64 / f64::from(side.clock_hz.max(1))
+        };
+        let at = Off {
+            step: self.aligned.0,
+            recorded_step: self.aligned.1,
+            recorded_s: seconds(recorded, self.aligned.1),
+            late_s: 0.0,
+            other_direction: recorded.direction(self.aligned.1) != model.direction(self.aligned.0),
+            other_value: recorded.values.get(self.aligned.1) != model.values.get(self.aligned.0),
+        };
+        let mut found = Comparison {
             recorded: recorded.steps.len(),
             model: model.steps.len(),
             compared,
-            offset_s: seconds(recorded) - seconds(model),
-            largest: first,
+            missing: model.steps.len() - compared,
+            extra: recorded.steps.len() - compared,
+            offset_s: at.recorded_s - seconds(model, self.aligned.0),
+            largest: at,
             rms_s: 0.0,
             mean_s: 0.0,
             drift_ppm: 0.0,
@@ -119,24 +218,25 @@ impl Comparison {
             outliers: 0,
             first_difference: None,
             differing: 0,
+            other_values: 0,
         };
         let n = compared as f64;
         let (mut sum, mut square) = (0.0, 0.0);
-        let most = within.units(recorded.clock_hz, model.clock_hz);
-        for off in (0..compared).filter_map(|index| late.off(index)) {
+        for (index, off) in (0..compared).filter_map(|index| Some((index, self.off(index)?))) {
             sum += off.late_s;
             square += off.late_s * off.late_s;
             if libm::fabs(off.late_s) > libm::fabs(found.largest.late_s) {
                 found.largest = off;
             }
-            if off.other_direction || late.units(off.step).is_none_or(|units| units.unsigned_abs() > most) {
+            found.other_values += usize::from(off.other_value);
+            if off.other_direction || self.is_late(index, within) {
                 found.differing += 1;
                 found.first_difference = found.first_difference.or(Some(off));
             }
         }
         (found.mean_s, found.rms_s) = (sum / n, libm::sqrt(square / n));
         let cycle_s = 1.0 / f64::from(recorded.clock_hz.min(model.clock_hz).max(1));
-        let event = |index| late.off(index).map(|off| (late.model_s(index), off.late_s));
+        let event = |index| self.off(index).map(|off| (self.model_s(off.step), off.late_s));
         let drift = Drift::of(compared, cycle_s, event);
         found.drift_ppm = drift.slope * 1e6;
         let (mut square, mut counted) = (0.0, 0.0);
@@ -150,52 +250,28 @@ impl Comparison {
             }
         }
         found.rms_jitter_s = libm::sqrt(square / libm::fmax(counted, 1.0));
-        Some(found)
+        found
     }
 
-    /// Whether every step is there, in its direction and within what was allowed.
-    #[must_use]
-    pub const fn is_same(&self) -> bool {
-        self.differing == 0 && self.recorded == self.model
-    }
-}
-
-/// How late each step is.
-#[derive(Clone, Copy, Debug)]
-pub struct Late<'a> {
-    /// What was recorded.
-    pub recorded: Side<'a>,
-    /// What was due.
-    pub model: Side<'a>,
-    /// The step that both have at one time.
-    pub aligned: usize,
-}
-
-impl Late<'_> {
-    /// How late step `index` is, exactly, in units of 1/(clock * clock) s.
-    fn units(&self, index: usize) -> Option<i128> {
-        let Self { recorded, model, aligned } = *self;
-        let (came, due) = (recorded.since(aligned, index)?, model.since(aligned, index)?);
-        Some(came * i128::from(model.clock_hz) - due * i128::from(recorded.clock_hz))
+    /// When a step is planned, from the aligned one on, in s.
+    fn model_s(&self, step: usize) -> f64 {
+        self.model.since(self.aligned.0, step).unwrap_or(0) as f64 / f64::from(self.model.clock_hz.max(1))
     }
 
-    /// Step `index`; `None` where one of both has none.
-    #[must_use]
-    pub fn off(&self, index: usize) -> Option<Off> {
-        let Self { recorded, model, .. } = *self;
-        let (own, other) = (i128::from(recorded.clock_hz), i128::from(model.clock_hz));
-        let late = self.units(index)?;
-        Some(Off {
-            step: index,
-            recorded_s: recorded.steps.get(index)?.cycle as f64 / own as f64,
-            late_s: late as f64 / (own as f64 * other as f64),
-            other_direction: recorded.way(index) != model.way(index),
-        })
-    }
-
-    /// When the model has the step, from the aligned one on, in s.
-    fn model_s(&self, index: usize) -> f64 {
-        self.model.since(self.aligned, index).unwrap_or(0) as f64 / f64::from(self.model.clock_hz)
+    /// When a planned step is due in the recording, from the last matched step before it, or the first one after, in s of the
+    /// recording.
+    pub(super) fn due_s(&self, step: usize) -> f64 {
+        let runs = self.matching.runs();
+        let before = runs.partition_point(|run| run.model <= step).checked_sub(1);
+        let near = match before.and_then(|before| runs.get(before)) {
+            Some(run) => {
+                let within = (step - run.model).min(run.count - 1);
+                (run.model + within, run.recorded + within)
+            }
+            None => runs.first().map_or(self.aligned, |run| (run.model, run.recorded)),
+        };
+        let came = self.recorded.steps.get(near.1).map_or(0, |step| step.cycle) as f64;
+        came / f64::from(self.recorded.clock_hz.max(1)) + self.model_s(step) - self.model_s(near.0)
     }
 }
 
@@ -208,6 +284,14 @@ mod tests {
         (1..).zip(cycles).map(|(position, cycle)| Step { cycle, position }).collect()
     }
 
+    /// Recorded at 1 GHz, planned at 16 MHz; 1 us is allowed.
+    fn compared(recorded: &[Step], model: &[Step]) -> Comparison {
+        let recorded = Side { steps: recorded, clock_hz: 1_000_000_000, values: &[] };
+        let model = Side { steps: model, clock_hz: 16_000_000, values: &[] };
+        let within = Tolerance::from_micros(1, 0).expect("a time");
+        Alignment::of(recorded, model, None).expect("both have steps").comparison(within)
+    }
+
     #[test]
     fn a_slow_clock_is_drift_and_not_jitter() {
         // 50 ppm slow, and every tenth step 2 us late.
@@ -215,13 +299,7 @@ mod tests {
         let recorded = steps(
             (0..10_000_u64).map(|k| 7_000_000 + 62_503 * k + k / 8 + if k % 10 == 5 { 2000 } else { 0 }),
         );
-        let found = Comparison::of(
-            Side { steps: &recorded, clock_hz: 1_000_000_000 },
-            Side { steps: &model, clock_hz: 16_000_000 },
-            0,
-            Tolerance::from_micros(1, 0).expect("a time"),
-        )
-        .expect("both have steps");
+        let found = compared(&recorded, &model);
         assert!((found.drift_ppm - 50.0).abs() < 0.2, "{found:?}");
         assert!((found.largest_jitter_s - 2e-6).abs() < 2e-8 && found.outliers == 1000, "{found:?}");
         assert!(found.rms_jitter_s < 1e-8, "{found:?}");
@@ -232,35 +310,54 @@ mod tests {
     fn one_late_step_among_a_thousand_is_neither_drift_nor_jitter() {
         let model = steps((0..1000).map(|k| 16_000 * k));
         for at in [1, 250, 999] {
-            // 50 ppm slow, up to 1.5 us late, and one step by 10 ms, with those behind it in their times.
-            let late = |k: u64| if k == at { 10_000_000 } else { 500 * (k * 7 % 4) };
+            // 50 ppm slow, up to 1.5 us late, and one step by 0.9 ms.
+            let late = |k: u64| if k == at { 900_000 } else { 500 * (k * 7 % 4) };
             let recorded = steps((0..1000).map(|k| 1_000_050 * k + late(k)));
-            let found = Comparison::of(
-                Side { steps: &recorded, clock_hz: 1_000_000_000 },
-                Side { steps: &model, clock_hz: 16_000_000 },
-                0,
-                Tolerance::from_micros(1, 0).expect("a time"),
-            )
-            .expect("both have steps");
+            let found = compared(&recorded, &model);
             assert!((found.drift_ppm - 50.0).abs() < 0.1, "{found:?}");
             assert!(found.rms_jitter_s < 0.6e-6 && found.outliers == 1, "{found:?}");
-            assert_eq!((found.largest.step as u64, found.largest_jitter_s > 9.9e-3), (at, true));
+            assert_eq!((found.largest.step as u64, found.largest_jitter_s > 0.8e-3), (at, true));
+            assert_eq!((found.missing, found.extra), (0, 0));
         }
     }
 
     #[test]
-    fn steps_that_lack_or_go_the_other_way_are_told() {
+    fn drift_and_jitter_are_of_the_steps_that_both_have() {
+        let model = steps((0..3200).map(|k| 16_000 * k));
+        let recorded = steps((0..3200).filter(|k| *k != 2000).map(|k| 1_000_050 * k));
+        let found = compared(&recorded, &model);
+        assert_eq!((found.compared, found.missing, found.extra), (3199, 1, 0));
+        assert!((found.drift_ppm - 50.0).abs() < 0.01 && found.largest_jitter_s < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn exactly_the_allowed_time_is_accepted() {
+        // 16 MHz and 1 MHz: 20 us are 320 cycles; 20.0625 us one more.
+        let recorded = steps([0, 1020, 2000, 2980].into_iter());
+        for (last, differing) in [(48_000, 0), (48_001, 1), (47_359, 1)] {
+            let model = steps([0, 16_000, 32_000, last].into_iter());
+            let sides = |steps, clock_hz| Side { steps, clock_hz, values: &[] };
+            let found = Alignment::of(sides(&recorded, 1_000_000), sides(&model, 16_000_000), None);
+            let found = found.expect("steps").comparison(Tolerance::from_micros(20, 0).expect("a time"));
+            assert_eq!(found.differing, differing, "{last}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn steps_that_lack_or_go_in_the_other_direction_are_reported() {
         let model = steps([100, 200, 300, 400].into_iter());
-        let side = |steps| Side { steps, clock_hz: 1000 };
-        let same = Comparison::of(side(&model), side(&model), 2, Tolerance::ZERO).expect("steps");
+        let side = |steps| Side { steps, clock_hz: 1000, values: &[] };
+        let of = |recorded, aligned| Alignment::of(side(recorded), side(&model), aligned);
+        let compared = |recorded, aligned| of(recorded, aligned).expect("steps").comparison(Tolerance::ZERO);
+        let same = compared(&model, Some(2));
         assert!(same.is_same() && same.largest.late_s == 0.0);
-        let lacks = Comparison::of(side(&model[..3]), side(&model), 0, Tolerance::ZERO).expect("steps");
-        assert_eq!((lacks.compared, lacks.is_same(), lacks.first_difference), (3, false, None));
+        let lacks = compared(&model[..3], None);
+        assert_eq!((lacks.compared, lacks.missing, lacks.is_same()), (3, 1, false));
+        assert_eq!(lacks.first_difference, None);
         let mut back = model.clone();
         (back[2].position, back[3].position) = (1, 2);
-        let turned = Comparison::of(side(&back), side(&model), 0, Tolerance::ZERO).expect("steps");
+        let turned = compared(&back, None);
         assert_eq!(turned.first_difference.map(|off| (off.step, off.other_direction)), Some((2, true)));
-        assert_eq!(Comparison::of(side(&[]), side(&model), 0, Tolerance::ZERO), None);
-        assert_eq!(Comparison::of(side(&model), side(&model), 4, Tolerance::ZERO), None);
+        assert!(of(&[], None).is_none() && of(&model, Some(4)).is_none());
     }
 }

@@ -10,13 +10,15 @@
 //! let mut recording = Recording::default();
 //! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
-//! let found = bytes.beside(&bytes, 0, Tolerance::ZERO).expect("there are bytes");
-//! assert_eq!((found.comparison.compared, found.other_values), (200, 0));
+//! let found = bytes.beside(&bytes, None, Tolerance::ZERO).expect("there are bytes");
+//! assert_eq!((found.comparison.compared, found.differences.count), (200, 0));
 //! assert!(found.is_same());
 //! ```
 
 use super::{
-    alignment::{Comparison, Late, Side},
+    alignment::{Alignment, Comparison, Side},
+    differences::Differences,
+    matching::Matching,
     serial::{Heard, hear},
     tolerance::Tolerance,
 };
@@ -70,23 +72,29 @@ pub struct Events {
     values: Vec<u8>,
 }
 
-/// How two lists of them stand to each other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// How two lists of them compare.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
     /// What was compared.
     pub kind: Kind,
-    /// When each comes.
+    /// In numbers.
     #[serde(flatten)]
     pub comparison: Comparison,
-    /// Bytes that have another value.
-    pub other_values: usize,
+    /// One by one.
+    pub differences: Differences,
+    /// Which is which.
+    #[serde(skip)]
+    pub matching: Matching,
+    /// The planned and the recorded one that come at one time.
+    #[serde(skip)]
+    pub aligned: (usize, usize),
 }
 
 impl Beside {
     /// Whether all of them are there, at their times, with their values.
     #[must_use]
     pub const fn is_same(&self) -> bool {
-        self.comparison.is_same() && self.other_values == 0
+        self.comparison.is_same()
     }
 }
 
@@ -137,22 +145,29 @@ impl Events {
         self.steps.is_empty()
     }
 
-    /// Beside a model's, number `aligned` of both, from 0, taken for the same instant; one that is off by exactly `within` is
-    /// not different. `None` where one of both has none of this number.
+    /// Compared with a plan's: number `aligned` of the plan, from 0, and the recorded one that it is are taken for the same
+    /// instant, or, without it, the first that both have. One that is off by exactly `within` is not different. `None`
+    /// where one of both has none of this number.
     #[must_use]
-    pub fn beside(&self, model: &Self, aligned: usize, within: Tolerance) -> Option<Beside> {
-        let comparison = Comparison::of(self.side(), model.side(), aligned, within)?;
-        let other_values = self.values.iter().zip(&model.values).filter(|(own, other)| own != other).count();
-        Some(Beside { kind: self.kind, comparison, other_values })
+    pub fn beside(&self, model: &Self, aligned: Option<usize>, within: Tolerance) -> Option<Beside> {
+        let alignment = Alignment::of(self.side(), model.side(), aligned)?;
+        Some(Beside {
+            kind: self.kind,
+            comparison: alignment.comparison(within),
+            differences: Differences::of(&alignment, within),
+            aligned: alignment.aligned,
+            matching: alignment.matching,
+        })
     }
 
-    /// How late each is.
+    /// The alignment that a comparison was made by: how late each one is.
     #[must_use]
-    pub fn late<'a>(&'a self, model: &'a Self, aligned: usize) -> Late<'a> {
-        Late { recorded: self.side(), model: model.side(), aligned }
+    pub fn alignment<'a>(&'a self, model: &'a Self, found: &Beside) -> Alignment<'a> {
+        let (recorded, model) = (self.side(), model.side());
+        Alignment { recorded, model, matching: found.matching.clone(), aligned: found.aligned }
     }
 
     fn side(&self) -> Side<'_> {
-        Side { steps: &self.steps, clock_hz: self.clock_hz }
+        Side { steps: &self.steps, clock_hz: self.clock_hz, values: &self.values }
     }
 }

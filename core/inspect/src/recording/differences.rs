@@ -1,0 +1,212 @@
+//! The differences of a recording from its plan, one row each: what is missing, extra, in the wrong direction, another byte or
+//! late. Neighbors of one kind are one row.
+//!
+//! ```text
+//! 1 step missing after step 1999, at 225.6 ms
+//! 3 extra steps after step 2400, at 270.1 ms
+//! ```
+
+use super::{alignment::Alignment, events::Kind, tolerance::Tolerance};
+use alloc::{format, string::String, vec::Vec};
+use serde::Serialize;
+
+/// Rows that are listed; all are counted.
+pub const MAX_LISTED: usize = 100_000;
+
+/// What kind of difference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum What {
+    /// Planned, and not recorded.
+    Missing,
+    /// Recorded, and not planned.
+    Extra,
+    /// Steps in the wrong direction.
+    Direction,
+    /// Bytes with another value.
+    Value,
+    /// Earlier or later than allowed.
+    Late,
+}
+
+/// Neighboring steps, or bytes, that differ in the same way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// In which way.
+    pub what: What,
+    /// How many.
+    pub count: usize,
+    /// The first of them in the plan, from 0; of extra ones the planned step before them, `None` before the first.
+    pub step: Option<usize>,
+    /// The first of them in the recording; of missing ones the recorded step before them.
+    pub recorded_step: Option<usize>,
+    /// When the first of them was recorded, or, if missing, was due, in s of the recording.
+    pub recorded_s: f64,
+    /// How late the one is that is off most, in s; `None` for missing and extra ones.
+    pub late_s: Option<f64>,
+    /// The first byte's planned value.
+    pub planned_value: Option<u8>,
+    /// The first byte's recorded value.
+    pub recorded_value: Option<u8>,
+}
+
+/// All differences.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Differences {
+    /// The first [`MAX_LISTED`], in the order of time.
+    pub listed: Vec<Difference>,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Differences {
+    /// Those of an alignment; a step that is off by exactly `within` is not late.
+    #[must_use]
+    pub fn of(alignment: &Alignment<'_>, within: Tolerance) -> Self {
+        let mut found = Self::default();
+        let (mut model, mut recorded, mut index) = (0, 0, 0);
+        for run in alignment.matching.runs() {
+            found.gap(alignment, model..run.model, recorded..run.recorded);
+            let mut last: Option<Difference> = None;
+            for _ in 0..run.count {
+                let next = alignment.difference(index, within);
+                match (&mut last, next) {
+                    (Some(of), Some(next)) if of.what == next.what => of.join(next),
+                    _ => found.extend(core::mem::replace(&mut last, next)),
+                }
+                index += 1;
+            }
+            found.extend(last);
+            (model, recorded) = (run.model + run.count, run.recorded + run.count);
+        }
+        let (planned, came) = (alignment.model.steps.len(), alignment.recorded.steps.len());
+        found.gap(alignment, model..planned, recorded..came);
+        found
+    }
+
+    fn extend(&mut self, next: Option<Difference>) {
+        let Some(next) = next else { return };
+        self.count += 1;
+        if self.listed.len() < MAX_LISTED {
+            self.listed.push(next);
+        }
+    }
+
+    /// What is missing, and what is extra, between two runs.
+    fn gap(&mut self, of: &Alignment<'_>, missing: core::ops::Range<usize>, extra: core::ops::Range<usize>) {
+        let none = Difference {
+            what: What::Missing,
+            count: missing.len(),
+            step: Some(missing.start),
+            recorded_step: extra.start.checked_sub(1),
+            recorded_s: 0.0,
+            late_s: None,
+            planned_value: of.model.values.get(missing.start).copied(),
+            recorded_value: None,
+        };
+        if !missing.is_empty() {
+            self.extend(Some(Difference { recorded_s: of.due_s(missing.start), ..none }));
+        }
+        if !extra.is_empty() {
+            let cycle = of.recorded.steps.get(extra.start).map_or(0, |step| step.cycle);
+            self.extend(Some(Difference {
+                what: What::Extra,
+                count: extra.len(),
+                step: missing.start.checked_sub(1),
+                recorded_step: Some(extra.start),
+                recorded_s: cycle as f64 / f64::from(of.recorded.clock_hz.max(1)),
+                planned_value: None,
+                recorded_value: of.recorded.values.get(extra.start).copied(),
+                ..none
+            }));
+        }
+    }
+}
+
+impl Alignment<'_> {
+    /// How matched step `index` differs.
+    fn difference(&self, index: usize, within: Tolerance) -> Option<Difference> {
+        let off = self.off(index)?;
+        let what = match (off.other_direction, off.other_value) {
+            (true, _) => What::Direction,
+            (_, true) => What::Value,
+            _ if self.is_late(index, within) => What::Late,
+            _ => return None,
+        };
+        Some(Difference {
+            what,
+            count: 1,
+            step: Some(off.step),
+            recorded_step: Some(off.recorded_step),
+            recorded_s: off.recorded_s,
+            late_s: Some(off.late_s),
+            planned_value: self.model.values.get(off.step).copied(),
+            recorded_value: self.recorded.values.get(off.recorded_step).copied(),
+        })
+    }
+}
+
+impl Difference {
+    fn join(&mut self, next: Self) {
+        self.count += next.count;
+        let size = |of: &Self| of.late_s.map_or(0.0, libm::fabs);
+        if size(&next) > size(self) {
+            self.late_s = next.late_s;
+        }
+    }
+
+    /// In words: "1 step missing after step 1999, at 225.6 ms".
+    #[must_use]
+    pub fn to_text(&self, kind: Kind) -> String {
+        let one = kind.singular();
+        let counted =
+            if self.count == 1 { format!("1 {one}") } else { format!("{} {}", self.count, kind.plural()) };
+        let at = time(self.recorded_s);
+        let step = self.step.unwrap_or(0);
+        let late_s = self.late_s.unwrap_or(0.0);
+        let size = format!("{:.3} us", libm::fabs(late_s) * 1e6);
+        let early = if late_s < 0.0 { "early" } else { "late" };
+        match self.what {
+            What::Missing if step == 0 => {
+                format!("{counted} missing before the first recorded {one}, at {at}")
+            }
+            What::Missing => format!("{counted} missing after {one} {}, at {at}", step - 1),
+            What::Extra => {
+                let extra =
+                    format!("{} extra {}", self.count, if self.count == 1 { one } else { kind.plural() });
+                match self.step {
+                    Some(step) => format!("{extra} after {one} {step}, at {at}"),
+                    None => format!("{extra} before {one} 0, at {at}"),
+                }
+            }
+            What::Direction if self.count == 1 => format!("{one} {step} in the wrong direction, at {at}"),
+            What::Direction => format!("{counted} in the wrong direction from {one} {step}, at {at}"),
+            What::Value if self.count == 1 => {
+                let value =
+                    |value: Option<u8>| value.map_or_else(String::new, |value| format!("{value:02x}"));
+                let (own, planned) = (value(self.recorded_value), value(self.planned_value));
+                format!("{one} {step} is {own} instead of {planned}, at {at}")
+            }
+            What::Value => format!("{counted} with another value from {one} {step}, at {at}"),
+            What::Late if self.count == 1 => format!("{one} {step} is {size} {early}, at {at}"),
+            What::Late => format!("{counted} off by up to {size} ({early}) from {one} {step}, at {at}"),
+        }
+    }
+}
+
+/// A time with four digits or more, in the unit that suits it.
+fn time(seconds: f64) -> String {
+    let (value, unit) = match libm::fabs(seconds) {
+        size if size >= 1.0 => (seconds, "s"),
+        size if size >= 1e-3 || size == 0.0 => (seconds * 1e3, "ms"),
+        _ => (seconds * 1e6, "us"),
+    };
+    match libm::fabs(value) {
+        size if size >= 100.0 => format!("{value:.1} {unit}"),
+        size if size >= 10.0 => format!("{value:.2} {unit}"),
+        _ => format!("{value:.3} {unit}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;
