@@ -45,6 +45,10 @@ pub enum Format {
     HexDump,
     /// A log of bytes in hexadecimal, with the times of a clock.
     SerialLog,
+    /// Annotations of sigrok's decoder of serial lines.
+    Annotations,
+    /// Step commands of Klipper.
+    Klipper,
     /// A table of times and positions.
     PositionsCsv,
     /// No kind that can be read: the capture is empty, and the error says what can.
@@ -65,6 +69,8 @@ impl fmt::Display for Format {
             Self::HexBytes => "bytes in hexadecimal",
             Self::HexDump => "hex dump",
             Self::SerialLog => "serial log",
+            Self::Annotations => "annotations of sigrok's UART decoder",
+            Self::Klipper => "Klipper step commands",
             Self::PositionsCsv => "table of times and positions",
             Self::Unknown => "file of no known kind",
         })

@@ -39,6 +39,12 @@ fn dumps_of_any_program_are_read() {
              $var integer 32 i n $end $enddefinitions $end #0 r1.5 r sHello s b101 i #1 1w",
             "Vcd [W] 0:0 1:1 end 1\n- variables that are no lines: speed (real), text (string), n (integer)",
         ),
+        // Strings with blanks, comments among the values.
+        (
+            "$var wire 1 ! A $end $var string 1 # s $end $enddefinitions $end\n#0 0!\n$comment 1! x $end\n\
+             #1\nsIDLE STATE 0 #\n1!\n#2\ns #\n0!\n",
+            "Vcd [A] 0:0 1:1 2:0 end 2\n- variables that are no lines: s (string)",
+        ),
         // Long time scales and short ones.
         ("$timescale 100 s $end $var wire 1 a A $end $enddefinitions $end #1 1a", "Vcd 100/1 [A] 1:1 end 1"),
         (
@@ -582,6 +588,119 @@ fn logs_with_a_time_per_line_are_read() {
 }
 
 #[test]
+fn annotations_of_sigrok_are_read() {
+    let unnamed = "- the bytes do not say whether they are of RX or TX: all are taken as one line";
+    let late =
+        "- bytes without a start bit of their own have the time of their first bit of data, one bit late";
+    check(&[
+        ("uart-1: 55\nuart-1: AA\n", &format!("Annotations [uart-1] 0:0:55 1:0:aa end 1\n{unnamed}")),
+        ("uart-1: rx-data: 41\nuart-1: tx-data: 42\n", "Annotations [RX TX] 0:0:41 1:1:42 end 1"),
+        (
+            "0-100 uart-1: Start bit\n100-200 uart-1: 1\n100-900 uart-1: 41\n900-1000 uart-1: Stop bit\n\
+             2000-2100 uart-1: Start bit\n2100-2900 uart-1: 42\n2900-3000 uart-1: Frame error\n",
+            &format!(
+                "Annotations [uart-1] 0:0:41 2000:0:42! end 2000\n\
+                 - annotations that are no bytes: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
+            ),
+        ),
+        (
+            "123-456 UART: RX data: 41\n1123-1456 UART: TX data: 42\n",
+            &format!("Annotations [RX TX] 123:0:41 1123:1:42 end 1123\n{late}"),
+        ),
+        ("123-456,UART,RX data,41\n", &format!("Annotations [RX] 123:0:41 end 123\n{late}")),
+        (
+            "uart-1: 55\n9-10 uart-1: AA\n",
+            &format!(
+                "Annotations [uart-1] 0:0:55 end 0\n{unnamed}\n\
+             ! line 2: “9-10 uart-1: AA” has samples, and the lines before have none; export all with them, or all without"
+            ),
+        ),
+        (
+            "uart-1: U\n",
+            "Annotations [] end 0\n- annotations that are no bytes: U\n! line 1: the annotations have no bytes in hexadecimal; \
+             print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)",
+        ),
+    ]);
+}
+
+#[test]
+fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
+    let made = "- the commands have no pulse widths and no DIR setup times: pulses of 32 ticks at most are made, so a check \
+        against a driver says nothing";
+    let one = format!("- steppers: oid=3 is STEP0 and DIR0\n{made}");
+    let no_reset = "- no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared";
+    check(&[
+        // Steps 1000, 900 and 800 ticks apart from clock 1000 on, then one back 500 ticks later.
+        (
+            "MCU 'mcu' config: CLOCK_FREQ=16000000 MCU=atmega2560\nconfig_stepper oid=3 step_pin=PA0 dir_pin=PA1 invert_step=0\n\
+             reset_step_clock oid=3 clock=1000\nset_next_step_dir oid=3 dir=1\nqueue_step oid=3 interval=1000 count=3 add=-100\n\
+             set_next_step_dir oid=3 dir=0\nqueue_step oid=3 interval=500 count=1 add=0\n",
+            &format!(
+                "Klipper 1/16000000 [STEP0 DIR0] 0:2 1000:3 1032:2 1900:3 1932:2 2700:3 2732:2 3168:0 3200:1 3232:0 end 3232\n{one}"
+            ),
+        ),
+        // Several commands per line, several steppers by their numbers, pulses of half an interval.
+        (
+            "Sent 69 24991.737754 24991.730674 57: seq: 1c, queue_step oid=2 interval=10 count=2 add=0, \
+             queue_step oid=1 interval=4 count=1 add=0\n",
+            &format!(
+                "Klipper [STEP0 DIR0 STEP1 DIR1] 0:0 4:1 10:5 15:1 20:5 36:4 52:0 end 52\n\
+                 - steppers: oid=1 is STEP0 and DIR0, oid=2 is STEP1 and DIR1\n{made}\n{no_reset}"
+            ),
+        ),
+        // Clocks of 32 bits that pass their end: oid 4 begins 16 ticks after oid 3.
+        (
+            "reset_step_clock oid=3 clock=4294967286\nqueue_step oid=3 interval=4 count=1 add=0\n\
+             reset_step_clock oid=4 clock=6\nqueue_step oid=4 interval=4 count=1 add=0\n",
+            &format!(
+                "Klipper [STEP0 DIR0 STEP1 DIR1] 0:0 4:1 20:5 36:4 52:0 end 52\n\
+                 - steppers: oid=3 is STEP0 and DIR0, oid=4 is STEP1 and DIR1\n{made}"
+            ),
+        ),
+        // A number's sign and bounds; steps that are too close; a clock that goes back.
+        (
+            "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=9 count=5 add=-2\n",
+            &format!(
+                "Klipper [STEP0 DIR0] end 0\n{one}\n! line 2: “queue_step oid=3 interval=9 count=5 add=…”: interval=9 \
+                      count=5 add=-2 has an interval of 1 ticks; steps are at least 2 ticks apart"
+            ),
+        ),
+        (
+            "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=9 count=70000 add=0\n",
+            &format!(
+                "Klipper [STEP0 DIR0] end 0\n{one}\n! line 2: “queue_step oid=3 interval=9 count=70000 …”: interval=9 \
+                      count=70000 add=0 does not fit: an interval has 32 bits, a count is 0 to 65535, add has 16 bits and a sign"
+            ),
+        ),
+        (
+            "queue_step oid=3 interval=9 add=0\n",
+            &format!(
+                "Klipper [] end 0\n- steppers: \n{made}\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
+                      whole number count="
+            ),
+        ),
+    ]);
+}
+
+#[test]
+fn step_commands_that_stand_for_too_many_steps_are_refused_with_numbers() {
+    let log = format!(
+        "reset_step_clock oid=0 clock=0\n{}",
+        "queue_step oid=0 interval=100 count=65535 add=0\n".repeat(1000)
+    );
+    let reading = read(std::io::Cursor::new(log), &Limits { most: 1_000_000 }, &mut |_| true);
+    let error = reading.error.expect("it is refused");
+    assert_eq!(error.line, 9);
+    assert!(
+        error.what.ends_with(
+            "more than 500 000 steps, which are 1 000 000 changes; give a shorter part of the log"
+        ),
+        "{error}"
+    );
+    assert!(reading.capture.len() > 900_000);
+}
+
+#[test]
 fn tables_of_positions_are_read() {
     check(&[
         ("millis,position\n0,0\n10,5\n", "PositionsCsv 1/1000 [] 0@0 10@5 end 10"),
@@ -623,7 +742,10 @@ fn what_is_no_such_file_is_told_what_is_allowed() {
         (&b""[..], "the file is empty; record or export again"),
         (b" \r\n\n", "the file is empty; record or export again"),
         (b"\xef\xbb\xbf\n", "the file is empty; record or export again"),
-        (b"Dear all,\nhere are the numbers", &format!("“Dear all,”: {unknown}")),
+        (
+            b"Dear all,\nhere are the numbers",
+            "“Dear all,”: no kind of file that can be read here; it may be ",
+        ),
         (b"\x7fELF\x02\x01\0\0", unknown),
         (b"\xff\xfet\0i\0m\0e\0", "the text is UTF-16; save it as UTF-8"),
         (b"\x1f\x8b\x08\0", "the file is compressed (gzip); uncompress it: gunzip"),
@@ -638,6 +760,32 @@ fn what_is_no_such_file_is_told_what_is_allowed() {
         let error = reading.error.expect("it is refused");
         assert!(error.line == 0 && error.what.starts_with(expected), "{bytes:?}: {error}");
         assert!(reading.capture.is_empty());
+    }
+}
+
+#[test]
+fn a_file_of_no_kind_names_the_three_nearest_and_what_they_need() {
+    for (text, expected) in [
+        (
+            "STEP,DIR,speed\n0,1,5\n1,1,5\n",
+            "“STEP,DIR,speed”: no kind of file that can be read here; it may be a table of levels, if a column is named as its \
+             time: time_s, time_us, sample; or a table of times and positions, if its columns are named, such as \
+             time_us,position; or ",
+        ),
+        (
+            "0,55\n1041,10\n2083,12\n",
+            "“0,55”: no kind of file that can be read here; it may be a table of times and positions, if its columns are named, \
+             such as time_us,position; or times and bytes, if the columns are named, such as t_us,bytes; or ",
+        ),
+        (
+            "55 AA hello\n55 AA\n",
+            "“55 AA hello”: no kind of file that can be read here; it may be bytes in hexadecimal, if each has two digits: \
+             “hello” is none; or ",
+        ),
+    ] {
+        let error = read_bytes(text).error.expect("it is refused").what;
+        assert!(error.starts_with(expected), "{error}");
+        assert_eq!(error.matches("; or ").count(), 2, "{error}");
     }
 }
 

@@ -2,12 +2,13 @@
 //! and last by whether all of the first lines can be read as one kind.
 
 use super::{
+    annotations,
     decimal::Decimal,
     dump,
     fields::{Fields, fields, separator},
-    hex,
+    hex, klipper,
     levels::{Layout, column_names, is_comment},
-    positions,
+    nearest, positions,
     recorder::quoted,
     saleae, sigrok, stepscope,
     times::TimeUnit,
@@ -67,6 +68,9 @@ pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
     if first.starts_with(b"$") {
         return Ok(Found::of(Format::Vcd));
     }
+    if klipper::is_klipper(head) || head.starts_with(b"Start printer at") {
+        return Ok(Found::of(Format::Klipper));
+    }
     let comments = lines.iter().take_while(|line| is_comment(line) && !is_sample(line)).count();
     let (before, table) = lines.split_at(comments);
     let of_table = table.first().and_then(|head| by_head(head, table.get(1..).unwrap_or_default()));
@@ -78,9 +82,9 @@ pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
     if is_of_sigrok {
         return Ok(Found::of(Format::SigrokCsv));
     }
-    of_table
-        .or_else(|| by_rows(if table.is_empty() { &lines } else { table }))
-        .ok_or_else(|| format!("{}: {UNKNOWN}", quoted(first)))
+    of_table.or_else(|| by_rows(if table.is_empty() { &lines } else { table })).ok_or_else(|| {
+        format!("{}: no kind of file that can be read here; {}", quoted(first), nearest::nearest(&lines))
+    })
 }
 
 /// What is to be done with files that are no text.
@@ -168,6 +172,9 @@ fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     let first = *said.first()?;
     if dump::is_dump(&said) {
         return Some(Found::of(Format::HexDump));
+    }
+    if annotations::is_annotation(first) {
+        return Some(Found::of(Format::Annotations));
     }
     if hex::is_log(first) {
         return Some(Found::of(Format::SerialLog));

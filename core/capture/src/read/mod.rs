@@ -30,9 +30,12 @@ mod selection;
 mod source;
 mod times;
 
+mod annotations;
 mod dump;
 mod hex;
+mod klipper;
 mod levels;
+mod nearest;
 mod positions;
 mod saleae;
 mod session;
@@ -105,6 +108,8 @@ pub fn read_wanted<R: BufRead + Seek>(
         Format::SaleaeBytes => by_line(source, saleae::DecodedBytes::new(recorder)),
         Format::Trace => by_line(source, stepscope::TraceText::new(recorder)),
         Format::HexBytes | Format::SerialLog => by_line(source, hex::HexText::new(recorder, table)),
+        Format::Annotations => by_line(source, annotations::Annotations::new(recorder)),
+        Format::Klipper => by_line(source, klipper::StepCommands::new(recorder)),
         Format::HexDump => by_line(source, dump::HexDump::new(recorder)),
         Format::PositionsCsv => by_line(source, positions::Positions::new(recorder, whole_times)),
         Format::Unknown => refusal(ReadError::whole(detect::UNKNOWN.into())),

@@ -14,7 +14,7 @@ mod samples;
 
 use super::{
     reading::{ReadError, Reading},
-    recorder::{Names, Recorder},
+    recorder::{Names, Recorder, grouped, quoted},
     source::Source,
 };
 use flate2::read::DeflateDecoder;
@@ -25,8 +25,12 @@ use std::io::{BufRead, Read, Seek};
 
 /// Longest metadata, in bytes: 64 channels have less than 10 kB.
 const MAX_METADATA: u64 = 1 << 20;
-/// Most pieces of samples.
-const MAX_PIECES: usize = 500_000;
+/// Most files in the zip: pieces of samples have 4 MB each.
+const MAX_FILES: usize = 65_536;
+/// Most bytes that all pieces of samples may unpack to: 3 h of 8 channels at 24 MHz.
+const MAX_UNPACKED: u64 = 1 << 38;
+/// Bytes before the name of a file in a zip.
+const LOCAL_HEADER: u64 = 30;
 /// Bytes that are unpacked at once.
 const BUFFER: usize = 1 << 16;
 
@@ -44,6 +48,10 @@ struct Directory {
     pieces: Vec<(String, Packed)>,
     /// Whether it is a capture of Saleae Logic 2.
     saleae: bool,
+    /// The folder that holds the metadata, if it is not at the top.
+    folder: Option<String>,
+    /// Where each file begins, and where the next one may begin at the earliest.
+    ranges: Vec<(u64, u64)>,
 }
 
 /// Reads a session.
@@ -63,11 +71,15 @@ fn whole<R: BufRead + Seek>(
         format!("the zip's directory cannot be read ({error}); the file is not whole: copy it again")
     })?;
     let directory = directory(&archive)?;
-    let packed = directory.metadata.as_ref().ok_or(if directory.saleae {
-        "a capture of Saleae Logic 2; export it as CSV (File, Export Data)"
-    } else {
-        "a zip without “metadata”; a session of sigrok (.sr) has it"
+    let packed = directory.metadata.as_ref().ok_or_else(|| match &directory.folder {
+        Some(folder) => format!(
+            "“metadata” is in the folder {} of the zip; in a session of sigrok (.sr) it is at the top: zip the files without the folder",
+            quoted(folder.as_bytes())
+        ),
+        None if directory.saleae => "a capture of Saleae Logic 2; export it as CSV (File, Export Data)".into(),
+        None => "a zip without “metadata”; a session of sigrok (.sr) has it".into(),
     })?;
+    apart(directory.ranges)?;
     let mut text = Vec::new();
     open(&archive, packed)?
         .take(MAX_METADATA)
@@ -83,7 +95,17 @@ fn whole<R: BufRead + Seek>(
     recorder.capture.timebase = metadata.timebase();
     let mut stream = SampleStream::new(&metadata, recorder, watch)?;
     let mut buffer = vec![0; BUFFER];
-    for (name, packed) in in_order(directory.pieces, &metadata.capturefile)? {
+    let pieces = in_order(directory.pieces, &metadata.capturefile)?;
+    let unpacked =
+        pieces.iter().fold(0_u64, |sum, (_, packed)| sum.saturating_add(packed.at.uncompressed_size_hint()));
+    if unpacked > MAX_UNPACKED {
+        return Err(format!(
+            "the samples unpack to {} bytes; at most {} are read: record a shorter time, or at a lower rate",
+            grouped(unpacked),
+            grouped(MAX_UNPACKED)
+        ));
+    }
+    for (name, packed) in pieces {
         let mut piece = open(&archive, &packed)?;
         loop {
             let count =
@@ -115,16 +137,38 @@ fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, 
         let Some(entry) = entry else { return Ok(directory) };
         let name = String::from_utf8_lossy(entry.file_path().as_ref()).into_owned();
         let packed = Packed { at: entry.wayfinder(), method: entry.compression_method() };
+        if directory.ranges.len() >= MAX_FILES {
+            return Err(format!("more than {MAX_FILES} files in the zip; record a shorter time"));
+        }
+        let start = entry.local_header_offset();
+        let end = start
+            .checked_add(LOCAL_HEADER + name.len() as u64)
+            .and_then(|data| data.checked_add(entry.compressed_size_hint()));
+        directory.ranges.push((start, end.ok_or("a file of the zip ends beyond any file")?));
         match name.as_str() {
+            "metadata" if directory.metadata.is_some() => {
+                return Err("the zip has two files named “metadata”; save the session again".into());
+            }
             "metadata" => directory.metadata = Some(packed),
+            name if name.ends_with("/metadata") => {
+                directory.folder = name.strip_suffix("metadata").map(Into::into)
+            }
             "meta.json" => directory.saleae = true,
             name if name.starts_with("analog-") || name.len() > 64 => {}
-            _ if directory.pieces.len() >= MAX_PIECES => {
-                return Err(format!("more than {MAX_PIECES} files in the session"));
-            }
             _ => directory.pieces.push((name, packed)),
         }
     }
+}
+
+/// Refuses files that share bytes: each byte of a zip is unpacked once at most.
+fn apart(mut ranges: Vec<(u64, u64)>) -> Result<(), String> {
+    ranges.sort_unstable();
+    if ranges.windows(2).any(|pair| matches!(pair, [(_, end), (start, _)] if start < end)) {
+        return Err(
+            "files of the zip overlap; it is damaged or made to fill a disk: save the session again".into()
+        );
+    }
+    Ok(())
 }
 
 /// The pieces of `capturefile`, by their numbers: `logic-1-1`, `logic-1-2`, …, or `logic-1` alone.

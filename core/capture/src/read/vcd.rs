@@ -41,6 +41,9 @@ pub(super) struct Vcd {
     unknown: u64,
 }
 
+/// Longest value of a string, in bytes.
+const MAX_TEXT: usize = 1 << 16;
+
 /// What the next word is.
 enum Expected {
     /// The first keyword; what a program says of itself may stand before it.
@@ -51,8 +54,10 @@ enum Expected {
     /// The variable of this value of one bit, or of the value in [`Variables::value`].
     Scalar(Value),
     Vector,
-    /// The variable of a real or a string.
+    /// The variable of a real.
     Other,
+    /// The rest of a string of so many bytes so far, or its variable.
+    Text(usize),
 }
 
 impl Vcd {
@@ -104,7 +109,11 @@ impl Vcd {
                 self.expected = Expected::Vector;
                 Ok(())
             }
-            b'r' | b'R' | b's' | b'S' => {
+            b's' | b'S' => {
+                self.expected = Expected::Text(rest.len());
+                Ok(())
+            }
+            b'r' | b'R' => {
                 self.expected = Expected::Other;
                 Ok(())
             }
@@ -185,6 +194,19 @@ impl Vcd {
         Ok(())
     }
 
+    /// A word of a string, or the code that ends it.
+    fn text(&mut self, length: usize, word: &[u8]) -> Result<(), String> {
+        let length = length + word.len();
+        if length > MAX_TEXT {
+            return Err(format!(
+                "a string of more than {MAX_TEXT} bytes; is the code of its variable missing?"
+            ));
+        }
+        let is_over = self.header.ends_string(word);
+        self.expected = if is_over { Expected::Any } else { Expected::Text(length) };
+        Ok(())
+    }
+
     fn scalar(&mut self, value: Value, code: &[u8]) {
         if self.off {
             return;
@@ -219,6 +241,7 @@ impl Reader for Vcd {
             Expected::Scalar(value) => self.scalar(value, word),
             Expected::Vector => self.vector(word),
             Expected::Other => {}
+            Expected::Text(length) => return self.text(length, word),
         }
         self.expected = Expected::Any;
         Ok(())
@@ -229,7 +252,7 @@ impl Reader for Vcd {
         self.begin();
         let mut missing = match self.expected {
             Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is not whole")),
-            Expected::Scalar(_) | Expected::Vector | Expected::Other => {
+            Expected::Scalar(_) | Expected::Vector | Expected::Other | Expected::Text(_) => {
                 Err("the file ends within a value change; it is not whole".into())
             }
             _ if !is_whole => Err("the file ends before $enddefinitions; it is not whole".into()),

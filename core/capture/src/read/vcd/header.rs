@@ -15,9 +15,12 @@ use crate::{
     timebase::Timebase,
 };
 use core::fmt;
+use std::collections::BTreeSet;
 
 /// Most scopes in scopes.
 const MAX_DEPTH: usize = 200;
+/// Most variables of strings.
+const MAX_STRINGS: usize = 10_000;
 /// Longest command that is read, in bytes.
 const MAX_COMMAND: usize = 4096;
 
@@ -70,6 +73,8 @@ pub(super) struct Header {
     others: Names,
     /// The channels that may be read: code of the variable, and bit of its value.
     selection: Selection<(Box<[u8]>, u32)>,
+    /// The codes of strings, whose values may have blanks.
+    strings: BTreeSet<Box<[u8]>>,
 }
 
 impl Default for Header {
@@ -80,6 +85,7 @@ impl Default for Header {
             scopes: Vec::new(),
             others: Names::new(),
             selection: Selection::new(),
+            strings: BTreeSet::new(),
         }
     }
 }
@@ -160,8 +166,9 @@ impl Header {
         words.for_each(|word| name.push_str(&String::from_utf8_lossy(word)));
         let name = format!("{}{name}", self.path);
         if !is_line(kind) || size == 0 {
-            let kind = String::from_utf8_lossy(kind);
-            self.others.add(&format!("{name} ({kind})"));
+            let code = (kind == b"string" && self.strings.len() < MAX_STRINGS).then(|| code.into());
+            self.others.add(&format!("{name} ({})", String::from_utf8_lossy(kind)));
+            self.strings.extend(code);
             return Ok(());
         }
         let code: Box<[u8]> = code.into();
@@ -193,6 +200,11 @@ impl Header {
     /// Selects the channels of the variables so far.
     pub(super) fn select(&mut self, variables: &mut Variables, recorder: &mut Recorder) {
         self.selection.finish(recorder, |(code, bit), channel| variables.add(&code, bit, channel));
+    }
+
+    /// Whether a word may end the value of a string: its code, or any word if none was declared.
+    pub(super) fn ends_string(&self, word: &[u8]) -> bool {
+        self.strings.is_empty() || self.strings.contains(word)
     }
 
     /// The variables that are no lines.

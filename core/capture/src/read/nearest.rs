@@ -1,0 +1,108 @@
+//! Which kinds a file is nearest to that is of none, and what each of them needs.
+
+use super::{
+    clock::Stamp,
+    decimal::Decimal,
+    fields::{fields, separator},
+    hex,
+    levels::Layout,
+    recorder::quoted,
+    row,
+};
+
+/// Kinds that a message names.
+const NAMED: usize = 3;
+
+/// The three nearest kinds, each with what is missing.
+pub(super) fn nearest(lines: &[&[u8]]) -> String {
+    let kinds: [(usize, String); 7] = [
+        (share(lines, is_levels), levels(lines)),
+        (
+            share(lines, is_numbers),
+            "a table of times and positions, if its columns are named, such as time_us,position".into(),
+        ),
+        (share(lines, is_bytes), format!("bytes in hexadecimal, if each has two digits: {}", not_bytes(lines))),
+        (
+            share(lines, is_timed),
+            format!("a serial log, if there are only hexadecimal bytes behind the times: {}", not_bytes(lines)),
+        ),
+        (
+            share(lines, is_timed_byte),
+            "times and bytes, if the columns are named, such as t_us,bytes".into(),
+        ),
+        (
+            share(lines, |line| line.starts_with(b"#") || line.contains(&b'$')),
+            "a value change dump, if it begins with its definitions ($timescale, $var, $enddefinitions)".into(),
+        ),
+        (
+            share(lines, |line| line.iter().filter(|byte| **byte == b'=').count() > 1),
+            "step commands of Klipper, if there are lines such as queue_step oid=0 interval=1000 count=4 add=0".into(),
+        ),
+    ];
+    let mut kinds: Vec<(usize, String)> = kinds.into();
+    kinds.sort_by_key(|(share, _)| core::cmp::Reverse(*share));
+    let named: Vec<String> = kinds.into_iter().take(NAMED).map(|(_, kind)| kind).collect();
+    format!("it may be {}", named.join("; or "))
+}
+
+/// Lines of a kind, of a hundred.
+fn share(lines: &[&[u8]], is: impl Fn(&[u8]) -> bool) -> usize {
+    100 * lines.iter().filter(|line| is(line)).count() / lines.len().max(1)
+}
+
+fn split(line: &[u8]) -> Vec<&[u8]> {
+    fields(line, separator(line)).collect()
+}
+
+/// A row with a level, and no more than one field that is none.
+fn is_levels(line: &[u8]) -> bool {
+    let all = split(line);
+    let levels = all.iter().filter(|field| matches!(**field, b"0" | b"1")).count();
+    levels > 0 && all.len() > 1 && levels + 1 >= all.len()
+}
+
+fn is_numbers(line: &[u8]) -> bool {
+    let all = split(line);
+    all.len() > 1 && all.iter().all(|field| Decimal::parse(field).is_some())
+}
+
+fn is_bytes(line: &[u8]) -> bool {
+    hex::is_line(line)
+}
+
+fn is_timed(line: &[u8]) -> bool {
+    let line = line.strip_prefix(b"[").unwrap_or(line).trim_ascii_start();
+    Stamp::parse(line).is_some()
+}
+
+fn is_timed_byte(line: &[u8]) -> bool {
+    let all = split(line);
+    let is_byte = |field: &&[u8]| field.len() == 2 && field.iter().all(u8::is_ascii_hexdigit);
+    all.len() > 1
+        && all.first().is_some_and(|time| Decimal::parse(time).is_some())
+        && all.iter().skip(1).all(is_byte)
+}
+
+/// A table of levels, and what its head lacks.
+fn levels(lines: &[&[u8]]) -> String {
+    let first = lines.first().copied().unwrap_or_default();
+    let names: Vec<String> =
+        split(first).into_iter().map(|name| String::from_utf8_lossy(name).into()).collect();
+    let has_time = Layout::of(&names).is_some();
+    let missing = if has_time {
+        "each other column is 0 or 1"
+    } else {
+        "a column is named as its time: time_s, time_us, sample"
+    };
+    format!("a table of levels, if {missing}")
+}
+
+/// The first line that is no row of bytes, and why.
+fn not_bytes(lines: &[&[u8]]) -> String {
+    let wrong = lines.iter().find(|line| !hex::is_line(line)).copied().unwrap_or_default();
+    let word = wrong.split(|byte| byte.is_ascii_whitespace() || *byte == b',').find(|word| {
+        let mut bytes = Vec::new();
+        !word.is_empty() && row::parse(word, &mut bytes).is_err()
+    });
+    word.map_or_else(|| "some lines have other numbers".into(), |word| format!("{} is none", quoted(word)))
+}
