@@ -9,7 +9,6 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::Command,
-    time::{Duration, Instant},
 };
 use stepscope_core::{
     peripheral::{
@@ -161,20 +160,15 @@ fn sigrok_reads_the_same_edges() {
     }
 }
 
-/// A dump whose unit is a picosecond takes sigrok a minute and a half for 10 ms of motion.
+/// sigrok takes a sample for each unit of the timescale: a second and a half for a nanosecond, 25 minutes for a picosecond.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
-fn sigrok_opens_a_move_of_0_4_s_in_less_than_5_s() {
+fn sigrok_opens_a_move_of_0_4_s_with_few_samples() {
     let sigrok = program("sigrok-cli");
     let (_, dump) = run("sigrok-move", "{}", &[]);
+    let text = fs::read_to_string(&dump).expect("the dump");
+    let scale = text.split_once("$timescale").and_then(|(_, rest)| rest.split_once("$end"));
+    assert_eq!(scale.map(|(scale, _)| scale.trim()), Some("1 ns"), "the default");
     let nothing = ["-O", "null"].map(Path::new);
-    // The machine may be busy with something else.
-    let best = (0..3).map(|_| {
-        let begun = Instant::now();
-        call(&sigrok, &[&["-I", "vcd", "-i"].map(Path::new)[..], &[&dump], &nothing].concat());
-        begun.elapsed()
-    });
-    let best = best.min().expect("three of them");
-    println!("sigrok-cli opened it in {:.2} s", best.as_secs_f64());
-    assert!(best < Duration::from_secs(5), "{best:?}");
+    call(&sigrok, &[&["-I", "vcd", "-i"].map(Path::new)[..], &[&dump], &nothing].concat());
 }

@@ -10,11 +10,6 @@ use crate::run;
 /// The system has one list of packages, and two steps may want some at once.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 
-/// Waits until nothing is being installed: whoever ends that half way leaves the system's list broken.
-pub(crate) async fn at_rest() {
-    drop(ONE_AT_A_TIME.lock().await);
-}
-
 /// Installs `packages` where that is one command and nobody needs to be asked.
 pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" and ");
@@ -27,7 +22,7 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let apt = |arguments: &[&str]| {
         let mut command = Command::new(&apt);
         command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
-        run::to_end(command, run::LIMIT)
+        run::to_end(command)
     };
     apt(&["update"]).await?;
     apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).await

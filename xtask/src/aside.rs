@@ -6,7 +6,6 @@ use std::future::Future;
 use std::io::{self, Read, Seek, Write};
 
 use anyhow::{Context, Result};
-use tokio::process::Command;
 
 tokio::task_local! {
     /// Where the work under way writes; there is none where its words go straight to the terminal.
@@ -23,24 +22,17 @@ pub(crate) async fn kept<T>(work: impl Future<Output = T>) -> Result<(T, Vec<u8>
     Ok((done, said))
 }
 
-/// Has a command write where the work under way does.
-pub(crate) fn redirect(command: &mut Command) -> Result<()> {
-    if let Some(file) = here()? {
-        command.stdout(file.try_clone()?).stderr(file);
-    }
-    Ok(())
-}
-
 /// Says a line of a step's own.
 pub(crate) fn say(line: impl fmt::Display) {
     // Nobody hears the refusal of words, and the step goes on without them.
-    let _ = match here() {
+    let _ = match file() {
         Ok(Some(mut file)) => writeln!(file, "{line}"),
         _ => writeln!(io::stdout(), "{line}"),
     };
 }
 
-fn here() -> Result<Option<File>> {
+/// The file into which the work under way writes; `None` where its output goes straight to the terminal.
+pub(crate) fn file() -> Result<Option<File>> {
     // They share one place in the file: what is written later stands behind.
     match KEPT.try_with(File::try_clone) {
         Ok(file) => Ok(Some(file.context("a step's words can't be kept")?)),
@@ -52,6 +44,7 @@ fn here() -> Result<Option<File>> {
 mod tests {
     use super::*;
     use crate::run;
+    use tokio::process::Command;
 
     #[tokio::test]
     async fn what_a_step_and_its_children_say_is_kept_in_its_order() {
@@ -59,7 +52,7 @@ mod tests {
             say("before");
             let mut command = Command::new("sh");
             command.args(["-c", "echo out; echo error >&2; exit 3"]);
-            let done = run::to_end(command, run::LIMIT).await;
+            let done = run::to_end(command).await;
             say("after");
             done
         })

@@ -21,7 +21,7 @@ pub(crate) async fn test() -> Result<()> {
     }
     let mut command = toolchain::ignored_tests(&["avr_recordings", "avr_live"]);
     command.env("STEPSCOPE_PYTHON", judges::python().await?);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 fn found() -> Result<()> {

@@ -168,10 +168,10 @@ impl Tree {
             std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
             let mut clone = git(&home, &["clone", "--quiet", "--shared", "--no-checkout"]);
             clone.arg(root()).arg(&tree);
-            run::to_end(clone, run::LIMIT).await?;
+            run::to_end(clone).await?;
         }
         // Also where it stands: an earlier run may have been ended before its files were there.
-        run::to_end(git(&tree, &["checkout", "--quiet", "--detach", "--force", commit]), run::LIMIT).await?;
+        run::to_end(git(&tree, &["checkout", "--quiet", "--detach", "--force", commit])).await?;
         Ok(Self { root: tree, target: Some(home.join("target")), home })
     }
 
@@ -194,7 +194,7 @@ impl Tree {
             .with_context(|| format!("{} can't be made", self.home.display()))?;
         let call = self.at_home(tools.wasm_pack()?);
         crate::page::wasm_by(tools, call, FOLDER, &self.package(), &[]).await?;
-        run::to_end(self.at_home(kernels(&["--no-run"])), run::LIMIT).await
+        run::to_end(self.at_home(kernels(&["--no-run"]))).await
     }
 
     /// The kernels in a browser.
@@ -213,7 +213,7 @@ impl Tree {
         let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
         let mut command = self.at_home(kernels(&["--quiet"]));
         command.args(["--rounds", &rounds.to_string()]).stdout(file);
-        run::to_end(command, run::LIMIT).await?;
+        run::within(command, run::LIMIT).await?;
         let text =
             std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
         Report::all_from_json(&text)
@@ -228,14 +228,14 @@ pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     if let Some(results) = results {
         command.env("STEPSCOPE_RESULTS", results);
     }
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Measures the command's server. Its times are of this machine and this moment.
 pub(crate) async fn live() -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["bench", "--package", "stepscope-cli", "--bench", "live", "--locked"]);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.
@@ -246,7 +246,7 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     }
     let mut command = kernels(&[]);
     command.args(["--noplot", "--quiet"]).args(effort).env("CRITERION_HOME", home);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Criterion's estimate of a kernel.

@@ -16,7 +16,7 @@ pub(crate) async fn test() -> Result<()> {
         apt::install(&PACKAGES).await.with_context(remedy)?;
         found().with_context(remedy)?;
     }
-    run::to_end(toolchain::ignored_tests(&["second_reader", "others_files"]), run::LIMIT).await
+    run::to_end(toolchain::ignored_tests(&["second_reader", "others_files"])).await
 }
 
 fn remedy() -> String {

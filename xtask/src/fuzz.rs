@@ -96,7 +96,7 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     let cargo_fuzz = tools::cargo_fuzz().await?;
     let mut fetch = toolchain::cargo();
     fetch.args(["fetch", "--quiet", "--locked", "--manifest-path"]).arg(manifest);
-    run::to_end(fetch, run::LIMIT).await.context(
+    run::to_end(fetch).await.context(
         "if fuzz/Cargo.lock does not fit any more, `cargo update --workspace --manifest-path fuzz/Cargo.toml` mends it",
     )?;
     let triple = toolchain::host().await?;
@@ -104,7 +104,7 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     command.current_dir(root()).args(["build", "--sanitizer", "none"]);
     // What is compared is at times an address, which differs from run to run; without it coverage is as good.
     command.args(["--no-trace-compares", "--target", &triple, "--target-dir"]).arg(folder);
-    run::to_end(command, run::LIMIT).await.context(
+    run::to_end(command).await.context(
         "the fuzz targets were not built; libFuzzer needs a C++ compiler (Debian: apt-get install g++)",
     )?;
     Ok(folder.join(triple).join("release"))
@@ -115,7 +115,7 @@ async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);
     command.arg("--").arg(home);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Runs one target in its folder.
@@ -138,7 +138,7 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     if folder.join("dictionary").exists() {
         command.arg("-dict=dictionary");
     }
-    let ended = run::to_end(command, Duration::from_secs(options.seconds.into()) + GRACE).await;
+    let ended = run::within(command, Duration::from_secs(options.seconds.into()) + GRACE).await;
 
     let text = fs::read(&log).with_context(|| format!("{} can't be read", log.display()))?;
     let report = Report::of(&String::from_utf8_lossy(&text));

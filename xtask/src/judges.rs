@@ -23,7 +23,7 @@ pub(crate) async fn test() -> Result<()> {
     socat().await?;
     let mut command = toolchain::ignored_tests(&["live_judges"]);
     command.env("STEPSCOPE_PYTHON", python);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Installs socat if it is missing.
@@ -45,10 +45,10 @@ pub(crate) async fn python() -> Result<PathBuf> {
     let remedy = "the live commands' tests need Python 3.9 or newer with venv and pip (Debian: `apt-get install python3-venv` as root)";
     let mut command = Command::new(which::which("python3").context(remedy)?);
     command.args(["-m", "venv", "--clear"]).arg(&home);
-    run::to_end(command, run::LIMIT).await.context(remedy)?;
+    run::to_end(command).await.context(remedy)?;
     let mut command = Command::new(&python);
     command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(PACKAGES);
-    run::to_end(command, run::LIMIT).await.context(remedy)?;
+    run::to_end(command).await.context(remedy)?;
     Ok(python)
 }
 

@@ -75,7 +75,7 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     leave_out(&results, all.iter().filter(|name| !sample.contains(*name)))?;
     let limit = START + EACH * u32::try_from(sample.len()).unwrap_or(u32::MAX);
     // It fails where something is missed, too; what it wrote tells which.
-    let ended = run::to_end(testing(&program, &packages, &folder), limit).await;
+    let ended = run::within(testing(&program, &packages, &folder), limit).await;
     let Ok(text) = fs::read_to_string(results.join("outcomes.json")) else {
         return ended.context("cargo-mutants did not get as far as its first outcome");
     };
@@ -127,7 +127,7 @@ async fn list(program: &Path, packages: &[&str], file: &Path) -> Result<Vec<Stri
     let mut command = cargo_mutants(program, packages);
     let output = File::create(file).with_context(|| format!("{} can't be written", file.display()))?;
     command.args(["--list", "--json"]).stdout(output);
-    run::to_end(command, run::LIMIT).await?;
+    run::within(command, run::LIMIT).await?;
     let text = fs::read_to_string(file).with_context(|| format!("{} can't be read", file.display()))?;
     let mutants: Vec<Mutant> = serde_json::from_str(&text).context("cargo-mutants' list is no JSON")?;
     Ok(mutants.into_iter().map(|mutant| mutant.name).collect())

@@ -37,7 +37,7 @@ impl Npm {
         let mut command = Command::new(which::which("npm").context("npm is not on PATH")?);
         command.args(["install", "--no-audit", "--no-fund", "--no-update-notifier", "--prefix"]).arg(&home);
         command.arg(name);
-        run::to_end(command, run::LIMIT).await
+        run::to_end(command).await
     }
 
     /// The same, after npm itself where that is one command.

@@ -60,7 +60,7 @@ async fn crates() -> Result<()> {
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
     }
-    run::to_end(command, run::LIMIT).await?;
+    run::to_end(command).await?;
     made.keep()
 }
 
@@ -126,19 +126,19 @@ async fn npm() -> Result<()> {
 
     let mut pack = Command::new(&npm);
     pack.current_dir(&made).args(["pack", "--pack-destination"]).arg(&folder);
-    run::to_end(pack, run::LIMIT).await?;
+    run::to_end(pack).await?;
     let package = packed(&folder)?;
 
     let mut install = Command::new(&npm);
     install.args(["install", "--offline", "--no-audit", "--no-fund", "--prefix"]).arg(&user).arg(&package);
-    run::to_end(install, run::LIMIT).await?;
+    run::to_end(install).await?;
 
     let tests = root().join("tests");
     let script = user.join("preset.mjs");
     fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
     let mut node = Command::new(program("node").await?);
     node.arg(&script).arg(tests.join("golden"));
-    run::to_end(node, run::LIMIT).await.with_context(|| format!("the program needs Node {NODE}"))
+    run::to_end(node).await.with_context(|| format!("the program needs Node {NODE}"))
 }
 
 /// The one package in a folder.

@@ -95,7 +95,7 @@ pub(crate) async fn wasm_by(
 ) -> Result<()> {
     command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]).args(options);
-    tools.judge(run::to_end(command, run::LIMIT).await)
+    tools.judge(run::to_end(command).await)
 }
 
 /// The sizes of one file, in bytes.

@@ -30,11 +30,11 @@ pub(crate) async fn lint() -> Result<()> {
 pub(crate) async fn check_types() -> Result<()> {
     let mut command = Command::new(TYPESCRIPT.program("tsc").await?);
     command.arg("--project").arg(root().join("web").join("jsconfig.json"));
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 async fn biome(arguments: &[&str]) -> Result<()> {
     let mut command = Command::new(BIOME.program("biome").await?);
     command.current_dir(root().join("web")).args(arguments).arg(".");
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }

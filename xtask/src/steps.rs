@@ -1,21 +1,24 @@
-//! `cargo xtask test`: every check of the project, step by step, with its time; some beside others. Stops at the first that
-//! fails.
+//! `cargo xtask test`: every check of the project, step by step, with its time; some beside others. A step that fails stops
+//! no other.
 
 use std::cell::RefCell;
+use std::fmt;
 use std::io::Write;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use tokio::process::Command;
 
 use crate::aside::{self, say};
 use crate::browser::{self, Browser};
+use crate::dist::Parts;
 use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
 use crate::{
-    apt, avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+    avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
 };
 
 /// Both workspaces: the fuzz targets are one of their own.
@@ -89,7 +92,7 @@ impl Step {
             Self::Docs => {
                 let mut command = toolchain::cargo();
                 command.args(words("doc --no-deps --workspace --locked")).env("RUSTDOCFLAGS", "-D warnings");
-                run::to_end(command, run::LIMIT).await
+                run::to_end(command).await
             }
             Self::Native => cargo("test --workspace --locked").await,
             Self::Vcd => dump_readers::test().await,
@@ -98,7 +101,7 @@ impl Step {
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Types => {
-                page::built().await?;
+                built_for(self).await?;
                 sources::check_types().await
             }
             Self::Package => package::test().await,
@@ -116,7 +119,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 async fn cargo(line: &str) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(words(line));
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 async fn clippy(what: &str) -> Result<()> {
@@ -134,7 +137,7 @@ async fn wasm() -> Result<()> {
     command.args(["--mode", "no-install", "wasm", "--locked"]);
     // Seconds for the whole run in the browser; the runner's own 20 are few on a busy machine.
     command.env("WASM_BINDGEN_TEST_TIMEOUT", "600");
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// The page's tests in the whole Chromium, as yet without the words that choose among them.
@@ -164,8 +167,9 @@ pub(crate) async fn with_page(line: &str) -> Result<Command> {
 const INSTALLED: &str = "offline::the_page_can_be_installed";
 
 async fn page() -> Result<()> {
+    let parts = built_for(Step::Page).await?;
     let mut command = page_tests().await?;
-    let weights = page::weigh(&dist::folder(), page::built().await?)?;
+    let weights = page::weigh(&dist::folder(), parts)?;
     say(&weights);
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::", "--skip", INSTALLED]);
@@ -174,11 +178,12 @@ async fn page() -> Result<()> {
     command.arg(format!("--test-threads={}", cores + 1));
     command.env("STEPSCOPE_AXE", npm::axe().await?);
     command.env(browser::CHROMIUM, Browser::ready().await?.headless().await);
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// All three engines or none: one that can't be had is an error, so that no run passes without it.
 async fn engines() -> Result<()> {
+    built_for(Step::Engines).await?;
     let Firefox { firefox, geckodriver } = Firefox::ready().await?;
     let webkit = WebKit::ready().await?;
     let mut command = page_tests().await?;
@@ -197,7 +202,7 @@ async fn engines() -> Result<()> {
             "skipped: the page on a port of the system, which this machine cannot have: {why:#}"
         )),
     }
-    run::to_end(command, run::LIMIT).await
+    run::to_end(command).await
 }
 
 /// Writes all sources in the form that the step `format` asks for.
@@ -217,7 +222,7 @@ pub(crate) fn list() {
 }
 
 /// The steps that run beside each other: in a row those of each lane, one after the other, and the rows one after the other.
-/// Those of the second lane wait for other programs more than they compute, and what they say is printed when they end.
+/// Those of the second lane wait for other programs more than they compute; their output is buffered.
 const ROWS: [[&[Step]; 2]; 5] = [
     [&[Step::Format, Step::Lint, Step::Docs], &[]],
     [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
@@ -227,11 +232,13 @@ const ROWS: [[&[Step]; 2]; 5] = [
     [&[Step::Engines], &[]],
 ];
 
-/// Runs the steps named in `only`, or all if it is empty.
+/// Runs the steps named in `only`, or all if it is empty. Those after one that fails run, too.
+///
+/// # Errors
+/// The names of the steps that failed.
 pub(crate) async fn run(only: &[Step]) -> Result<()> {
     let start = Instant::now();
-    let times = RefCell::default();
-    let mut done = Ok(());
+    let report = RefCell::default();
     for lanes in ROWS {
         let mut lanes = lanes.map(|lane| {
             lane.iter().copied().filter(|step| only.is_empty() || only.contains(step)).collect::<Vec<_>>()
@@ -240,103 +247,135 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
             lanes.reverse();
         }
         let [front, beside] = lanes;
-        done = both(in_front(&front, &times), beside_it(&beside, &times)).await;
-        if done.is_err() {
-            break;
-        }
+        tokio::join!(in_front(&front, &report), beside_it(&beside, &report));
     }
-    let mut times = times.into_inner();
-    times.sort_by_key(|(step, _)| Step::value_variants().iter().position(|each| each == step));
+    let mut report = report.into_inner();
+    report.sort_by_key(|(step, ..)| Step::value_variants().iter().position(|each| each == step));
     println!();
-    for (step, time) in &times {
-        println!("{:12}{:8.1} s", step.name(), time.as_secs_f64());
+    for (step, time, outcome) in &report {
+        println!("{:12}{:8.1} s  {outcome}", step.name(), time.as_secs_f64());
     }
     println!("{:12}{:8.1} s", "all", start.elapsed().as_secs_f64());
-    done?;
-    println!("{} passed, 0 failed", times.len());
+    let with = |is_one: fn(&Outcome) -> bool| {
+        let names = report.iter().filter(|(.., outcome)| is_one(outcome)).map(|(step, ..)| step.name());
+        names.collect::<Vec<_>>()
+    };
+    let failed = with(|outcome| matches!(outcome, Outcome::Failed(_)));
+    let skipped = with(|outcome| matches!(outcome, Outcome::Skipped(_)));
+    let passed = report.len() - failed.len() - skipped.len();
+    println!("{passed} passed, {} failed, {} skipped", failed.len(), skipped.len());
+    ensure!(failed.is_empty() && skipped.is_empty(), "failed: {}", [failed, skipped].concat().join(", "));
     Ok(())
 }
 
-/// Does both; where one fails the other is dropped, and ends with all that it started. But packages of the system that are being
-/// installed are not left half way.
-async fn both(
-    front: impl Future<Output = Result<()>>,
-    beside: impl Future<Output = Result<()>>,
-) -> Result<()> {
-    tokio::pin!(front, beside);
-    let (done, is_front) = tokio::select! {
-        done = &mut front => (done, true),
-        done = &mut beside => (done, false),
-    };
-    match (done, is_front) {
-        (Ok(()), true) => beside.await,
-        (Ok(()), false) => front.await,
-        (failed, true) => {
-            tokio::select! { _ = beside => {} () = apt::at_rest() => {} }
-            failed
-        }
-        (failed, false) => {
-            tokio::select! { _ = front => {} () = apt::at_rest() => {} }
-            failed
+/// What became of a step.
+#[derive(Debug, PartialEq)]
+enum Outcome {
+    Passed,
+    /// Why.
+    Failed(String),
+    /// What it needs failed in a step before it.
+    Skipped(String),
+}
+
+impl Outcome {
+    fn of(done: Result<()>) -> Self {
+        match done {
+            Ok(()) => Self::Passed,
+            Err(error) if error.is::<NotBuilt>() => Self::Skipped(error.to_string()),
+            Err(error) => Self::Failed(format!("{error:#}")),
         }
     }
 }
 
-/// The steps that have ended, and how long each took.
-type Times = RefCell<Vec<(Step, Duration)>>;
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Passed => f.write_str("passed"),
+            Self::Failed(why) => write!(f, "failed: {why}"),
+            Self::Skipped(why) => write!(f, "skipped: {why}"),
+        }
+    }
+}
 
-/// Runs steps whose words are read as they come.
-async fn in_front(steps: &[Step], times: &Times) -> Result<()> {
+/// A step needs the built page, and its build failed in a step before.
+#[derive(Debug)]
+struct NotBuilt(String);
+
+impl fmt::Display for NotBuilt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the page's build failed in step {}", self.0)
+    }
+}
+
+impl std::error::Error for NotBuilt {}
+
+/// The built page, for a step. Its build is tried once.
+async fn built_for(step: Step) -> Result<&'static Parts> {
+    static FAILED_IN: OnceLock<String> = OnceLock::new();
+    if let Some(step) = FAILED_IN.get() {
+        return Err(NotBuilt(step.clone()).into());
+    }
+    page::built().await.inspect_err(|_| {
+        let _ = FAILED_IN.set(step.name());
+    })
+}
+
+/// The steps that have ended, how long each took, and what became of it.
+type Report = RefCell<Vec<(Step, Duration, Outcome)>>;
+
+/// Runs steps whose output is read as it comes.
+async fn in_front(steps: &[Step], report: &Report) {
     for step in steps {
         println!("\n=== {}", step.name());
         let start = Instant::now();
-        let done = step.run().await;
-        ended(*step, start, &done, times);
-        done.with_context(|| format!("step {}", step.name()))?;
+        ended(*step, start, Outcome::of(step.run().await), report);
     }
-    Ok(())
 }
 
-/// Runs steps beside those in front.
-async fn beside_it(steps: &[Step], times: &Times) -> Result<()> {
+/// Runs steps beside those in front; their output is buffered.
+async fn beside_it(steps: &[Step], report: &Report) {
     for step in steps {
         let start = Instant::now();
-        let (done, said) = aside::kept(step.run()).await?;
+        let (outcome, output) = match aside::kept(step.run()).await {
+            Ok((done, output)) => (Outcome::of(done), output),
+            Err(error) => (Outcome::of(Err(error)), Vec::new()),
+        };
         println!("\n=== {}, beside", step.name());
-        std::io::stdout().write_all(&said)?;
-        ended(*step, start, &done, times);
-        done.with_context(|| format!("step {}", step.name()))?;
+        // A closed terminal does not end the work.
+        let _ = std::io::stdout().write_all(&output);
+        ended(*step, start, outcome, report);
     }
-    Ok(())
 }
 
-fn ended(step: Step, start: Instant, done: &Result<()>, times: &Times) {
+fn ended(step: Step, start: Instant, outcome: Outcome, report: &Report) {
     let time = start.elapsed();
-    let word = if done.is_ok() { "passed" } else { "failed" };
-    println!("=== {}: {word} after {:.1} s", step.name(), time.as_secs_f64());
-    times.borrow_mut().push((step, time));
+    println!("=== {}, after {:.1} s: {outcome}", step.name(), time.as_secs_f64());
+    report.borrow_mut().push((step, time, outcome));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[tokio::test]
-    async fn of_two_lanes_the_first_failure_counts_and_drops_the_other() {
-        let never = std::future::pending;
-        let fails = || async { Err(anyhow::anyhow!("it failed")) };
-        for done in [both(fails(), never()).await, both(never(), fails()).await] {
-            assert_eq!(done.unwrap_err().to_string(), "it failed");
-        }
-        for done in [both(async { Ok(()) }, fails()).await, both(fails(), async { Ok(()) }).await] {
-            assert!(done.is_err());
-        }
-        assert!(both(async { Ok(()) }, async { Ok(()) }).await.is_ok());
-    }
-
     #[test]
     fn every_step_stands_in_one_lane_and_in_the_order_of_its_name() {
         let placed: Vec<_> = ROWS.iter().flatten().copied().flatten().copied().collect();
         assert!(placed == Step::value_variants());
+    }
+
+    #[test]
+    fn a_step_that_needs_what_could_not_be_built_is_skipped_with_the_reason() {
+        let rows = [
+            (Ok(()), "passed"),
+            (
+                Err(anyhow::anyhow!("exit status 1").context("`cargo fmt` failed")),
+                "failed: `cargo fmt` failed: exit status 1",
+            ),
+            (Err(NotBuilt("types".to_owned()).into()), "skipped: the page's build failed in step types"),
+        ];
+        for (done, expected) in rows {
+            assert_eq!(Outcome::of(done).to_string(), expected);
+        }
     }
 }

@@ -69,7 +69,7 @@ pub(crate) async fn components() -> Result<()> {
 async fn rustup(arguments: &[&str]) -> Result<()> {
     let mut command = Command::new("rustup");
     command.current_dir(root()).args(arguments);
-    run::to_end(command, run::LIMIT)
+    run::to_end(command)
         .await
         .with_context(|| format!("add it by your Rust's own means: {}", arguments.join(" ")))
 }

@@ -309,7 +309,7 @@ const INTERLEAVED: &str = r"
       else if (data.event !== 'progress') heard.push(data);
     };
     const until = async (found) => {
-      for (let i = 0; i < 200 && !heard.some(found); i += 1) await new Promise((rested) => setTimeout(rested, 50));
+      for (let i = 0; i < 6000 && !heard.some(found); i += 1) await new Promise((rested) => setTimeout(rested, 50));
       return heard.find(found);
     };
     worker.postMessage({ run: 1, json: motion, quiet: true });

@@ -19,8 +19,8 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::browser::{Browser, Says, named};
 
-/// Longest time until a program that was started says where it listens.
-pub(crate) const START_LIMIT: Duration = Duration::from_secs(120);
+/// A program that does not say within this time where it listens hangs.
+pub(crate) const START_LIMIT: Duration = Duration::from_secs(300);
 /// Rest between two attempts to reach a program.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 

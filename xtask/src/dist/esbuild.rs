@@ -63,7 +63,7 @@ async fn esbuild(web: &Path, sources: &BTreeSet<&str>, out: &Path) -> Result<Str
     command.args(["--entry-names=[name].[hash]", "--chunk-names=[name].[hash]"]);
     command.args(["wasm", "png", "svg"].map(|ending| format!("--loader:.{ending}=copy")));
     command.arg(path("outdir", out)).arg(path("metafile", &note));
-    run::to_end(command, run::LIMIT).await?;
+    run::to_end(command).await?;
     let text = std::fs::read_to_string(&note).context("esbuild does not say what it made")?;
     std::fs::remove_file(&note).with_context(|| format!("{} can't be removed", note.display()))?;
     Ok(text)
