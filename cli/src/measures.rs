@@ -16,18 +16,27 @@ use stepscope_core::{
         measures::{Measures, within_bounds},
     },
     peripheral::trace::steps,
-    scenario::{Problem, Source},
+    scenario::{Problem, Scenario, Source},
 };
 
 /// Runs the scenario and writes the measures.
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
-    let (scenario, experiment) = scenarios::judged(path)?;
+    let selected = |scenario: &Scenario| arguments.axis.unwrap_or(scenario.analysis.axis.into());
+    let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
+        let axes = match &scenario.source {
+            Source::Motion(motion) => motion.axes.len(),
+            _ => scenario.bus.channels.into(),
+        };
+        let axis = selected(scenario);
+        // Without axes the scenario has a problem of its own.
+        if axis < axes || axes == 0 { Ok(()) } else { Err(Failure::Axis(path.clone(), axis, axes)) }
+    })?;
     let Source::Motion(motion) = &scenario.source else {
         return unplanned::measures(arguments, &scenario, &experiment);
     };
-    let axis = arguments.axis.unwrap_or(scenario.analysis.axis.into());
+    let axis = selected(&scenario);
     let plan = experiment.plans().get(axis);
     let plan = plan.ok_or_else(|| Failure::Axis(path.clone(), axis, experiment.plans().len()))?;
     // The recording has the steps of all axes.

@@ -1,6 +1,6 @@
 //! `--motor` and `--drive`, and `stepscope plant --motors`: motors and drivers out of the list.
 
-use crate::{failure::Failure, json::Tables, scenarios, terminal};
+use crate::{failure::Failure, json::Tables, plant::no_plant, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -69,13 +69,19 @@ fn drive(id: &str) -> Result<&'static DriveSheet, String> {
     motors::drive(id).ok_or_else(|| "no such driver; `stepscope plant --motors` lists them".to_owned())
 }
 
+/// Refuses a scenario that drives nothing.
+fn has_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
+    scenario.plant.as_ref().map(|_| ()).ok_or_else(|| no_plant(path))
+}
+
 impl Replacing {
-    /// The scenario with these, judged; `-` is standard input.
+    /// The scenario with these, judged, which has a plant; `-` is standard input.
     pub(crate) fn judged(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
         if self.motor.is_none() && self.drive.is_none() {
-            return scenarios::judged(path);
+            return scenarios::judged_after(path, |scenario| has_plant(path, scenario));
         }
         let mut scenario = scenarios::read(path)?;
+        has_plant(path, &scenario)?;
         if let Some(motor) = self.motor {
             motor.put_into(&mut scenario);
         }

@@ -14,6 +14,7 @@ use stepscope_core::{
         parameters::{Parameters, Policy, Setup},
     },
     peripheral::units::Instant,
+    scenario::Source,
     sim::power_cut::{PowerCuts, Tally, Wear, least_hold_up, tally, wear, with_memory},
 };
 
@@ -59,9 +60,11 @@ struct Row {
 
 /// Cuts the power and prints what is known then; what is silently wrong is a failure.
 pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
-    let (_, experiment) = scenarios::judged(&arguments.scenario)?;
-    let checked =
-        experiment.stand_alone().ok_or_else(|| Failure::NoStandAlone(arguments.scenario.clone()))?;
+    let none = || Failure::NoStandAlone(arguments.scenario.clone());
+    let (_, experiment) = scenarios::judged_after(&arguments.scenario, |scenario| {
+        if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(none()) }
+    })?;
+    let checked = experiment.stand_alone().ok_or_else(none)?;
     let cost = experiment.cost();
     if cost.is_over_budget() {
         return Err(Failure::LongRun(arguments.scenario.clone()));

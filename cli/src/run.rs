@@ -20,7 +20,7 @@ use stepscope_core::{
     controller::{Checked, StandAlone},
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
     peripheral::config::Config,
-    scenario::{Cause, Problem, Scenario, link},
+    scenario::{Cause, Problem, Scenario, Source, link},
     sim::{Experiment, Run, Summary},
 };
 
@@ -106,7 +106,12 @@ impl Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let mut outputs = Outputs::default();
-    let (scenario, experiment) = scenarios::judged(path)?;
+    let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
+        if arguments.panel.is_some() && !matches!(scenario.source, Source::Standalone(_)) {
+            return Err(Failure::NoPanel(path.clone()));
+        }
+        arguments.timing.check(path, scenario).map(drop)
+    })?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
     let config = experiment.configs().nth(chosen);
@@ -231,9 +236,6 @@ fn open(
         Some(panels) => panel::csv(out, (clock_hz, channels), panels),
         None => files::csv(out, clock_hz, channels),
     })?;
-    if arguments.panel.is_some() && panels.is_none() {
-        return Err(Failure::NoPanel(arguments.scenario.clone()));
-    }
     add(&arguments.panel, &|out| Ok(panel::records(out)))?;
     add(&arguments.packets, &|out| Ok(files::packets(out, controller)))?;
     Ok(opened)

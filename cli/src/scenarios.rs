@@ -11,10 +11,10 @@ use std::{
 use stepscope_core::{
     capture::samples::sample,
     scenario::{
-        MAX_TEXT_BYTES, Problem, Scenario, link,
+        MAX_TEXT_BYTES, Scenario, link,
         presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
     },
-    sim::{Experiment, Judged},
+    sim::Experiment,
 };
 
 /// Reads a scenario of the right types; `-` is standard input.
@@ -27,10 +27,21 @@ pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
 
 /// A scenario that was judged, and its experiment; `-` is standard input.
 pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
-    let judged = Judged::from_json(&scenario_text(path)?);
-    let experiment = judged.experiment().cloned();
-    let wrong = |problems: &[Problem]| Failure::Scenario(path.to_owned(), problems.to_vec());
-    Ok((Rc::clone(judged.scenario()), experiment.map_err(wrong)?))
+    judged_after(path, |_| Ok(()))
+}
+
+/// As [`judged`], after a check of the scenario alone: long motions take long to plan, and a refusal need not wait for that.
+pub(crate) fn judged_after(
+    path: &Path,
+    check: impl FnOnce(&Scenario) -> Result<(), Failure>,
+) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+    let (scenario, unread) = Scenario::from_json_lenient(&scenario_text(path)?);
+    if unread.is_empty() {
+        check(&scenario)?;
+    }
+    let experiment = Experiment::of_lenient(&scenario, unread);
+    let experiment = experiment.map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
+    Ok((Rc::new(scenario), Rc::new(experiment)))
 }
 
 /// The text of a scenario: as [`text`], or of the preset of that name where there is no such file.

@@ -22,9 +22,10 @@ use stepscope_core::{
     },
     motion::{
         Profile,
+        moves::Move,
         sine_segments::{Memory, Segment, SineSegments},
     },
-    scenario::{Problem, ValueError},
+    scenario::{Problem, Scenario, Source, ValueError},
 };
 
 /// What `stepscope sine` does.
@@ -159,11 +160,8 @@ struct Placed {
 
 /// The sines of a scenario's axes.
 fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
-    let (_, experiment) = scenarios::judged(scenario)?;
+    let (_, experiment) = scenarios::judged_after(scenario, |given| has_sines(scenario, given, only))?;
     let plans = experiment.plans();
-    if let Some(axis) = only.filter(|axis| *axis >= plans.len()) {
-        return Err(Failure::Axis(scenario.to_owned(), axis, plans.len()));
-    }
     let axes = plans.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     let found: Vec<Placed> = axes
         .flat_map(|(axis, plan)| {
@@ -173,12 +171,26 @@ fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
             })
         })
         .collect();
-    if found.is_empty() {
-        let detail = "no sine in segments; give a scenario with a move sine_segments, such as the preset sine-2022-d00054";
-        let problem = Problem::new("source", ValueError::Conflict { detail });
-        return Err(Failure::Scenario(scenario.to_owned(), vec![problem]));
-    }
     Ok(found)
+}
+
+/// Refuses a scenario without a sine in segments.
+fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<(), Failure> {
+    let axes = match &scenario.source {
+        Source::Motion(motion) => motion.axes.as_slice(),
+        _ => &[],
+    };
+    if let Some(axis) = only.filter(|axis| *axis >= axes.len()) {
+        return Err(Failure::Axis(path.to_owned(), axis, axes.len()));
+    }
+    let asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    if asked.flat_map(|(_, axis)| &axis.moves).any(|each| matches!(each, Move::SineSegments(_))) {
+        return Ok(());
+    }
+    let detail =
+        "no sine in segments; give a scenario with a move sine_segments, such as the preset sine-2022-d00054";
+    let problem = Problem::new("source", ValueError::Conflict { detail });
+    Err(Failure::Scenario(path.to_owned(), vec![problem]))
 }
 
 /// The report of DESIGN B5: each segment of a quarter, the others follow by symmetry.

@@ -63,7 +63,6 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
         let what = "--microsteps is for sources without a motion; an axis has its own in its mechanics";
         return Err(Failure::Table(path.clone(), what.to_owned()));
     }
-    let plans = plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
     let only = match (arguments.axis, arguments.format) {
         (None, Written::Csv) => Some(0),
         (axis, _) => axis,
@@ -73,21 +72,21 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     {
         return Err(Failure::Axis(path.clone(), axis, axes.len()));
     }
-    let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
-    let asked = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    let found: Vec<Driven> = asked
-        .filter_map(|(axis, (given, plan))| {
-            let machine = Machine::of(given)?;
-            let demand = Demand::of(&machine, &plan);
-            Some(Driven { axis, machine, asked: Asked::Plan(plan), demand, agreement: None })
-        })
-        .collect();
-    if found.is_empty() {
+    let mut asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    if !axes.is_empty() && asked.all(|(_, given)| Machine::of(given).is_none()) {
         let detail = "no motor; give one, such as \"motor\": {} for that of Song, Han and Lu 2021";
         let place = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
         return Err(wrong(vec![Problem::new(place, ValueError::Conflict { detail })]));
     }
-    Ok(found)
+    let plans = plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
+    let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
+    let asked = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    let found = asked.filter_map(|(axis, (given, plan))| {
+        let machine = Machine::of(given)?;
+        let demand = Demand::of(&machine, &plan);
+        Some(Driven { axis, machine, asked: Asked::Plan(plan), demand, agreement: None })
+    });
+    Ok(found.collect())
 }
 
 /// Runs the plant, where there is one or one is asked for, and holds it against the curve.

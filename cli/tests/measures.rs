@@ -123,3 +123,29 @@ fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
         assert!(code != Some(0) && err.contains(said), "{arguments:?}: {err}");
     }
 }
+
+/// A motion of more steps than may be planned: each refusal below comes before its problem, so nothing was planned for it.
+#[test]
+fn what_a_scenario_lacks_is_found_before_its_motion_is_planned() {
+    const LONG: &str = r#"{ "source": { "motion": { "axes": [
+        { "moves": [ { "constant": { "distance": { "steps": 1e9 }, "speed": { "steps_s": 1000 } } } ] } ] } } }"#;
+    let (code, _, err) = stepscope(&["run", "-", "--digest"], LONG);
+    assert!(code == Some(2) && err.contains("source.motion"), "{err}");
+    let rows: [(&[&str], &str); 10] = [
+        (&["sine", "segments", "-"], "no sine in segments"),
+        (&["sine", "segments", "-", "--axis", "7"], "axis 7"),
+        (&["powercut", "-"], "powercut cuts the power"),
+        (&["plant", "-"], "no plant"),
+        (&["limits", "-"], "no plant"),
+        (&["settling", "-"], "no plant"),
+        (&["run", "-", "--panel", "panel.txt"], "--panel writes"),
+        (&["run", "-", "--timing"], "names no driver"),
+        (&["measures", "-", "--axis", "7"], "axis 7"),
+        (&["torque", "-"], "no motor"),
+    ];
+    for (arguments, expected) in rows {
+        let (code, _, err) = stepscope(arguments, LONG);
+        assert!(code == Some(2) && err.contains(expected), "{arguments:?}: {code:?} {err}");
+        assert!(!err.contains("steps"), "{arguments:?}: {err}");
+    }
+}

@@ -14,8 +14,7 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let refused = |field, detail| wrong(vec![Problem::new(field, ValueError::Conflict { detail })]);
-    let experiment = Experiment::new(scenario).map_err(wrong)?;
-    let channels = experiment.config().channels();
+    let channels = scenario.bus.channels;
     if let Some(channel) = arguments.axis.filter(|&channel| channel >= channels.into()) {
         return Err(Failure::Axis(path.clone(), channel, channels.into()));
     }
@@ -24,6 +23,7 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
         let detail = "no motor; give one, such as \"plant\": {} for that of Song, Han and Lu 2021, or --motor (stepscope plant --motors lists them)";
         return Err(refused("plant", detail));
     }
+    let experiment = Experiment::new(scenario).map_err(wrong)?;
     let recording = kept_run::of(path, &experiment)?;
     let clock_hz = experiment.config().clock_hz();
     let asked =

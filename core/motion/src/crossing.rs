@@ -36,6 +36,10 @@ pub(super) const ROUNDING: f64 = f64::EPSILON / 2.0;
 /// The same in cycles, for a move that lasts no longer than one: the part of a cycle in which it starts.
 const MAX_OFF_CYCLES: f64 = 4.0 * f64::EPSILON;
 
+/// How far a time in 106 bits may be off, in cycles: far more than it is, and so little that few steps are as near to an
+/// edge.
+const MAX_EXACT_OFF: f64 = 1e-9;
+
 /// 2^52 + 2^51: numbers from 2^51 below to 2^51 above are whole. A move that lasts as long has no [`Rounding::room`].
 const WHOLE: f64 = 6_755_399_441_055_744.0;
 
@@ -99,6 +103,14 @@ impl Rounding {
         let moved = cycles + self.shift;
         (moved.to_bits().wrapping_sub(WHOLE.to_bits()), libm::fabs(cycles - (moved - self.shift)))
     }
+}
+
+/// The cycle of a step that is due so many cycles after `start`, in 106 bits; `None` where an edge is so near that
+/// [`judged`] decides.
+pub(super) fn exact_cycle(start: CycleTime, since: Double) -> Option<u64> {
+    let CycleTime { whole, part } = start.plus(CycleTime::of(since));
+    let past_edge = (part - 0.5.into()).high;
+    (libm::fabs(past_edge) > MAX_EXACT_OFF).then(|| whole.wrapping_add((past_edge > 0.0).into()))
 }
 
 /// floor(cycles + 1/2), but for the last digits.
@@ -231,6 +243,26 @@ mod tests {
         }
         let found = [0, 1, 1000].map(|guess| judged(at(0, 0.0.into()), guess, &|since| since.is_positive()));
         assert_eq!(found, [0; 3], "a step at the start is in its cycle");
+    }
+
+    #[test]
+    fn an_exact_time_decides_unless_it_is_at_an_edge() {
+        let start = at(1000, 0.25.into());
+        let rows = [
+            (0.0, Some(1000)),
+            (0.2499, Some(1000)),
+            (0.25, None),
+            (0.25 - 1e-15, None),
+            (0.2501, Some(1001)),
+            (1.0, Some(1001)),
+        ];
+        for (since, expected) in rows {
+            assert_eq!(exact_cycle(start, since.into()), expected, "{since}");
+        }
+        // Late enough that an f64 has no part of a cycle.
+        let late = |part: f64| Double::sum(4_503_599_627_370_496.0 * 2.0, part);
+        let found = [0.3, -0.3, 0.6].map(|part| exact_cycle(CycleTime::default(), late(part)));
+        assert_eq!(found, [0, 0, 1].map(|more| Some((1 << 53) + more)));
     }
 
     #[test]

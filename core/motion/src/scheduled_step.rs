@@ -10,7 +10,7 @@
 
 use crate::{
     AxisPlan, Curve, PlannedMove, Profile, StepTimes,
-    crossing::{MAX_OFF, Rounding},
+    crossing::{MAX_OFF, Rounding, exact_cycle},
     cycle_time::{CycleTime, Quotient, Quotients},
     double::Double,
     exact::Exact,
@@ -241,7 +241,9 @@ fn scheduled<'p>(
     times: impl UnroundedTimes + 'p,
 ) -> Steps<'p> {
     let (rounding, is_due_before) = profile.rounding(start, clock_hz);
-    Box::new(OfTimes { times, cycles: [0.0; BLOCK], ends: Ends { first: 1, start, rounding, is_due_before } })
+    let exact_times = profile.exact_times(clock_hz);
+    let ends = Ends { first: 1, start, rounding, exact_times, is_due_before };
+    Box::new(OfTimes { times, cycles: [0.0; BLOCK], ends })
 }
 
 /// Times of a move's steps in cycles from its start, not rounded, with their directions.
@@ -322,6 +324,8 @@ struct Ends<'p> {
     first: u64,
     start: CycleTime,
     rounding: Rounding,
+    /// Of curves whose steps would take long to judge.
+    exact_times: Option<ExactTimes<'p>>,
     is_due_before: IsDueBefore<'p>,
 }
 
@@ -340,7 +344,12 @@ impl Ends<'_> {
         block.put_instants(start, cycles);
         if !are_certain {
             for ((k, cycle), cycles) in (self.first..).zip(block.cycles.iter_mut().take(len)).zip(cycles) {
-                *cycle = rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since));
+                if rounding.is_certain(rounding.after_start(0, *cycles).1) {
+                    continue;
+                }
+                let exact = self.exact_times.as_mut().and_then(|time| exact_cycle(self.start, time(k)));
+                *cycle = exact
+                    .unwrap_or_else(|| rounding.cycle((0, *cycles), |since| (self.is_due_before)(k, since)));
             }
         }
         self.first += len as u64;
@@ -496,6 +505,9 @@ fn rounded(
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
 pub(super) type IsDueBefore<'p> = Box<dyn Fn(u64, Double) -> bool + 'p>;
 
+/// When a step (from 1) is due in cycles from its move's start, in 106 bits.
+type ExactTimes<'p> = Box<dyn FnMut(u64) -> Double + 'p>;
+
 impl Profile {
     /// How long the move lasts: what its decimals make, where it is told by them.
     pub(super) fn length(&self, clock_hz: u32) -> CycleTime {
@@ -539,7 +551,10 @@ impl Profile {
             Self::Ramps(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::JerkLimited(curve) => Box::new(curve.is_due_before(clock_hz)),
             Self::Sine(sine) => Box::new(sine.is_due_before(clock_hz)),
-            Self::SineSegments(sine) => Box::new(sine.is_due_before(clock_hz)),
+            Self::SineSegments(sine) => {
+                let time = sine.exact_times(clock_hz);
+                Box::new(move |k, since| since.exceeds(time(k)))
+            }
             Self::Constant(constant) => {
                 let interval = Double::from(f64::from(clock_hz)) / constant.exact_speed();
                 Box::new(move |k, since| since.exceeds(interval * (k as f64 - 0.5).into()))
@@ -549,6 +564,15 @@ impl Profile {
             }
             // They are asked by their pieces, or have none.
             Self::Points(_) | Self::Dwell(_) => Box::new(|_, _| false),
+        }
+    }
+
+    /// When its steps are due, where that is quicker than to judge the edges next to them.
+    fn exact_times(&self, clock_hz: u32) -> Option<ExactTimes<'_>> {
+        match self {
+            Self::Sine(sine) => Some(Box::new(sine.exact_times(clock_hz))),
+            Self::SineSegments(sine) => Some(Box::new(sine.exact_times(clock_hz))),
+            _ => None,
         }
     }
 

@@ -40,6 +40,8 @@ use core::f64::consts::{PI, TAU};
 const PERIOD_PARTS: u32 = 128;
 /// Steps of a half period whose places in it are kept for the next ones, at most.
 const MAX_KEPT_PARTS: u64 = 65_536;
+/// Maximum number of a quarter's steps whose exact times are saved: 24 MB.
+const MAX_SAVED: u64 = 1 << 20;
 
 /// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,6 +122,28 @@ impl Sine {
         }
     }
 
+    /// When each step (from 1) of all falls due, in cycles of a clock of `clock_hz`, in 106 bits.
+    ///
+    /// The four quarters of a period have the same times, so those of one are saved.
+    pub(super) fn exact_times(&self, clock_hz: u32) -> impl FnMut(u64) -> Double + use<> {
+        let amplitude = self.oscillation.amplitude;
+        let half = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double() * 0.5.into();
+        let mut saved = Vec::new();
+        move |k| {
+            let (halves, step) = ((k - 1) / (2 * amplitude), (k - 1) % (2 * amplitude));
+            let from_extreme = step.min(2 * amplitude - 1 - step);
+            if saved.is_empty() {
+                saved.resize(amplitude.min(MAX_SAVED) as usize, None);
+            }
+            let part = match saved.get_mut(from_extreme as usize) {
+                Some(part) => *part.get_or_insert_with(|| exact_part(from_extreme, amplitude)),
+                None => exact_part(from_extreme, amplitude),
+            };
+            let part = if step < amplitude { part } else { Double::from(1.0) - part };
+            (Double::from(halves) + part) * half
+        }
+    }
+
     fn amplitude(&self) -> f64 {
         self.oscillation.amplitude as f64
     }
@@ -178,6 +202,17 @@ fn part_of_half(k: u64, amplitude: u64) -> f64 {
     // Twice the distance of the step's place from the nearer extreme is a whole number.
     let from_extreme = |twice: u64| 2.0 / PI * libm::asin(square_root(twice as f64 / (2 * travel) as f64));
     if k <= amplitude { from_extreme(2 * k - 1) } else { 1.0 - from_extreme(2 * (travel - k) + 1) }
+}
+
+/// Part of a half period from the extreme to the step before which there are `past` others, up to the middle: 2/pi*x
+/// where sin^2(x) = (past + 1/2)/(2*`amplitude`).
+fn exact_part(past: u64, amplitude: u64) -> Double {
+    let sine = (Double::from(2 * past + 1) / Double::from(4 * amplitude)).square_root();
+    let near = libm::asin(sine.high);
+    // One of Newton's steps doubles the digits.
+    let found = Double::from(near) - Double::from(near).less_its_sine();
+    let rest = (sine - found).high / square_root(1.0 - sine.high * sine.high);
+    Double::sum(near, rest) * 2.0.into() / double::PI
 }
 
 impl Curve for Sine {

@@ -217,22 +217,31 @@ impl SineSegments {
         DuePoints { period, at: 0, past: 0, origin: 0.0, end, per_point }
     }
 
-    /// Whether step `k` (from 1) of all falls due before a time in cycles of a clock of `clock_hz`, for certain: its time
-    /// is a quotient of the period's decimal. In f64 it is off by at most 6 u.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
+    /// When each step (from 1) of all falls due, in cycles of a clock of `clock_hz`, in 106 bits: a quotient of the period's
+    /// decimal. In f64 it is off by at most 6 u.
+    pub(super) fn exact_times(&self, clock_hz: u32) -> impl Fn(u64) -> Double + use<> {
         let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
-        move |k, since| {
-            let of_period = 4 * self.oscillation.amplitude;
-            let (periods, mut step) = ((k - 1) / of_period, (k - 1) % of_period);
-            let interval = self.pieces().find(|interval| {
-                let is_within = step < interval.steps;
-                step -= if is_within { 0 } else { interval.steps };
-                is_within
-            });
-            let Some(Interval { from, to, steps, .. }) = interval else { return false };
-            let along = Double::from(2 * step + 1) * (to - from).into() / Double::from(2 * steps);
-            let turns = Double::from(periods) + (along + from.into()) / f64::from(POINTS).into();
-            since.exceeds(period * turns)
+        let of_period = 4 * self.oscillation.amplitude;
+        let intervals: Vec<Interval> = self.pieces().take(4 * self.segments.len()).collect();
+        let ends: Vec<u64> = intervals
+            .iter()
+            .scan(0, |end, interval| {
+                *end += interval.steps;
+                Some(*end)
+            })
+            .collect();
+        move |k| {
+            let (periods, step) = ((k - 1) / of_period, (k - 1) % of_period);
+            let index = ends.partition_point(|end| *end <= step);
+            let (Some(&end), Some(&Interval { from, to, steps, .. })) =
+                (ends.get(index), intervals.get(index))
+            else {
+                debug_assert!(false, "step {k} is in no segment");
+                return period * Double::from(periods);
+            };
+            let halves = 2 * (step - (end - steps)) + 1;
+            let along = Double::from(halves) * (to - from).into() / Double::from(2 * steps);
+            period * (Double::from(periods) + (along + from.into()) / f64::from(POINTS).into())
         }
     }
 

@@ -6,7 +6,7 @@ use crate::{
     acceleration_table::AccelerationTable,
     constant_velocity::{Constant, Dwell},
     cosine::Cosine,
-    crossing::ROUNDING,
+    crossing::{ROUNDING, guess, judged},
     jerk_limited::{JerkLimited, Limits},
     moves::ShortMove,
     ramp::Ramp,
@@ -197,6 +197,36 @@ fn a_sines_steps_are_due_after_their_times_and_not_before() {
             check(&Profile::SineSegments(curve));
         }
     }
+}
+
+/// So slow that no time in f64 decides: each step's exact time gives the cycle that its edges give.
+#[test]
+fn a_slow_sines_exact_times_give_the_judged_cycles() {
+    const FAST_HZ: u32 = u32::MAX;
+    let starts = [CycleTime::default(), CycleTime { whole: 12_345, part: 0.3.into() }];
+    let (mut steps, mut decided) = (0, 0);
+    for (amplitude, period_s, periods) in [(1, 86_400.0, 3), (-37, 86_399.3, 2), (500, 79_999.1, 1)] {
+        let curves = [
+            Profile::Sine(Sine::new(amplitude, period_s, periods)),
+            Profile::SineSegments(SineSegments::new(amplitude, period_s, periods, 0.006)),
+        ];
+        for profile in curves {
+            assert!(profile.off(FAST_HZ.into()) > 1.0, "f64 would decide");
+            let (mut time, is_due_before) =
+                (profile.exact_times(FAST_HZ).unwrap(), profile.is_due_before(FAST_HZ));
+            for (k, start) in (1..=profile.step_count()).flat_map(|k| starts.map(|start| (k, start))) {
+                let expected =
+                    judged(start, guess(time(k).high) + start.whole, &|since| is_due_before(k, since));
+                steps += 1;
+                // At an edge it leaves the decision to the judge.
+                if let Some(found) = exact_cycle(start, time(k)) {
+                    assert_eq!(found, expected, "step {k} of {profile:?}");
+                    decided += 1;
+                }
+            }
+        }
+    }
+    assert!(decided * 10 > steps * 9, "{decided} of {steps}");
 }
 
 #[test]
