@@ -5,7 +5,7 @@ use stepscope_core::{
     inspect::plant::verdict,
     peripheral::{
         device::Faults,
-        signal::Record,
+        signal::{Levels, Record},
         trace::{Digest, steps},
         units::Cycles,
     },
@@ -180,23 +180,38 @@ fn a_self_test_measures_the_settling_time_of_each_channel_and_staggers_by_it() {
 
 #[test]
 fn a_self_test_that_finds_nothing_takes_t_step_and_says_so() {
-    // A converter whose only codes are 0: nothing is ever above its share.
-    let json = self_test(r#","current_sensor":{"lsb_a":1000}"#, "");
-    let mut blind = PlantRun::new(
-        &experiment(&json),
-        vec![((), ())].into_iter().map(|((), ())| (Vec::<Record>::new(), ())).collect(),
-    )
-    .expect("it has a plant");
-    blind.finish();
-    // All readings are 0, so the first sample counts as settled: a settling time of one point.
-    assert!(blind.self_test(0).iter().all(Option::is_some));
-    // A default motor in full steps hums on, so that a slow sensor sees nothing settle within T_step.
-    let json = self_test(r#","current_sensor":{"bandwidth_hz":20}"#, "");
-    let run = run(&json, ());
-    assert!(run.self_test(0).contains(&None), "{:?}", run.self_test(0));
-    assert_eq!(run.faults(), Faults::SELF_TEST);
-    assert_eq!(run.device().read(stepscope_registers::settle::OFFSET), 32_768);
-    assert_eq!(run.device().read(stepscope_registers::faults::OFFSET), 1 << 9);
+    // A converter with one code, 0 or not: P is 0. And a sensor so slow that a motor that hums on does not settle in T_step.
+    let sensors = [
+        r#""current_sensor":{"lsb_a":1000}"#,
+        r#""idle_ma":100,"current_sensor":{"lsb_a":0.01,"adc_max":7}"#,
+        r#""current_sensor":{"bandwidth_hz":20}"#,
+    ];
+    for sensor in sensors {
+        let run = run(&self_test(&format!(",{sensor}"), ""), ());
+        assert!(run.self_test(0).contains(&None), "{sensor}: {:?}", run.self_test(0));
+        assert_eq!(run.faults(), Faults::SELF_TEST, "{sensor}");
+        assert_eq!(run.device().read(stepscope_registers::settle::OFFSET), 32_768, "{sensor}");
+        assert_eq!(run.device().read(stepscope_registers::faults::OFFSET), 1 << 9, "{sensor}");
+    }
+}
+
+/// A stand-alone controller does not react to an overload (F7): its edges are those without a protection.
+#[test]
+fn a_stand_alone_controller_does_not_react_to_an_overload() {
+    let scenario = |protection: &str| {
+        format!(
+            r#"{{"source":{{"standalone":[{{"inputs":[{{"cycle":400000,"input":"start","level":1}}]}}]}},
+                "plant":{{"idle_ma":3000{protection}}}}}"#
+        )
+    };
+    let runs = ["", r#","protection":{"threshold_a":1,"samples":1}"#].map(|protection| {
+        let run = run(&scenario(protection), ());
+        assert_eq!(run.overload(0), None, "nothing was switched off");
+        run.into_parts().remove(0).0
+    });
+    let [without, with] = &runs;
+    assert!(!with.is_empty() && with.iter().all(|record| record.levels.has(Levels::EN)));
+    assert_eq!(without, with);
 }
 
 #[test]

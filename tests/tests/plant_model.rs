@@ -204,6 +204,25 @@ fn check(case: &Case, run: &Run, every: u64, what: &str) {
     let slips: Vec<Vec<(u64, i64)>> =
         run.lost.iter().map(|slips| slips.iter().map(|slip| (slip.cycle, slip.sign)).collect()).collect();
     assert_eq!(held.slips, slips, "{what}");
+    for (channel, expected) in run.energies.iter().enumerate() {
+        let found = plant.energy(channel).expect("a motor");
+        let pairs = [
+            (found.bus, expected.bus),
+            (found.copper, expected.copper),
+            (found.diodes, expected.diodes),
+            // Each counts the load torque and the coupling's damper in a place of its own.
+            (
+                found.friction + found.viscous + found.load,
+                expected.friction + expected.viscous + expected.load,
+            ),
+        ];
+        for (found, expected) in pairs {
+            assert!(
+                (found - expected).abs() <= 1e-9 * (1.0 + expected.abs()),
+                "motor {channel} of {what}: {pairs:?}"
+            );
+        }
+    }
 }
 
 #[test]

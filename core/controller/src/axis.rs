@@ -8,14 +8,16 @@ pub(crate) struct Place {
     axis: Axis,
     /// m, in steps.
     place: i64,
-    /// m - position when zero was set last; 0 before.
+    /// m - position when zero was set last, before that when memory was first read; 0 before both.
     zero: i64,
+    /// Whether memory was read or zero was set.
+    has_zero: bool,
 }
 
 impl Place {
     pub(crate) fn new(axis: Option<&Axis>) -> Self {
         let axis = axis.cloned().unwrap_or_default();
-        Self { place: axis.start_steps, axis, zero: 0 }
+        Self { place: axis.start_steps, axis, zero: 0, has_zero: false }
     }
 
     pub(crate) const fn place(&self) -> i64 {
@@ -48,9 +50,17 @@ impl Place {
     /// Zero is set: what place and position differ by now is no error.
     pub(crate) fn zero_is_set(&mut self, position: i32) {
         self.zero = self.place.saturating_sub(position.into());
+        self.has_zero = true;
     }
 
-    /// m - position, less what it was when zero was set.
+    /// Memory is read: until zero is set, the first position that it holds is no error.
+    pub(crate) fn memory_is_read(&mut self, position: i32) {
+        if !self.has_zero {
+            self.zero_is_set(position);
+        }
+    }
+
+    /// m - position, less what it was when zero was set, or memory was first read.
     pub(crate) fn error(&self, position: i32) -> i64 {
         self.place.saturating_sub(position.into()).saturating_sub(self.zero)
     }
@@ -79,6 +89,21 @@ mod tests {
             place.shift(steps);
             assert_eq!(place.place(), expected, "{axis:?} {steps}");
         }
+    }
+
+    #[test]
+    fn the_error_counts_from_the_zero_that_was_set_or_the_first_position_that_was_read() {
+        let mut place = Place::new(Some(&Axis { start_steps: 50, ..Axis::default() }));
+        assert_eq!(place.error(0), 50, "before memory is read");
+        place.memory_is_read(20);
+        assert_eq!(place.error(20), 0);
+        place.shift(3);
+        assert_eq!((place.error(23), place.error(20)), (0, 3));
+        place.memory_is_read(20);
+        assert_eq!(place.error(20), 3, "read again");
+        place.zero_is_set(0);
+        place.memory_is_read(7);
+        assert_eq!((place.error(0), place.error(7)), (0, -7), "a zero that was set stays");
     }
 
     #[test]

@@ -143,7 +143,7 @@ impl StandAlone {
         Some(self.controllers.get(i)?.axis.place())
     }
 
-    /// m - position, less what it was when zero was set last; all of it before that.
+    /// m - position, less what it was when zero was set last, and before that less what it was when memory was first read.
     #[must_use]
     pub fn axis_error(&self, i: usize) -> Option<i64> {
         let controller = self.controllers.get(i)?;

@@ -49,6 +49,7 @@ impl Controller {
         let believed = self.believed();
         self.is_unknown = believed.is_none();
         (self.position, self.trust) = believed.unwrap_or((0, 0));
+        self.axis.memory_is_read(self.position);
         let saved = journal::saved(self.eeprom.bytes(), self.slots(), self.parameters.numbers());
         self.numbers = saved
             .and_then(|numbers| Numbers::in_range(&self.parameters, numbers))

@@ -173,7 +173,7 @@ pub fn settling_with(
     plant.advance(rise + t_step, &mut log);
     let response = StepResponse::of(&log.samples, from, rise, t_step, share).ok_or_else(Vec::new)?;
     let shown = log.samples.iter().skip_while(|sample| sample.cycle + t_step < rise);
-    Ok((response, shown.map(|sample| (sample.cycle as f64 - rise as f64, sample.current_a)).collect()))
+    Ok((response, shown.map(|sample| (sample.cycle as f64 - rise as f64, sample.current)).collect()))
 }
 
 #[cfg(test)]

@@ -19,26 +19,31 @@
 //! assert_eq!((table.rate(table.top()), table.reload(table.top())), (4000, 250));
 //! ```
 
-use crate::{round_half_up, square_root};
+use crate::{climb::Climb, exact::Exact};
 
 /// The rows of an acceleration table, each computed when it is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AccelerationTable {
-    start_speed: f64,
-    top_speed: f64,
-    acceleration: f64,
+    climb: Climb,
+    /// Rate of the last row.
+    top_rate: u64,
     timer_hz: u32,
     top: u64,
 }
 
 impl AccelerationTable {
     /// From `start_speed` >= 1/2 to `top_speed` >= `start_speed` with `acceleration` > 0, in steps,
-    /// s; `timer_hz` counts the reloads.
+    /// s; `timer_hz` counts the reloads. Each number means the decimal that is printed for it.
     #[must_use]
     pub fn new(start_speed: f64, top_speed: f64, acceleration: f64, timer_hz: u32) -> Self {
-        let climb = (top_speed - start_speed) * (top_speed + start_speed);
-        let top = libm::ceil(climb / (2.0 * acceleration)) as u64;
-        Self { start_speed, top_speed, acceleration, timer_hz, top }
+        let [start_speed, top_speed, acceleration] = [start_speed, top_speed, acceleration].map(Exact::of);
+        Self::exact([&start_speed, &top_speed], &acceleration, timer_hz)
+    }
+
+    /// As [`Self::new`], of start speed and top speed that need not be decimals.
+    pub(super) fn exact([start, top]: [&Exact; 2], acceleration: &Exact, timer_hz: u32) -> Self {
+        let climb = Climb::new(start, acceleration);
+        Self { top: climb.steps_to(top), climb, top_rate: top.rounded().unsigned_abs(), timer_hz }
     }
 
     /// Clock of the timer in Hz.
@@ -56,10 +61,7 @@ impl AccelerationTable {
     /// Pulse rate of a row in whole pps, not falling from row to row; rows after the last are as the last.
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
-        let climbed = square_root(self.start_speed * self.start_speed + 2.0 * self.acceleration * row as f64);
-        // A root can pass the top speed by a rounding.
-        let speed = if row < self.top && climbed < self.top_speed { climbed } else { self.top_speed };
-        round_half_up(speed).unsigned_abs()
+        if row < self.top { self.climb.rate(row) } else { self.top_rate }
     }
 
     /// The timer's reload of a row; 0 where the timer is slower than the rate.
@@ -84,5 +86,9 @@ mod tests {
         // The first row at or above the top speed has the top speed itself.
         assert_eq!((table.top(), table.rate(359), table.rate(360)), (360, 2541, 2545));
         assert_eq!(AccelerationTable::new(600.0, 600.0, 1.0, 599).reload(0), 0);
+        // Row 1 is at a half exactly, and the top speed at another.
+        let table = AccelerationTable::new(6.1, 10.5, 9.52, 1_000_000);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|row| table.rate(row)), [6, 8, 9, 10, 11, 11]);
+        assert_eq!(table.top(), 4);
     }
 }

@@ -5,8 +5,8 @@
 //! 88.35 mm at 0.1 mm a step    8835/100 : 1/10 = 883.5, and 884 steps; in f64 the quotient is 883.4999…
 //! ```
 //!
-//! The whole numbers are of any length, but few operations are made of them: products with small ones, comparisons, one
-//! quotient of 64 bits. A library for all operations would make the page 13 kB heavier; the tests hold these against one. None
+//! The whole numbers are of any length, but few operations are made of them: products, comparisons, one quotient of 64
+//! bits. A library for all operations would make the page 13 kB heavier; the tests hold these against one. None
 //! of them is called often, so none is copied into its callers.
 
 use crate::{double::Double, round_half_up};
@@ -171,6 +171,11 @@ impl Exact {
         (whole, Self { negative: false, over: rest, under: self.under.clone() }.double())
     }
 
+    /// Without its sign, a quotient of whole numbers.
+    pub(super) fn magnitude(&self) -> (&Natural, &Natural) {
+        (&self.over, &self.under)
+    }
+
     /// The shortest decimal that reads back as a number: its digits as a whole number, times 10 to a power.
     pub(super) fn decimal(number: f64) -> (i64, i32) {
         decimal(number)
@@ -194,10 +199,10 @@ impl Double {
 ///
 /// Invariant: the least limb first, the last one not 0; 0 has none.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Natural(Vec<u32>);
+pub(super) struct Natural(Vec<u32>);
 
 impl Natural {
-    fn of(number: u64) -> Self {
+    pub(super) fn of(number: u64) -> Self {
         let mut natural = Self(vec![number as u32, (number >> LIMB_BITS) as u32]);
         natural.trim();
         natural
@@ -254,8 +259,20 @@ impl Natural {
         }
     }
 
+    /// Their product.
+    pub(super) fn times(&self, other: &Self) -> Self {
+        let mut product = Self(Vec::new());
+        for limb in other.0.iter().rev() {
+            product.shift_left(LIMB_BITS);
+            let mut part = self.clone();
+            part.multiply_by(u64::from(*limb));
+            product = product.plus(&part);
+        }
+        product
+    }
+
     #[inline(never)]
-    fn plus(&self, other: &Self) -> Self {
+    pub(super) fn plus(&self, other: &Self) -> Self {
         let mut carry: u64 = 0;
         let sum = (0..self.0.len().max(other.0.len()) + 1).map(|index| {
             carry += u64::from(self.limb(index)) + u64::from(other.limb(index));
@@ -285,7 +302,7 @@ impl Natural {
     }
 
     #[inline(never)]
-    fn cmp(&self, other: &Self) -> Ordering {
+    pub(super) fn cmp(&self, other: &Self) -> Ordering {
         self.0.len().cmp(&other.0.len()).then_with(|| self.0.iter().rev().cmp(other.0.iter().rev()))
     }
 }
@@ -352,6 +369,22 @@ mod tests {
         let exponent = (noise.next_u64() % 24) as i32 - 16;
         let number: f64 = format!("{digits}e{exponent}").parse().expect("a number");
         (digits.into(), exponent, number)
+    }
+
+    #[test]
+    fn products_are_those_of_whole_numbers_of_any_length() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(7);
+        let mut drawn = || {
+            let limbs = noise.next_u64() % 6;
+            let mut natural = Natural((0..limbs).map(|_| noise.next_u64() as u32).collect());
+            natural.trim();
+            natural
+        };
+        let big = |natural: &Natural| BigInt::from_slice(num_bigint::Sign::Plus, &natural.0);
+        for _ in 0..2000 {
+            let (a, b) = (drawn(), drawn());
+            assert_eq!(big(&a.times(&b)), big(&a) * big(&b), "{a:?} {b:?}");
+        }
     }
 
     /// Held against a library's whole numbers of any length: (a - b)*c/d.

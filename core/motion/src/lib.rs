@@ -55,6 +55,7 @@ mod axis;
 pub mod bisection;
 mod breakpoints;
 mod budget;
+mod climb;
 pub mod constant_velocity;
 pub mod cosine;
 mod crossing;

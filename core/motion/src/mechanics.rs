@@ -211,19 +211,26 @@ macro_rules! quantity {
             /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
                 let quotient = self.step(mechanics).map(|step| self.value() / step)?;
-                Ok(self.exact(mechanics).map_or(quotient, |exact| exact.nearest()))
+                Ok(self.exact_quotient(mechanics).map_or(quotient, |exact| exact.nearest()))
             }
 
             /// [`Self::in_steps`] with all its digits; a quotient with pi has those that are printed.
             #[allow(dead_code, reason = "of a distance whole steps are asked for")]
             pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
                 let quotient = self.step(mechanics).map(|step| self.value() / step)?;
-                Ok(self.exact(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
+                Ok(self.exact_quotient(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
+            }
+
+            /// The quantity in steps as its decimal makes it; a quotient with pi as it is printed.
+            #[allow(dead_code, reason = "of some quantities nobody asks")]
+            pub(super) fn exact(&self, mechanics: &Mechanics) -> Result<Exact, NoSuchUnit> {
+                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                Ok(self.exact_quotient(mechanics).unwrap_or_else(|| Exact::of(quotient)))
             }
 
             /// The quantity in steps as its decimal makes it; `None` where it is in steps already, has pi, or is no number
             /// that a plan would take.
-            fn exact(&self, mechanics: &Mechanics) -> Option<Exact> {
+            fn exact_quotient(&self, mechanics: &Mechanics) -> Option<Exact> {
                 if !mechanics.can_tell(self.value()) {
                     return None;
                 }
@@ -256,7 +263,7 @@ impl Distance {
     /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
     pub fn whole_steps(&self, mechanics: &Mechanics) -> Result<i64, NoSuchUnit> {
         let quotient = self.step(mechanics).map(|step| self.value() / step)?;
-        Ok(self.exact(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))
+        Ok(self.exact_quotient(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))
     }
 
     /// The way from `first`, in the same unit, to this position, in steps: the nearest number to what the decimals make.

@@ -18,7 +18,11 @@
 //! assert_eq!((table.rows(), StaircaseTable::steps_after(256)), (256, 200_460));
 //! ```
 
-use crate::{bisection::climbed, round_half_up, square_root};
+use crate::{
+    bisection::climbed,
+    climb::{Climb, quick_rate},
+    exact::Exact,
+};
 
 /// Steps of the first row, and what is added to them.
 const FIRST_STEPS: u64 = 30;
@@ -44,8 +48,10 @@ impl StaircaseTable {
     /// Rate of row `n` (from 1) in whole steps/s, not falling from row to row.
     #[must_use]
     pub fn rate(&self, n: u64) -> u64 {
-        let climbed = 2.0 * self.acceleration * Self::steps_after(n.saturating_sub(1)) as f64;
-        round_half_up(square_root(self.start_speed * self.start_speed + climbed)).unsigned_abs()
+        let steps = Self::steps_after(n.saturating_sub(1));
+        quick_rate(self.start_speed, self.acceleration, steps).unwrap_or_else(|_| {
+            Climb::new(&Exact::of(self.start_speed), &Exact::of(self.acceleration)).rate(steps)
+        })
     }
 
     /// Steps of row `n` (from 1).

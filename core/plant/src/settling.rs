@@ -5,7 +5,7 @@
 //! use stepscope_plant::settling::{SHARE, Sample, StepResponse};
 //!
 //! let samples = [(0, 1.0), (10, 1.0), (20, 3.0), (30, 1.5), (40, 1.1), (50, 1.0)];
-//! let samples = samples.map(|(cycle, current_a)| Sample { cycle, current_a });
+//! let samples = samples.map(|(cycle, current)| Sample { cycle, current });
 //! let found = StepResponse::of(&samples, 0, 15, 100, SHARE).expect("there are samples");
 //! assert_eq!((found.reached, found.settled), (Some(25), Some(15)));
 //! ```
@@ -23,8 +23,8 @@ pub const REST_STEPS: u64 = 10;
 pub struct Sample {
     /// The point's cycle.
     pub cycle: u64,
-    /// The current in A.
-    pub current_a: f64,
+    /// The current in A, or in whole codes of the converter: what is made of samples has the same unit.
+    pub current: f64,
 }
 
 /// The supply current around one step of a motor that rested.
@@ -37,9 +37,10 @@ pub struct StepResponse {
     /// The greatest.
     pub greatest_a: f64,
     /// Cycles from STEP's rise to the first sample, from the greatest on, that is at most a share above i_q: the patent's
-    /// word, the default. `None` if not within T_step.
+    /// word, the default. `None` if not within T_step, and where no sample differs from i_q.
     pub reached: Option<u64>,
-    /// Cycles to the last sample that is off by more than that share. `None` if it is the last one there is.
+    /// Cycles to the last sample that is off by more than that share. `None` if it is the last one there is, and where no
+    /// sample differs from i_q.
     pub settled: Option<u64>,
 }
 
@@ -54,32 +55,30 @@ impl StepResponse {
         let rest_a = mean(within(from, rise))?;
         let after: Vec<Sample> = within(rise, rise.saturating_add(t_step)).copied().collect();
         let first = after.first()?;
-        let (mut least_a, mut greatest_a, mut t_max) = (first.current_a, first.current_a, 0);
+        let (mut least_a, mut greatest_a, mut t_max) = (first.current, first.current, 0);
         for (index, sample) in after.iter().enumerate() {
-            least_a = least_a.min(sample.current_a);
-            if sample.current_a > greatest_a {
-                (greatest_a, t_max) = (sample.current_a, index);
+            least_a = least_a.min(sample.current);
+            if sample.current > greatest_a {
+                (greatest_a, t_max) = (sample.current, index);
             }
         }
         let peak = (greatest_a - rest_a).abs().max((least_a - rest_a).abs());
         let since = |sample: &Sample| sample.cycle - rise;
-        let reached =
-            after.iter().skip(t_max).find(|sample| sample.current_a - rest_a <= share * peak).map(since);
-        let last_off = after.iter().rposition(|sample| (sample.current_a - rest_a).abs() > share * peak);
-        let settled = match last_off {
-            None => Some(0),
-            Some(index) if index + 1 == after.len() => None,
-            Some(index) => after.get(index).map(since),
-        };
+        let is_back = |sample: &&Sample| peak > 0.0 && sample.current - rest_a <= share * peak;
+        let reached = after.iter().skip(t_max).find(is_back).map(since);
+        let last_off = after.iter().rposition(|sample| (sample.current - rest_a).abs() > share * peak);
+        let settled =
+            last_off.filter(|index| index + 1 < after.len()).and_then(|index| after.get(index)).map(since);
         Some(Self { rest_a, least_a, greatest_a, reached, settled })
     }
 }
 
-/// The mean of samples; `None` of none.
+/// The mean of samples; `None` of none. Of equal ones it is their value, so that a current that never changes has no peak.
 #[must_use]
-pub fn mean<'a>(samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
-    let (sum, count) = samples.fold((0.0, 0_u32), |(sum, count), s| (sum + s.current_a, count + 1));
-    (count > 0).then(|| sum / f64::from(count))
+pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
+    let first = samples.next()?.current;
+    let (sum, count) = samples.fold((0.0, 1_u32), |(sum, count), s| (sum + (s.current - first), count + 1));
+    Some(first + sum / f64::from(count))
 }
 
 /// How far the supply current is pulled from its rest.
@@ -98,7 +97,7 @@ impl Deviation {
     #[must_use]
     pub fn of(samples: &[Sample], first_step: u64, from: u64) -> Option<Self> {
         let rest_a = mean(samples.iter().filter(|sample| sample.cycle <= first_step))?;
-        let off = samples.iter().filter(|sample| sample.cycle > from).map(|sample| sample.current_a - rest_a);
+        let off = samples.iter().filter(|sample| sample.cycle > from).map(|sample| sample.current - rest_a);
         let (below, above_a) = off.fold((0.0_f64, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
         Some(Self { rest_a, above_a, below_a: -below })
     }
@@ -121,8 +120,8 @@ pub struct SensorLog {
 
 impl Observer for SensorLog {
     fn point(&mut self, plant: &Plant) {
-        let current_a = plant.current_sensor().filtered();
-        self.samples.push(Sample { cycle: plant.cycle(), current_a });
+        let current = plant.current_sensor().filtered();
+        self.samples.push(Sample { cycle: plant.cycle(), current });
     }
 
     fn steps(&mut self, cycle: u64, rises: u16, _: u16) {

@@ -321,7 +321,7 @@ fn small_currents_do_not_decay_slowly() {
 
 #[test]
 fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
-    let sample = |cycle: u64, current_a| Sample { cycle, current_a };
+    let sample = |cycle: u64, current| Sample { cycle, current };
     let rest = (0..10).map(|k| sample(k * 10, 1.0));
     let after = [(100, 0.5), (110, 3.0), (120, 1.5), (130, 1.3), (140, 0.5), (150, 1.1)];
     let samples: Vec<Sample> = rest.chain(after.map(|(c, i)| sample(c, i))).collect();
@@ -331,4 +331,14 @@ fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
     let cut = StepResponse::of(&samples, 0, 95, 45, 0.2).expect("samples");
     assert_eq!((cut.reached, cut.settled), (Some(35), None), "the last one is still off");
     assert_eq!(StepResponse::of(&samples, 0, 95, 4, 0.2), None, "no sample after the rise");
+    // A current that never changes does not settle, in whole codes or not.
+    for current in [0.0, 7.0, 0.1, 0.15 + 1e-17] {
+        let constant: Vec<Sample> = (0..1003).map(|k| sample(k * 10, current)).collect();
+        let found = StepResponse::of(&constant, 0, 5000, 5000, 0.2).expect("samples");
+        assert_eq!((found.rest_a, found.reached, found.settled), (current, None, None));
+    }
+    // Nor does one that is back only after T_step.
+    let late: Vec<Sample> = (0..20).map(|k| sample(k * 10, if k < 10 { 1.0 } else { 2.0 })).collect();
+    let found = StepResponse::of(&late, 0, 95, 50, 0.2).expect("samples");
+    assert_eq!((found.reached, found.settled), (None, None));
 }

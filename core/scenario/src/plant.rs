@@ -58,11 +58,6 @@ impl Scenario {
         });
         let setups = setups.collect();
         let tail = Cycles((settings.tail_s * f64::from(self.clock_hz) + 0.5) as u64);
-        #[cfg(feature = "controller")]
-        if matches!(self.source, Source::Standalone(_)) && settings.protection.is_some() {
-            let detail = "a stand-alone controller hears no overload; leave the protection out, or choose another source";
-            validator.add("plant.protection", ValueError::Conflict { detail });
-        }
         if settings.self_test {
             self.judge_self_test(configs, validator);
         }

@@ -98,7 +98,7 @@ fn only_a_pulse_of_the_bus_counts_and_no_line() {
         (r#""bus":{"slots":0}"#, Some("bus.slots")),
         (r#""bus":{"pulse_width_cycles":0}"#, Some("bus.pulse_width_cycles")),
         (r#""controllers":[{}]"#, Some("controllers")),
-        (r#""plant":{"protection":{}}"#, Some("plant.protection")),
+        (r#""plant":{"protection":{}}"#, None),
         (r#""plant":{"self_test":true}"#, Some("plant.self_test")),
     ];
     for (given, expected) in rows {

@@ -110,13 +110,16 @@ impl Alone {
         }
     }
 
-    /// The plant reports an overload; stand-alone controllers have no protection.
+    /// The plant reports an overload. Returns whether it reacts: stand-alone controllers do not (F7).
     #[cfg(feature = "plant")]
-    pub(crate) fn overload(&mut self) {
+    pub(crate) fn overload(&mut self) -> bool {
         match self {
-            Self::Segments(engine) => engine.overload(),
+            Self::Segments(engine) => {
+                engine.overload();
+                true
+            }
             #[cfg(feature = "controller")]
-            Self::Panels(_) => {}
+            Self::Panels(_) => false,
         }
     }
 }

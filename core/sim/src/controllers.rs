@@ -66,12 +66,15 @@ impl Controllers {
         }
     }
 
-    /// The plant of a controller reports an overload, last in the cycle that was run last.
-    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) {
+    /// The plant of a controller reports an overload, last in the cycle that was run last. Returns whether it reacts.
+    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
         match (&mut self.alone, self.bus.device_mut(controller)) {
             (Some(alone), _) => alone.overload(),
-            (None, Some(device)) => device.overload(sink),
-            (None, None) => {}
+            (None, Some(device)) => {
+                device.overload(sink);
+                true
+            }
+            (None, None) => false,
         }
     }
 

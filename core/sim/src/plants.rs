@@ -49,7 +49,7 @@ pub(crate) struct Behind {
     pub(crate) found: Vec<Option<u64>>,
     /// Cycles from conversion to conversion, where a protection watches.
     conversion: Option<u64>,
-    /// The last overload's cycle.
+    /// Cycle of the last overload that switched the drivers off.
     pub(crate) overload_at: Option<u64>,
 }
 
@@ -71,8 +71,9 @@ impl Observer for Watch {
             self.overload = Some(plant.cycle());
         }
         if events.converted && plant.cycle() <= self.until {
-            let current_a = plant.current_sensor().reading();
-            self.samples.push(Sample { cycle: plant.cycle(), current_a });
+            // Whole codes, whose sum has no rounding (F7).
+            let current = plant.current_sensor().code().into();
+            self.samples.push(Sample { cycle: plant.cycle(), current });
         }
     }
 }
@@ -285,11 +286,11 @@ impl<S: Sink, O: Observer> Wired<'_, S, O> {
     fn act(&mut self, run: &mut Controllers, index: usize, cycle: Instant) {
         self.advance(cycle.0);
         if self.behind.watch.overload.take() == Some(cycle.0) {
+            let was_powered = self.behind.levels.has(Levels::EN);
             // Where the drivers are off already it changes nothing but the fault.
-            if self.behind.levels.has(Levels::EN) {
+            if run.overload(index, self) && was_powered {
                 self.behind.overload_at = Some(cycle.0);
             }
-            run.overload(index, self);
         }
         if self.behind.boot == Some(cycle.next()) {
             self.behind.boot = None;

@@ -67,16 +67,16 @@ impl Room {
         }
     }
 
-    /// "Reported": m - position less what it was when zero was set.
+    /// "Reported": m - position less what it was when zero was set, before that when memory was first read.
     pub(super) fn axis_error(&self) -> i64 {
-        // Reading: before zero has been set, nothing is taken off.
-        self.s.place - i64::from(self.s.position) - self.s.place_of_zero
+        // Reading: before both nothing is taken off.
+        self.s.place - i64::from(self.s.position) - self.s.place_of_zero.unwrap_or(0)
     }
 
     /// Zero is set: by hand, or by homing.
     pub(super) fn zero_is_set(&mut self, position: i32) {
         self.s.position = position;
         self.s.trust = 2;
-        self.s.place_of_zero = self.s.place - i64::from(position);
+        self.s.place_of_zero = Some(self.s.place - i64::from(position));
     }
 }

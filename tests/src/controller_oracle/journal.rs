@@ -33,6 +33,8 @@ impl Room {
                 self.s.trust = if newest.content.open { 0 } else { newest.content.trust.min(1) };
             }
         }
+        let error = self.s.place - i64::from(self.s.position);
+        self.s.place_of_zero.get_or_insert(error);
         let controller = &self.plan.controller;
         // Reading: if a number of the newest valid bank is out of range the scenario rules, not the other bank.
         self.s.numbers = self

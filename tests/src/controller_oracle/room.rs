@@ -135,8 +135,8 @@ pub(super) struct Status {
     pub(super) edit: Edit,
     /// m.
     pub(super) place: i64,
-    /// m - position when zero was set.
-    pub(super) place_of_zero: i64,
+    /// m - position when zero was set, before that when memory was first read.
+    pub(super) place_of_zero: Option<i64>,
     pub(super) groups_begun: u64,
 }
 
@@ -181,7 +181,7 @@ impl Room {
             numbers,
             edit: Edit::default(),
             place,
-            place_of_zero: 0,
+            place_of_zero: None,
             groups_begun: 0,
         };
         let mut room = Self { plan, now: 0, s, panel: Vec::new() };

@@ -48,7 +48,8 @@ pub fn step_seen(series: &[(u64, f64)], rise: u64, t_step: u64, share: f64) -> O
             t_max = at;
         }
     }
-    let reached = after.iter().find(|&&(at, value)| at >= t_max && value - i_q <= share * peak);
+    // Clarified: with P = 0 there is no settling time.
+    let reached = after.iter().find(|&&(at, value)| peak > 0.0 && at >= t_max && value - i_q <= share * peak);
     let settled = match after.iter().rposition(|&(_, value)| (value - i_q).abs() > share * peak) {
         Some(last) if last + 1 < after.len() => Some(after[last].0 - rise),
         _ => None,

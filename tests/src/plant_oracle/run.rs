@@ -145,6 +145,19 @@ impl Mounted {
         bus_v: f64,
         clock_hz: u64,
     ) -> f64 {
+        let (at, en, energy) = self.advance_through(from, changes, en, bus_v, clock_hz);
+        energy + self.state.advance(to - at, clock_hz, bus_v, en)
+    }
+
+    /// Up to the last change that concerns the motor: its cycle, EN from there on, and the energy from the bus.
+    fn advance_through(
+        &mut self,
+        from: u64,
+        changes: &[Change],
+        en: bool,
+        bus_v: f64,
+        clock_hz: u64,
+    ) -> (u64, bool, f64) {
         let (mut at, mut en) = (from, en);
         let mut energy = 0.0;
         for change in changes {
@@ -166,7 +179,7 @@ impl Mounted {
             }
             en = change.en;
         }
-        energy + self.state.advance(to - at, clock_hz, bus_v, en)
+        (at, en, energy)
     }
 
     fn point(&self) -> MotorPoint {
@@ -254,6 +267,12 @@ pub fn run(case: &Case) -> Run {
         // "Point n + 1 is known once cycle (n+1)N - 1 is."
         let to = cycle + n_cycles;
         if to > case.cycles {
+            // Clarified: energies also count what was after the last point, up to the last change.
+            let rest: Vec<Change> =
+                changes[next_change..].iter().filter(|change| change.cycle <= case.cycles).cloned().collect();
+            for motor in &mut motors {
+                motor.advance_through(cycle, &rest, en, supply.v, case.clock_hz);
+            }
             break;
         }
         let first_change = next_change;

@@ -239,3 +239,23 @@ fn a_hand_moves_the_axis_while_the_motor_is_off() {
     let run = run(Parameters { inputs, axis, ..small() });
     assert_eq!((run.machine.axis_place(0), run.machine.axis_error(0)), (Some(-10), Some(-10)));
 }
+
+/// An axis that does not start at what memory says is where it was then: what counts is what happens later.
+#[test]
+fn before_a_zero_is_set_the_axis_error_counts_from_the_position_in_memory() {
+    let axis = Some(Axis { start_steps: 50, hard_max: Some(51), ..Axis::default() });
+    let row = |inputs| {
+        let run = run(Parameters { inputs, axis: axis.clone(), ..small() });
+        (run.position(), run.machine.axis_place(0), run.machine.axis_error(0))
+    };
+    assert_eq!(row(vec![]), (0, Some(50), Some(0)));
+    // The program's three steps to the right end at 51: two are lost.
+    assert_eq!(row(presses(&[(30, Signal::Start)])), (3, Some(51), Some(-2)));
+    // A cut of the power and a second reading change nothing; a zero that is set does.
+    let cut = [level(200, Signal::Power, false), level(900, Signal::Power, true)];
+    let mut inputs = presses(&[(30, Signal::Start)]);
+    inputs.extend(cut);
+    assert_eq!(row(inputs.clone()), (3, Some(51), Some(-2)));
+    inputs.extend(presses(&[(1200, Signal::Debug), (1210, Signal::Ok)]));
+    assert_eq!(row(inputs), (0, Some(51), Some(0)));
+}

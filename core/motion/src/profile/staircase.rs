@@ -5,7 +5,6 @@ use crate::{
     limits, moves,
     problem::{Cause, ValueError},
     quantities::Quantities,
-    round_half_up,
     staircase::Staircase,
     staircase_table::StaircaseTable,
 };
@@ -36,7 +35,8 @@ pub(super) fn plan(
         return None;
     }
     let table = StaircaseTable::new(start?, most?, level? * LEVEL_ACCELERATION);
-    let top_rate = round_half_up(top?).unsigned_abs();
+    top?;
+    let top_rate = given.top_speed.exact(quantities.mechanics()).ok()?.rounded().unsigned_abs();
     match Staircase::new(steps?, table, top_rate, given.short_move, budget.table_rows) {
         Ok(staircase) => {
             budget.table_rows -= staircase.ramp_rows() + 1;

@@ -33,8 +33,11 @@ pub(super) fn table(
     given: &moves::Trapezoid,
     budget: &mut Budget,
 ) -> Option<TrapezoidTable> {
-    let (steps, start, top, acceleration) = front(quantities, given)?;
-    let table = AccelerationTable::new(start, top, acceleration, given.timer_hz);
+    let (steps, ..) = front(quantities, given)?;
+    let mechanics = quantities.mechanics();
+    let (start, top) = (given.start_speed.exact(mechanics).ok()?, given.top_speed.exact(mechanics).ok()?);
+    let table =
+        AccelerationTable::exact([&start, &top], &given.acceleration.exact(mechanics).ok()?, given.timer_hz);
     match TrapezoidTable::new(steps, table, budget.table_rows) {
         Ok(table) => {
             budget.table_rows -= table.kept_rows();
