@@ -554,6 +554,11 @@ fn logs_with_a_time_per_line_are_read() {
              - RX and TX are named as in the log: in one of the host, TX is what the controller receives (map RX=TX,TX=RX)",
         ),
         ("0,55\n1041,AA\n2083,01\n", "HexBytes [bytes] 0:0:55 1041:0:aa 2083:0:01 end 2083"),
+        (
+            "> 55 AA\n< 02\n",
+            "HexBytes [] end 0\n! line 1: “> 55 AA” has a direction and no time; give each line a time, or the bytes of one \
+             direction only",
+        ),
         // What is no byte is refused, and so is a fall of the clock.
         (
             "12:00:00.5 55\n12:00:00.6 RX (2): 55 AA\n",
@@ -753,6 +758,11 @@ fn what_is_no_such_file_is_told_what_is_allowed() {
             b"\0\0\0\0\0\0\0\x01\x49\0\0",
             "a waveform of GTKWave (FST); make a value change dump of it: fst2vcd ",
         ),
+        (
+            b"X,CH1,Start,Increment\nSequence,Volt,0.0,1e-6\n0,3.28\n",
+            "a table of an oscilloscope's voltages; ",
+        ),
+        (b"Second,Volt\n-0.001,3.3\n", "a table of an oscilloscope's voltages; "),
         (b"<SALEAE>\0\0\0\0", "a binary export of Saleae Logic; export as CSV"),
         (b"PK\x03\x04 and nothing else", "the zip's directory cannot be read"),
     ] {

@@ -82,9 +82,22 @@ pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
     if is_of_sigrok {
         return Ok(Found::of(Format::SigrokCsv));
     }
+    if lines.iter().take(20).any(|line| is_of_scope(line)) {
+        return Err(SCOPE.into());
+    }
     of_table.or_else(|| by_rows(if table.is_empty() { &lines } else { table })).ok_or_else(|| {
         format!("{}: no kind of file that can be read here; {}", quoted(first), nearest::nearest(&lines))
     })
+}
+
+/// What is to be done with voltages.
+const SCOPE: &str = "a table of an oscilloscope's voltages; export digital channels, or write a table such as time_us,STEP,DIR \
+    with 0 below the threshold of the input and 1 above it";
+
+/// Whether a line is of the head of an oscilloscope's table, which gives the units of its columns.
+fn is_of_scope(line: &[u8]) -> bool {
+    let mut names = fields(line, separator(line));
+    names.any(|name| [&b"volt"[..], b"volts", b"ampere"].contains(&&name.to_ascii_lowercase()[..]))
 }
 
 /// What is to be done with files that are no text.

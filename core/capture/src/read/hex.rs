@@ -88,6 +88,13 @@ impl HexText {
     /// Takes a line that begins with neither a number and a unit nor a clock.
     fn plain(&mut self, line: &[u8]) -> Result<(), String> {
         self.bytes.clear();
+        // Without times the bytes of two directions have no common order.
+        if direction(word(line).0).is_some() {
+            return Err(format!(
+                "{} has a direction and no time; give each line a time, or the bytes of one direction only",
+                quoted(line)
+            ));
+        }
         parse_bytes(line, &mut self.bytes, false)?;
         if let Some(Block { tick, port }) = self.block.clone() {
             let channel = self.channel(&port)?;
@@ -193,6 +200,9 @@ impl<'l> Start<'l> {
             _ => (None, line),
         };
         let Some((time, rest)) = time(text) else {
+            if direction(first).is_some() {
+                return Ok(None);
+            }
             return match not_a_time(line) {
                 Some(what) => Err(what),
                 None => Ok(None),
@@ -455,7 +465,7 @@ pub(super) fn is_line(line: &[u8]) -> bool {
     let mut bytes = Vec::new();
     match Start::of(line, None) {
         Ok(Some(start)) => parse_bytes(start.rest, &mut bytes, false).is_ok(),
-        Ok(None) => parse_bytes(line, &mut bytes, false).is_ok(),
+        Ok(None) => direction(word(line).0).is_some() || parse_bytes(line, &mut bytes, false).is_ok(),
         Err(_) => false,
     }
 }
