@@ -141,7 +141,7 @@ fn any_of_more_than_64_signals_can_be_named() {
     let file = dump(&names, 0, &edges);
     all_of(
         &told(&file, &[]),
-        &["map       STEP0=top.STEP ", "channel 0  30 steps", "7 of 71 channels left out (top.w69"],
+        &["map       STEP0=top.STEP ", "channel 0  30 steps", "7 of 71 channels left out (top.w64"],
     );
     for name in ["top.w69", "w69"] {
         all_of(&told(&file, &["--map", &format!("STEP0={name}")]), &["channel 0  12 steps"]);
