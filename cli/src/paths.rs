@@ -19,7 +19,8 @@ struct Paths {
 
 /// Every command that takes a path. A test walks all commands and fails at a path that is missing here.
 const PATHS: &[Paths] = &[
-    of("run", &["scenario"], &["trace", "vcd", "csv", "packets", "panel", "line", "violations"]),
+    // A driver's limits may be a file.
+    of("run", &["scenario", "driver"], &["trace", "vcd", "csv", "packets", "panel", "line", "violations"]),
     // A device is opened, not created.
     Paths { other: &["port"], ..of("serve", &["scenario"], &["record", "pty"]) },
     Paths { other: &["port"], ..of("send", &["scenario"], &[]) },
@@ -33,7 +34,7 @@ const PATHS: &[Paths] = &[
     of("resonance", &["scenario"], &[]),
     of(
         "capture",
-        &["file", "against"],
+        &["file", "against", "driver"],
         &["late", "scenario", "steps", "bytes", "packets", "trace", "vcd", "csv", "violations"],
     ),
     of("powercut", &["scenario"], &[]),
@@ -86,7 +87,7 @@ mod tests {
 
     /// Command lines that together have every path of their command, each as NAME of a file of its own: `{NAME}`.
     const LINES: &[&str] = &[
-        "run {scenario} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
+        "run {scenario} --driver {driver} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
         "serve {scenario} --record {record} --pty {pty}",
         "faults {file}",
         "tables {scenario} --steps {steps} --out {out}",
@@ -96,7 +97,7 @@ mod tests {
         "settling {scenario} --write {write}",
         "limits {scenario}",
         "resonance {scenario}",
-        "capture {file} --against {against} --late {late} --scenario {scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
+        "capture {file} --against {against} --driver {driver} --late {late} --scenario {scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
         "powercut {scenario}",
         "calibrate {table}",
         "sine sweep --out {out}",

@@ -30,8 +30,8 @@ pub(crate) struct Options {
     timing: bool,
     /// Check against this driver, whatever the scenario names: one that `stepscope drivers` lists, limits of your own such as
     /// custom:step_high_ns=1000,dir_setup_ns=200, or a JSON file with them.
-    #[arg(long, value_name = "DRIVER", value_parser = driver)]
-    driver: Option<Rules>,
+    #[arg(long, value_name = "DRIVER")]
+    driver: Option<PathBuf>,
     /// Write a table of the violations, up to a million.
     #[arg(long, value_name = "FILE")]
     pub(crate) violations: Option<PathBuf>,
@@ -40,33 +40,30 @@ pub(crate) struct Options {
     strict: bool,
 }
 
-/// The limits that a driver has.
-#[derive(Clone)]
-struct Rules(TimingRules);
-
 /// What limits of one's own begin with.
 const CUSTOM: &str = "custom:";
 
 /// The limits of a driver that is listed, of `custom:field=ns,...`, or of a JSON file.
-fn driver(text: &str) -> Result<Rules, String> {
+fn driver(path: &Path) -> Result<TimingRules, String> {
+    let text = path.to_str().unwrap_or_default();
     if let Some(sheet) = DRIVERS.into_iter().find(|sheet| sheet.id == text) {
-        return Ok(Rules(sheet.rules.clone()));
+        return Ok(sheet.rules.clone());
     }
     if let Some(fields) = text.strip_prefix(CUSTOM) {
         return custom(fields);
     }
-    if !Path::new(text).is_file() {
+    if !path.is_file() {
         let ids = DRIVERS.map(|sheet| sheet.id).join(", ");
         return Err(format!(
             "neither a driver nor a file; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file"
         ));
     }
-    let read = scenarios::text(Path::new(text)).map_err(|error| error.to_string())?;
+    let read = scenarios::text(path).map_err(|error| error.to_string())?;
     rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
 }
 
 /// Limits as `field=ns`, with commas between.
-fn custom(fields: &str) -> Result<Rules, String> {
+fn custom(fields: &str) -> Result<TimingRules, String> {
     let mut rules = serde_json::Map::new();
     for field in fields.split(',') {
         let (name, ns) =
@@ -82,7 +79,7 @@ fn custom(fields: &str) -> Result<Rules, String> {
 }
 
 /// Limits from JSON: a scenario's `driver_timing`, with or without that name and `rules` around the limits.
-fn rules_of(found: Value) -> Result<Rules, String> {
+fn rules_of(found: Value) -> Result<TimingRules, String> {
     let inner = found.get("driver_timing").cloned().unwrap_or(found);
     let is_whole = inner.get("rules").is_some() || inner.get("preset").is_some();
     let timing = if is_whole { inner } else { json!({ "rules": inner }) };
@@ -90,7 +87,7 @@ fn rules_of(found: Value) -> Result<Rules, String> {
         Scenario::from_json_lenient(&json!({ "driver_timing": timing }).to_string());
     problems.extend(scenario.check().err().unwrap_or_default());
     match scenario.driver_timing.as_ref().filter(|_| problems.is_empty()) {
-        Some(driver) => Ok(Rules(drivers::rules(driver))),
+        Some(driver) => Ok(drivers::rules(driver)),
         None => {
             let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
             let problems = if problems.is_empty() { "no limits".to_owned() } else { problems.join("; ") };
@@ -127,7 +124,9 @@ impl Options {
             return Ok(None);
         }
         let own = || scenario.driver_timing.as_ref().map(drivers::rules);
-        let rules = self.driver.as_ref().map(|driver| driver.0.clone()).or_else(own);
+        let wrong = |given: &Path, why| Failure::Option(format!("--driver {}: {why}", given.display()));
+        let named = self.driver.as_deref().map(|given| driver(given).map_err(|why| wrong(given, why)));
+        let rules = named.transpose()?.or_else(own);
         let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
         let kept = if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN };
         let new = if rounded { TimingCheck::of_rounded } else { TimingCheck::new };
