@@ -46,6 +46,11 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         return Err(arguments.wrong(error));
     }
     let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.wrong(error))?;
+    // A line that was mapped is wanted; one that was only proposed may be none.
+    let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
+    if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
+        return Err(arguments.wrong(line.to_text()));
+    }
     let beside =
         arguments.against.as_deref().map(|path| Beside::of(arguments, &recording, path)).transpose()?;
     let base = arguments.against.as_deref().map(scenarios::read).transpose()?;

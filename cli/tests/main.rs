@@ -22,4 +22,5 @@ mod scripts;
 mod tables;
 mod terminal;
 mod torque;
+mod uart;
 mod written;

@@ -116,6 +116,7 @@ struct Asked {
     clock_hz: Option<u32>,
     sample_rate_hz: Option<u64>,
     baud: Option<u32>,
+    uart: Option<String>,
     /// Whether drivers step on both edges.
     both_edges: Option<bool>,
     /// When one of its steps, or bytes, is to come, in s.
@@ -188,7 +189,7 @@ impl CaptureFile {
         })
     }
 
-    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, both_edges, at_s, channel, aligned, most, from_s, to_s}`,
+    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, uart, both_edges, at_s, channel, aligned, most, from_s, to_s}`,
     /// each of which may be left out: `{map, clock_hz, rounding, end_s, records, kept, notes, steps, lines}`.
     ///
     /// # Errors
@@ -199,6 +200,7 @@ impl CaptureFile {
             clock_hz,
             sample_rate_hz,
             baud,
+            uart,
             both_edges,
             at_s,
             channel,
@@ -207,7 +209,7 @@ impl CaptureFile {
             from_s,
             to_s,
         } = serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
-        let ask = Ask { map, clock_hz, sample_rate_hz, baud, both_edges: both_edges.unwrap_or(false) };
+        let ask = Ask { map, clock_hz, sample_rate_hz, baud, uart, both_edges: both_edges.unwrap_or(false) };
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
         let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));
         let mut opened = match known {

@@ -15,7 +15,7 @@ import { compiled } from "./wasm.js";
  * @typedef {{position_min: number[], position_max: number[], speed_min: number[], speed_max: number[]}} Columns  In steps and steps/s.
  * @typedef {{total: number, replies: number, rows: LinePacket[], csv: string}} LinePackets
  * @typedef {{bytes: Uint8Array, unknown: number}} Replies  None in it where the device was silent; of `unknown` packets nothing says which controller's they are.
- * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} Asked
+ * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, uart?: string, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} Asked
  * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  What a run has of a channel and of RX, and the step, or byte, that both have at one time.
  */
 

@@ -8,7 +8,10 @@ use crate::{
 };
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stepscope_core::inspect::{recording::opened::Ask, vcd::Timescale};
+use stepscope_core::{
+    capture::uart,
+    inspect::{recording::opened::Ask, vcd::Timescale},
+};
 
 /// What `stepscope capture` takes.
 #[derive(Args)]
@@ -36,6 +39,9 @@ pub(crate) struct Arguments {
     /// Bit rate of RX and TX; without it that of their pulses.
     #[arg(long, value_name = "BAUD")]
     pub(super) baud: Option<u32>,
+    /// Data bits, parity and stop bits of RX and TX: 7 or 8, N, E or O, 1 or 2, such as 7E1 (default 8N1)
+    #[arg(long, value_name = "FORMAT", value_parser = uart)]
+    pub(super) uart: Option<uart::Format>,
     /// Compare with the run of this scenario, step by step, or byte by byte where no channel steps: a JSON file, or a
     /// preset's name. Reports missing, extra and late ones; ends with 3 if there are any.
     #[arg(long, value_name = "SCENARIO")]
@@ -96,6 +102,10 @@ pub(crate) struct Arguments {
     pub(super) timing: timing::Options,
 }
 
+fn uart(text: &str) -> Result<uart::Format, String> {
+    text.parse().map_err(str::to_owned)
+}
+
 fn timescale(text: &str) -> Result<Timescale, String> {
     text.parse().map_err(str::to_owned)
 }
@@ -127,6 +137,7 @@ impl Arguments {
             sample_rate_hz: self.sample_rate,
             baud: self.baud,
             both_edges: self.both_edges,
+            uart: self.uart.map(|uart| uart.to_string()),
         }
     }
 

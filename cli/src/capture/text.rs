@@ -173,11 +173,15 @@ pub(super) fn tables(
     let lines = recording.report.lines.iter().map(|line| -> Value {
         json!({
             "line": line.name,
-            "baud": line.baud,
+            "baud": (line.baud > 0).then_some(line.baud),
+            "uart": line.format,
             "measured_baud": line.measured.map(|measured| measured.baud),
             "bytes": line.heard.bytes.len(),
             "framing_errors": line.heard.framing_errors.len(),
+            "parity_errors": line.heard.parity_errors.len(),
             "packets": line.guess_text(),
+            "problem": line.problem,
+            "hint": line.hint,
         })
     });
     let comparison = beside.map(|beside| {

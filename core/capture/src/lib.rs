@@ -39,6 +39,8 @@ pub mod recorded;
 
 pub mod samples;
 
+pub mod uart;
+
 pub use capture::Capture;
 pub use channel_map::ChannelMap;
 pub use recorded::Recorded;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! name       STEP and DIR of one motor belong together (names.rs); one DIR without an axis is that of all motors without
-//! behavior   RX     high at rest, and every pulse is whole bits long, the shortest being one bit
+//! behavior   RX     pulses are whole bits of words with a stop bit; inverted where the line is low when idle
 //!            A, B   edges of two channels alternate, evenly
 //!            STEP   the most pulses; more motors have pulses of about this width
 //!            DIR    changes seldom: at both levels there are steps, and not while STEP is high, where one does so
@@ -12,22 +12,21 @@ use crate::{
     capture::{Capture, Change},
     channel_map::{ChannelMap, Entry, Input},
     names::{AXES, Kind, Meaning, Named, are_indexed},
+    uart::{self, Edge},
 };
 use std::collections::BTreeSet;
 use stepscope_peripheral::signal::{Levels, MAX_CHANNELS};
 
 /// Changes that are looked at; what a channel is shows in its beginning.
 const MAX_LOOKED_AT: usize = 1_000_000;
-/// Pulses of a line that have to fit, so that it is taken for one.
-const MIN_LINE_PULSES: u64 = 20;
+/// Edges by which a line is known.
+const LINE_EDGES: usize = 600;
 /// Pulses that a channel has to have, so that it is taken for STEP.
 const MIN_STEPS: u64 = 4;
 /// Edges that an encoder has to have.
 const MIN_ENCODER_EDGES: usize = 16;
 /// Pulses of another motor are at most so many times as wide as those of the first.
 const MAX_WIDTH_RATIO: u64 = 4;
-/// Longest run of equal bits within a byte: start bit and eight zeros.
-const MAX_BITS: u64 = 9;
 
 const EN: u32 = Levels::EN.trailing_zeros();
 const RX: u32 = Levels::RX.trailing_zeros();
@@ -156,7 +155,8 @@ impl<'a> Proposal<'a> {
             if let Some((channel, named)) =
                 named.into_iter().find(|(channel, _)| !is_line || !self.behavior(*channel).is_pulses())
             {
-                self.others.push(Entry { bit, channel, inverted: named.inverted });
+                let inverts = is_line && self.behavior(channel).line == Some(true);
+                self.others.push(Entry { bit, channel, inverted: named.inverted || inverts });
             }
         }
     }
@@ -321,8 +321,7 @@ impl<'a> Proposal<'a> {
     }
 
     fn is_line(&self, channel: usize) -> bool {
-        let own = self.behavior(channel);
-        own.is_line() && !own.is_low_pulses()
+        self.behavior(channel).line.is_some()
     }
 
     fn lines_by_behavior(&mut self) {
@@ -595,23 +594,15 @@ struct Behaviour {
     longest_low: u64,
     shortest_high: u64,
     shortest_low: u64,
-    /// Shortest time between two changes.
-    shortest: u64,
     /// When it changed last.
     since: Option<u64>,
-    /// Pulses no longer than a byte's bits may be, and those of them that are whole bits long.
-    short: u64,
-    whole: u64,
+    /// Whether it is a serial line, and inverted.
+    line: Option<bool>,
 }
 
 impl Behaviour {
     fn changes(&self) -> u64 {
         self.rises + self.falls
-    }
-
-    /// Low pulses of one width: the start bits of bytes of ones at best, but rather STEP that is active low.
-    const fn is_low_pulses(&self) -> bool {
-        self.longest_low <= self.shortest_low.saturating_add(self.shortest_low / 2)
     }
 
     /// Whether its pulses are low.
@@ -631,18 +622,12 @@ impl Behaviour {
             && self.rises >= 2 * MIN_STEPS
             && self.longest_high <= self.shortest_high.saturating_mul(2)
     }
-
-    /// A serial line, high at rest.
-    fn is_line(&self) -> bool {
-        self.first && self.last && self.short >= MIN_LINE_PULSES && self.whole * 20 >= self.short * 19
-    }
 }
 
-/// What each channel does, in two passes: the shortest pulse first, then how many are whole multiples of it.
+/// What each channel does.
 fn behaviours(changes: &[Change], channels: usize) -> Vec<Behaviour> {
     let never = u64::MAX;
-    let none =
-        Behaviour { shortest: never, shortest_high: never, shortest_low: never, ..Behaviour::default() };
+    let none = Behaviour { shortest_high: never, shortest_low: never, ..Behaviour::default() };
     let mut all = vec![none; channels];
     let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return all };
     for (channel, each) in all.iter_mut().enumerate() {
@@ -654,21 +639,22 @@ fn behaviours(changes: &[Change], channels: usize) -> Vec<Behaviour> {
         *longest = length.max(*longest);
         let shortest = if high { &mut each.shortest_high } else { &mut each.shortest_low };
         *shortest = length.min(*shortest);
-        each.shortest = each.shortest.min(length);
     });
-    for each in &mut all {
-        each.since = None;
-        (each.rises, each.falls) = (0, 0);
-    }
-    each_pulse(changes, &mut all, &mut |each, length, _| {
-        let bit = each.shortest.max(1);
-        if length > bit * MAX_BITS + bit / 2 {
-            return;
+    let mut edges: Vec<Vec<Edge>> = vec![Vec::new(); channels];
+    for pair in changes.windows(2) {
+        let [before, now] = pair else { continue };
+        let mut changed = before.levels ^ now.levels;
+        while changed != 0 {
+            let channel = changed.trailing_zeros();
+            changed &= changed - 1;
+            if let Some(edges) = edges.get_mut(channel as usize).filter(|edges| edges.len() < LINE_EDGES) {
+                edges.push(Edge { at: now.tick, high: now.levels >> channel & 1 == 1 });
+            }
         }
-        each.short += 1;
-        let off = (length + bit / 2) % bit;
-        each.whole += u64::from(off.abs_diff(bit / 2) * 5 <= bit);
-    });
+    }
+    for (each, edges) in all.iter_mut().zip(&edges) {
+        each.line = uart::looks_like_a_line(edges);
+    }
     all
 }
 

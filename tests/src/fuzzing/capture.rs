@@ -169,6 +169,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
     let clock_hz = some(bytes, &[11, 1_000_000, 16_000_000, 1_000_000_000])?;
     let sample_rate_hz = some(bytes, &[1, 1_000_000, 24_000_000])?.map(u64::from);
     let baud = some(bytes, &[1, 9600, 115_200, 12_000_000])?;
+    let uart = *bytes.choose(&["8N1", "8E1", "7O2", "9N1"])?;
     let mut pairs = Vec::new();
     for _ in 0..bytes.int_in_range(0..=4_u8)? {
         let signals = [
@@ -181,7 +182,14 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
         pairs.push(format!("{signal}={mark}#{}", bytes.int_in_range(0..=channels)?));
     }
     let map = (!pairs.is_empty()).then(|| pairs.join(","));
-    Ok(Ask { map, clock_hz, sample_rate_hz, baud, both_edges: bytes.arbitrary()? })
+    Ok(Ask {
+        map,
+        clock_hz,
+        sample_rate_hz,
+        baud,
+        uart: Some(uart.to_owned()),
+        both_edges: bytes.arbitrary()?,
+    })
 }
 
 /// What a file holds, in order, the same again, and with room for a few rows no more than those.

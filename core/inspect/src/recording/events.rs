@@ -19,14 +19,16 @@ use super::{
     alignment::{Alignment, Comparison, Side},
     differences::Differences,
     matching::Matching,
-    serial::{Heard, hear},
+    serial::Heard,
     tolerance::Tolerance,
 };
 use alloc::vec::Vec;
 use serde::Serialize;
+use stepscope_peripheral::trace::Step;
+#[cfg(feature = "capture")]
 use stepscope_peripheral::{
     signal::{Levels, Record},
-    trace::{Step, steps},
+    trace::steps,
 };
 
 /// What is compared.
@@ -119,11 +121,14 @@ impl Events {
     }
 
     /// Those of a trace: the steps of a channel, or the bytes of RX at `baud`.
+    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of_records(records: &[Record], clock_hz: u32, kind: Kind, channel: u8, baud: u32) -> Self {
         match kind {
             Kind::Steps => Self::of_steps(steps(records, channel), clock_hz),
-            Kind::Bytes => Self::of_bytes(&hear(records, Levels::RX, clock_hz, baud), clock_hz),
+            Kind::Bytes => {
+                Self::of_bytes(&super::serial::hear(records, Levels::RX, clock_hz, baud), clock_hz)
+            }
         }
     }
 

@@ -18,7 +18,7 @@ use super::{
     overview::Overview,
     report::{ChannelReport, LineReport, Report, Survey, steps},
     scenario::{self, Bytes, Made, Refused, Steps},
-    serial::{Heard, HeardByte},
+    serial::{Heard, HeardByte, LineOptions},
 };
 use crate::{
     curves::{Actual, Window},
@@ -72,6 +72,18 @@ pub struct Ask {
     pub baud: Option<u32>,
     /// Whether the drivers step on both edges: each STEP of the map becomes DEDGE.
     pub both_edges: bool,
+    /// Data bits, parity and stop bits of RX and TX, such as `8E1`; 8N1 without it.
+    pub uart: Option<String>,
+}
+
+impl Ask {
+    fn lines(&self) -> Result<LineOptions, OpenError> {
+        let format = self
+            .uart
+            .as_deref()
+            .map(|text| text.trim().parse().map_err(|allowed| OpenError::Uart(text.to_owned(), allowed)));
+        Ok(LineOptions { baud: self.baud, format: format.transpose()?.unwrap_or_default() })
+    }
 }
 
 /// Why a capture cannot be looked at as yet.
@@ -92,6 +104,10 @@ pub enum OpenError {
     NoBaud,
     /// A bit rate that there cannot be.
     Baud,
+    /// A format of a line that there cannot be, and those that there are.
+    Uart(String, &'static str),
+    /// Nothing steps, and a line cannot be decoded; why.
+    NoRate(String),
     /// A time has no cycle.
     TooLate(TooLate),
     /// Its positions stand for too many steps, or lead too far.
@@ -123,6 +139,8 @@ impl fmt::Display for OpenError {
                 "the bytes have no times; give the bit rate, and they are taken for sent back to back",
             ),
             Self::Baud => f.write_str("the bit rate is 0; give the bits a second"),
+            Self::Uart(given, allowed) => write!(f, "the UART format: \"{given}\" is not one; {allowed}"),
+            Self::NoRate(why) => f.write_str(why),
             Self::TooLate(error) => error.fmt(f),
             Self::TooManySteps(most) => write!(
                 f,
@@ -254,17 +272,21 @@ impl Opened {
         let (mut opened, map, base) = Self::before(&capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(&capture, ask).map(|()| opened) };
         let report = opened.without_levels(&capture, base, ask, &map)?;
-        let exact = opened.exact_channels(&capture, &map, base, ask);
+        let (exact, lines) = (opened.exact_channels(&capture, &map, base, ask), ask.lines()?);
         let others = others_rounded(&capture, base, opened.clock_hz);
         let recorded = Recorded::new(capture, &map, base, opened.clock_hz).map_err(OpenError::TooLate)?;
         opened.rounded(recorded.rounding, others);
         opened.records = recorded.records;
         let (clock_hz, channels) = (opened.clock_hz, opened.channels);
-        let mut report = report.unwrap_or_else(|| Report::of(&opened.records, clock_hz, channels, ask.baud));
+        let mut report = report.unwrap_or_else(|| {
+            let all = opened.records.iter().copied();
+            let changing = Survey::of(all.clone()).changing;
+            Report::of_all(all, changing, clock_hz, channels, lines)
+        });
         if let Some(exact) = exact.filter(|_| recorded.rounding.lost == 0) {
             report.channels = exact;
         }
-        opened.told(report, &map);
+        opened.told(report, &map)?;
         Ok(opened)
     }
 
@@ -283,21 +305,22 @@ impl Opened {
             let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
             opened.rounded(recorded.rounding, others_rounded(capture, base, clock_hz));
             opened.records = recorded.records;
-            opened.told(report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }), &map);
+            opened
+                .told(report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }), &map)?;
             return Ok(opened);
         }
         let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
         let mut passed = all.clone();
         let survey = Survey::of(passed.by_ref());
         opened.rounded(passed.rounding, 0);
-        let mut report = Report::of_all(all, survey.changing, clock_hz, opened.channels, ask.baud);
+        let mut report = Report::of_all(all, survey.changing, clock_hz, opened.channels, ask.lines()?);
         if let Some(exact) = opened.exact_channels(capture, &map, base, ask)
             && passed.rounding.lost == 0
         {
             report.channels = exact;
         }
         opened.take_part(capture, &map, base, part, survey.count)?;
-        opened.told(report, &map);
+        opened.told(report, &map)?;
         Ok(opened)
     }
 
@@ -379,6 +402,7 @@ impl Opened {
         if ask.baud == Some(0) {
             return Err(OpenError::Baud);
         }
+        ask.lines()?;
         let map = match &ask.map {
             Some(text) => ChannelMap::parse(text, capture).map_err(OpenError::Map)?,
             None => ChannelMap::proposed(capture),
@@ -567,8 +591,16 @@ impl Opened {
     }
 
     /// Tells what it comes to.
-    fn told(&mut self, report: Report, map: &ChannelMap) {
+    ///
+    /// # Errors
+    /// [`OpenError::NoRate`] where a line cannot be decoded and nothing else is there.
+    fn told(&mut self, report: Report, map: &ChannelMap) -> Result<(), OpenError> {
         self.report = report;
+        let is_something =
+            !self.report.channels.is_empty() || self.report.lines.iter().any(|line| line.problem.is_none());
+        if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_something) {
+            return Err(OpenError::NoRate(line.to_text()));
+        }
         for channel in &self.report.channels {
             if self.has_levels() && !map.has_direction(channel.channel) {
                 let number = channel.channel;
@@ -577,6 +609,7 @@ impl Opened {
                 ));
             }
         }
+        Ok(())
     }
 
     /// Bytes without times are taken for sent back to back; levels without times cannot be used.
@@ -594,7 +627,7 @@ impl Opened {
         let bytes = (0..).zip(&capture.bytes);
         let bytes = bytes
             .map(|(index, timed)| HeardByte { start: Instant(1 + times.byte(index).0), byte: timed.byte });
-        let heard = Heard { bytes: bytes.collect(), framing_errors: Vec::new() };
+        let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
         self.end_s = times.byte(heard.bytes.len() as u64).0 as f64 / f64::from(self.clock_hz);
         self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
         self.report.lines.push(LineReport::of_heard(heard, self.clock_hz, baud));
@@ -666,7 +699,7 @@ impl Opened {
         let last = self.records.last().map_or(0, |record| record.cycle.0);
         let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
         // The last byte of a line is not over where the line changes last.
-        let heard = self.report.rx().filter(|_| self.kept.is_none()).and_then(|line| {
+        let heard = self.report.rx().filter(|line| self.kept.is_none() && line.baud > 0).and_then(|line| {
             let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
             Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
         });

@@ -320,7 +320,7 @@ mod tests {
     #[test]
     fn bytes_of_no_known_protocol_are_split_at_gaps_alone() {
         let bytes = (0..40).map(|k| HeardByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
-        let heard = Heard { bytes: bytes.collect(), framing_errors: Vec::new() };
+        let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
         let report =
             Report { channels: Vec::new(), lines: Vec::from([LineReport::of_heard(heard, 1000, 1000)]) };
         let rows = Packets::of(&report, 1000, 1, false).rows;

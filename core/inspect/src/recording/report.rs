@@ -9,15 +9,23 @@
 //! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! let report = Report::of(&recording.trace, 16_000_000, 1, None);
 //! assert_eq!(report.channels.len(), 1);
-//! assert_eq!(report.lines[0].to_text(), "RX: 115200 baud (115211 measured), 200 bytes, raw packets of 1 byte");
+//! assert_eq!(report.lines[0].to_text(), "RX: 115200 baud (115187 measured), 200 bytes, raw packets of 1 byte");
 //! ```
 
+#[cfg(feature = "capture")]
+use super::serial::{LineOptions, MEASURED_EDGES, edges, hear_among, parity_of_seven};
 use super::{
     figures::StepFigures,
-    serial::{Guess, Heard, Measured, guess, hear_among, line_name, measured_baud_among},
+    serial::{Guess, Heard, Measured, guess, line_name},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
 use serde::Serialize;
+#[cfg(feature = "capture")]
+use stepscope_capture::uart::{Edge, Format, NoRate, estimate};
 use stepscope_peripheral::{
     signal::{Levels, Record},
     trace::Step,
@@ -48,8 +56,14 @@ pub struct LineReport {
     pub name: &'static str,
     /// The rate that its pulses have; `None` where none fits.
     pub measured: Option<Measured>,
-    /// The rate that its bytes were heard at.
+    /// The rate that its bytes were decoded at; 0 where none fits.
     pub baud: u32,
+    /// Data bits, parity and stop bits, such as `8N1`.
+    pub format: String,
+    /// Why it was not decoded, and what would help.
+    pub problem: Option<String>,
+    /// What is doubtful about its bytes, and what would help.
+    pub hint: Option<String>,
     /// Its bytes.
     pub heard: Heard,
     /// What they seem to be.
@@ -79,29 +93,32 @@ impl Survey {
 }
 
 impl Report {
-    /// Of records in cycles of `clock_hz`, of a bus of so many channels. Lines are heard at `baud`, or at the rate that
-    /// their pulses have.
+    /// Of records in cycles of `clock_hz`, of a bus of so many channels. Lines are decoded as 8N1 at `baud`, or at the rate
+    /// that their pulses have.
+    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
         let all = records.iter().copied();
-        Self::of_all(all.clone(), Survey::of(all).changing, clock_hz, channels, baud)
+        let options = LineOptions { baud, ..LineOptions::default() };
+        Self::of_all(all.clone(), Survey::of(all).changing, clock_hz, channels, options)
     }
 
     /// The same of records that are gone through as often as it takes, and kept nowhere; `changing` has a bit for each
     /// signal that changes ([`Survey`]).
+    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of_all(
         records: impl Iterator<Item = Record> + Clone,
         changing: u64,
         clock_hz: u32,
         channels: u8,
-        baud: Option<u32>,
+        options: LineOptions,
     ) -> Self {
         let of = |channel| {
             let figures = StepFigures::of(steps(records.clone(), channel), clock_hz)?;
             Some(ChannelReport { channel, figures })
         };
-        let line = |mask| LineReport::of(records.clone(), mask, clock_hz, baud);
+        let line = |mask| LineReport::of(records.clone(), mask, clock_hz, options);
         let lines = [Levels::RX, Levels::TX].into_iter().filter(|mask| changing & mask != 0);
         Self {
             channels: (0..channels).filter(|channel| changing >> channel & 1 != 0).filter_map(of).collect(),
@@ -143,19 +160,93 @@ pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl 
     })
 }
 
+/// The format of a line that is given none.
+const EIGHT_N_ONE: &str = "8N1";
+
+/// Why no rate was found, and what would help.
+#[cfg(feature = "capture")]
+fn no_rate(why: &NoRate) -> String {
+    match why {
+        NoRate::Ambiguous(rates) => {
+            let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
+            format!("its pulses fit several bit rates ({}); give one with --baud", rates.join(", "))
+        }
+        _ => {
+            let other = other(why).map_or_else(String::new, |other| format!(": {other}"));
+            format!(
+                "no bit rate fits its pulses{other}; give the bit rate with --baud, or the format with --uart"
+            )
+        }
+    }
+}
+
+/// What would fit.
+#[cfg(feature = "capture")]
+fn other(why: &NoRate) -> Option<String> {
+    match why {
+        NoRate::Format(format) => {
+            let text = format.to_string();
+            let what = match text.get(1..2) {
+                Some("E") => "the errors look like even parity",
+                Some("O") => "the errors look like odd parity",
+                _ => "the words have another format",
+            };
+            Some(format!("{what}: try --uart {text}"))
+        }
+        NoRate::Inverted => Some("the line looks inverted: map it with !, such as RX=!CH1".into()),
+        _ => None,
+    }
+}
+
 impl LineReport {
     /// Of a line that changes.
+    #[cfg(feature = "capture")]
     fn of(
         records: impl Iterator<Item = Record> + Clone,
         mask: u64,
         clock_hz: u32,
-        baud: Option<u32>,
+        LineOptions { baud, format }: LineOptions,
     ) -> Option<Self> {
-        let measured = measured_baud_among(records.clone(), mask, clock_hz);
-        let baud = baud.or(measured.map(Measured::rounded))?;
-        let heard = hear_among(records, mask, clock_hz, baud);
-        let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
-        Some(Self { name: line_name(mask), measured, baud, heard, guess })
+        let hz = f64::from(clock_hz);
+        let first: Vec<Edge> = edges(records.clone(), mask).take(MEASURED_EDGES).collect();
+        let found = estimate(&first, format, Some(hz));
+        let measured = found.as_ref().ok().map(|found| Measured::of(*found, clock_hz));
+        let mut line = Self {
+            name: line_name(mask),
+            measured,
+            baud: 0,
+            format: format.to_string(),
+            problem: None,
+            hint: None,
+            heard: Heard::default(),
+            guess: Guess::Other,
+        };
+        let bit = match (baud, &found) {
+            (Some(baud), _) => hz / f64::from(baud.max(1)),
+            (None, Ok(found)) => found.bit,
+            (None, Err(NoRate::NoEdges)) => return None,
+            (None, Err(why)) => {
+                line.problem = Some(no_rate(why));
+                return Some(line);
+            }
+        };
+        line.baud = baud.or(measured.map(Measured::rounded)).unwrap_or_default();
+        line.heard = hear_among(records, mask, bit, format);
+        line.guess = guess(&line.heard.bytes, bit as u64);
+        let Heard { bytes, framing_errors, parity_errors } = &line.heard;
+        let wrong = framing_errors.len() + parity_errors.len();
+        line.hint = match found {
+            Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => other(&why),
+            Ok(found) if wrong * 8 > bytes.len() && found.usual != baud => {
+                Some(format!("its pulses look like {} baud", libm::round(hz / found.measured)))
+            }
+            _ if format == Format::default() => parity_of_seven(bytes).map(|parity| {
+                let name = if parity == 'E' { "even" } else { "odd" };
+                format!("all bytes look like 7 data bits with {name} parity: try --uart 7{parity}1")
+            }),
+            _ => None,
+        };
+        Some(line)
     }
 
     /// Of bytes that were decoded already, on RX.
@@ -168,7 +259,16 @@ impl LineReport {
     #[must_use]
     pub fn of_heard_on(line: u64, heard: Heard, clock_hz: u32, baud: u32) -> Self {
         let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
-        Self { name: line_name(line), measured: None, baud, heard, guess }
+        Self {
+            name: line_name(line),
+            measured: None,
+            baud,
+            format: EIGHT_N_ONE.into(),
+            problem: None,
+            hint: None,
+            heard,
+            guess,
+        }
     }
 
     /// In one sentence.
@@ -177,17 +277,24 @@ impl LineReport {
         let measured = self
             .measured
             .map_or_else(String::new, |measured| format!(" ({} measured)", libm::round(measured.baud)));
-        let errors = match self.heard.framing_errors.len() {
+        if let Some(problem) = &self.problem {
+            return format!("{}: {problem}", self.name);
+        }
+        let errors = |kind: &str, count: usize| match count {
             0 => String::new(),
-            1 => ", 1 framing error".into(),
-            more => format!(", {more} framing errors"),
+            1 => format!(", 1 {kind} error"),
+            more => format!(", {more} {kind} errors"),
         };
-        let what = self.guess_text();
+        let format = if self.format == EIGHT_N_ONE { String::new() } else { format!(" {}", self.format) };
+        let hint = self.hint.as_ref().map_or_else(String::new, |hint| format!("; {hint}"));
         format!(
-            "{}: {} baud{measured}, {} bytes{errors}, {what}",
+            "{}: {} baud{format}{measured}, {} bytes{}{}, {}{hint}",
             self.name,
             self.baud,
-            self.heard.bytes.len()
+            self.heard.bytes.len(),
+            errors("framing", self.heard.framing_errors.len()),
+            errors("parity", self.heard.parity_errors.len()),
+            self.guess_text()
         )
     }
 

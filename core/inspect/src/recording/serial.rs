@@ -1,4 +1,4 @@
-//! Bytes on a recorded line: its bit rate from its pulses, its bytes as A4's receiver hears them, and which protocol they
+//! Bytes on a recorded line: its bit rate from its pulses, its bytes, and which protocol they
 //! speak.
 //!
 //! ```
@@ -18,34 +18,20 @@
 //! ```
 
 use alloc::{vec, vec::Vec};
+#[cfg(feature = "capture")]
+use stepscope_capture::uart::{Edge, Estimate, Fault, Format, decode, estimate};
+#[cfg(feature = "capture")]
+use stepscope_peripheral::signal::Record;
 use stepscope_peripheral::{
     protocol::Kind,
-    signal::{Levels, MAX_CHANNELS, Record},
-    units::{Cycles, Instant},
-    wire::{
-        frame::{Deframed, Deframer, Ticks},
-        uart::{Receiver, RxEvent},
-    },
+    signal::{Levels, MAX_CHANNELS},
+    units::Instant,
+    wire::frame::{Deframed, Deframer, Ticks},
 };
 
-/// Rates that lines have.
-const USUAL: [u32; 26] = [
-    300, 1200, 2400, 4800, 9600, 14_400, 19_200, 28_800, 31_250, 38_400, 57_600, 74_880, 76_800, 115_200,
-    128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000, 2_000_000,
-    3_000_000,
-];
-/// How far a measured rate may be from a usual one, in parts of a hundred.
-const NEAR_PERCENT: u64 = 2;
-/// Pulses that are looked at for the rate.
-const MAX_PULSES: usize = 100_000;
-/// Lengths that are tried as that of a bit.
-const MAX_CANDIDATES: usize = 200;
-/// Longest run of equal bits within a byte: start bit and eight zeros.
-const MAX_BITS: u64 = 9;
-/// How far a pulse may be from whole bits, in bits.
-const MAX_OFF: f64 = 0.3;
-/// Pulses that have to fit, where there are so many.
-const MIN_PULSES: usize = 4;
+/// Edges that the rate is measured by.
+#[cfg(feature = "capture")]
+pub(super) const MEASURED_EDGES: usize = 4000;
 /// Bit times after which a gap ends a raw packet (DESIGN A5).
 pub(super) const GAP_BITS: u64 = 45;
 
@@ -59,6 +45,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    #[cfg(feature = "capture")]
+    pub(super) fn of(found: Estimate, clock_hz: u32) -> Self {
+        Self { baud: f64::from(clock_hz) / found.measured, usual: found.usual }
+    }
+
     /// The usual rate, or the measured one.
     #[must_use]
     pub fn rounded(self) -> u32 {
@@ -66,84 +57,55 @@ impl Measured {
     }
 }
 
-/// The rate of the line of `mask` (RX or TX): its shortest pulse is a bit, of which all others within a byte are whole
-/// multiples; single shorter ones are glitches. `None` where no rate fits nineteen of twenty pulses.
+/// How a line is decoded.
+#[cfg(feature = "capture")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineOptions {
+    /// Bit rate; measured without it.
+    pub baud: Option<u32>,
+    /// Data bits, parity and stop bits.
+    pub format: Format,
+}
+
+/// The rate of the 8N1 line of `mask` (RX or TX); `None` where no rate fits, or several do.
+#[cfg(feature = "capture")]
 #[must_use]
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
-    measured_baud_among(records.iter().copied(), mask, clock_hz)
+    let edges: Vec<Edge> = edges(records.iter().copied(), mask).take(MEASURED_EDGES).collect();
+    let found = estimate(&edges, Format::default(), Some(clock_hz.into())).ok()?;
+    Some(Measured::of(found, clock_hz))
 }
 
-/// The same of records that are nowhere together.
-pub(super) fn measured_baud_among(
-    records: impl Iterator<Item = Record>,
-    mask: u64,
-    clock_hz: u32,
-) -> Option<Measured> {
-    let mut lengths = Vec::new();
-    let (mut since, mut before) = (None, None);
-    for now in records {
-        let high = now.levels.has(mask);
-        if before.replace(high).is_none_or(|before| before == high) {
-            continue;
-        }
-        if let Some(since) = since.replace(now.cycle.0) {
-            lengths.push(now.cycle.0 - since);
-        }
-        if lengths.len() == MAX_PULSES {
-            break;
-        }
-    }
-    lengths.sort_unstable();
-    // Up to a twentieth of the pulses may be glitches.
-    let candidates = lengths.get(..lengths.len() / 20 + 1).unwrap_or_default();
-    let mut tried = 0;
-    // Of very many some are enough, with the last, which no glitch is.
-    let some = candidates.iter().step_by(candidates.len() / MAX_CANDIDATES + 1);
-    for &bit in some.chain(candidates.last()) {
-        if bit == tried || bit == 0 {
-            continue;
-        }
-        tried = bit;
-        // By short runs first, whose number of bits is sure; what they give counts the bits of longer ones.
-        let mut period = bit as f64;
-        for most in [1, 2, 4, MAX_BITS] {
-            period = refined(&lengths, period, most);
-        }
-        let within = lengths.iter().take_while(|length| **length as f64 <= period * (MAX_BITS as f64 + 0.5));
-        let (mut all, mut fitting) = (0, 0);
-        for length in within {
-            let bits = libm::round(*length as f64 / period);
-            all += 1;
-            fitting +=
-                usize::from(bits > 0.0 && libm::fabs(*length as f64 - bits * period) <= MAX_OFF * period);
-        }
-        if fitting * 20 < all * 19 || fitting < MIN_PULSES.min(lengths.len()) {
-            continue;
-        }
-        let baud = f64::from(clock_hz) / period;
-        let near = |rate: &u32| {
-            libm::fabs(baud - f64::from(*rate)) * 100.0 <= f64::from(*rate) * NEAR_PERCENT as f64
-        };
-        let off = |rate: &u32| libm::fabs(baud - f64::from(*rate));
-        let usual = USUAL.into_iter().filter(near).min_by(|a, b| off(a).total_cmp(&off(b)));
-        return Some(Measured { baud, usual });
-    }
-    None
+/// The edges of a line.
+#[cfg(feature = "capture")]
+pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl Iterator<Item = Edge> {
+    let mut before = None;
+    records.filter_map(move |record| {
+        let high = record.levels.has(mask);
+        let changes = before.replace(high).is_some_and(|before| before != high);
+        changes.then_some(Edge { at: record.cycle.0, high })
+    })
 }
 
-/// The time of a bit, from the pulses of up to `most` bits by what is known of it.
-fn refined(lengths: &[u64], period: f64, most: u64) -> f64 {
-    let (mut cycles, mut counted) = (0.0, 0.0);
-    for length in lengths.iter().map(|length| *length as f64) {
-        let bits = libm::round(length / period);
-        if bits > most as f64 {
-            break;
-        }
-        if bits > 0.0 && libm::fabs(length - bits * period) <= MAX_OFF * period {
-            (cycles, counted) = (cycles + length, counted + bits);
+/// Words that are read under another format, so that it shows: as many different ones have one parity by chance once in 256.
+const PARITY_WORDS: u32 = 8;
+
+/// The parity that eight bits of each byte have, seven of data and the parity bit: `E` or `O`. `None` where they have none, or
+/// too few of them are different.
+pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
+    let mut seen = [0_u64; 4];
+    let (mut even, mut odd) = (true, true);
+    for heard in bytes {
+        let is_even = heard.byte.count_ones().is_multiple_of(2);
+        (even, odd) = (even && is_even, odd && !is_even);
+        if let Some(word) = seen.get_mut(usize::from(heard.byte >> 6)) {
+            *word |= 1 << (heard.byte & 63);
         }
     }
-    if counted > 0.0 { cycles / counted } else { period }
+    if seen.iter().map(|word| word.count_ones()).sum::<u32>() < PARITY_WORDS {
+        return None;
+    }
+    if even { Some('E') } else { odd.then_some('O') }
 }
 
 /// A byte, and where its start bit was seen.
@@ -162,51 +124,35 @@ pub struct Heard {
     pub bytes: Vec<HeardByte>,
     /// Where bytes begin whose stop bit was low.
     pub framing_errors: Vec<Instant>,
+    /// Where bytes begin whose parity bit does not fit.
+    pub parity_errors: Vec<Instant>,
 }
 
-/// The bytes of the line of `mask` at a rate, as DESIGN A4's receiver hears them.
+/// The bytes of the 8N1 line of `mask` at a rate.
+#[cfg(feature = "capture")]
 #[must_use]
 pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
-    hear_among(records.iter().copied(), mask, clock_hz, baud)
+    let bit = f64::from(clock_hz) / f64::from(baud.max(1));
+    hear_among(records.iter().copied(), mask, bit, Format::default())
 }
 
-/// The same of records that are nowhere together.
+/// The same of records that are nowhere together; a bit lasts so many cycles.
+#[cfg(feature = "capture")]
 pub(super) fn hear_among(
     records: impl Iterator<Item = Record>,
     mask: u64,
-    clock_hz: u32,
-    baud: u32,
+    bit: f64,
+    format: Format,
 ) -> Heard {
-    let bit = ((2 * u64::from(clock_hz) + u64::from(baud)) / (2 * u64::from(baud.max(1)))).max(2);
-    let mut receiver = Receiver::new(Cycles(bit));
     let mut heard = Heard::default();
-    let mut take = |receiver: &Receiver, event: Option<RxEvent>| match event {
-        Some(RxEvent::Byte(byte)) => heard.bytes.push(HeardByte { start: receiver.seen(), byte }),
-        Some(RxEvent::FramingError) => heard.framing_errors.push(receiver.seen()),
-        None => {}
-    };
-    let (mut now, mut high) = (Instant(0), true);
-    let ends = [(Instant::NEVER, true)];
-    for (at, level) in records.map(|record| (record.cycle, record.levels.has(mask))).chain(ends) {
-        // What the receiver does by itself until the next change.
-        loop {
-            let due = receiver.deadline(now, high);
-            if due >= at || due == Instant::NEVER {
-                break;
-            }
-            let event = receiver.clock(due, high, high);
-            take(&receiver, event);
-            now = due;
+    decode(edges(records, mask), bit, format, |word| {
+        let start = Instant(word.start);
+        match word.fault {
+            None => heard.bytes.push(HeardByte { start, byte: word.byte }),
+            Some(Fault::Framing) => heard.framing_errors.push(start),
+            Some(Fault::Parity) => heard.parity_errors.push(start),
         }
-        if at == Instant::NEVER {
-            break;
-        }
-        if level != high || at == receiver.deadline(now, high) {
-            let event = receiver.clock(at, high, level);
-            take(&receiver, event);
-            (now, high) = (at, level);
-        }
-    }
+    });
     heard
 }
 
@@ -353,7 +299,7 @@ mod tests {
             let records = line(clock_hz, baud, &sent);
             let found = measured_baud(&records, Levels::RX, clock_hz).expect("a line");
             assert!((found.baud / f64::from(baud) - 1.0).abs() < 0.02, "{found:?} of {baud}");
-            assert_eq!(found.usual, USUAL.contains(&baud).then_some(baud));
+            assert_eq!(found.usual, (baud != 187_500).then_some(baud));
             let heard = hear(&records, Levels::RX, clock_hz, found.rounded());
             assert_eq!(heard.framing_errors, []);
             assert_eq!(
