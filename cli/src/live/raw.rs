@@ -2,13 +2,9 @@
 //! due, and what is known at the end, the core says.
 
 use super::{interrupt, port::Heard, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
-use crate::{failure::Failure, json::Tables};
+use crate::{failure::Failure, json::Tables, terminal};
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    thread,
-    time::Duration,
-};
+use std::{io::Write, thread, time::Duration};
 use stepscope_core::sim::{
     Experiment,
     raw_host::{NotPaced, RawHost, RawReport},
@@ -108,6 +104,6 @@ fn print(report: &RawReport, lost: Option<&str>, as_json: bool) -> Result<(), Fa
         let named = stood.iter().map(|tick| json!({ "tick": tick }));
         return Tables::of("send").with("send", [row]).with("stood_before", named).print();
     }
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     write!(out, "{report}").and_then(|()| out.flush()).map_err(Failure::output)
 }

@@ -1,6 +1,6 @@
 //! What a session leaves: the scenario that gives it again, and its wall-clock times beside it (LIVE H5).
 
-use crate::{failure::Failure, output::Out};
+use crate::{failure::Failure, output::Out, terminal};
 use std::{
     fs::{self, OpenOptions},
     io::{self, Write},
@@ -55,7 +55,8 @@ pub(crate) fn write(
     }
     if !whole {
         let cycles = recording.scenario.run_cycles.unwrap_or(0);
-        let _ = writeln!(io::stderr(), "recorded are the first {cycles} cycles: then there was no more room");
+        let _ =
+            writeln!(terminal::err(), "recorded are the first {cycles} cycles: then there was no more room");
     }
     Ok(verified)
 }

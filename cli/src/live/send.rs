@@ -9,7 +9,7 @@ use super::{
     stop_watch::{StopWatch, wake_on_time},
     wire::Wire,
 };
-use crate::{failure::Failure, json::Tables, scenarios};
+use crate::{failure::Failure, json::Tables, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -218,7 +218,7 @@ fn print(
     if as_json {
         return tables(report, wire, lost.as_deref()).print();
     }
-    let mut out = io::stdout().lock();
+    let mut out = terminal::out();
     let mut write = || -> io::Result<()> {
         write!(out, "{report}")?;
         if let Some(errors) = wire.port.line_errors().filter(|errors| !errors.is_none()) {

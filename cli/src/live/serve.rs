@@ -8,10 +8,10 @@ use super::{
     recording::{self, beside},
     server::{Pacing, Server, Settings},
 };
-use crate::{failure::Failure, output::Outputs, scenarios};
+use crate::{failure::Failure, output::Outputs, scenarios, terminal};
 use clap::Args;
 use std::{
-    io::{self, Write},
+    io::Write,
     net::SocketAddr,
     path::{Path, PathBuf},
 };
@@ -94,7 +94,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
         if printed.is_ok()
             && let Some(link) = recording::link(&server.session.recording().scenario)
         {
-            writeln!(io::stdout(), "#{link}").map_err(Failure::output)?;
+            writeln!(terminal::out(), "#{link}").map_err(Failure::output)?;
         }
     }
     printed?;
@@ -114,7 +114,7 @@ fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failu
     }
     let baud = session.experiment().baud();
     let tell = |text: String| {
-        let mut out = io::stdout().lock();
+        let mut out = terminal::out();
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(Failure::output)
     };
     if let Some(address) = arguments.tcp {
@@ -146,6 +146,6 @@ fn buttons(arguments: &Arguments) -> Result<Box<dyn Port>, Failure> {
         return Err(Failure::Option(format!("{}: {why}", arguments.scenario.display())));
     }
     let keyboard = Keyboard::open().map_err(Failure::threads)?;
-    writeln!(io::stdout(), "stdin").map_err(Failure::output)?;
+    writeln!(terminal::out(), "stdin").map_err(Failure::output)?;
     Ok(Box::new(keyboard))
 }

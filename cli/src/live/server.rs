@@ -15,6 +15,7 @@ use super::{
     stop_watch::{StopWatch, wake_on_time},
 };
 use crate::failure::Failure;
+use crate::terminal;
 use std::{
     collections::VecDeque,
     io::{self, Write},
@@ -319,7 +320,7 @@ impl Server {
     pub(super) fn print_end(&mut self) -> io::Result<()> {
         let Self { session, .. } = self;
         let summary = Summary::new(session.experiment(), session.run(), session.digests());
-        let mut out = io::stdout().lock();
+        let mut out = terminal::out();
         for controller in &summary.controllers {
             writeln!(out, "digest {:016x}", controller.digest)?;
         }

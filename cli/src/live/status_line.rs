@@ -1,5 +1,6 @@
 //! A line on standard error that says how things stand, at most ten times a second.
 
+use crate::terminal;
 use std::{
     io::{self, IsTerminal, Write},
     time::{Duration, Instant},
@@ -32,9 +33,9 @@ impl StatusLine {
         let _ = if self.terminal {
             let wide = self.wide.max(text.chars().count());
             self.wide = text.chars().count();
-            write!(io::stderr(), "\r{text:wide$}")
+            write!(io::stderr(), "\r").and_then(|()| write!(terminal::err(), "{text:wide$}"))
         } else {
-            writeln!(io::stderr(), "{text}")
+            writeln!(terminal::err(), "{text}")
         };
     }
 
@@ -42,7 +43,7 @@ impl StatusLine {
     pub(crate) fn note(&mut self, text: &str) {
         let end = if self.terminal && self.wide > 0 { "\n" } else { "" };
         self.wide = 0;
-        let _ = writeln!(io::stderr(), "{end}{text}");
+        let _ = writeln!(terminal::err(), "{end}{text}");
     }
 }
 
@@ -50,7 +51,7 @@ impl Drop for StatusLine {
     /// What follows begins on a line of its own.
     fn drop(&mut self) {
         if self.terminal && self.wide > 0 {
-            let _ = writeln!(io::stderr());
+            let _ = writeln!(terminal::err());
         }
     }
 }
