@@ -1,7 +1,7 @@
 //! Files of logic analysers, for a worker of their own: read as a stream, mapped, looked at, and handed on as records.
 
 use crate::convert::{field, object, records};
-use js_sys::{Function, Object, Uint8Array};
+use js_sys::{Error, Function, Object, Uint8Array};
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use stepscope_core::{
@@ -15,7 +15,7 @@ use stepscope_core::{
         recording::{
             differences::Difference,
             events::{Beside, Events},
-            opened::{Ask, Kept, Opened, Part},
+            opened::{Ask, Kept, OpenError, Opened, Part},
             packets::{LinePacket, Packets},
             replies::{self, Dealt},
             report::ChannelReport,
@@ -103,6 +103,7 @@ struct Facts<'a> {
     /// Proposed; empty where there are no levels, or nothing says what a channel is.
     map: String,
     has_levels: bool,
+    has_bytes: bool,
     has_times: bool,
     notes: &'a [String],
     /// Why that is not all of it.
@@ -130,6 +131,25 @@ struct Asked {
     /// The part of it that they show, in s.
     from_s: Option<f64>,
     to_s: Option<f64>,
+}
+
+/// The option of `look` that has to be changed.
+const fn remedy(error: &OpenError) -> &'static str {
+    match error {
+        OpenError::Map(_) | OpenError::NoMap(_) => "map",
+        OpenError::Clock(_) => "clock_hz",
+        OpenError::SampleRate | OpenError::NoSampleRate => "sample_rate_hz",
+        OpenError::NoBaud | OpenError::Baud | OpenError::NoRate(_) => "baud",
+        OpenError::Uart(..) => "uart",
+        _ => "",
+    }
+}
+
+/// An `Error` with the option that has to be changed as its `field`.
+fn refused(error: &OpenError) -> JsValue {
+    let thrown = Error::new(&error.to_string());
+    field(&thrown, "field", &remedy(error).into());
+    thrown.into()
 }
 
 /// What it comes to.
@@ -171,7 +191,7 @@ impl CaptureFile {
         Some(Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None })
     }
 
-    /// What it holds: `{format, channels, count, map, has_levels, has_times, notes, error}`.
+    /// What it holds: `{format, channels, count, map, has_levels, has_bytes, has_times, notes, error}`.
     ///
     /// # Errors
     /// Never in practice.
@@ -183,6 +203,7 @@ impl CaptureFile {
             count: capture.len(),
             map: ChannelMap::proposed(capture).to_text(capture),
             has_levels: !capture.changes.is_empty(),
+            has_bytes: !capture.bytes.is_empty(),
             has_times: capture.timebase.is_some(),
             notes: &capture.left_out,
             error: self.error.as_deref(),
@@ -193,8 +214,8 @@ impl CaptureFile {
     /// each of which may be left out: `{map, clock_hz, rounding, end_s, records, kept, notes, steps, lines}`.
     ///
     /// # Errors
-    /// With what is missing, or wrong.
-    pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsError> {
+    /// With what is missing, or wrong; its `field` is the option that has to be changed.
+    pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsValue> {
         let Asked {
             map,
             clock_hz,
@@ -213,11 +234,14 @@ impl CaptureFile {
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
         let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));
         let mut opened = match known {
-            Some(known) => known.with_part(&self.capture, &ask, &part)?,
-            None => Opened::of_part(&self.capture, &ask, &part)?,
-        };
+            Some(known) => known.with_part(&self.capture, &ask, &part),
+            None => Opened::of_part(&self.capture, &ask, &part),
+        }
+        .map_err(|error| refused(&error))?;
         match at_s {
-            Some(at_s) => opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s)?,
+            Some(at_s) => {
+                opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s).map_err(JsError::from)?
+            }
             None => self.asked = Some(ask),
         }
         let opened = self.opened.insert(opened);
@@ -232,6 +256,7 @@ impl CaptureFile {
             steps: &opened.report.channels,
             lines: opened.report.lines.iter().map(|line| line.to_text()).collect(),
         })
+        .map_err(JsValue::from)
     }
 
     /// All of a channel at a glance: `{position_min, position_max, speed_min, speed_max}` of each column, in steps and steps/s; null

@@ -3,7 +3,7 @@ import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
 
 /**
- * @typedef {{format: string, channels: string[], count: number, map: string, has_levels: boolean, has_times: boolean,
+ * @typedef {{format: string, channels: string[], count: number, map: string, has_levels: boolean, has_bytes: boolean, has_times: boolean,
  *   notes: string[], error: string | null}} Facts
  * @typedef {{channel: number, figures: {steps: number, right: number, left: number, turns: number, position: number,
  *   first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null, greatest_rate_steps_s: number | null,
@@ -46,7 +46,7 @@ export function openCapture(file, onProgress) {
       if (data.id === undefined) return reject(new Error(data.error));
       const question = asked.get(data.id);
       asked.delete(data.id);
-      if ("error" in data) question?.reject(new Error(data.error));
+      if ("error" in data) question?.reject(Object.assign(new Error(data.error), { field: data.field }));
       else question?.resolve(data.value);
     };
     compiled("capture").then((module) => {

@@ -49,6 +49,8 @@ self.onmessage = async ({ data }) => {
     }
   } catch (error) {
     const message = fatal(error) ? "the file needs more memory than this browser gives" : text(error);
-    postMessage(data.id === undefined ? { error: message } : { id: data.id, error: message });
+    // Which field of the dialog has to be changed, where the core says so.
+    const field = /** @type {{field?: string} | null} */ (error)?.field;
+    postMessage(data.id === undefined ? { error: message } : { id: data.id, error: message, field });
   }
 };

@@ -9,6 +9,15 @@ import { unlessDropped } from "../engine/engine.js";
 /** @typedef {import("../state/types.js").Place} Place */
 /** @typedef {import("../state/types.js").Verdict} Verdict */
 
+/** Shows a time in the pulses. @param {import("../state/types.js").Page} page @param {Place} place */
+export function showPlace({ dispatch, now }, { start, end, controller, cycle }) {
+  if (now().result?.controller !== controller) dispatch({ type: "controller", controller });
+  dispatch({ type: "window", window: { start, end } });
+  dispatch({ type: "cursor", which: "a", cycle });
+  dispatch({ type: "view", view: "pulses" });
+  byId("pulses").focus();
+}
+
 /** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createNotices(page) {
   const { engine, dispatch, now } = page;
@@ -38,7 +47,7 @@ export function createNotices(page) {
     line.dataset.said = key;
     line.hidden = text === "";
     fill(line, element("span", {}, text));
-    if (place) line.append(button("Show the place", "Show the place", () => show(place)));
+    if (place) line.append(button("Show the place", "Show the place", () => showPlace(page, place)));
     if (offer) {
       const { label, scenario } = offer;
       line.append(button(label, label, () => dispatch({ type: "replace", scenario, origin: "own" })));
@@ -50,15 +59,6 @@ export function createNotices(page) {
     });
     close.classList.add("close");
     line.append(close);
-  }
-
-  /** Shows a time in the pulses. @param {Place} place */
-  function show({ start, end, controller, cycle }) {
-    if (now().result?.controller !== controller) dispatch({ type: "controller", controller });
-    dispatch({ type: "window", window: { start, end } });
-    dispatch({ type: "cursor", which: "a", cycle });
-    dispatch({ type: "view", view: "pulses" });
-    byId("pulses").focus();
   }
 
   /** @param {State} state @param {State | undefined} before */

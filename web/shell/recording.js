@@ -1,14 +1,17 @@
 /**
- * A recording that is opened: what its file holds, which channel is which signal, and what comes of it; then it takes the
- * place of the experiment, and all views look at it. What the file does not tell is asked, never guessed.
+ * The dialog of a recording: what its file holds, which channel is which signal, and the resulting figures. Importing it puts it
+ * in place of the experiment. What the file does not say is requested, never guessed.
  */
-import { button, byId, element, fill } from "../dom.js";
+import { button, byId, element, fill, say } from "../dom.js";
 import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
-import { count, counted, parseNumber, plain, si, time } from "../state/number.js";
+import { count, counted, plain, si, time } from "../state/number.js";
 import { isStale } from "../state/state.js";
+import { createChannelTable } from "./channel_table.js";
+import { offerDifferences } from "./differences.js";
 import { keep, stands } from "./kept.js";
 import { message } from "./link.js";
+import { choiceField, inPage, numberField, sentence, timeField } from "./recording_fields.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 import { around } from "./verdict.js";
@@ -18,15 +21,26 @@ import { createWhole } from "./whole.js";
 /** @typedef {import("../engine/capture.js").Looked} Looked */
 /** @typedef {import("../engine/capture.js").Asked} Asked */
 /** @typedef {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Page */
-/** @typedef {{numbers: number[], from_s: number | null, to_s: number | null}} Said  What was said of a file: clock, sample rate, bit rate; and its part. */
+/** @typedef {{numbers: number[], uart: string, from_s: number | null, to_s: number | null}} Said  The options of a file: clock, sample rate, bit rate and serial format; and its part. */
 
-/** Channels of one bus. */
-const CHANNELS = 16;
 /** Maps that are kept, by the names of a file's channels. */
 const MAPS = "stepscope.maps";
 const MAX_MAPS = 30;
-/** Greatest number that a field takes: what the core has room for. */
-const GREATEST = 2 ** 32 - 1;
+/** Formats of a serial line: data bits, parity, stop bits. @type {[string, string][]} */
+const FORMATS = [
+  ["8N1", "8N1 (usual)"],
+  ["8E1", "8E1, even parity"],
+  ["8O1", "8O1, odd parity"],
+  ["8N2", "8N2, 2 stop bits"],
+  ["7N1", "7N1, 7 data bits"],
+  ["7E1", "7E1, even parity"],
+  ["7O1", "7O1, odd parity"],
+  ["7N2", "7N2, 2 stop bits"],
+  ["8E2", "8E2"],
+  ["8O2", "8O2"],
+  ["7E2", "7E2"],
+  ["7O2", "7O2"],
+];
 /** Where a message is as short as it can be. */
 const PHONE = "(max-width: 599px)";
 /** Rest after a change before it is looked again, in ms. */
@@ -93,6 +107,19 @@ function dialogOf(leave) {
 /** The file whose part is on show. `letGo` takes its button away; `leave` gives the file up, too. @type {{letGo: () => void, leave: () => void} | null} */
 let held = null;
 
+/** Calls back once the experiment is another one. Returns how to stop that. @param {Page} page @param {() => void} left */
+function whileShown({ now }, left) {
+  const own = stands(now().scenario);
+  // The page updates this attribute whenever its experiment changes.
+  const watch = new MutationObserver(() => {
+    if (stands(now().scenario) === own) return;
+    watch.disconnect();
+    left();
+  });
+  watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
+  return () => watch.disconnect();
+}
+
 /** Leaves the file whose part was on show. */
 function leaveHeld() {
   held?.leave();
@@ -111,14 +138,9 @@ function holdFor(page, file, capture, facts, said) {
     close = dialog.close;
     show(page, file, capture, facts, dialog, said);
   });
-  const own = stands(page.now().scenario);
-  // The page says there whenever its experiment is another one.
-  const watch = new MutationObserver(() => {
-    if (stands(page.now().scenario) !== own) leaveHeld();
-  });
-  watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
+  const stop = whileShown(page, leaveHeld);
   const letGo = () => {
-    watch.disconnect();
+    stop();
     again.remove();
   };
   const leave = () => {
@@ -148,13 +170,26 @@ async function resultOf({ now }) {
 function show(page, file, capture, facts, { body, foot, close }, earlier = null) {
   const { engine, dispatch, now } = page;
   const { format, channels } = facts;
-  const rows = channels.map((name) => channelRow(name));
-  const isBytes = !facts.has_levels && /\bbytes\b/.test(format);
-  const clock = numberField("Clock", "Hz", "the file's own");
-  const rate = numberField("Sample rate", "Hz", "not told: give it");
-  const baud = numberField("Bit rate", "baud", facts.has_times || !isBytes ? "as measured" : "not told: give it");
-  // Bytes without times have no samples: how long each lasts, the bit rate says.
-  const fields = facts.has_times ? [clock, baud] : isBytes ? [baud, clock] : [rate, clock, baud];
+  const table = createChannelTable(channels);
+  const isBytes = facts.has_bytes;
+  const clock = numberField("Clock", "Hz", "from the file");
+  const rate = numberField("Sample rate", "Hz", "required");
+  const baud = numberField("Bit rate", "baud", facts.has_times || !isBytes ? "measured" : "required");
+  const uart = choiceField("Serial format", FORMATS);
+  const fields = [rate, baud, uart, clock];
+  // Bytes without times are back to back at the bit rate, unless the core requests the length of a sample.
+  rate.label.hidden = facts.has_times || isBytes;
+  // Levels, and decoded bytes of several lines.
+  const hasMap = facts.has_levels || channels.length > 1;
+  const mapError = element("p", { class: "error", "aria-live": "polite" });
+  /** Where the core's errors go, by what has to be changed. @type {{[field: string]: (message: string) => void}} */
+  const remedies = {
+    map: (text) => say(mapError, text),
+    clock_hz: clock.fail,
+    sample_rate_hz: rate.fail,
+    baud: baud.fail,
+    uart: uart.fail,
+  };
   const result = element("div", { class: "recorded", "aria-live": "polite" });
   const said = element("details", { class: "packets-said" });
   said.addEventListener("toggle", () => {
@@ -163,8 +198,10 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
   said.hidden = true;
   const plan = planOf();
   const besides = element("input", { id: "recording-beside", type: "checkbox", ...(plan ? { checked: "" } : {}) });
-  const beside = element("label", { class: "check" }, besides, ` beside this experiment`);
+  const beside = element("label", { class: "check" }, besides, ` Compare with this experiment`);
   const align = numberField("Aligned by step", "", "0, the first", 0);
+  const isWrong = () =>
+    table.isWrong() || [...fields, from, to, align].some(({ label, isWrong }) => !label.hidden && isWrong());
   const from = timeField("Show from", "its beginning");
   const to = timeField("Show up to", "as far as there is room");
   const whole = createWhole(capture, (part) => {
@@ -185,10 +222,13 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     byTimes.hidden = whole.node.hidden || isPart || isChoosing;
     beside.hidden = plan === null || isPart;
     align.label.hidden = beside.hidden || !besides.checked;
+    const hasLine = table.has("RX", "TX");
+    baud.label.hidden = facts.has_levels ? !hasLine : !isBytes;
+    uart.label.hidden = !facts.has_levels || !hasLine;
   };
   const take = button(
-    "Show it",
-    "Show it: look at the recording with all views",
+    "Import",
+    "Import: show the recording in all views",
     () => void taken().catch((error) => refuse(message(error))),
   );
   take.className = "main";
@@ -197,15 +237,16 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
   let looked = null;
   let timer = 0;
   let asking = 0;
+  if (hasMap) table.put(keptMap(channels) ?? facts.map);
   showFields();
 
-  const notes = [...(facts.error ? [`Not read to its end: ${facts.error}.`] : []), ...facts.notes];
+  const notes = [...(facts.error ? [`Read in part: ${facts.error}`] : []), ...facts.notes];
   fill(
     body,
     element("h2", {}, file),
     element("p", {}, `${format}, ${counted(facts.count, facts.has_levels ? "change" : isBytes ? "byte" : "row")}`),
-    ...notes.map((note) => element("p", { class: "note" }, note)),
-    ...(facts.has_levels ? [table(rows)] : []),
+    ...notes.map((note) => element("p", { class: "note" }, sentence(note))),
+    ...(hasMap ? [table.node, mapError] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
     whole.node,
     byTimes,
@@ -216,10 +257,10 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     result,
     said,
   );
-  put(facts.has_levels ? (keptMap(channels) ?? facts.map) : "");
   if (earlier) {
     for (const [place, field] of [clock, rate, baud].entries())
       if (earlier.numbers[place]) field.set(earlier.numbers[place]);
+    uart.set(earlier.uart);
     from.set(earlier.from_s);
     to.set(earlier.to_s);
   }
@@ -233,7 +274,10 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
   });
   void look().then(() => {
     // Where something is missing, its field is first.
-    const missing = facts.has_levels && map() === "" ? rows[0]?.signal : fields[0].label.querySelector("input");
+    const missing =
+      facts.has_levels && table.map() === ""
+        ? table.first
+        : /** @type {HTMLElement | null} */ (body.querySelector(".fields [aria-invalid=true]"));
     const first = take.disabled ? missing : take;
     if (foot.contains(document.activeElement)) (first ?? take).focus();
   });
@@ -244,35 +288,14 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     return last && !isStale(now()) ? last : null;
   }
 
-  /** Sets the channels by a map's text. @param {string} map */
-  function put(map) {
-    for (const pair of map.split(",")) {
-      const [signal, ...rest] = pair.split("=");
-      const channel = rest.join("=");
-      const name = channel.replace(/^!/, "");
-      const at = name.startsWith("#") ? Number(name.slice(1)) : channels.indexOf(name);
-      const row = rows[at];
-      if (!row) continue;
-      row.signal.value = signal;
-      row.inverted.checked = channel.startsWith("!");
-    }
-  }
-
-  /** The map as its text has it; a channel by its place, which no name can spoil. */
-  function map() {
-    const pairs = rows.map(({ signal, inverted }, index) =>
-      signal.value ? `${signal.value}=${inverted.checked ? "!" : ""}#${index}` : "",
-    );
-    return pairs.filter((pair) => pair !== "").join(",");
-  }
-
   /** @param {Asked} more @returns {Asked} */
   function asked(more) {
     const said = { ...more };
-    if (facts.has_levels) said.map = map();
+    if (hasMap && table.map() !== "") said.map = table.map();
     if (clock.value()) said.clock_hz = clock.value();
-    if (rate.value()) said.sample_rate_hz = BigInt(rate.value());
-    if (baud.value()) said.baud = baud.value();
+    if (!rate.label.hidden && rate.value()) said.sample_rate_hz = BigInt(rate.value());
+    if (!baud.label.hidden && baud.value()) said.baud = baud.value();
+    if (!uart.label.hidden) said.uart = uart.value();
     const [from_s, to_s] = [from.value(), to.value()];
     if (from_s !== null) said.from_s = from_s;
     if (to_s !== null) said.to_s = to_s;
@@ -283,10 +306,11 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
   async function look(more = {}) {
     const own = ++asking;
     take.disabled = true;
-    if ([...fields, from, to, ...(besides.checked ? [align] : [])].some((field) => field.isWrong())) return;
-    if (facts.count > MANY) fill(result, element("p", {}, `Looking at ${counted(facts.count, "change")}…`));
+    if (isWrong()) return;
+    if (facts.count > MANY) fill(result, element("p", {}, `Reading ${counted(facts.count, "change")}…`));
     try {
-      if (facts.has_levels && map() === "") throw new Error("choose which channel is STEP, DIR, RX or TX");
+      if (facts.has_levels && table.map() === "")
+        throw Object.assign(new Error("choose which channel is STEP, DIR, RX or TX"), { field: "map" });
       const found = await capture.look(asked(more));
       if (own !== asking) return;
       looked = found;
@@ -294,7 +318,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
       take.disabled = false;
     } catch (error) {
       if (own !== asking) return;
-      refuse(message(error));
+      refuse(message(error), /** @type {{field?: string}} */ (error).field);
     }
   }
 
@@ -325,18 +349,29 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     );
   }
 
-  /** @param {string} why */
-  function refuse(why) {
+  /** Shows an error under the field that has to be changed, where there is one. @param {string} why @param {string} [field] */
+  function refuse(why, field = "") {
     looked = null;
     whole.render(null);
     showFields();
     said.hidden = true;
-    fill(result, element("p", { class: "error" }, `${why[0].toUpperCase()}${why.slice(1)}.`));
+    const text = sentence(why);
+    clearErrors();
+    if (field === "sample_rate_hz") rate.label.hidden = false;
+    if (remedies[field]) {
+      remedies[field](text);
+      fill(result);
+    } else fill(result, element("p", { class: "error" }, text));
+  }
+
+  function clearErrors() {
+    for (const fail of Object.values(remedies)) fail("");
   }
 
   /** @param {Looked} found */
   function tell(found) {
     const { clock_hz, rounding, end_s, kept, steps, lines, notes } = found;
+    clearErrors();
     whole.render(facts.has_levels ? found : null);
     showFields(kept);
     const own = notes.filter((note) => !facts.notes.includes(note));
@@ -356,7 +391,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
       result,
       element("p", {}, `${time(kept?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
       ...rows,
-      ...lines.map((line) => element("p", {}, line)),
+      ...lines.map((line) => element("p", {}, inPage(line))),
       ...(kept
         ? [
             element(
@@ -366,7 +401,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
             ),
           ]
         : []),
-      ...own.map((note) => element("p", { class: "note" }, note)),
+      ...own.map((note) => element("p", { class: "note" }, sentence(note))),
     );
     said.hidden = lines.length === 0;
     said.open = false;
@@ -398,7 +433,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     if (isReclocked || beside) await look(typeof at_s === "number" ? { at_s, channel, aligned } : {});
     if (!looked) return;
     const found = beside && (await capture.beside(beside));
-    if (facts.has_levels) keepMap(channels, map());
+    if (hasMap && table.map() !== "") keepMap(channels, table.map());
     const made = await capture.scenario(false);
     // Where no channel steps, there is more to see of what the model makes of the bytes.
     const pieces = looked.steps.length > 0 ? await capture.records(looked.records) : [];
@@ -438,11 +473,16 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     close(isPart);
     if (!isPart || !earlier) leaveHeld();
     const numbers = [clock.value(), rate.value(), baud.value()];
-    if (isPart) holdFor(page, file, capture, facts, { numbers, from_s: from.value(), to_s: to.value() });
+    if (isPart)
+      holdFor(page, file, capture, facts, { numbers, uart: uart.value(), from_s: from.value(), to_s: to.value() });
     const run = resultOf(page);
     const kept = isKept ? await keep(page, file, scenario, pieces, replies?.bytes) : "";
     const text = told(model !== null, pieces.length > 0, replies) + kept;
     dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
+    if (found) {
+      const remove = offerDifferences(page, found);
+      whileShown(page, remove);
+    }
     const shown = found && (await run);
     if (!shown) return;
     const cycle = Math.round(found.largest.recorded_s * shown.summary.clock_hz);
@@ -532,34 +572,6 @@ function withControllers(made, base) {
   return JSON.stringify({ ...base, source, title, note, run_cycles, line: own, controllers });
 }
 
-/** @param {string} name */
-function channelRow(name) {
-  const signal = element("select", { "aria-label": `Signal of ${name}` });
-  const numbered = (/** @type {string} */ word) => Array.from({ length: CHANNELS }, (_, index) => `${word}${index}`);
-  const names = ["", ...numbered("STEP"), ...numbered("DIR"), "EN", "RX", "TX", "DE"];
-  fill(signal, ...names.map((each) => element("option", { value: each }, each || "–")));
-  const inverted = element("input", { type: "checkbox", "aria-label": `${name} is inverted` });
-  return { name, signal, inverted };
-}
-
-/** @param {ReturnType<typeof channelRow>[]} rows */
-function table(rows) {
-  const cell = (/** @type {(Node | string)[]} */ ...what) => element("td", {}, ...what);
-  const head = ["Channel", "is", "inverted"].map((text) => element("th", { scope: "col" }, text));
-  return element(
-    "table",
-    { class: "channels" },
-    element("thead", {}, element("tr", {}, ...head)),
-    element(
-      "tbody",
-      {},
-      ...rows.map(({ name, signal, inverted }) =>
-        element("tr", {}, cell(name), cell(signal), cell(element("label", { class: "check" }, inverted))),
-      ),
-    ),
-  );
-}
-
 /** @param {number[]} bytes */
 function hex(bytes) {
   const listed = bytes.slice(0, MAX_LISTED_BYTES).map((byte) => byte.toString(16).padStart(2, "0"));
@@ -576,71 +588,6 @@ function grid(head, rows) {
     element("thead", {}, element("tr", {}, ...names)),
     element("tbody", {}, ...rows.map(row)),
   );
-}
-
-/** A whole number that may be left empty; what is wrong with it stands under it. @param {string} name @param {string} unit @param {string} empty @param {number} [least] */
-function numberField(name, unit, empty, least = 1) {
-  const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
-  const input = element("input", {
-    id,
-    type: "text",
-    placeholder: empty,
-    size: "16",
-    "aria-describedby": `${id}-error`,
-  });
-  const error = element("span", { class: "error", id: `${id}-error` });
-  const read = () => {
-    if (input.value.trim() === "") return { value: 0 };
-    const read = parseNumber(input.value, unit, { integer: true });
-    const fits = "message" in read || (read.value >= least && read.value <= GREATEST);
-    return fits ? read : { message: `Give ${least} to ${GREATEST}${unit && " "}${unit}.` };
-  };
-  input.addEventListener("input", () => {
-    const found = read();
-    error.textContent = "message" in found ? found.message : "";
-    input.setAttribute("aria-invalid", String("message" in found));
-  });
-  return {
-    label: element("div", {}, element("label", { for: id }, `${name}${unit && ", "}${unit} `), input, error),
-    isWrong: () => "message" in read(),
-    value: () => {
-      const found = read();
-      return "value" in found ? found.value : 0;
-    },
-    set: (/** @type {number} */ value) => {
-      input.value = String(value);
-    },
-  };
-}
-
-/** A time that may be left empty. @param {string} name @param {string} empty */
-function timeField(name, empty) {
-  const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
-  const about = { "aria-describedby": `${id}-error` };
-  const input = element("input", { id, type: "text", placeholder: empty, size: "16", ...about });
-  const error = element("span", { class: "error", id: `${id}-error` });
-  const read = () => {
-    if (input.value.trim() === "") return { value: null };
-    const read = parseNumber(input.value, "s");
-    return "message" in read || read.value >= 0 ? read : { message: "Give a time from 0 s on." };
-  };
-  input.addEventListener("input", () => {
-    const found = read();
-    error.textContent = "message" in found ? found.message : "";
-    input.setAttribute("aria-invalid", String("message" in found));
-  });
-  return {
-    label: element("div", {}, element("label", { for: id }, `${name}, s `), input, error),
-    isWrong: () => "message" in read(),
-    value: () => {
-      const found = read();
-      return "value" in found ? found.value : null;
-    },
-    set: (/** @type {number | null} */ value) => {
-      input.value = value === null ? "" : `${value}`;
-      input.dispatchEvent(new Event("input"));
-    },
-  };
 }
 
 /** @returns {[string, string][]} */

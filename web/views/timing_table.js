@@ -9,13 +9,7 @@ import { required } from "./required.js";
 
 /** The columns of the two tables: what stands over them, and what that means where it is short. @type {{[table: string]: [string, string?][]}} */
 const HEADS = {
-  margins: [
-    ["rule"],
-    ["least"],
-    ["required"],
-    ["slack", "Measured time minus required time"],
-    ["count", "Violations"],
-  ],
+  margins: [["rule"], ["least"], ["required"], ["slack", "Measured time minus required time"], ["count", "Violations"]],
   violations: [["ch", "Channel"], ["rule"], ["time"], ["measured"], ["required"]],
 };
 

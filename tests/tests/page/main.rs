@@ -69,6 +69,7 @@ mod pool;
 mod presets;
 mod programs;
 mod recording;
+mod recording_files;
 mod recording_kept;
 mod recording_parts;
 mod recording_replies;

@@ -25,7 +25,7 @@ use crate::{
     bench::in_browser,
     cursors,
     exchange::drop_file,
-    keyboard::{DOWN, go, key},
+    keyboard::{go, key},
     native::{DISTANCE, Known, with_distance},
     reflow,
     session::{CONTROL, ENTER, SHIFT, Session, field},
@@ -40,8 +40,14 @@ const NARROW_EVERY: u32 = 10;
 
 const DIALOG: &str = "document.querySelector('dialog.recording')";
 pub(crate) const CLOSED: &str = "document.querySelector('dialog.recording') === null";
-/// What is said of the recording as it is mapped.
-const RESULT: &str = "(document.querySelector('.recorded')?.innerText ?? '').replace(/\\u202f/g, '')";
+/// The figures of the recording, and the errors under the fields.
+const RESULT: &str = "[...document.querySelectorAll('.recorded, dialog.recording .error')].map((node) => node.innerText).join('\\n').replace(/\\u202f/g, '')";
+/// The channel map that the table shows, in the order of its text.
+const MAP: &str = "[...document.querySelectorAll('.channels tbody tr')].flatMap((row) => {
+    const [signal, motor, inverted] = row.querySelectorAll('select, input');
+    const motors = motor.hidden ? [''] : motor.value.split(', ');
+    return motors.map((motor) => signal.value && `${signal.value}${motor}=${inverted.checked ? '!' : ''}${row.cells[0].textContent}`);
+}).filter(Boolean).sort()";
 pub(crate) const SHOW: &str = "dialog.recording button.main";
 /// It can be shown.
 pub(crate) const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
@@ -118,16 +124,32 @@ pub(crate) async fn type_into(page: &Session, label: &str, text: &str) -> Result
     page.js::<bool>(script, vec![json!(label), json!(text)]).await.map(drop)
 }
 
-/// Chooses the signal of a channel; a driver's choice is a change, and no input as a visitor's is.
-async fn choose_signal(page: &Session, channel: &str, signal: &str) -> Result<()> {
-    let css = named(&format!("Signal of {channel}"));
-    page.choose(&css, signal).await?;
-    let script =
-        "return document.querySelector(arguments[0]).dispatchEvent(new Event('input', { bubbles: true }));";
-    page.js::<bool>(script, vec![json!(css)]).await.map(drop)
+/// The map that the table shows.
+pub(crate) async fn shown_map(page: &Session) -> Result<Vec<String>> {
+    page.eval(MAP).await
 }
 
-async fn cancel(page: &Session) -> Result<()> {
+/// Chooses the signal of a channel, such as RX, STEP3 or DIR0,1. WebDriver's choice is a change, without the input event of a
+/// visitor's.
+pub(crate) async fn choose_signal(page: &Session, channel: &str, signal: &str) -> Result<()> {
+    let (kind, motors) =
+        signal.split_at(signal.find(|each: char| each.is_ascii_digit()).unwrap_or(signal.len()));
+    page.choose(&named(&format!("Signal of {channel}")), kind).await?;
+    set(page, &named(&format!("Signal of {channel}")), kind).await?;
+    if !motors.is_empty() {
+        set(page, &named(&format!("Motor of {channel}")), motors).await?;
+    }
+    Ok(())
+}
+
+/// Sets a field as a visitor's input does.
+pub(crate) async fn set(page: &Session, css: &str, value: &str) -> Result<()> {
+    let script = "const field = document.querySelector(arguments[0]); field.value = arguments[1];
+        return field.dispatchEvent(new Event('input', { bubbles: true }));";
+    page.js::<bool>(script, vec![json!(css), json!(value)]).await.map(drop)
+}
+
+pub(crate) async fn cancel(page: &Session) -> Result<()> {
     page.click("dialog.recording .named > button:not(.main)").await?;
     page.until(CLOSED).await
 }
@@ -143,8 +165,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
 
         // The map is proposed, and its change changes the figures.
         says(&page, "200 steps, 200 right and 0 left").await?;
-        let script = "['X_STEP', 'X_DIR'].map((name) => document.querySelector(`[aria-label='Signal of ${name}']`).value)";
-        assert_eq!(page.eval::<[String; 2]>(script).await?, ["STEP0", "DIR0"]);
+        assert_eq!(shown_map(&page).await?, ["DIR0=X_DIR", "STEP0=X_STEP"]);
         page.picture("recording-dialog").await?;
         page.click(&named("X_DIR is inverted")).await?;
         says(&page, "0 right and 200 left").await?;
@@ -235,7 +256,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         ensure!(page.visible(aligned).await?);
         type_into(&page, "Aligned by step", "-1").await?;
         page.until(
-            "document.getElementById('recording-aligned-by-step-error').innerText.includes('Give 0 to')",
+            "document.getElementById('recording-aligned-by-step-error').innerText.includes('-1 is out of range; use 0 to')",
         )
         .await?;
         for (step, why) in [
@@ -517,11 +538,12 @@ fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_i
         go(&page, &[SHIFT], "X_DIR is inverted").await?;
         key(&page, &[], ' ').await?;
         says(&page, "200 left").await?;
-        go(&page, &[SHIFT], "Signal of X_STEP").await?;
-        key(&page, &[], DOWN).await?;
-        says(&page, "Channel 1").await?;
-        key(&page, &[], '\u{e013}').await?;
-        says(&page, "Channel 0").await?;
+        go(&page, &[SHIFT], "Motor of X_STEP").await?;
+        for (motor, expected) in [('1', "Channel 1"), ('0', "Channel 0")] {
+            key(&page, &[CONTROL], 'a').await?;
+            key(&page, &[], motor).await?;
+            says(&page, expected).await?;
+        }
 
         page.screen(320, 640).await?;
         page.picture("recording-narrow").await?;
@@ -535,7 +557,7 @@ fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_i
             ensure!(found.is_empty(), "{found:?}");
         }
         page.screen(1440, 900).await?;
-        go(&page, &[], "Show it: look at the recording with all views").await?;
+        go(&page, &[], "Import: show the recording in all views").await?;
         key(&page, &[], ENTER).await?;
         page.until(CLOSED).await?;
         let ask = Ask { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..Ask::default() };

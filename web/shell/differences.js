@@ -1,0 +1,61 @@
+/** Where a recording differs from the baseline: a button next to “recording” opens a table whose times are buttons. */
+import { button, byId, element, fill } from "../dom.js";
+import { count, counted, time } from "../state/number.js";
+import { showPlace } from "./notices.js";
+import { around } from "./verdict.js";
+
+/** Rows of the table; the command writes all. */
+const MAX_ROWS = 10;
+
+/** @typedef {{recorded: number, rows: {text: string, recorded_s: number}[], differences: {count: number}}} Found */
+
+/**
+ * Adds the button, unless there is no difference. Returns how to take it away.
+ * @param {import("../state/types.js").Page} page @param {Found} found
+ */
+export function offerDifferences(page, { rows, recorded, differences }) {
+  if (rows.length === 0) return () => {};
+  const open = button("Differences…", `Differences from the baseline: ${count(differences.count)}`, () => show());
+  byId("on-show").append(" ", open);
+  return () => open.remove();
+
+  function show() {
+    const dialog = element("dialog", { class: "recording", "aria-label": "Differences" });
+    const close = () => dialog.remove();
+    const listed = rows.slice(0, MAX_ROWS).map(({ text, recorded_s }) => {
+      const at = button(time(recorded_s), `Go to ${time(recorded_s)}: ${text}`, () => {
+        close();
+        go(recorded_s);
+      });
+      return element("tr", {}, element("td", {}, at), element("td", {}, text));
+    });
+    const head = ["Time", "Difference"].map((name) => element("th", { scope: "col" }, name));
+    const more = differences.count > listed.length ? `; the first ${listed.length}` : "";
+    fill(
+      dialog,
+      element("h2", {}, "Differences from the baseline"),
+      element("p", {}, `${counted(differences.count, "difference")}${more}:`),
+      element(
+        "table",
+        { class: "channels" },
+        element("thead", {}, element("tr", {}, ...head)),
+        element("tbody", {}, ...listed),
+      ),
+      element("p", { class: "named" }, button("Close", "Close the differences", close)),
+    );
+    dialog.addEventListener("close", close);
+    document.body.append(dialog);
+    dialog.showModal();
+  }
+
+  /** @param {number} at_s */
+  function go(at_s) {
+    const { result } = page.now();
+    if (!result) return;
+    const { clock_hz, end_cycle } = result.summary;
+    const cycle = Math.round(at_s * clock_hz);
+    const air = Math.round((4 * end_cycle) / Math.max(1, recorded));
+    const place = around(cycle - air, cycle + air, end_cycle, result.controller);
+    showPlace(page, { ...place, cycle });
+  }
+}
