@@ -328,7 +328,8 @@ impl<'a> Proposal<'a> {
         let lines = self.free().into_iter().filter(|channel| self.is_line(*channel));
         for (bit, channel) in [RX, TX].into_iter().zip(lines.collect::<Vec<_>>()) {
             if self.others.iter().all(|entry| entry.bit != bit) {
-                self.others.push(Entry { bit, channel, inverted: false });
+                let inverted = self.behavior(channel).line == Some(true);
+                self.others.push(Entry { bit, channel, inverted });
             }
         }
     }
