@@ -18,11 +18,9 @@ use super::{
     figures::StepFigures,
     serial::{Guess, Heard, Measured, guess, line_name},
 };
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+#[cfg(feature = "capture")]
+use alloc::string::ToString;
+use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 #[cfg(feature = "capture")]
 use stepscope_capture::uart::{Edge, Format, NoRate, estimate};
@@ -145,6 +143,7 @@ impl Report {
 
 /// The steps of a channel, one after the other, as [`stepscope_peripheral::trace::steps_in`] has them of records that
 /// lie together.
+#[cfg(feature = "capture")]
 pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
     // A level that is there from the first record on has not risen.

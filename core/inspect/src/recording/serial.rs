@@ -88,10 +88,12 @@ pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl It
 }
 
 /// Words that are read under another format, so that it shows: as many different ones have one parity by chance once in 256.
+#[cfg(feature = "capture")]
 const PARITY_WORDS: u32 = 8;
 
 /// The parity that eight bits of each byte have, seven of data and the parity bit: `E` or `O`. `None` where they have none, or
 /// too few of them are different.
+#[cfg(feature = "capture")]
 pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
     let mut seen = [0_u64; 4];
     let (mut even, mut odd) = (true, true);
