@@ -18,6 +18,7 @@ mod measures;
 mod outputs;
 mod plant;
 mod program;
+mod recordings;
 mod scripts;
 mod tables;
 mod terminal;

@@ -1,0 +1,167 @@
+//! Recordings that people have, with the right answers: exports of other programs, odd time bases, serial lines with few
+//! samples per bit, channel names from the field. The files are in `cli/tests/recordings`; the numbers were worked out
+//! independently of this project.
+
+use crate::program::stepscope;
+use serde_json::Value;
+use std::path::Path;
+
+/// Runs `stepscope capture` on a file of `cli/tests/recordings`.
+fn capture(file: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings");
+    let given = |text: &&str| match text.strip_prefix('@') {
+        Some(name) => folder.join(name).display().to_string(),
+        None => (*text).to_owned(),
+    };
+    let path = folder.join(file).display().to_string();
+    let arguments: Vec<String> = arguments.iter().map(given).collect();
+    let all = ["capture", &path].into_iter().chain(arguments.iter().map(String::as_str));
+    stepscope(&all.collect::<Vec<_>>(), "")
+}
+
+/// The tables of a recording that opens.
+fn tables(file: &str, arguments: &[&str]) -> Value {
+    let (code, out, err) = capture(file, &[arguments, &["--json"]].concat());
+    assert_eq!(code, Some(0), "{file} {arguments:?}: {err}");
+    let all: Value = serde_json::from_str(&out).expect("JSON");
+    all["tables"].clone()
+}
+
+#[test]
+fn steps_of_each_motor_are_counted_by_direction() {
+    // (file, options, steps to the right and to the left of each channel)
+    for (file, options, expected) in [
+        ("dsview.csv", &[][..], &[(20, 5)][..]),
+        ("j-string-var.vcd", &[], &[(10, 4)]),
+        ("dir-late-unnamed.vcd", &[], &[(4, 4)]),
+        ("two-motors-one-dir.vcd", &[], &[(25, 25), (25, 25)]),
+        ("step-y-dir.csv", &[], &[(10, 10)]),
+        ("ra-dec.csv", &[], &[(10, 10), (10, 10)]),
+        ("step-en-first.csv", &[], &[(10, 10)]),
+        ("verilator-like.vcd", &["--map", "STEP0=tb.motion.STEP,DIR0=tb.motion.DIR"], &[(30, 0)]),
+        ("verilator-like.vcd", &[], &[(30, 0)]),
+        ("waveforms.csv", &[], &[(12, 3)]),
+        ("micros-head.csv", &[], &[(12, 3)]),
+        ("sample-numbers.csv", &["--sample-rate", "1000000"], &[(12, 3)]),
+        ("millis.csv", &[], &[(5, 8)]),
+        ("cw-ccw.vcd", &["--map", "CW0=CW,CCW0=CCW"], &[(20, 12)]),
+        ("dedge.vcd", &["--both-edges"], &[(40, 0)]),
+    ] {
+        let tables = tables(file, options);
+        let steps = tables["steps"].as_array().expect("a table");
+        let found: Vec<_> = steps.iter().map(|row| (row["right"].as_u64(), row["left"].as_u64())).collect();
+        let expected: Vec<_> = expected.iter().map(|&(right, left)| (Some(right), Some(left))).collect();
+        assert_eq!(found, expected, "{file} {options:?}");
+    }
+}
+
+#[test]
+fn times_and_rates_are_those_of_the_file() {
+    // (file, options, figure, value)
+    for (file, options, figure, expected) in [
+        ("dsview.csv", &[][..], "first_s", 0.001),
+        ("dsview.csv", &[], "last_s", 0.031),
+        ("dsview.csv", &[], "shortest_interval_s", 0.001),
+        ("dsview.csv", &[], "longest_interval_s", 0.002),
+        ("d-6666ps.vcd", &[], "shortest_interval_s", 6.666e-6),
+        ("d-6666ps.vcd", &[], "longest_interval_s", 6.666e-6),
+        ("83ns.vcd", &[], "shortest_interval_s", 9.96e-6),
+        ("83ns.vcd", &[], "longest_interval_s", 9.96e-6),
+        ("83ns.vcd", &[], "greatest_acceleration_steps_s2", 0.0),
+        ("41667ps-short.vcd", &[], "shortest_interval_s", 10e-6),
+        ("verilator-like.vcd", &[], "greatest_rate_steps_s", 100_000.0),
+        ("dedge.vcd", &["--both-edges"], "greatest_rate_steps_s", 10_000.0),
+    ] {
+        let tables = tables(file, options);
+        let found = tables["steps"][0][figure].as_f64().expect(figure);
+        let off = (found - expected).abs();
+        assert!(off <= 1e-9 + expected.abs() * 1e-4, "{file}: {figure} is {found}, not {expected}");
+    }
+}
+
+#[test]
+fn bytes_are_those_that_were_sent() {
+    let hello = b"Hello World!\r\n".repeat(3);
+    // (file, options, how many bytes, the first of them)
+    for (file, options, count, first) in [
+        ("hexdump-C-hexletters.txt", &["--baud", "9600"][..], 16, &b"DEADBEEFCAFE0123"[..]),
+        ("od-Ax.txt", &["--baud", "9600"], 16, b"DEADBEEFCAFE0123"),
+        (
+            "xxd.txt",
+            &["--baud", "9600"],
+            24,
+            &[
+                0x55, 0xaa, 1, 2, 0x83, 0x61, 0x62, 0x63, 0x64, 5, 0xfe, 0xed, 0, 0x11, 0x22, 0x33, 0x61,
+                0x62, 0x63, 0x64, 0x65, 0x66, 0x30, 0x31,
+            ],
+        ),
+        ("windterm-rows.txt", &["--baud", "9600"], 6, &[0x62, 0x65, 0x65, 0x66, 1, 2]),
+        ("iso.txt", &[], 3, &[0x55, 0xaa, 1]),
+        ("bracket.txt", &[], 5, &[0x55, 0xaa, 1, 2, 0x83]),
+        ("jpnevulator.txt", &[], 6, &[0x55, 0xaa, 1, 2, 0x83, 0x61]),
+        ("sigrok-cli-A.txt", &["--baud", "9600"], 3, &[0x55, 0xaa, 1]),
+        ("hello-921600-5MHz.sr", &[], 42, &hello),
+        ("silent-wrong-4.30.sr", &[], 40, &[0x82, 0xb7, 0x0e, 0xee, 0x7f, 0x1a, 0x50, 0x39]),
+        ("rx-random-gaps.csv", &[], 112, b"M114 X:12.50 "),
+        ("d3-fifth-bit.csv", &[], 112, b"M114 X:12.50 "),
+        ("8e1.csv", &["--uart", "8E1"], 42, b""),
+    ] {
+        let tables = tables(file, options);
+        let lines = tables["lines"].as_array().expect("a table");
+        assert_eq!(lines.len(), 1, "{file}: {lines:?}");
+        let found = (lines[0]["bytes"].as_u64(), lines[0]["framing_errors"].as_u64());
+        assert_eq!(found, (Some(count), Some(0)), "{file}");
+        let (_, out, _) = capture(file, &[options, &["--bytes", "-"]].concat());
+        let bytes: Vec<u8> = out
+            .lines()
+            .skip(1)
+            .filter_map(|row| u8::from_str_radix(row.rsplit(',').next()?, 16).ok())
+            .collect();
+        assert!(bytes.starts_with(first), "{file}: {bytes:02x?}");
+        assert_eq!(bytes.len() as u64, count, "{file}");
+    }
+}
+
+#[test]
+fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
+    // (file, options, a word of the message)
+    for (file, options, expected) in
+        [("dsview-comma.csv", &[][..], "decimal comma"), ("sample-numbers.csv", &[], "--sample-rate")]
+    {
+        let (code, out, err) = capture(file, options);
+        assert_eq!(code, Some(2), "{file}: {out}{err}");
+        assert!(err.contains(expected), "{file}: {err}");
+    }
+    // Rows without a head: read as times, or refused; never as bytes.
+    for file in ["csv-noname.txt", "us-noheader.csv"] {
+        let (code, out, _) = capture(file, &["--json"]);
+        let count = serde_json::from_str::<Value>(&out)
+            .ok()
+            .and_then(|all| all["tables"]["lines"][0]["bytes"].as_u64());
+        assert!(code == Some(2) || count.is_none_or(|count| count == 3), "{file}: {code:?} {out}");
+    }
+}
+
+#[test]
+fn what_looks_like_something_else_is_said() {
+    for (file, expected) in [("8e1.csv", "--uart 8E1"), ("dedge.vcd", "--both-edges")] {
+        let (_, out, err) = capture(file, &[]);
+        assert!((out.clone() + &err).contains(expected), "{file}: {out}{err}");
+    }
+}
+
+#[test]
+fn pulses_are_checked_with_their_real_widths() {
+    for (file, driver, rule, count) in [
+        ("83ns.vcd", "a4988", "STEP high", 20),
+        ("41667ps-short.vcd", "a4988", "STEP high", 20),
+        ("stepgen.vcd", "@rules.json", "DIR set-up", 3),
+    ] {
+        let (code, out, err) = capture(file, &["--driver", driver, "--strict"]);
+        assert_eq!(code, Some(3), "{file}: {out}{err}");
+        let tables: Value =
+            serde_json::from_str(&capture(file, &["--driver", driver, "--json"]).1).expect("JSON");
+        let violations = tables["tables"]["violations"].as_array().expect("a table");
+        assert_eq!(violations.len(), count, "{file} {rule}: {violations:?}");
+    }
+}
