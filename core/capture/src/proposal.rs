@@ -413,19 +413,34 @@ impl<'a> Proposal<'a> {
                     continue;
                 }
                 let own = near.get(place).copied().unwrap_or(u64::MAX);
-                let others =
-                    near.iter().enumerate().filter(|(other, _)| *other != place).map(|(_, near)| *near);
-                let others = others.min().unwrap_or(u64::MAX);
+                let others = || near.iter().zip(&steps).enumerate().filter(|(other, _)| *other != place);
+                let is_others = others().any(|(_, (near, (.., edges)))| {
+                    near.saturating_mul(2) < own && is_next_to(*near, changes.len(), edges)
+                });
+                let others = others().map(|(_, (near, _))| *near).min().unwrap_or(u64::MAX);
                 let fit = Fit {
-                    is_others: others.saturating_mul(2) < own,
+                    is_others,
                     is_shared: steps.len() > 1 && own.saturating_mul(2) >= others,
                     one_level: !self.steps_at_both_levels(*channel, *step),
                     while_high: !self.changes_between_pulses(*channel, *step),
+                    is_out_of_order: false,
                     distance: step.abs_diff(*channel),
                 };
                 if !fit.while_high || has_steps_between(&changes, edges, 50) {
                     pairs.push((fit, *channel, *at));
                 }
+            }
+        }
+        // As many as there are motors: the first goes with the first, whether DIR comes before STEP or after it.
+        let fitting = pairs.iter().filter(|(fit, ..)| !fit.one_level).map(|(_, channel, _)| *channel);
+        let fitting: BTreeSet<usize> = fitting.collect();
+        if fitting.len() == steps.len() {
+            let mut by_channel: Vec<usize> = steps.iter().map(|(_, step, _)| *step).collect();
+            by_channel.sort_unstable();
+            for (fit, channel, at) in &mut pairs {
+                let step = steps.iter().find(|(motor, ..)| motor == at).map(|(_, step, _)| *step);
+                let own = by_channel.iter().position(|other| Some(*other) == step);
+                fit.is_out_of_order = fitting.iter().position(|other| other == channel) != own;
             }
         }
         pairs.sort_unstable();
@@ -539,9 +554,11 @@ struct Fit {
     is_others: bool,
     one_level: bool,
     while_high: bool,
+    /// Its place among such channels is not that of the motor's STEP among those of all motors.
+    is_out_of_order: bool,
+    distance: usize,
     /// It changes as close to the pulses of another motor.
     is_shared: bool,
-    distance: usize,
 }
 
 /// How close the changes of a channel are to a motor's edges: the sum of the times to the next one, before or after.
@@ -553,6 +570,14 @@ fn nearness(changes: &[u64], edges: &[u64]) -> u64 {
         after.min(before)
     };
     changes.iter().map(near).fold(0, u64::saturating_add)
+}
+
+/// Whether changes with this sum of distances come right before or after pulses: far within the shortest interval from
+/// pulse to pulse. A change in the middle of an interval says nothing of whose it is.
+fn is_next_to(nearness: u64, changes: usize, edges: &[u64]) -> bool {
+    let intervals = edges.iter().zip(edges.iter().skip(2)).map(|(from, to)| to - from);
+    let shortest = intervals.min().unwrap_or(0);
+    nearness.saturating_mul(10) <= shortest.saturating_mul(changes as u64)
 }
 
 /// Whether there are steps between so many percent of the changes of a channel.
@@ -826,6 +851,12 @@ mod tests {
         assert_eq!(found, "STEP0=D0,STEP1=D2,STEP2=D4,DIR0=D1,DIR1=D3,DIR2=D5");
         let found = proposed(&["D0", "D1", "D2", "D3", "D4", "D5"], &levels(0, &[&x, &y, &z, &dz, &dx, &dy]));
         assert_eq!(found, "STEP0=D0,STEP1=D1,STEP2=D2,DIR0=D4,DIR1=D5,DIR2=D3");
+        // Changes in the middle of an interval are nobody's: each motor has the DIR next to its STEP.
+        let (x, y) = (pulses(1000, 18, 500, 5), pulses(1137, 16, 571, 5));
+        let found = proposed(&["D0", "D1", "D2", "D3"], &levels(0, &[&x, &[6750], &y, &[4849]]));
+        assert_eq!(found, "STEP0=D0,STEP1=D2,DIR0=D1,DIR1=D3");
+        let found = proposed(&["D0", "D1", "D2", "D3"], &levels(0, &[&[6750], &x, &[4849], &y]));
+        assert_eq!(found, "STEP0=D1,STEP1=D3,DIR0=D0,DIR1=D2");
         // Both turn where the one channel changes.
         let (x, y) = (pulses(100, 40, 100, 10), pulses(140, 40, 100, 10));
         let found = proposed(&["X_STEP", "Y_STEP", "D2"], &levels(0, &[&x, &y, &[2130, 3120]]));
