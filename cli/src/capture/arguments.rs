@@ -10,7 +10,10 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use stepscope_core::{
     capture::uart,
-    inspect::{recording::opened::Ask, vcd::Timescale},
+    inspect::{
+        recording::opened::{Ask, OpenError},
+        vcd::Timescale,
+    },
 };
 
 /// What `stepscope capture` takes.
@@ -144,6 +147,17 @@ impl Arguments {
     /// The file's name without its folders.
     pub(super) fn name(&self) -> String {
         self.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+
+    /// What the recording lacks, and the option that gives it.
+    pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
+        let option = match error {
+            OpenError::NoSampleRate => " (--sample-rate HZ)",
+            OpenError::NoBaud => " (--baud BAUD)",
+            OpenError::NoMap(_) => " (--map MAP)",
+            _ => "",
+        };
+        self.wrong(format!("{error}{option}"))
     }
 
     /// Why the recording cannot be used.
