@@ -63,7 +63,7 @@ fn times_and_rates_are_those_of_the_file() {
         ("dsview.csv", &[][..], "first_s", 0.001),
         ("dsview.csv", &[], "last_s", 0.031),
         ("dsview.csv", &[], "shortest_interval_s", 0.001),
-        ("dsview.csv", &[], "longest_interval_s", 0.002),
+        ("dsview.csv", &[], "longest_interval_s", 0.003),
         ("d-6666ps.vcd", &[], "shortest_interval_s", 6.666e-6),
         ("d-6666ps.vcd", &[], "longest_interval_s", 6.666e-6),
         ("83ns.vcd", &[], "shortest_interval_s", 9.96e-6),
@@ -125,11 +125,15 @@ fn bytes_are_those_that_were_sent() {
 
 #[test]
 fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
-    // (file, options, a word of the message)
-    for (file, options, expected) in
-        [("dsview-comma.csv", &[][..], "decimal comma"), ("sample-numbers.csv", &[], "--sample-rate")]
-    {
-        let (code, out, err) = capture(file, options);
+    // (file, the option that the message names)
+    for (file, expected) in [
+        ("sample-numbers.csv", "--sample-rate"),
+        ("csv-noname.txt", "--sample-rate"),
+        ("us-noheader.csv", "--sample-rate"),
+        ("xxd.txt", "--baud"),
+        ("8e1.csv", "--baud"),
+    ] {
+        let (code, out, err) = capture(file, &[]);
         assert_eq!(code, Some(2), "{file}: {out}{err}");
         assert!(err.contains(expected), "{file}: {err}");
     }

@@ -221,7 +221,7 @@ fn what_cannot_be_a_table_ends_with_2_and_says_why() {
             "axes[1]: a move of this kind has no table",
         ),
         (&[], r#"{ "source": { "line": {} } }"#, "source: nothing steps"),
-        (&["--error-us=-1"], MOTION, "give 0 to 1e9"),
+        (&["--error-us=-1"], MOTION, "use 0 to 1000000000"),
         (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
     ];
     for (options, scenario, part) in rows {
