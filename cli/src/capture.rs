@@ -45,7 +45,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
         return Err(arguments.wrong(error));
     }
-    let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.wrong(error))?;
+    let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.cannot_open(&error))?;
     // A line that was mapped is wanted; one that was only proposed may be none.
     let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
     if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
