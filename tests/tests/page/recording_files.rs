@@ -18,6 +18,9 @@ use crate::{
 /// Recordings with known right answers, which the command's tests have, too.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../cli/tests/recordings");
 
+/// The dialog shows what the file holds.
+const TABLE: &str = "document.querySelector('dialog.recording h2') !== null";
+
 /// A file, what is chosen and typed in its dialog, and what it then says.
 struct Case {
     file: &'static str,
@@ -86,7 +89,7 @@ async fn compare(page: &Session, case: &Case) -> Result<()> {
     let text = fs::read_to_string(&path).context(path)?;
     let known = opened(&text, &(case.ask)())?;
     choose_file(page, case.file, &text).await?;
-    page.until("document.querySelector('dialog.recording h2') !== null").await?;
+    page.until(TABLE).await?;
     for (channel, signal) in case.signals {
         choose_signal(page, channel, signal).await?;
     }
@@ -133,6 +136,7 @@ fn a_map_with_a_shared_dir_is_imported_and_remembered() -> Result<()> {
         page.ready().await?;
         let text = "Time [s],D0,D1,D2\n0,0,0,0\n0.001,1,0,0\n0.002,0,1,0\n0.003,0,0,1\n0.004,1,0,1\n0.005,0,1,1\n0.006,0,0,1\n";
         choose_file(&page, "first.csv", text).await?;
+        page.until(TABLE).await?;
         for (channel, signal) in [("D0", "STEP0"), ("D1", "STEP1"), ("D2", "DIR0, 1")] {
             choose_signal(&page, channel, signal).await?;
         }
