@@ -8,7 +8,7 @@
 //! A beam search: hypotheses walk along both lists, and each follows the clock of the recording by a filter of offset and
 //! rate, so that drift of a few percent and jitter of part of an interval leave the match as it is. A step that does not come
 //! when it is due makes further hypotheses: steps are missing, steps are extra, this step is late, or all from here on
-//! are. The cheapest wins once the steps behind it have shown which one fits. At most [`WIDTH`] hypotheses live at a time, and
+//! are. The cheapest wins once the steps behind it have shown which one fits. At most 16 hypotheses live at a time, and
 //! their number in total is bounded, so time and memory grow linearly with the steps.
 
 use super::alignment::Side;
