@@ -137,6 +137,9 @@ fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
         assert_eq!(code, Some(2), "{file}: {out}{err}");
         assert!(err.contains(expected), "{file}: {err}");
     }
+    // Bytes without times have no samples.
+    let (code, _, err) = capture("xxd.txt", &["--sample-rate", "1000000"]);
+    assert!(code == Some(2) && err.contains("--baud"), "{err}");
     // With the rate, rows without a head are times with levels, or with a byte.
     assert_eq!(tables("us-noheader.csv", &["--sample-rate", "1000000"])["steps"][0]["left"], 3);
     assert_eq!(tables("csv-noname.txt", &["--sample-rate", "1000000"])["lines"][0]["bytes"], 3);

@@ -36,8 +36,11 @@ pub(crate) fn write(
     let whole = session.records_all();
     let verified = recording.verify();
     let mut rescue = Vec::new();
+    // Within the limits of a session there is always a form that can be read again.
+    let scenario = &recording.scenario;
+    let text = scenario.to_file_json().unwrap_or_else(|| scenario.to_json());
     let texts = [
-        (&record, &mut out, format!("{}\n", recording.scenario.to_json())),
+        (&record, &mut out, format!("{text}\n")),
         (&beside, &mut out_beside, times.to_json(clock, &recording, whole)),
     ];
     let mut failed = None;

@@ -440,7 +440,8 @@ impl Opened {
         }
         let told =
             ask.sample_rate_hz.map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate)).transpose()?;
-        let base = capture.timebase.or(told);
+        // Places among bytes are no samples.
+        let base = capture.timebase.or(told.filter(|_| !has_untimed_bytes(capture)));
         if let Some(base) = base {
             opened.clock_hz = clock(ask, base, !capture.positions.is_empty())?;
             let (numerator, denominator) = base.parts();
@@ -617,8 +618,7 @@ impl Opened {
         if capture.bytes.is_empty() {
             return Err(OpenError::NoSampleRate);
         }
-        // Without times a byte's tick is its place: others are times whose unit is not known.
-        if (0..).zip(&capture.bytes).any(|(place, byte)| byte.tick != place) {
+        if !has_untimed_bytes(capture) {
             return Err(OpenError::NoSampleRate);
         }
         let baud = ask.baud.ok_or(OpenError::NoBaud)?;
@@ -765,6 +765,12 @@ impl Opened {
         scenario.title = title(file);
         Ok(scenario)
     }
+}
+
+/// Whether a capture has bytes without times: each byte's tick is its place then, where others are times of an unknown unit.
+fn has_untimed_bytes(capture: &Capture) -> bool {
+    let untimed = || (0..).zip(&capture.bytes).all(|(place, byte)| byte.tick == place);
+    capture.timebase.is_none() && !capture.bytes.is_empty() && untimed()
 }
 
 /// Segments of a scenario, or bytes that it sends one after the other.
