@@ -26,7 +26,7 @@ const MAX_TOLD = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
 const WHAT =
-  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, and tables of positions.";
+  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, UART annotations, Klipper's step commands, and tables of positions.";
 
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, dispatch, now }, files) {

@@ -19,9 +19,11 @@ use stepscope_core::{
 /// What `stepscope capture` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The recording: a value change dump, a sigrok session (.sr) or its CSV, Saleae's CSV (levels or decoded bytes),
-    /// bytes in hexadecimal, a table of times and positions, or our own edges; or recorded-step-table, recorded-late-packet;
-    /// `-` reads standard input.
+    /// Recording to read, or `-` for standard input
+    ///
+    /// Value change dumps; sigrok and PulseView sessions, tables and UART annotations; tables of levels (Saleae, DSView,
+    /// WaveForms, Kingst, your own); decoded bytes; hex dumps (hexdump -C, xxd, od); serial logs with times; Klipper's step
+    /// commands; times and positions. Two samples come with the command: recorded-step-table, recorded-late-packet.
     pub(super) file: PathBuf,
     /// Assign channels to signals: STEP0=CH1,DIR0=CH2,EN=!nEN
     ///
