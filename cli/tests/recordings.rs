@@ -146,6 +146,19 @@ fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
 }
 
 #[test]
+fn each_edge_is_a_step_also_where_edges_are_a_tick_apart() {
+    let rows = |row: &dyn Fn(u64) -> String| -> String { (0..=40).map(row).collect() };
+    let dedge = format!("time_us,STEP\n{}", rows(&|k| format!("{k},{}\n", k % 2)));
+    let encoder = format!("time_us,A,B\n{}", rows(&|k| format!("{k},{},{}\n", (k + 1) / 2 % 2, k / 2 % 2)));
+    for (text, map) in [(dedge, "DEDGE0=STEP"), (encoder, "A0=A,B0=B")] {
+        let (code, out, err) = stepscope(&["capture", "-", "--map", map, "--json"], &text);
+        assert_eq!(code, Some(0), "{map}: {err}");
+        let all: Value = serde_json::from_str(&out).expect("JSON");
+        assert_eq!(all["tables"]["steps"][0]["right"], 40, "{map}: {out}");
+    }
+}
+
+#[test]
 fn what_looks_like_something_else_is_said() {
     for (file, expected) in [("8e1.csv", "--uart 8E1"), ("dedge.vcd", "--both-edges")] {
         let (_, out, err) = capture(file, &[]);
@@ -156,15 +169,16 @@ fn what_looks_like_something_else_is_said() {
 #[test]
 fn pulses_are_checked_with_their_real_widths() {
     for (file, driver, rule, count) in [
-        ("83ns.vcd", "a4988", "STEP high", 20),
-        ("41667ps-short.vcd", "a4988", "STEP high", 20),
-        ("stepgen.vcd", "@rules.json", "DIR set-up", 3),
+        ("83ns.vcd", "a4988", "step_high", 20),
+        ("41667ps-short.vcd", "a4988", "step_high", 20),
+        ("stepgen.vcd", "@rules.json", "dir_setup", 3),
     ] {
         let (code, out, err) = capture(file, &["--driver", driver, "--strict"]);
         assert_eq!(code, Some(3), "{file}: {out}{err}");
         let tables: Value =
             serde_json::from_str(&capture(file, &["--driver", driver, "--json"]).1).expect("JSON");
         let violations = tables["tables"]["violations"].as_array().expect("a table");
-        assert_eq!(violations.len(), count, "{file} {rule}: {violations:?}");
+        assert_eq!(violations.len(), count, "{file}: {violations:?}");
+        assert!(violations.iter().all(|row| row["rule"] == rule), "{file}: {violations:?}");
     }
 }

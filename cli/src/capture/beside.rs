@@ -23,7 +23,12 @@ impl Beside {
         let (scenario, experiment) = scenarios::judged(path)?;
         let run = kept_run::of(path, &experiment)?;
         let recorded = recording.events(arguments.channel);
-        let baud = recording.report.rx().map_or(scenario.line.baud, |line| line.baud);
+        let baud = recording
+            .report
+            .rx()
+            .map(|line| line.baud)
+            .filter(|baud| *baud > 0)
+            .unwrap_or(scenario.line.baud);
         let (kind, clock_hz) = (recorded.kind, experiment.config().clock_hz());
         let model = Events::of_records(&run.trace, clock_hz, kind, arguments.channel, baud);
         let cycle = Tolerance::cycle(recorded.clock_hz, clock_hz);

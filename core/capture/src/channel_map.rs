@@ -294,6 +294,13 @@ impl ChannelMap {
         }
     }
 
+    /// Whether single edges become pulses: steps on both edges, or an encoder.
+    #[must_use]
+    pub fn makes_pulses(&self) -> bool {
+        let is_made = |motor| matches!(self.pulses(motor), PulseSource::BothEdges | PulseSource::Quadrature);
+        (0..self.bus_channels()).any(is_made)
+    }
+
     /// Whether the direction of a motor is known.
     #[must_use]
     pub fn has_direction(&self, motor: u8) -> bool {

@@ -25,6 +25,8 @@ const LINE_EDGES: usize = 600;
 const MIN_STEPS: u64 = 4;
 /// Edges that an encoder has to have.
 const MIN_ENCODER_EDGES: usize = 16;
+/// Edges by which an encoder is known.
+const MAX_ENCODER_EDGES: usize = 4096;
 /// Pulses of another motor are at most so many times as wide as those of the first.
 const MAX_WIDTH_RATIO: u64 = 4;
 
@@ -349,13 +351,20 @@ impl<'a> Proposal<'a> {
     fn encoders_by_behavior(&mut self) {
         let busy = |channel: &usize| self.behavior(*channel).changes() >= MIN_ENCODER_EDGES as u64 / 2;
         let free: Vec<usize> = self.free_of_lines().into_iter().filter(busy).collect();
+        let edges: Vec<Vec<u64>> = free
+            .iter()
+            .map(|channel| {
+                let mut edges = self.edges(*channel);
+                edges.truncate(MAX_ENCODER_EDGES);
+                edges
+            })
+            .collect();
         let mut used: Vec<usize> = Vec::new();
-        for (at, one) in free.iter().enumerate() {
-            for other in free.iter().skip(at + 1) {
+        for (at, (one, one_edges)) in free.iter().zip(&edges).enumerate() {
+            for (other, other_edges) in free.iter().zip(&edges).skip(at + 1) {
                 let (a, b) = (self.behavior(*one).changes(), self.behavior(*other).changes());
                 let is_free = !used.contains(one) && !used.contains(other);
-                if is_free && a.abs_diff(b) * 20 <= a + b && alternate(&self.edges(*one), &self.edges(*other))
-                {
+                if is_free && a.abs_diff(b) * 20 <= a + b && alternate(one_edges, other_edges) {
                     used.extend([*one, *other]);
                     self.motors.push(Motor::new("", "", Source::Encoder(*one, *other)));
                 }
@@ -590,8 +599,12 @@ fn has_steps_between(changes: &[u64], edges: &[u64], percent: usize) -> bool {
 
 /// Whether the edges of two channels alternate, as evenly as those of an encoder do.
 fn alternate(one: &[u64], other: &[u64]) -> bool {
+    // As far as both are given.
+    let end = one.last().min(other.last()).copied().unwrap_or(0);
+    let until = |edges: &&u64| **edges <= end;
+    let first = one.iter().take_while(until).map(|at| (*at, false));
     let mut all: Vec<(u64, bool)> =
-        one.iter().map(|at| (*at, false)).chain(other.iter().map(|at| (*at, true))).collect();
+        first.chain(other.iter().take_while(until).map(|at| (*at, true))).collect();
     all.sort_unstable();
     let pairs = || all.iter().zip(all.iter().skip(1));
     let (count, same) = (all.len(), pairs().filter(|(edge, next)| edge.1 == next.1).count());

@@ -119,8 +119,8 @@ impl Recorded {
             cycle(timebase, last.tick, clock_hz)?;
         }
         let signals = Signals::new(map);
-        // A pulse that is made has a fall that no change stands for.
-        let count = capture.changes.len() * if signals.made.is_some() { 2 } else { 1 };
+        // A pulse that is made has a fall without a change in the file.
+        let count = capture.changes.len() * if map.makes_pulses() { 2 } else { 1 };
         let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
         // At once, since a doubled vector may not fit beside the old one.
         let mut all: Vec<Record> = Vec::with_capacity(count);

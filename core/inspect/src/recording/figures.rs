@@ -86,7 +86,7 @@ impl StepFigures {
         };
         let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
         let mut acceleration =
-            Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), greatest: None };
+            Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), certain: None, any: None };
         // The step before, its direction, and the interval before it where that was in this direction.
         let (mut last, mut way, mut length) = (first, 0, None::<u64>);
         for step in core::iter::once(first).chain(steps) {
@@ -122,7 +122,8 @@ impl StepFigures {
             shortest.filter(|(interval, _)| *interval > 0).map(|(interval, _)| hz / interval as f64);
         let span = last.cycle - first.cycle;
         found.mean_rate_steps_s = (span > 0).then(|| (found.steps - 1) as f64 / seconds(span));
-        found.greatest_acceleration_steps_s2 = acceleration.greatest;
+        let spread = shortest.zip(longest).map_or(0, |((shortest, _), longest)| longest - shortest);
+        found.greatest_acceleration_steps_s2 = acceleration.greatest(spread);
         Some(found)
     }
 }
@@ -132,8 +133,14 @@ struct Acceleration {
     hz: f64,
     /// The last ones, as many as one is taken of.
     steps: VecDeque<Step>,
-    greatest: Option<f64>,
+    /// The greatest that rounding does not explain; 0 where it explains all.
+    certain: Option<f64>,
+    /// The greatest of all.
+    any: Option<f64>,
 }
+
+/// Cycles by which rounded times explain a difference of two intervals: each of three times is off by half a cycle.
+const ROUNDING: u64 = 2;
 
 impl Acceleration {
     fn take(&mut self, to: Step) {
@@ -143,10 +150,18 @@ impl Acceleration {
         self.steps.push_back(to);
         let Some(found) = step_acceleration::of(self.steps.make_contiguous(), HALF, self.hz) else { return };
         let span = |from: usize| Some(self.steps.get(from + HALF)?.cycle - self.steps.get(from)?.cycle);
-        // Each of three times is rounded by up to half a cycle: they explain a difference of two.
-        let explained = span(0).zip(span(HALF)).is_some_and(|(first, second)| first.abs_diff(second) <= 2);
-        let found = if explained { 0.0 } else { libm::fabs(found) };
-        self.greatest = Some(self.greatest.map_or(found, |most| libm::fmax(most, found)));
+        let explained =
+            span(0).zip(span(HALF)).is_some_and(|(first, second)| first.abs_diff(second) <= ROUNDING);
+        let found = libm::fabs(found);
+        let greater = |most: Option<f64>, found| Some(most.map_or(found, |most| libm::fmax(most, found)));
+        self.certain = greater(self.certain, if explained { 0.0 } else { found });
+        self.any = greater(self.any, found);
+    }
+
+    /// Of steps whose intervals differ by up to `spread` cycles. A rate that changes so slowly that rounding explains each
+    /// change by itself still changes.
+    fn greatest(&self, spread: u64) -> Option<f64> {
+        if self.certain == Some(0.0) && spread > ROUNDING { self.any } else { self.certain }
     }
 }
 
@@ -168,5 +183,22 @@ mod tests {
         let one = StepFigures::of(steps.first().copied(), 16_000_000).expect("a step");
         assert_eq!((one.greatest_rate_steps_s, one.mean_rate_steps_s), (None, None));
         assert_eq!(StepFigures::of([], 1), None);
+    }
+
+    #[test]
+    fn rounding_is_no_acceleration_and_a_slow_ramp_is_one() {
+        // (start interval and its change per step in 1/65536 cycle, whether the steps accelerate)
+        for (interval, change, accelerates) in
+            [(100 << 16, 0, false), (6_558_720, 0, false), (160 << 16, 820, true)]
+        {
+            let mut at = 0_u64;
+            let steps = (0..4000_u64).map(|k| {
+                at += interval - change * k;
+                Step { cycle: at >> 16, position: k as i32 + 1 }
+            });
+            let found = StepFigures::of(steps.collect::<Vec<_>>(), 16_000_000).expect("steps");
+            let acceleration = found.greatest_acceleration_steps_s2.expect("enough steps");
+            assert_eq!(acceleration > 0.0, accelerates, "{interval}: {acceleration}");
+        }
     }
 }

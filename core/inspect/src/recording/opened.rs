@@ -56,6 +56,8 @@ const USUAL_BAUD: u32 = 115_200;
 const MAX_SHOWN: usize = 20_000;
 /// Most steps that positions may stand for: two rows can ask for any number.
 const MAX_MADE_STEPS: u64 = 10_000_000;
+/// Cycles of a tick of the file in which an edge can become a pulse and a pause.
+const CYCLES_PER_EDGE: u64 = 4;
 /// Longest name that a scenario may have, in characters.
 const MAX_TITLE: usize = 120;
 
@@ -443,7 +445,7 @@ impl Opened {
         // Places among bytes are no samples.
         let base = capture.timebase.or(told.filter(|_| !has_untimed_bytes(capture)));
         if let Some(base) = base {
-            opened.clock_hz = clock(ask, base, !capture.positions.is_empty())?;
+            opened.clock_hz = clock(ask, base, !capture.positions.is_empty(), map.makes_pulses())?;
             let (numerator, denominator) = base.parts();
             opened.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
         }
@@ -788,14 +790,15 @@ fn title(file: &str) -> String {
 }
 
 /// The requested clock, or the file's own: the slowest in which each of its ticks is a whole number of cycles, or the fastest
-/// where there is none. Steps between rows of positions need a finer one.
-fn clock(ask: &Ask, base: Timebase, positions: bool) -> Result<u32, OpenError> {
+/// where there is none. Steps between rows of positions need a finer one, and so do pulses that are made of single edges.
+fn clock(ask: &Ask, base: Timebase, positions: bool, makes_pulses: bool) -> Result<u32, OpenError> {
     let (least, most) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
     let own = || {
         if positions && base.is_exact(USUAL_CLOCK_HZ) {
             return USUAL_CLOCK_HZ;
         }
         let (_, denominator) = base.parts();
+        let least = if makes_pulses { least.max(denominator.saturating_mul(CYCLES_PER_EDGE)) } else { least };
         let whole = least.div_ceil(denominator).checked_mul(denominator);
         whole.map_or(most, |hz| hz.min(most)) as u32
     };
