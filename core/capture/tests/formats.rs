@@ -320,7 +320,7 @@ fn bytes_in_hexadecimal_are_read() {
         ("t_us;hex\n12.5;55AA\n", "HexBytes 1/10000000 [bytes] 125:0:55 125:0:aa end 125"),
         (
             "0000: 55 aa\n0010: 01\n",
-            "HexDump [bytes] 0:0:55 1:0:aa 2:0:01 end 2\n- rows that are shorter than their offsets say: 1; their bytes are taken as they are",
+            "HexDump [bytes] 0:0:55 1:0:aa 2:0:01 end 2\n- 1 row is shorter than its offset indicates; its bytes are used unchanged",
         ),
         (
             "55 AA\n12.5us 55\n",
@@ -426,7 +426,7 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
         (
             "0000: 62 65 65 66                                      beef\n0010: 01 02\n",
             "HexDump [bytes] 0:0:62 1:0:65 2:0:65 3:0:66 4:0:01 5:0:02 end 5\n\
-             - rows that are shorter than their offsets say: 1; their bytes are taken as they are",
+             - 1 row is shorter than its offset indicates; its bytes are used unchanged",
         ),
         (
             "62 65 65 66   beef\n01 02         ..\n",
@@ -440,7 +440,7 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
         (
             "0000000 01 01 01 01 01 01 01 01\n*\n0000030\n",
             "HexDump [bytes] 0:0:01 1:0:01 2:0:01 3:0:01 4:0:01 5:0:01 6:0:01 7:0:01 end 7\n\
-             ! line 3: the offset “0000030” behind * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
+             ! line 3: the offset “0000030” after * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
         ),
         // What is refused: words, offsets that do not follow, a text of other bytes.
         (
@@ -594,9 +594,8 @@ fn logs_with_a_time_per_line_are_read() {
 
 #[test]
 fn annotations_of_sigrok_are_read() {
-    let unnamed = "- the bytes do not say whether they are of RX or TX: all are taken as one line";
-    let late =
-        "- bytes without a start bit of their own have the time of their first bit of data, one bit late";
+    let unnamed = "- no annotation names RX or TX: all bytes are assigned to one line";
+    let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
     check(&[
         ("uart-1: 55\nuart-1: AA\n", &format!("Annotations [uart-1] 0:0:55 1:0:aa end 1\n{unnamed}")),
         ("uart-1: rx-data: 41\nuart-1: tx-data: 42\n", "Annotations [RX TX] 0:0:41 1:1:42 end 1"),
@@ -605,7 +604,7 @@ fn annotations_of_sigrok_are_read() {
              2000-2100 uart-1: Start bit\n2100-2900 uart-1: 42\n2900-3000 uart-1: Frame error\n",
             &format!(
                 "Annotations [uart-1] 0:0:41 2000:0:42! end 2000\n\
-                 - annotations that are no bytes: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
+                 - other annotations skipped: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
             ),
         ),
         (
@@ -613,6 +612,22 @@ fn annotations_of_sigrok_are_read() {
             &format!("Annotations [RX TX] 123:0:41 1123:1:42 end 1123\n{late}"),
         ),
         ("123-456,UART,RX data,41\n", &format!("Annotations [RX] 123:0:41 end 123\n{late}")),
+        // Directions that overlap: each has its own start bit, order and frame error.
+        (
+            "0-10 UART: RX bits: Start bit\n5-15 UART: TX bits: Start bit\n15-95 UART: TX data: 42\n\
+             10-90 UART: RX data: 41\n95-105 UART: TX warnings: Frame error\n100-110 UART: RX bits: Start bit\n\
+             110-190 UART: RX data: 43\n",
+            "Annotations [RX TX] 0:0:41 5:1:42! 100:0:43 end 100\n\
+             - other annotations skipped: Start bit, Start bit, Frame error, Start bit",
+        ),
+        (
+            "10-90 UART: RX data: 41\n5-85 UART: TX data: 42\n2-9 UART: RX data: 43\n",
+            &format!(
+                "Annotations [RX TX] 5:1:42 10:0:41 end 10\n{late}\n\
+                 ! line 3: sample 2 comes after sample 10 of the same line; sort the lines by sample, and give one recording \
+                 per file"
+            ),
+        ),
         (
             "uart-1: 55\n9-10 uart-1: AA\n",
             &format!(
@@ -622,7 +637,7 @@ fn annotations_of_sigrok_are_read() {
         ),
         (
             "uart-1: U\n",
-            "Annotations [] end 0\n- annotations that are no bytes: U\n! line 1: the annotations have no bytes in hexadecimal; \
+            "Annotations [] end 0\n- other annotations skipped: U\n! line 1: the annotations have no bytes in hexadecimal; \
              print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)",
         ),
     ]);
@@ -630,8 +645,8 @@ fn annotations_of_sigrok_are_read() {
 
 #[test]
 fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
-    let made = "- the commands have no pulse widths and no DIR setup times: pulses of 32 ticks at most are made, so a check \
-        against a driver says nothing";
+    let made = "- the commands have no pulse widths and no DIR set-up times: pulses of at most 32 ticks are made, so \
+        timing checks do not apply";
     let one = format!("- steppers: oid=3 is STEP0 and DIR0\n{made}");
     let no_reset = "- no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared";
     check(&[
@@ -680,7 +695,7 @@ fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
         (
             "queue_step oid=3 interval=9 add=0\n",
             &format!(
-                "Klipper [] end 0\n- steppers: \n{made}\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
+                "Klipper [] end 0\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
                       whole number count="
             ),
         ),
@@ -790,7 +805,7 @@ fn a_file_of_no_kind_names_the_three_nearest_and_what_they_need() {
         (
             "55 AA hello\n55 AA\n",
             "“55 AA hello”: no kind of file that can be read here; it may be bytes in hexadecimal, if each has two digits: \
-             “hello” is none; or ",
+             “hello” is not a byte; or ",
         ),
     ] {
         let error = read_bytes(text).error.expect("it is refused").what;
@@ -833,7 +848,7 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
         reading.capture.left_out,
         [
             "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, those with a \
-             telling name first; to read another one, name it in the channel map (--map STEP0=NAME)"
+             recognized name first; to read another one, name it in the channel map (--map STEP0=NAME)"
         ]
     );
     let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));

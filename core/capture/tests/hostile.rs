@@ -9,6 +9,9 @@ use stepscope_capture::{
     read::{Limits, read},
 };
 
+/// The metadata of a session with one channel.
+const METADATA: &[u8] = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n";
+
 /// A small file of each kind.
 fn files() -> Vec<Vec<u8>> {
     let changes = (0..30).map(|at| Change { tick: at * 3, levels: at % 8 });
@@ -130,7 +133,7 @@ fn a_session_that_unpacks_to_more_than_it_should_is_ended() {
 /// Overlapping files, files that unpack to more than they say, and files of one name are refused before anything is unpacked.
 #[test]
 fn a_session_whose_zip_lies_is_refused() {
-    let metadata = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n".to_vec();
+    let metadata = METADATA.to_vec();
     let files = |samples: &[(&str, Vec<u8>)]| {
         let mut all = vec![("metadata".to_string(), metadata.clone())];
         all.extend(samples.iter().map(|(name, held)| ((*name).to_string(), held.clone())));
@@ -172,30 +175,75 @@ fn a_session_whose_zip_lies_is_refused() {
     );
 }
 
-/// 60 000 names of one piece of 64 MB.
+/// 70 pieces that are apart, each with a declared size of 4 GB.
 #[test]
 fn a_session_of_terabytes_is_refused() {
-    let metadata = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n".to_vec();
-    let zip =
-        writers::zip(&[("metadata".to_string(), metadata), ("logic-1-1".into(), vec![0; 1 << 20])], true);
+    let mut all = vec![("metadata".to_string(), METADATA.to_vec())];
+    all.extend((1..=70).map(|piece| (format!("logic-1-{piece}"), vec![0, 1, 0])));
+    let mut zip = writers::zip(&all, true);
     let entries: Vec<usize> = (0..zip.len() - 4).filter(|at| zip[*at..].starts_with(b"PK\x01\x02")).collect();
-    let end = (0..zip.len() - 4).rev().find(|at| zip[*at..].starts_with(b"PK\x05\x06")).expect("an end");
-    let entry = zip[entries[1]..end].to_vec();
-    let mut directory = zip[entries[0]..end].to_vec();
-    for piece in 2..60_001 {
-        let name = format!("logic-1-{piece}");
-        let mut copy = entry.clone();
-        copy.splice(46.., name.bytes());
-        copy[28..30].copy_from_slice(&(name.len() as u16).to_le_bytes());
-        directory.extend(copy);
+    for entry in &entries[1..] {
+        zip[entry + 24..entry + 28].copy_from_slice(&0xffff_fffe_u32.to_le_bytes());
     }
-    let mut tail = zip[end..].to_vec();
-    tail[8..10].copy_from_slice(&60_001_u16.to_le_bytes());
-    tail[10..12].copy_from_slice(&60_001_u16.to_le_bytes());
-    tail[12..16].copy_from_slice(&(directory.len() as u32).to_le_bytes());
-    let bomb = [&zip[..entries[0]], &directory, &tail].concat();
-    let error = read(Cursor::new(bomb), &Limits::default(), &mut |_| true).error.expect("it is refused");
-    assert!(error.what.starts_with("files of the zip overlap"), "{error}");
+    let error = read(Cursor::new(zip), &Limits::default(), &mut |_| true).error.expect("it is refused");
+    assert_eq!(
+        error.what,
+        "the samples unpack to 300 647 710 580 bytes; at most 274 877 906 944 are read: record a shorter time, or at a \
+         lower rate"
+    );
+}
+
+#[test]
+fn a_session_of_too_many_files_is_refused() {
+    let mut all = vec![("metadata".to_string(), METADATA.to_vec())];
+    all.extend((1..=65_536).map(|piece| (format!("logic-1-{piece}"), vec![0])));
+    let read = |all: &[(String, Vec<u8>)]| {
+        read(Cursor::new(writers::zip(all, false)), &Limits::default(), &mut |_| true).error
+    };
+    let error = read(&all).expect("it is refused");
+    assert_eq!(error.what, "more than 65536 files in the zip; record a shorter time");
+    all.pop();
+    assert_eq!(read(&all), None);
+}
+
+/// A file with a name in another character set does not overlap the next one.
+#[test]
+fn a_session_may_have_names_that_are_not_utf8() {
+    let name = "x".repeat(40);
+    let all = [
+        ("metadata".to_string(), METADATA.to_vec()),
+        (name.clone(), vec![1]),
+        ("logic-1-1".into(), vec![0, 1, 0]),
+    ];
+    let mut zip = writers::zip(&all, true);
+    let places: Vec<usize> =
+        (0..zip.len() - name.len()).filter(|at| zip[*at..].starts_with(name.as_bytes())).collect();
+    assert_eq!(places.len(), 2);
+    for at in places {
+        zip[at..at + name.len()].fill(0x82);
+    }
+    let reading = read(Cursor::new(zip), &Limits::default(), &mut |_| true);
+    assert_eq!((reading.error, reading.capture.changes.len()), (None, 3));
+}
+
+/// Gaps without end: no text is looked for.
+#[test]
+fn a_line_of_a_megabyte_is_read() {
+    let bytes = 1 << 18;
+    for (line, expected) in [
+        ("55  ".repeat(bytes), bytes),
+        ("20  ".repeat(bytes), bytes),
+        ("20\t".repeat(bytes), bytes),
+        (format!("00000000  {}", "20  ".repeat(bytes - 3)), bytes - 3),
+        (format!("{} |{}|", "20 ".repeat(bytes - 3), " ".repeat(bytes - 3)), bytes - 3),
+        (format!("12:00:00.5 RX: {}", "55  ".repeat(bytes - 4)), bytes - 4),
+        (format!("0.5: {}", "55  ".repeat(bytes - 2)), bytes - 2),
+        (format!("[12.5] {} 55", ">> ".repeat(bytes)), 1),
+    ] {
+        let reading = read_bytes(&format!("{line}\n"));
+        assert_eq!(reading.error, None, "{}", &line[..20]);
+        assert_eq!(reading.capture.bytes.len(), expected, "{}", &line[..20]);
+    }
 }
 
 proptest! {

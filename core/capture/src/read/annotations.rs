@@ -4,7 +4,7 @@
 //! uart-1: 41          208-2291 uart-1: rx-data: 41          123-456 UART: RX data: 41          123-456,UART,TX data,41
 //! ```
 //!
-//! Samples are ticks, whose rate nothing in the file says. A byte's annotation begins with its first bit of data; where the
+//! Samples are ticks; the file does not give their rate. A byte's annotation begins with its first bit of data; where the
 //! start bit before it has an annotation, the byte begins there.
 
 use super::{
@@ -12,20 +12,30 @@ use super::{
     reading::Reader,
     recorder::{Names, Recorder, quoted},
 };
-use crate::capture::{Capture, TimedByte};
+use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
+use std::collections::BTreeMap;
 
 /// Annotations that are being read.
 pub(super) struct Annotations {
     recorder: Recorder,
     /// Whether the lines have samples; not known before the first.
     timed: Option<bool>,
-    /// Where the start bit before a byte begins.
-    start: Option<u64>,
+    /// What came last on each channel.
+    lines: BTreeMap<u8, Line>,
     /// Whether a byte has no start bit before it.
     is_data: bool,
-    /// Whether nothing says which line bytes are of.
+    /// Whether no annotation names RX or TX.
     is_unnamed: bool,
     others: Names,
+}
+
+/// What came last on a channel: RX and TX may overlap.
+#[derive(Clone, Copy, Default)]
+struct Line {
+    /// First sample of the start bit that has no byte yet.
+    start: Option<u64>,
+    /// Index and tick of the last byte.
+    last: Option<(usize, u64)>,
 }
 
 /// A line of annotations.
@@ -65,7 +75,7 @@ impl Annotation {
     }
 }
 
-/// `123-456` at the beginning of a line, and what is behind it.
+/// `123-456` at the beginning of a line, and what follows it.
 fn samples(line: &str) -> Option<((u64, u64), &str)> {
     let end = line.find(|letter: char| !letter.is_ascii_digit() && letter != '-')?;
     let (range, rest) = line.split_at(end);
@@ -81,7 +91,14 @@ pub(super) fn is_annotation(line: &[u8]) -> bool {
 
 impl Annotations {
     pub(super) const fn new(recorder: Recorder) -> Self {
-        Self { recorder, timed: None, start: None, is_data: false, is_unnamed: false, others: Names::new() }
+        Self {
+            recorder,
+            timed: None,
+            lines: BTreeMap::new(),
+            is_data: false,
+            is_unnamed: false,
+            others: Names::new(),
+        }
     }
 
     fn channel(&mut self, annotation: &Annotation) -> Result<u8, String> {
@@ -94,9 +111,12 @@ impl Annotations {
                 annotation.decoder.as_str()
             }
         };
-        let known = self.recorder.capture.channels.iter().position(|channel| channel.name == name);
-        let channel = known.and_then(|at| u8::try_from(at).ok()).or_else(|| self.recorder.channel(name));
-        channel.ok_or_else(|| "more decoders than channels; export those of one line".into())
+        let channel = self.recorder.channel_named(name);
+        channel.ok_or_else(|| format!("more than {MAX_CHANNELS} decoders; export those of one line"))
+    }
+
+    fn line(&mut self, channel: u8) -> &mut Line {
+        self.lines.entry(channel).or_default()
     }
 }
 
@@ -107,7 +127,7 @@ impl Reader for Annotations {
         }
         let annotation = Annotation::parse(line).ok_or_else(|| {
             format!(
-                "{} is no annotation of a serial line, such as uart-1: 41 or 208-2291 uart-1: 41",
+                "{} is not a UART annotation; use lines such as uart-1: 41 or 208-2291 uart-1: 41",
                 quoted(line)
             )
         })?;
@@ -123,47 +143,53 @@ impl Reader for Annotations {
         let text = annotation.text.to_lowercase();
         let Some(byte) = annotation.byte() else {
             if text == "start bit" || text == "start" || text == "s" {
-                self.start = annotation.samples.map(|(from, _)| from);
-            } else if text.starts_with("frame error")
-                && let Some(last) = self.recorder.capture.bytes.last_mut()
-            {
-                last.framing_error = true;
+                let channel = self.channel(&annotation)?;
+                self.line(channel).start = annotation.samples.map(|(from, _)| from);
+            } else if text.starts_with("frame error") {
+                let channel = self.channel(&annotation)?;
+                let last = self.line(channel).last;
+                if let Some(byte) = last.and_then(|(at, _)| self.recorder.capture.bytes.get_mut(at)) {
+                    byte.framing_error = true;
+                }
             }
             self.others.add(&annotation.text);
             return Ok(());
         };
-        let place = self.recorder.capture.bytes.len() as u64;
-        let tick = match (annotation.samples, self.start.take()) {
+        let channel = self.channel(&annotation)?;
+        let place = self.recorder.capture.bytes.len();
+        let Line { start, last } = core::mem::take(self.line(channel));
+        let tick = match (annotation.samples, start) {
             (Some(_), Some(start)) => start,
             (Some((from, _)), None) => {
                 self.is_data = true;
                 from
             }
-            (None, _) => place,
+            (None, _) => place as u64,
         };
-        let channel = self.channel(&annotation)?;
-        if tick < self.recorder.capture.end {
+        if let Some((_, before)) = last.filter(|(_, before)| tick < *before) {
             return Err(format!(
-                "sample {tick} is before the one of the line before; samples must rise: sort the lines by them"
+                "sample {tick} comes after sample {before} of the same line; sort the lines by sample, and give one \
+                 recording per file"
             ));
         }
+        self.line(channel).last = Some((place, tick));
         self.recorder.byte(TimedByte { tick, channel, byte, framing_error: false })
     }
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
+        self.recorder.sort_bytes();
         if !self.others.is_empty() {
-            self.recorder.leave_out(format!("annotations that are no bytes: {}", self.others.told()));
+            self.recorder.leave_out(format!("other annotations skipped: {}", self.others.told()));
         }
         if self.is_data {
             self.recorder.leave_out(
-                "bytes without a start bit of their own have the time of their first bit of data, one bit late".into(),
+                "bytes without an annotated start bit are timed by their first data bit, one bit late".into(),
             );
         }
         let is_empty = self.recorder.capture.is_empty();
         if self.is_unnamed && !is_empty {
-            self.recorder.leave_out(
-                "the bytes do not say whether they are of RX or TX: all are taken as one line".into(),
-            );
+            self.recorder
+                .leave_out("no annotation names RX or TX: all bytes are assigned to one line".into());
         }
         let missing = if is_empty {
             Err("the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)".into())

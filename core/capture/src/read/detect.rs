@@ -17,8 +17,10 @@ use crate::capture::Format;
 
 /// What can be read.
 pub(super) const UNKNOWN: &str = "no kind of file that can be read here; give a value change dump (.vcd), a session or \
-    a table of sigrok or PulseView (.sr, .csv), a table of levels or of bytes of Saleae Logic (.csv), a trace or a table \
-    of edges of Stepscope, bytes in hexadecimal, or a table of times and positions";
+    a table of sigrok or PulseView (.sr, .csv), a table of levels (Saleae Logic, DSView, WaveForms, Kingst, your own), a \
+    table of Saleae Logic's decoded bytes, annotations of sigrok's UART decoder, a trace or a table of edges of Stepscope, \
+    bytes in hexadecimal, a hex dump (hexdump -C, xxd, od), a serial log with times, step commands of Klipper, or a table \
+    of times and positions";
 
 /// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +38,7 @@ impl Found {
     }
 }
 
-/// Bytes from which on a file may go on behind its head, which may have lost a mark of three bytes.
+/// Bytes from which on a file may go on after its head, which may have lost a mark of three bytes.
 const FULL: usize = (1 << 16) - 3;
 /// Lines that are looked at.
 const MAX_LINES: usize = 200;

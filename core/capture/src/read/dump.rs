@@ -5,7 +5,7 @@
 //! 00000010                           00000010: 6162       ab        0000020            0010: 01
 //! ```
 //!
-//! Offsets are checked: each row begins where the one before has ended, and `*` stands for rows like the one before.
+//! Offsets are checked: each row begins where the one before has ended, and `*` repeats the row before.
 
 use super::{
     reading::Reader,
@@ -56,7 +56,7 @@ impl HexDump {
         }
     }
 
-    /// Checks where a row begins, by the bytes before it, and repeats the row before as often as `*` says.
+    /// Checks where a row begins, by the bytes before it, and repeats the row before as often as `*` requires.
     fn begin(&mut self, offset: &Offset<'_>) -> Result<(), String> {
         let values = BASES.map(|base| offset.value(base));
         if !core::mem::replace(&mut self.any, true) {
@@ -105,7 +105,7 @@ impl HexDump {
         let first = counts.first().copied().unwrap_or(0);
         if repeats && counts.iter().any(|count| *count != first) {
             return Err(format!(
-                "the offset {} behind * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
+                "the offset {} after * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
                 quoted(offset.digits)
             ));
         }
@@ -187,7 +187,7 @@ pub(super) fn is_dump(lines: &[&[u8]]) -> bool {
     let mut bytes = Vec::new();
     let is_row = row::parse(first.rest, &mut bytes).is_ok() && !bytes.is_empty();
     let is_zero = first.digits.iter().all(|digit| *digit == b'0');
-    // Words that are no bytes are of a dump, too, if it begins at 0: its reader says what to do.
+    // Words that are no bytes are of a dump, too, if it begins at 0: its reader reports them.
     let words = first.rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let is_words = words.count() > 1;
     if is_zero && first.digits.len() > MIN_DIGITS && (is_row || is_words) || first.colon && is_row {
@@ -257,13 +257,16 @@ impl Reader for HexDump {
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
         if self.short_rows > 0 {
-            self.recorder.leave_out(format!(
-                "rows that are shorter than their offsets say: {}; their bytes are taken as they are",
-                grouped(self.short_rows)
-            ));
+            self.recorder.leave_out(match self.short_rows {
+                1 => "1 row is shorter than its offset indicates; its bytes are used unchanged".into(),
+                count => format!(
+                    "{} rows are shorter than their offsets indicate; their bytes are used unchanged",
+                    grouped(count)
+                ),
+            });
         }
         let missing = if self.repeats {
-            Err("the dump ends with *, which says no number; dump again with its last line".into())
+            Err("the dump ends with *, so the number of repeated rows is unknown; dump again with its last line".into())
         } else if self.recorder.capture.is_empty() {
             Err("the file has no bytes".into())
         } else {

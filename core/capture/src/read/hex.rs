@@ -19,7 +19,7 @@ use super::{
     row,
     times::{TimeUnit, Times},
 };
-use crate::capture::{Capture, TimedByte};
+use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
 
 /// The channel of bytes without a direction.
 const BYTES: &str = "bytes";
@@ -36,7 +36,7 @@ pub(super) struct HexText {
     timed: Option<bool>,
     any: bool,
     bytes: Vec<u8>,
-    /// A line with a time and no bytes: those of the lines behind it.
+    /// A line with a time and no bytes: those of the lines after it.
     block: Option<Block>,
 }
 
@@ -45,11 +45,11 @@ pub(super) struct HexText {
 pub(super) struct Table {
     separator: u8,
     unit: TimeUnit,
-    /// Whether a direction stands between the time and the bytes.
+    /// Whether a direction is between the time and the bytes.
     has_direction: bool,
 }
 
-/// What a line with a time says of the lines behind it.
+/// What a line with a time and no bytes gives to the lines after it.
 #[derive(Clone)]
 struct Block {
     tick: u64,
@@ -71,9 +71,8 @@ impl HexText {
     }
 
     fn channel(&mut self, name: &str) -> Result<u8, String> {
-        let known = self.recorder.capture.channels.iter().position(|channel| channel.name == name);
-        let channel = known.and_then(|at| u8::try_from(at).ok()).or_else(|| self.recorder.channel(name));
-        channel.ok_or_else(|| format!("{} is one port too many", quoted(name.as_bytes())))
+        let channel = self.recorder.channel_named(name);
+        channel.ok_or_else(|| format!("more than {MAX_CHANNELS} ports; split the log"))
     }
 
     fn push(&mut self, tick: Option<u64>, channel: u8) -> Result<(), String> {
@@ -185,7 +184,7 @@ enum Time<'l> {
 }
 
 impl<'l> Start<'l> {
-    /// The time, the direction and what is behind them; `None` if the line begins with none.
+    /// The time, the direction and the rest; `None` if the line begins with none.
     fn of(line: &'l [u8], table: Option<Table>) -> Result<Option<Self>, String> {
         if let Some(Table { separator, has_direction, .. }) = table {
             let (time, rest) = cut(line, separator);
@@ -194,9 +193,9 @@ impl<'l> Start<'l> {
             return Ok(Some(Self { time: Time::Ticks(time), port, rest }));
         }
         // A direction may come before the time.
-        let (first, behind) = word(line);
+        let (first, after) = word(line);
         let (before, text) = match direction(first) {
-            Some(port) if time(behind).is_some() => (Some(port), behind),
+            Some(port) if time(after).is_some() => (Some(port), after),
             _ => (None, line),
         };
         let Some((time, rest)) = time(text) else {
@@ -214,7 +213,7 @@ impl<'l> Start<'l> {
     }
 }
 
-/// A field of a table, and what is behind it.
+/// A field of a table, and the rest.
 fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let end = line.iter().position(|byte| *byte == separator).unwrap_or(line.len());
@@ -222,7 +221,7 @@ fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
     (field.trim_ascii(), rest.get(1..).unwrap_or_default().trim_ascii())
 }
 
-/// A word, and what is behind it.
+/// A word, and the rest.
 fn word(text: &[u8]) -> (&[u8], &[u8]) {
     let text = text.trim_ascii_start();
     let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',' || *byte == b';';
@@ -230,7 +229,7 @@ fn word(text: &[u8]) -> (&[u8], &[u8]) {
     (text.get(..end).unwrap_or_default(), text.get(end..).unwrap_or_default())
 }
 
-/// The time that a text begins with, in brackets or not, and what is behind it and its mark.
+/// The time that a text begins with, in brackets or not, and the rest after its mark.
 fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     let text = text.trim_ascii();
     let open = text.first().copied().filter(|mark| b"[(<".contains(mark));
@@ -284,7 +283,7 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     None
 }
 
-/// What is behind the mark that ends a time.
+/// The rest after the mark that ends a time.
 fn after_mark(rest: &[u8]) -> &[u8] {
     let rest = rest.trim_ascii_start();
     match rest {
@@ -304,7 +303,7 @@ fn not_a_time(line: &[u8]) -> Option<String> {
     let is_apart = line.get(colon + 1).is_none_or(u8::is_ascii_whitespace);
     (!is_byte || is_apart).then(|| {
         format!(
-            "{} is not a time; give a number, such as 0.00125 or 12.5us, or a clock's, such as 12:00:00.125",
+            "{} is not a time; give a number, such as 0.00125 or 12.5us, or a time of day, such as 12:00:00.125",
             quoted(before)
         )
     })
@@ -314,14 +313,14 @@ fn not_a_time(line: &[u8]) -> Option<String> {
 fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
     let (mut name, mut rest) = (None, rest);
     loop {
-        let (first, behind) = word(rest);
-        if first.is_empty() && behind.is_empty() {
+        let (first, after) = word(rest);
+        if first.is_empty() && after.is_empty() {
             break;
         }
         let bare = bare(first);
         if bare.is_empty() && direction(first).is_none() {
             // A mark alone, or none at all.
-            rest = behind.get(usize::from(first.is_empty())..).unwrap_or_default();
+            rest = after.get(usize::from(first.is_empty())..).unwrap_or_default();
             continue;
         }
         if let Some(found) = direction(first) {
@@ -331,7 +330,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         } else {
             break;
         }
-        rest = behind;
+        rest = after;
     }
     // A line that only names what comes next, as jpnevulator's.
     let mut bytes = Vec::new();
@@ -378,9 +377,11 @@ fn direction(word: &[u8]) -> Option<&'static str> {
 /// Whether a word is the name of a serial port.
 fn is_port(word: &[u8]) -> bool {
     let number = |rest: &[u8]| !rest.is_empty() && rest.iter().all(u8::is_ascii_digit);
-    word.starts_with(b"/dev/")
+    let is_name = word.starts_with(b"/dev/")
         || word.starts_with(b"tty")
-        || word.strip_prefix(b"COM").or_else(|| word.strip_prefix(b"com")).is_some_and(number)
+        || word.strip_prefix(b"COM").or_else(|| word.strip_prefix(b"com")).is_some_and(number);
+    // The lines after it each copy the name.
+    is_name && word.len() <= MAX_PORT
 }
 
 fn port_name(name: &[u8]) -> String {
@@ -470,7 +471,7 @@ pub(super) fn is_line(line: &[u8]) -> bool {
     }
 }
 
-/// A number and the unit behind it.
+/// A number and the unit after it.
 fn with_unit(text: &[u8]) -> (&[u8], Option<TimeUnit>) {
     let end = text.iter().rposition(|byte| byte.is_ascii_digit() || *byte == b'.').map_or(0, |last| last + 1);
     let (number, unit) = text.split_at(end);
@@ -483,7 +484,7 @@ fn seconds(number: &[u8], unit: TimeUnit) -> Option<Decimal> {
     Decimal::parse(number).and_then(|number| number.shifted(-i32::try_from(places).ok()?))
 }
 
-/// Bytes of a line, behind which their text, or a comment, may stand: `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`.
+/// Bytes of a line, which their text or a comment may follow: `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`.
 /// A log's have two digits each: a single one may be a number of bytes.
 fn parse_bytes(text: &[u8], bytes: &mut Vec<u8>, is_log: bool) -> Result<(), String> {
     let text = text.trim_ascii();
@@ -507,9 +508,7 @@ fn parse_bytes(text: &[u8], bytes: &mut Vec<u8>, is_log: bool) -> Result<(), Str
         if digits.is_empty() || is_short || is_long || !digits.iter().all(u8::is_ascii_hexdigit) {
             return Err(row::not_a_byte(word));
         }
-        let digit = |digit: &u8| char::from(*digit).to_digit(16).unwrap_or(0) as u8;
-        bytes
-            .extend(digits.chunks(2).map(|pair| pair.iter().fold(0, |value, next| value << 4 | digit(next))));
+        row::push_digits(digits, bytes);
     }
     Ok(())
 }

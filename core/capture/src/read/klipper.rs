@@ -18,7 +18,7 @@ use crate::{capture::Capture, timebase::Timebase};
 
 /// Most steppers: channels of the bus.
 const MAX_STEPPERS: usize = 16;
-/// Ticks of a pulse where there is room: 2 µs at 16 MHz. The commands say nothing of it.
+/// Ticks of a pulse where there is room: 2 µs at 16 MHz. The commands do not give it.
 const PULSE: u64 = 32;
 
 /// Commands that are being read.
@@ -130,8 +130,8 @@ impl StepCommands {
                     None => i128::from(low),
                 };
                 if !self.is_reset && self.steps > 0 {
-                    return Err("reset_step_clock comes after steps without one: how far they are apart is not known; \
-                                start the log earlier, or delete what is before"
+                    return Err("reset_step_clock comes after steps without one, so their distance is unknown; start \
+                                the log earlier, or delete the lines before it"
                         .into());
                 }
                 self.is_reset = true;
@@ -216,7 +216,7 @@ impl StepCommands {
         }
         let firsts = queues.iter().filter_map(|queue| queue.next.as_ref().map(|next| next.tick));
         let Some(first) = firsts.min() else { return Ok(()) };
-        // Where nothing says when it begins, the beginning is as long before the first step as its interval.
+        // Without a clock the beginning is as long before the first step as its interval.
         let start = self
             .steppers
             .iter()
@@ -410,11 +410,13 @@ impl Reader for StepCommands {
             .enumerate()
             .map(|(motor, stepper)| format!("oid={} is STEP{motor} and DIR{motor}", stepper.oid))
             .collect();
-        self.recorder.leave_out(format!("steppers: {}", steppers.join(", ")));
-        self.recorder.leave_out(format!(
-            "the commands have no pulse widths and no DIR setup times: pulses of {PULSE} ticks at most are made, so a check \
-             against a driver says nothing"
-        ));
+        if !steppers.is_empty() {
+            self.recorder.leave_out(format!("steppers: {}", steppers.join(", ")));
+            self.recorder.leave_out(format!(
+                "the commands have no pulse widths and no DIR set-up times: pulses of at most {PULSE} ticks are made, so \
+                 timing checks do not apply"
+            ));
+        }
         if !self.is_reset && self.steps > 0 {
             self.recorder.leave_out(
                 "no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared".into(),

@@ -24,7 +24,7 @@ pub(super) fn nearest(lines: &[&[u8]]) -> String {
         (share(lines, is_bytes), format!("bytes in hexadecimal, if each has two digits: {}", not_bytes(lines))),
         (
             share(lines, is_timed),
-            format!("a serial log, if there are only hexadecimal bytes behind the times: {}", not_bytes(lines)),
+            format!("a serial log, if there are only hexadecimal bytes after the times: {}", not_bytes(lines)),
         ),
         (
             share(lines, is_timed_byte),
@@ -104,5 +104,8 @@ fn not_bytes(lines: &[&[u8]]) -> String {
         let mut bytes = Vec::new();
         !word.is_empty() && row::parse(word, &mut bytes).is_err()
     });
-    word.map_or_else(|| "some lines have other numbers".into(), |word| format!("{} is none", quoted(word)))
+    word.map_or_else(
+        || "some lines have other numbers".into(),
+        |word| format!("{} is not a byte", quoted(word)),
+    )
 }

@@ -8,7 +8,7 @@ use crate::capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, 
 const MAX_LEFT_OUT: usize = 20;
 /// Longest name of a channel, in bytes.
 const MAX_NAME: usize = 400;
-/// Names that a sentence tells.
+/// Names that a note lists.
 const MAX_TOLD: usize = 6;
 
 /// A capture that is being read.
@@ -34,7 +34,7 @@ impl Recorder {
         self.most
     }
 
-    /// Another channel, and its bit; `None` where all bits are taken, which the capture then says.
+    /// Another channel, and its bit; `None` where all bits are taken, which a note reports.
     pub(super) fn channel(&mut self, name: &str) -> Option<u8> {
         let bit = self.capture.channels.len();
         if bit >= MAX_CHANNELS {
@@ -43,6 +43,12 @@ impl Recorder {
         }
         self.capture.channels.push(Channel { name: cut(name).into() });
         u8::try_from(bit).ok()
+    }
+
+    /// The channel of this name, which is added if there is none; `None` where all bits are taken.
+    pub(super) fn channel_named(&mut self, name: &str) -> Option<u8> {
+        let known = self.capture.channels.iter().position(|channel| channel.name == cut(name));
+        known.map_or_else(|| self.channel(name), |bit| u8::try_from(bit).ok())
     }
 
     /// A channel has no bit.
@@ -92,6 +98,14 @@ impl Recorder {
         Ok(())
     }
 
+    /// Puts the bytes of several lines, each in order, into one order of time.
+    pub(super) fn sort_bytes(&mut self) {
+        let bytes = &mut self.capture.bytes;
+        // Not stable: that takes memory of its own.
+        bytes.sort_unstable_by_key(|byte| (byte.tick, byte.channel));
+        self.capture.end = bytes.last().map_or(self.capture.end, |byte| byte.tick);
+    }
+
     /// A position, not before the one before.
     pub(super) fn position(&mut self, position: TimedPosition) -> Result<(), String> {
         room(&mut self.capture.positions, self.most, "positions")?;
@@ -115,14 +129,14 @@ impl Recorder {
         Some(())
     }
 
-    /// Says what of the file was not read.
+    /// Notes what of the file was not read.
     pub(super) fn leave_out(&mut self, sentence: String) {
         if self.capture.left_out.len() < MAX_LEFT_OUT {
             self.capture.left_out.push(sentence);
         }
     }
 
-    /// Says how many levels were neither high nor low.
+    /// Notes how many levels were neither high nor low.
     pub(super) fn leave_out_unknown(&mut self, count: u64, which: &str) {
         if count > 0 {
             let levels = if count == 1 { "level is" } else { "levels are" };
@@ -138,7 +152,7 @@ impl Recorder {
         self.settle();
         if !self.beyond.is_empty() {
             let sentence = format!(
-                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, those with a telling name first; to read another one, name it in the channel map (--map STEP0=NAME)",
+                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, those with a recognized name first; to read another one, name it in the channel map (--map STEP0=NAME)",
                 grouped(self.beyond.count),
                 grouped(self.beyond.count.saturating_add(self.capture.channels.len() as u64)),
                 self.beyond.told()
@@ -216,7 +230,7 @@ pub(super) fn grouped(number: u64) -> String {
     text
 }
 
-/// What stands in a file, for a message: short, and in quotation marks.
+/// Text of a file, for a message: short, and in quotation marks.
 pub(super) fn quoted(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(text.get(..160).unwrap_or(text));
     let mut shown: String =

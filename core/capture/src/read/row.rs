@@ -1,4 +1,4 @@
-//! A row of bytes in hexadecimal, behind which the same bytes may stand as text.
+//! A row of bytes in hexadecimal, which the same bytes as text may follow.
 //!
 //! ```text
 //! 44 45 41 44 42 45 45 46  43 41 46 45  |DEADBEEFCAFE|        55aa 0102 8361  U....a        44 45 >DE<
@@ -8,18 +8,21 @@
 
 use super::recorder::quoted;
 
-/// What a row says about itself.
+/// Longest row in which a text without marks is looked for, in bytes: every gap between bytes is tried.
+const MAX_TEXT_ROW: usize = 4096;
+
+/// How a row is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Shape {
     /// Bytes that are written together without a blank.
     pub(super) group: usize,
     /// Whether a text proves the order of bytes within groups.
     pub(super) is_proven: bool,
-    /// Whether a text stands behind the bytes.
+    /// Whether a text follows the bytes.
     pub(super) has_text: bool,
 }
 
-/// Reads the bytes of a row behind those that are there.
+/// Appends the bytes of a row.
 pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
     let row = row.trim_ascii();
     let start = bytes.len();
@@ -36,7 +39,7 @@ pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
     bytes.truncate(start);
     let has_gap = row.windows(2).any(|pair| pair == b"  ");
     match tokens(row, bytes) {
-        // Behind pairs a wide gap is where the text begins.
+        // After pairs a wide gap is where the text begins.
         Ok(group) if group > 1 && has_gap => {
             bytes.truncate(start);
             Err(format!("the text of {} does not fit its bytes; is their order changed?", quoted(row)))
@@ -52,11 +55,11 @@ pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
 /// What may be a row's text.
 struct Text<'r> {
     text: &'r [u8],
-    /// Whether marks stand around it, so that none of it is a blank before it.
+    /// Whether it is between marks, so that no blank before it belongs to it.
     is_marked: bool,
 }
 
-/// Where the bytes of a row may end, and the text behind them.
+/// Where the bytes of a row may end, and the text after them.
 fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
     let marked = |open: u8, close: u8, least: usize| {
         let body = row.strip_suffix(&[close])?;
@@ -71,12 +74,12 @@ fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
     let gap = move |at: &usize| {
         is_blank(*at) && !is_blank(at.wrapping_sub(1)) && (is_blank(at + 1) || row.get(*at) == Some(&b'\t'))
     };
-    let gaps = (1..row.len()).filter(gap);
+    let gaps = (1..if row.len() > MAX_TEXT_ROW { 0 } else { row.len() }).filter(gap);
     marked.chain(gaps.filter_map(|at| Some((at, Text { text: row.get(at..)?, is_marked: false }))))
 }
 
 impl Text<'_> {
-    /// Its letters for so many bytes: what stands before them is blank. Blanks at its end may be missing.
+    /// Its letters for so many bytes: only blanks come before them. Blanks at its end may be missing.
     fn letters(&self, bytes: &[u8]) -> Option<Vec<char>> {
         let all: Vec<char> = String::from_utf8_lossy(self.text).chars().collect();
         let last_blanks = bytes.iter().rev().take_while(|byte| **byte == b' ').count();
@@ -88,8 +91,8 @@ impl Text<'_> {
             } else {
                 !before.is_empty() && before.iter().all(|letter| letter.is_whitespace())
             };
-            let fits = letters.iter().zip(bytes).all(|(letter, byte)| is_letter(*letter, *byte));
-            (is_gap && count > 0 && fits).then(|| letters.to_vec())
+            let fits = || letters.iter().zip(bytes).all(|(letter, byte)| is_letter(*letter, *byte));
+            (is_gap && count > 0 && fits()).then(|| letters.to_vec())
         })
     }
 
@@ -144,11 +147,15 @@ fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
         }
         is_over = group != 0 && count < group;
         group = group.max(count);
-        let digit = |digit: &u8| char::from(*digit).to_digit(16).unwrap_or(0) as u8;
-        bytes
-            .extend(digits.chunks(2).map(|pair| pair.iter().fold(0, |value, next| value << 4 | digit(next))));
+        push_digits(digits, bytes);
     }
     Ok(group)
+}
+
+/// Appends the bytes of hexadecimal digits, two each; the last may have one.
+pub(super) fn push_digits(digits: &[u8], bytes: &mut Vec<u8>) {
+    let digit = |digit: &u8| char::from(*digit).to_digit(16).unwrap_or(0) as u8;
+    bytes.extend(digits.chunks(2).map(|pair| pair.iter().fold(0, |value, next| value << 4 | digit(next))));
 }
 
 /// What is wrong with a word that should be a byte.

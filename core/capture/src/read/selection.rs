@@ -1,17 +1,17 @@
-//! Which channels are read of a file that has more than there is room for: those that are asked for, then those whose names
-//! tell what they are, then the others, each in the order of the file.
+//! Which channels are read of a file that has more than there is room for: requested ones, then those with recognized names,
+//! then the others, each in the order of the file.
 
 use super::recorder::Recorder;
 use crate::{capture::MAX_CHANNELS, names::Meaning};
 
-/// How much a channel is wanted, the most first.
+/// The priority of a channel, the highest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
-    /// Asked for by its whole name.
+    /// Requested by its full name.
     Named,
-    /// Asked for by the last part of its name.
+    /// Requested by the last part of its name.
     Meant,
-    /// Its name says that it is a signal of a motor or its line.
+    /// Its name is that of a motor's signal or a serial line.
     Telling,
     /// Such a name of a bit of a vector.
     TellingBit,
@@ -39,7 +39,7 @@ struct Candidate<T> {
     what: T,
 }
 
-/// The channels that are wanted most, of those that were offered; no more are kept.
+/// The channels with the highest priority of those offered; no more are kept.
 pub(super) struct Selection<T> {
     best: Vec<Candidate<T>>,
     offered: u64,

@@ -135,14 +135,16 @@ fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, 
         let entry =
             entries.next_entry().map_err(|error| format!("the zip's directory cannot be read: {error}"))?;
         let Some(entry) = entry else { return Ok(directory) };
-        let name = String::from_utf8_lossy(entry.file_path().as_ref()).into_owned();
+        let file_path = entry.file_path();
+        let raw_name: &[u8] = file_path.as_ref();
+        let name = String::from_utf8_lossy(raw_name).into_owned();
         let packed = Packed { at: entry.wayfinder(), method: entry.compression_method() };
         if directory.ranges.len() >= MAX_FILES {
             return Err(format!("more than {MAX_FILES} files in the zip; record a shorter time"));
         }
         let start = entry.local_header_offset();
         let end = start
-            .checked_add(LOCAL_HEADER + name.len() as u64)
+            .checked_add(LOCAL_HEADER + raw_name.len() as u64)
             .and_then(|data| data.checked_add(entry.compressed_size_hint()));
         directory.ranges.push((start, end.ok_or("a file of the zip ends beyond any file")?));
         match name.as_str() {
