@@ -694,10 +694,8 @@ fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
         ),
         (
             "queue_step oid=3 interval=9 add=0\n",
-            &format!(
-                "Klipper [] end 0\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
-                      whole number count="
-            ),
+            "Klipper [] end 0\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
+             whole number count=",
         ),
     ]);
 }

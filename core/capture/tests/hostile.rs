@@ -240,7 +240,7 @@ fn a_line_of_a_megabyte_is_read() {
         (format!("0.5: {}", "55  ".repeat(bytes - 2)), bytes - 2),
         (format!("[12.5] {} 55", ">> ".repeat(bytes)), 1),
     ] {
-        let reading = read_bytes(&format!("{line}\n"));
+        let reading = read_bytes(format!("{line}\n"));
         assert_eq!(reading.error, None, "{}", &line[..20]);
         assert_eq!(reading.capture.bytes.len(), expected, "{}", &line[..20]);
     }

@@ -74,7 +74,8 @@ fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
     let gap = move |at: &usize| {
         is_blank(*at) && !is_blank(at.wrapping_sub(1)) && (is_blank(at + 1) || row.get(*at) == Some(&b'\t'))
     };
-    let gaps = (1..if row.len() > MAX_TEXT_ROW { 0 } else { row.len() }).filter(gap);
+    let searched = if row.len() > MAX_TEXT_ROW { 0 } else { row.len() };
+    let gaps = (1..searched).filter(gap);
     marked.chain(gaps.filter_map(|at| Some((at, Text { text: row.get(at..)?, is_marked: false }))))
 }
 
