@@ -3,7 +3,6 @@
 
 mod buttons;
 mod closed_peer;
-pub(crate) mod interrupt;
 mod keyboard;
 mod line_errors;
 mod panel;

@@ -233,7 +233,7 @@ fn open_checks_the_scenario_as_a_run_does() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
-    use std::{thread, time::Duration};
+    use std::{os::unix::fs::OpenOptionsExt as _, thread, time::Duration};
     let folder = folder("signals");
     let pipe = folder.join("pipe");
     let made = Command::new("mkfifo").arg(&pipe).status().expect("mkfifo starts");
@@ -248,14 +248,25 @@ fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("it starts");
-        // From its second thread on it listens.
-        let tasks = format!("/proc/{}/task", child.id());
-        while fs::read_dir(&tasks).map_or(0, Iterator::count) < 2 {
-            assert!(child.try_wait().expect("a child").is_none(), "{reader:?} has ended");
+        // A pipe can be opened for writing without a wait only when a reader is there: the command waits for its bytes then.
+        let nonblocking = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+        let writer = loop {
+            match fs::OpenOptions::new().write(true).custom_flags(nonblocking).open(&pipe) {
+                Ok(writer) => break writer,
+                Err(_) => assert!(child.try_wait().expect("a child").is_none(), "{reader:?} has ended"),
+            }
             thread::sleep(Duration::from_millis(2));
-        }
+        };
         let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill");
         assert!(killed.success());
+        // The end of the bytes ends a command that ignores the signal, with another exit code.
+        for _ in 0..3000 {
+            if child.try_wait().expect("a child").is_some() {
+                break;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        drop(writer);
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(output.status.code(), Some(130), "{reader:?} {signal}");
         assert_eq!((output.stdout, output.stderr), (vec![], vec![]), "{reader:?} {signal}");

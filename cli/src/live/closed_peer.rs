@@ -3,27 +3,43 @@
 //! TCP itself shows that only when those bytes are read: the end comes behind them. A server that reads no faster than a serial line
 //! would serve nobody else for minutes.
 
-use std::net::SocketAddr;
+use std::{io, net::SocketAddr};
 
-/// Whether nobody has the socket `there` open any more, which was connected to `here`. False where the system does not tell: of
-/// other machines, and on other systems than Linux.
+/// Whether the socket `there`, which was connected to `here`, was closed by its process. False where the system does not show it:
+/// for other machines, and on other systems than Linux.
 pub(super) fn is_closed(here: SocketAddr, there: SocketAddr) -> bool {
-    if !cfg!(target_os = "linux") || !there.ip().is_loopback() {
+    if !cfg!(target_os = "linux") || !there.ip().to_canonical().is_loopback() {
         return false;
     }
-    let table = if there.is_ipv4() { "/proc/net/tcp" } else { "/proc/net/tcp6" };
-    std::fs::read_to_string(table).is_ok_and(|table| is_closed_in(&table, there.port(), here.port()))
+    // An IPv6 socket can be connected to an IPv4 address, so either table can have the row.
+    let tables = ["/proc/net/tcp", "/proc/net/tcp6"].map(read);
+    tables
+        .into_iter()
+        .collect::<io::Result<String>>()
+        .is_ok_and(|rows| is_closed_in(&rows, there.port(), here.port()))
 }
 
-/// Whether a table of sockets has none between two ports that belongs to somebody: what is left of a closed one has no inode.
-fn is_closed_in(table: &str, from: u16, to: u16) -> bool {
+/// A table of sockets; empty on a system without this family of addresses.
+fn read(table: &str) -> io::Result<String> {
+    match std::fs::read_to_string(table) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(String::new()),
+        rows => rows,
+    }
+}
+
+/// Whether the rows between two ports are all of closed sockets, which have no inode. Without a row it is unknown: a table is not
+/// read in one moment, so a row can be missing.
+fn is_closed_in(rows: &str, from: u16, to: u16) -> bool {
     let port = |address: &str| u16::from_str_radix(address.rsplit(':').next()?, 16).ok();
-    !table.lines().skip(1).any(|row| {
-        let mut columns = row.split_whitespace();
-        let (local, remote, inode) = (columns.nth(1), columns.next(), columns.nth(6));
-        let is_it = local.and_then(port) == Some(from) && remote.and_then(port) == Some(to);
-        is_it && inode != Some("0")
-    })
+    let mut inodes = rows
+        .lines()
+        .filter_map(|row| {
+            let mut columns = row.split_whitespace();
+            let (local, remote, inode) = (columns.nth(1)?, columns.next()?, columns.nth(6)?);
+            (port(local) == Some(from) && port(remote) == Some(to)).then_some(inode)
+        })
+        .peekable();
+    inodes.peek().is_some() && inodes.all(|inode| inode == "0")
 }
 
 #[cfg(test)]
@@ -31,14 +47,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_socket_is_closed_when_it_is_nobody_s_or_not_in_the_table() {
-        let table = "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
+    fn a_socket_is_closed_when_its_rows_have_no_inode() {
+        let rows = "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
    0: 0100007F:1267 0100007F:B0A2 01 00000000:00000000 00:00000000 00000000     0        0 4242 1 0 20 4 30 10 -1
    1: 0100007F:B0A2 0100007F:1267 01 00000000:00000000 00:00000000 00000000     0        0 4243 1 0 20 4 30 10 -1
    2: 0100007F:B0A4 0100007F:1267 04 00280000:00000000 04:00000010 00000000     0        0 0 2 0
+   3: 0200007F:B0A2 0200007F:1267 06 00000000:00000000 03:00000010 00000000     0        0 0 3 0
+  sl  local_address                         remote_address                        st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
+   0: 0000000000000000FFFF00000100007F:B0A8 0000000000000000FFFF00000100007F:1267 01 00000000:00000000 00:00000000 00000000     0        0 4244 1 0 20 4 30 10 -1
+   1: 0000000000000000FFFF00000100007F:B0AA 0000000000000000FFFF00000100007F:1267 05 00000000:00000000 00:00000000 00000000     0        0 0 1 0 20 4 30 10 -1
 ";
-        for (from, closed) in [(0xb0a2, false), (0xb0a4, true), (0xb0a6, true)] {
-            assert_eq!(is_closed_in(table, from, 0x1267), closed, "{from:x}");
+        for (from, closed) in
+            [(0xb0a2, false), (0xb0a4, true), (0xb0a6, false), (0xb0a8, false), (0xb0aa, true)]
+        {
+            assert_eq!(is_closed_in(rows, from, 0x1267), closed, "{from:x}");
         }
     }
 
@@ -51,16 +73,26 @@ mod tests {
         };
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let here = listener.local_addr().expect("an address");
-        let mut client = TcpStream::connect(here).expect("it listens");
-        let (server, there) = listener.accept().expect("a client");
-        client.set_nonblocking(true).expect("it can be");
-        while matches!(client.write(&[0; 1 << 16]), Ok(1..)) {}
-        assert!(!is_closed(here, there));
-        // One that only sends no more may still read.
-        client.shutdown(Shutdown::Write).expect("it is open");
-        assert!(!is_closed(here, there));
-        drop(client);
-        assert!(is_closed(here, there));
-        drop(server);
+        // The second one is an IPv6 socket.
+        let mapped: SocketAddr = format!("[::ffff:127.0.0.1]:{}", here.port()).parse().expect("an address");
+        for address in [here, mapped] {
+            let mut client = match TcpStream::connect(address) {
+                Ok(client) => client,
+                // A system without IPv6.
+                Err(_) if address == mapped => continue,
+                Err(error) => panic!("{error}"),
+            };
+            let (server, there) = listener.accept().expect("a client");
+            client.set_nonblocking(true).expect("it can be");
+            while matches!(client.write(&[0; 1 << 16]), Ok(1..)) {}
+            assert!(!is_closed(here, there), "{address}");
+            // One that only sends no more may still read.
+            client.shutdown(Shutdown::Write).expect("it is open");
+            assert!(!is_closed(here, there), "{address}");
+            drop(client);
+            // Rows change while the tables are read.
+            while !is_closed(here, there) {}
+            drop(server);
+        }
     }
 }

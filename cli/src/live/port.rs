@@ -1,10 +1,10 @@
 //! Ports: a real one, a pseudo-terminal's side for others, a socket. Each reads for a while and writes what it can.
 
 use super::{
-    closed_peer, interrupt,
+    closed_peer,
     line_errors::{self, LineErrors},
 };
-use crate::failure::Failure;
+use crate::{failure::Failure, interrupt};
 use serial2::{CharSize, FlowControl, Parity, SerialPort, Settings, StopBits};
 use std::{
     io::{self, ErrorKind, Read, Write},
@@ -333,9 +333,11 @@ struct Client {
 }
 
 impl Client {
-    /// Whether nobody has the other end any more, though bytes from it may still wait in the system.
+    /// Whether no process has the other end open any more, though bytes from it may still wait in the system.
     fn is_closed(&self) -> bool {
-        self.socket.0.local_addr().is_ok_and(|here| closed_peer::is_closed(here, self.from))
+        // A connection that was reset has no row in the system's tables.
+        is_broken(&self.socket.0, Duration::ZERO).unwrap_or(false)
+            || self.socket.0.local_addr().is_ok_and(|here| closed_peer::is_closed(here, self.from))
     }
 }
 
@@ -428,6 +430,10 @@ impl Port for Listener {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // Until the new client is reported, replies are those to the client before.
+        if self.is_new {
+            return Ok(bytes.len());
+        }
         // A reply that nobody reads is lost, as on a wire. A broken connection shows when it is read.
         self.client.as_mut().map_or(Ok(bytes.len()), |client| client.socket.write(bytes).or(Ok(bytes.len())))
     }
@@ -643,5 +649,32 @@ mod pty {
         fn is_connected(&self) -> bool {
             self.connected
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reply_to_the_client_before_does_not_reach_the_next_one() {
+        let any = SocketAddr::from(([127, 0, 0, 1], 0));
+        let (mut listener, address) = Listener::open(any, false).expect("a port");
+        let mut buffer = [0; 8];
+        let connect = |listener: &mut Listener| {
+            let client = TcpStream::connect(address).expect("it listens");
+            while listener.look().is_none() {}
+            client
+        };
+        let first = connect(&mut listener);
+        assert_eq!(listener.read(&mut buffer, LEAST_WAIT).expect("it reads"), Heard::Connected);
+        drop(first);
+        while listener.read(&mut buffer, LEAST_WAIT).expect("it reads") != Heard::Ended {}
+        let mut second = connect(&mut listener);
+        assert_eq!(listener.write(b"old").expect("it takes all"), 3);
+        assert_eq!(listener.read(&mut buffer, LEAST_WAIT).expect("it reads"), Heard::Connected);
+        assert_eq!(listener.write(b"new").expect("it takes all"), 3);
+        second.read_exact(&mut buffer[..3]).expect("a reply");
+        assert_eq!(&buffer[..3], b"new");
     }
 }

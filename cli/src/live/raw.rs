@@ -1,8 +1,8 @@
 //! Raw packets to a real line, paced and unanswered (LIVE H3): nobody tells whether they arrive, so nothing is verified. When each is
 //! due, and what is known at the end, the core says.
 
-use super::{interrupt, port::Heard, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
-use crate::{failure::Failure, json::Tables, terminal};
+use super::{port::Heard, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
+use crate::{failure::Failure, interrupt, json::Tables, terminal};
 use serde_json::json;
 use std::{io::Write, thread, time::Duration};
 use stepscope_core::sim::{

@@ -2,14 +2,13 @@
 //! simulated run has; what is not confirmed by the controller is never said to be done.
 
 use super::{
-    interrupt,
     port::{Heard, Port, Rs485, Serial, Socket},
     raw,
     status_line::StatusLine,
     stop_watch::{StopWatch, wake_on_time},
     wire::Wire,
 };
-use crate::{failure::Failure, json::Tables, scenarios, terminal};
+use crate::{failure::Failure, interrupt, json::Tables, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -69,7 +68,6 @@ pub(crate) struct Arguments {
 
 /// Sends the ticks, and says what is known of them.
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
-    interrupt::watch()?;
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
@@ -89,10 +87,9 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Option(format!("--lead: {why}")));
     }
     let raw = is_raw.then(|| raw::host(&experiment, arguments.lead)).transpose()?;
-    if interrupt::count() > 0 {
-        return Err(Failure::Interrupted);
-    }
     wake_on_time();
+    // Until here a signal ends the command at once, also while it waits for a pipe.
+    interrupt::watch()?;
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
     if let Some(host) = raw {

@@ -2,13 +2,12 @@
 //! buttons are lines on standard input (LIVE H2). What it does against the wall clock: `server.rs`.
 
 use super::{
-    interrupt,
     keyboard::Keyboard,
     port::{Listener, Port, Rs485, Serial},
     recording::{self, beside},
     server::{Pacing, Server, Settings},
 };
-use crate::{failure::Failure, output::Outputs, scenarios, terminal};
+use crate::{failure::Failure, interrupt, output::Outputs, scenarios, terminal};
 use clap::Args;
 use std::{
     io::Write,
@@ -63,21 +62,19 @@ fn pace(text: &str) -> Result<Pacing, String> {
 
 /// Serves until it is told to end.
 pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
-    interrupt::watch()?;
     let path = &arguments.scenario;
     let beside = arguments.record.as_deref().map(beside);
     let files = arguments.record.iter().chain(&beside).map(PathBuf::as_path);
     let mut outputs = Outputs::judge(Some(path), files)?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    if interrupt::count() > 0 {
-        return Err(Failure::Interrupted);
-    }
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
     let files = match (&arguments.record, &beside) {
         (Some(record), Some(beside)) => Some((create(record)?, create(beside)?)),
         _ => None,
     };
+    // Until here a signal ends the command at once, also while it waits for a pipe.
+    interrupt::watch()?;
     let port = open(arguments, &session)?;
     let Arguments { pace, lag, once, progress, .. } = *arguments;
     let records = arguments.record.is_some();

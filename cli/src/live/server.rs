@@ -8,14 +8,12 @@
 //! Of stand-alone controllers the bytes are lines on standard input, and nothing is written.
 
 use super::{
-    interrupt,
     panel::{self, Panel},
     port::{Heard, Port},
     status_line::StatusLine,
     stop_watch::{StopWatch, wake_on_time},
 };
-use crate::failure::Failure;
-use crate::terminal;
+use crate::{failure::Failure, interrupt, terminal};
 use std::{
     collections::VecDeque,
     io::{self, Write},
