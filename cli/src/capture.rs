@@ -4,6 +4,7 @@
 //! file -> read -> channel map, clock -> records -> report, timing, comparison with a scenario's run, files
 //! ```
 
+mod advice;
 mod arguments;
 mod beside;
 mod files;
@@ -49,7 +50,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     // A line that was mapped is wanted; one that was only proposed may be none.
     let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
     if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
-        return Err(arguments.wrong(line.to_text()));
+        return Err(arguments.wrong(advice::line(line)));
     }
     let beside =
         arguments.against.as_deref().map(|path| Beside::of(arguments, &recording, path)).transpose()?;

@@ -123,6 +123,24 @@ fn low_pulses_are_inverted_or_told() {
 }
 
 #[test]
+fn maps_that_are_told_of_can_be_used_whatever_the_names_of_the_channels() {
+    for (name, map) in [("Channel 0", "DEDGE0=Channel 0"), ("!STEP", "DEDGE0=#0")] {
+        let rows: String = (0..40).map(|k| format!("0.{:06},{}\n", 10 * k, k % 2)).collect();
+        let table = format!("Time [s],\"{name}\"\n{rows}");
+        let out = told(&table, &["--map", "STEP0=#0"]);
+        all_of(&out, &[&format!("for such a driver use --both-edges, or {map} in the map\n")]);
+        all_of(&told(&table, &["--map", map]), &[&format!("map       {map}\n")]);
+        let low: String = (0..20).map(|k| format!("0.{:06},1\n0.{:06},0\n", 10 * k, 10 * k + 9)).collect();
+        let map = map.replace("DEDGE0=", "STEP0=!");
+        let low = format!("Time [s],\"{name}\"\n{low}0.000200,1\n");
+        let out = told(&low, &["--map", "STEP0=#0"]);
+        all_of(&out, &[&format!("use {map} in the map\n")]);
+    }
+    let (code, _, err) = stepscope(&["capture", "-"], "Time [s],A\n0,0\n1,1\n2,0\n");
+    assert!(code == Some(2) && err.contains("such as STEP0=A; the channels are A"), "{err}");
+}
+
+#[test]
 fn any_of_more_than_64_signals_can_be_named() {
     let names: Vec<String> = (0..70).map(|at| format!("w{at}")).chain(["STEP".to_owned()]).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -17,8 +17,9 @@ use stepscope_core::{
             events::{Beside, Events},
             opened::{Ask, Kept, OpenError, Opened, Part},
             packets::{LinePacket, Packets},
+            remedy::{Note, Remedy},
             replies::{self, Dealt},
-            report::ChannelReport,
+            report::{ChannelReport, LineReport},
             tolerance::Tolerance,
         },
     },
@@ -29,7 +30,7 @@ use wasm_bindgen::prelude::*;
 /// Most columns of an overview.
 const MAX_COLUMNS: u32 = 10_000;
 /// Differences from a plan that are listed in words.
-const MAX_DIFFERENCES: usize = 100;
+const MAX_DIFFERENCES: usize = 10;
 /// Bytes that are asked for at a time.
 const PIECE: usize = 1 << 20;
 
@@ -134,21 +135,52 @@ struct Asked {
 }
 
 /// The option of `look` that has to be changed.
-const fn remedy(error: &OpenError) -> &'static str {
+const fn field_of(error: &OpenError) -> &'static str {
     match error {
-        OpenError::Map(_) | OpenError::NoMap(_) => "map",
+        OpenError::Map(_) | OpenError::NoMap { .. } => "map",
         OpenError::Clock(_) => "clock_hz",
         OpenError::SampleRate | OpenError::NoSampleRate => "sample_rate_hz",
-        OpenError::NoBaud | OpenError::Baud | OpenError::NoRate(_) => "baud",
+        OpenError::NoBaud | OpenError::Baud | OpenError::NoRate(..) => "baud",
         OpenError::Uart(..) => "uart",
         _ => "",
     }
 }
 
+/// The end of a sentence that says what would help, by the fields of the page's dialog.
+fn in_fields(remedy: &Remedy) -> String {
+    match remedy {
+        Remedy::BothEdges { .. } => "; for such a driver choose the signal “STEP, both edges”".to_owned(),
+        Remedy::OtherEdge { motor, inverted, .. } => {
+            let check = if *inverted { "check" } else { "clear" };
+            format!("; if the driver steps where it begins, {check} “Inverted” of STEP{motor}")
+        }
+        Remedy::InvertLine(line) => format!(": change “Inverted” of {line}"),
+        Remedy::ChooseLine => "; choose the channel of RX".to_owned(),
+        Remedy::Format(format) => format!(": try the serial format {format}"),
+        Remedy::Baud => "; enter one as the bit rate".to_owned(),
+        Remedy::BaudOrFormat => "; enter the bit rate, or choose another serial format".to_owned(),
+    }
+}
+
+/// A note with what would help.
+fn note(Note { text, remedy }: &Note) -> String {
+    text.clone() + &remedy.as_ref().map(in_fields).unwrap_or_default()
+}
+
+/// A line with what would help.
+fn line(line: &LineReport) -> String {
+    line.to_text() + &line.remedies.iter().map(in_fields).collect::<String>()
+}
+
 /// An `Error` with the option that has to be changed as its `field`.
 fn refused(error: &OpenError) -> JsValue {
-    let thrown = Error::new(&error.to_string());
-    field(&thrown, "field", &remedy(error).into());
+    let by = match error {
+        OpenError::NoMap { .. } => "; choose the signals of the channels".to_owned(),
+        OpenError::NoRate(_, remedies) => remedies.iter().map(in_fields).collect(),
+        _ => String::new(),
+    };
+    let thrown = Error::new(&format!("{error}{by}"));
+    field(&thrown, "field", &field_of(error).into());
     thrown.into()
 }
 
@@ -162,7 +194,7 @@ struct Looked<'a> {
     records: usize,
     /// The part that is shown; null where it is all.
     kept: Option<Kept>,
-    notes: &'a [String],
+    notes: Vec<String>,
     steps: &'a [ChannelReport],
     lines: Vec<String>,
 }
@@ -252,9 +284,9 @@ impl CaptureFile {
             end_s: opened.end_s,
             records: opened.records.len(),
             kept: opened.kept,
-            notes: &opened.notes,
+            notes: opened.notes.iter().map(note).collect(),
             steps: &opened.report.channels,
-            lines: opened.report.lines.iter().map(|line| line.to_text()).collect(),
+            lines: opened.report.lines.iter().map(line).collect(),
         })
         .map_err(JsValue::from)
     }
@@ -340,7 +372,7 @@ impl CaptureFile {
     }
 
     /// How it compares with such a run, the run's step, or byte, `aligned` and the recorded one that it is taken for the same
-    /// instant: the core's `Beside`, and in `rows` the first 100 differences in words, with their times; null where one of
+    /// instant: the core's `Beside`, and in `rows` the first 10 differences in words, with their times; null where one of
     /// both has none.
     ///
     /// # Errors
@@ -401,5 +433,31 @@ impl CaptureFile {
             bytes.extend_from_slice(&record.levels.0.to_le_bytes());
         }
         bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_core::capture::{
+        capture::{Change, Channel, Format},
+        timebase::Timebase,
+    };
+
+    #[test]
+    fn notes_name_the_fields_of_the_dialog_whatever_the_names_of_the_channels() {
+        let mut capture = Capture::new(Format::LevelsCsv);
+        capture.channels.push(Channel { name: "Channel 0".into() });
+        capture.timebase = Timebase::new(1, 1_000_000);
+        capture.changes = (0..40).map(|k| Change { tick: 10 * k, levels: k % 2 }).collect();
+        let ask = Ask { map: Some("STEP0=Channel 0".into()), ..Ask::default() };
+        let opened = Opened::new(capture, &ask).expect("steps");
+        let notes: Vec<String> = opened.notes.iter().map(note).collect();
+        let expected = "makes 39 steps of it; for such a driver choose the signal “STEP, both edges”";
+        assert!(notes.iter().any(|note| note.ends_with(expected)), "{notes:?}");
+        assert_eq!(
+            in_fields(&Remedy::OtherEdge { motor: 1, channel: "#0".into(), inverted: true }),
+            "; if the driver steps where it begins, check “Inverted” of STEP1"
+        );
     }
 }

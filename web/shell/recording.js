@@ -11,7 +11,7 @@ import { createChannelTable } from "./channel_table.js";
 import { offerDifferences } from "./differences.js";
 import { keep, stands } from "./kept.js";
 import { message } from "./link.js";
-import { choiceField, inPage, numberField, sentence, timeField } from "./recording_fields.js";
+import { choiceField, numberField, sentence, timeField } from "./recording_fields.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 import { around } from "./verdict.js";
@@ -391,7 +391,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
       result,
       element("p", {}, `${time(kept?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`),
       ...rows,
-      ...lines.map((line) => element("p", {}, inPage(line))),
+      ...lines.map((line) => element("p", {}, line)),
       ...(kept
         ? [
             element(
@@ -548,7 +548,7 @@ function compared(
       : `${count(recorded)} ${kind}, the baseline has ${count(model)}, ${count(missing)} missing, ${count(extra)} extra; the others`;
   const listed = rows.slice(0, MAX_DIFFERENCES).map((/** @type {{text: string}} */ { text }) => text);
   const more = differences.count > listed.length ? `; ${count(differences.count)} differences in all` : "";
-  const each = missing + extra + differing > 0 ? ` ${listed.join("; ")}${more}.` : "";
+  const each = differences.count > 0 ? ` ${listed.join("; ")}${more}.` : "";
   const { step, late_s } = largest;
   const late =
     late_s === 0
@@ -560,7 +560,7 @@ function compared(
     Math.abs(drift_ppm) > MAX_DRIFT_PPM
       ? ""
       : ` Drift ${drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1")} ppm; without it ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${outliers > 0 ? `, ${counted(outliers, "outlier")} excluded` : ""}.`;
-  return `Beside the baseline${by}: ${all} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${each}${drift}`;
+  return `Compared with the baseline${by}: ${all} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${each}${drift}`;
 }
 
 /** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */

@@ -5,25 +5,9 @@ import { parseNumber } from "../state/number.js";
 /** Largest number that a field takes: what the core has room for. */
 const MAX = 2 ** 32 - 1;
 
-/** What the core's messages name, which are options of the command, and the dialog's own fields. @type {[RegExp, string][]} */
-const OPTIONS = [
-  [/--both-edges, or DEDGE\d+=\S+ in the map/g, "the signal “STEP, both edges”"],
-  [/use STEP(\d+)=!\S+ in the map/g, "check “Inverted” of STEP$1"],
-  [/--uart (\w+)/g, "the serial format $1"],
-  [/ with --baud, or the format with --uart/g, ", or another serial format"],
-  [/; to read another one, name it in the channel map \(--map STEP0=NAME\)/g, ""],
-  [/give one with --baud/g, "enter one as the bit rate"],
-  [/choose one by a map, such as RX=#0/g, "choose the channel of RX"],
-  [/nothing says which channel is which signal; give a map, such as .*/g, "choose the signals of the channels"],
-];
-
-/** A message of the core with the dialog's fields in place of the command's options. @param {string} text */
-export const inPage = (text) => OPTIONS.reduce((said, [option, field]) => said.replace(option, field), text);
-
-/** The same as a sentence. @param {string} text */
+/** A message of the core as a sentence. @param {string} text */
 export function sentence(text) {
-  const said = inPage(text);
-  return `${said.slice(0, 1).toUpperCase()}${said.slice(1).replace(/\.$/, "")}.`;
+  return `${text.slice(0, 1).toUpperCase()}${text.slice(1).replace(/\.$/, "")}.`;
 }
 
 /**

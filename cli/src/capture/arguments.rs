@@ -1,5 +1,6 @@
 //! What `stepscope capture` is asked for.
 
+use super::advice;
 use crate::{
     failure::Failure,
     motors::Named,
@@ -154,10 +155,13 @@ impl Arguments {
     /// What the recording lacks, and the option that gives it.
     pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
         let option = match error {
-            OpenError::NoSampleRate => " (--sample-rate HZ)",
-            OpenError::NoBaud => " (--baud BAUD)",
-            OpenError::NoMap(_) => " (--map MAP)",
-            _ => "",
+            OpenError::NoSampleRate => " (--sample-rate HZ)".to_owned(),
+            OpenError::NoBaud => " (--baud BAUD)".to_owned(),
+            OpenError::NoMap { names, example } => {
+                format!("; give a map, such as {example}; the channels are {} (--map MAP)", names.join(", "))
+            }
+            OpenError::NoRate(_, remedies) => remedies.iter().map(advice::option).collect(),
+            _ => String::new(),
         };
         self.wrong(format!("{error}{option}"))
     }

@@ -1,6 +1,6 @@
 //! What `stepscope capture` prints.
 
-use super::beside::Beside;
+use super::{advice, beside::Beside};
 use crate::{
     json::Tables,
     terminal,
@@ -31,14 +31,14 @@ pub(super) fn print(
         writeln!(out, "map       {}{proposed}", recording.map)?;
     }
     for note in &recording.notes {
-        writeln!(out, "note      {note}")?;
+        writeln!(out, "note      {}", advice::note(note))?;
     }
     writeln!(out, "clock     {} Hz: {}", recording.clock_hz, recording.rounding)?;
     for channel in &recording.report.channels {
         figures(&mut out, channel)?;
     }
     for line in &recording.report.lines {
-        writeln!(out, "{}", line.to_text())?;
+        writeln!(out, "{}", advice::line(line))?;
     }
     if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
         writeln!(out, "no channel steps and nothing is heard on a line")?;
@@ -164,7 +164,7 @@ pub(super) fn tables(
         "rounding": recording.rounding,
     });
     let channels = recording.names.iter().map(|name| json!({ "channel": name }));
-    let notes = recording.notes.iter().map(|note| json!({ "note": note }));
+    let notes = recording.notes.iter().map(|note| json!({ "note": advice::note(note) }));
     let steps = recording.report.channels.iter().map(|channel| {
         let mut row = serde_json::to_value(channel.figures).unwrap_or_default();
         row["channel"] = channel.channel.into();
@@ -180,8 +180,8 @@ pub(super) fn tables(
             "framing_errors": line.heard.framing_errors.len(),
             "parity_errors": line.heard.parity_errors.len(),
             "packets": line.guess_text(),
-            "problem": line.problem,
-            "hint": line.hint,
+            "problem": line.problem.as_ref().map(|text| advice::of_line(text, line)),
+            "hint": line.hint.as_ref().map(|text| advice::of_line(text, line)),
         })
     });
     let comparison = beside.map(|beside| {

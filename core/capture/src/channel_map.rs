@@ -361,7 +361,8 @@ impl ChannelMap {
 }
 
 /// A channel by its name, unless that is another's too or would not be read back; else by its place.
-fn written(index: usize, channels: &[Channel]) -> String {
+#[must_use]
+pub fn written(index: usize, channels: &[Channel]) -> String {
     let name = channels.get(index).map_or("", |channel| channel.name.as_str());
     if place(name, channels) == Ok(index) && !name.contains([',', '!']) && name.trim() == name {
         name.to_owned()

@@ -490,7 +490,7 @@ fn logs_with_a_time_per_line_are_read() {
             "2026-11-26 12:00:00,123456 RX: 55 AA\n2026-11-26 12:00:00,123457 TX: 01\n",
             &format!(
                 "SerialLog 1/1000000 [RX TX] 0:0:55 0:0:aa 1:1:01 end 1{}\n\
-                 - RX and TX are named as in the log: in one of the host, TX is what the controller receives (map RX=TX,TX=RX)",
+                 - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
                 first("2026-11-26 12:00:00,123456 RX: 55 AA")
             ),
         ),
@@ -520,7 +520,7 @@ fn logs_with_a_time_per_line_are_read() {
         (
             "[ 12.345678] >> 55\n[ 12.345679] << AA\n",
             "SerialLog 1/1000000 [TX RX] 12345678:0:55 12345679:1:aa end 12345679\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives (map RX=TX,TX=RX)",
+             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
         ),
         (
             "26.11.2026 12:00:00.123 [TX] - 55 AA\n",
@@ -545,13 +545,13 @@ fn logs_with_a_time_per_line_are_read() {
         (
             "0.001: RX 55\n12.5ms TX AA\n",
             "HexBytes 1/10000 [RX TX] 10:0:55 125:1:aa end 125\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives (map RX=TX,TX=RX)",
+             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
         ),
         // Tables.
         (
             "t_us,dir,data\n0,RX,55 AA\n10,TX,01\n",
             "HexBytes 1/1000000 [RX TX] 0:0:55 0:0:aa 10:1:01 end 10\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives (map RX=TX,TX=RX)",
+             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
         ),
         ("0,55\n1041,AA\n2083,01\n", "HexBytes [bytes] 0:0:55 1041:0:aa 2083:0:01 end 2083"),
         (
@@ -845,8 +845,8 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(
         reading.capture.left_out,
         [
-            "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, those with a \
-             recognized name first; to read another one, name it in the channel map (--map STEP0=NAME)"
+            "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, first those \
+             that the channel map names, then those with a recognized name"
         ]
     );
     let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));

@@ -6,6 +6,7 @@
 //!                        serial      bytes of RX and TX, their rate and what they seem to be
 //!                        overview    all of it at a glance, a column a pixel
 //!                        packets     what RX and TX say, packet by packet
+//!                        remedy      what would help, for command and page to word
 //!                        replies     what TX says, for the table of packets
 //!                        matching    which recorded step is which planned step
 //!                        alignment   each step compared with the plan's
@@ -43,6 +44,7 @@ pub mod matching;
 pub mod opened;
 pub mod overview;
 pub mod packets;
+pub mod remedy;
 pub mod replies;
 pub mod report;
 pub mod scenario;

@@ -198,8 +198,10 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         ensure!(!page.eval::<bool>("/[&]d=/.test(document.getElementById('link-text').value)").await?);
         page.click("#share").await?;
         // Each step is held against the model's, and the one that is off most can be shown.
-        page.until(&format!("{MESSAGE}.startsWith('Beside the baseline: 200 steps, the baseline has 800')"))
-            .await?;
+        page.until(&format!(
+            "{MESSAGE}.startsWith('Compared with the baseline: 200 steps, the baseline has 800')"
+        ))
+        .await?;
         let said = page.text("#link-message").await?;
         ensure!(
             said.contains("mine.csv") && said.contains("Undo") && said.contains("Show the place"),
@@ -207,7 +209,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         );
         // The message may be closed: the experiment's note has it.
         let note = page.field("note").await?.value;
-        ensure!(note.contains("Beside the baseline: 200 steps, the baseline has 800"), "{note}");
+        ensure!(note.contains("Compared with the baseline: 200 steps, the baseline has 800"), "{note}");
         page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Against the baseline: the experiment')").await?;
         // The position at a cursor is that of the file.
         page.press("#charts-handles .handle.a", &ENTER.to_string()).await?;
@@ -277,7 +279,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         opened.align(0, 50, own.seconds(model.get(50).context("it steps")?.cycle))?;
         page.until_digest(&digest(&opened)).await?;
         page.until(&format!(
-            "{MESSAGE}.startsWith('Beside the baseline, aligned by step 50: 200 steps, the baseline has 800')"
+            "{MESSAGE}.startsWith('Compared with the baseline, aligned by step 50: 200 steps, the baseline has 800')"
         ))
         .await
     })

@@ -155,8 +155,8 @@ impl Reader for HexText {
         let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
         if named("RX") && named("TX") {
             self.recorder.leave_out(
-                "RX and TX are named as in the log: in one of the host, TX is what the controller receives \
-                 (map RX=TX,TX=RX)"
+                "RX and TX are named as in the log: in one of the host, TX is what the controller receives; \
+                 for such a log, exchange the channels of RX and TX"
                     .into(),
             );
         }

@@ -152,7 +152,7 @@ impl Recorder {
         self.settle();
         if !self.beyond.is_empty() {
             let sentence = format!(
-                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, those with a recognized name first; to read another one, name it in the channel map (--map STEP0=NAME)",
+                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",
                 grouped(self.beyond.count),
                 grouped(self.beyond.count.saturating_add(self.capture.channels.len() as u64)),
                 self.beyond.told()

@@ -16,6 +16,7 @@ use super::{
     events::{Events, Kind},
     figures::StepFigures,
     overview::Overview,
+    remedy::{Note, Remedy},
     report::{ChannelReport, LineReport, Report, Survey, steps},
     scenario::{self, Bytes, Made, Refused, Steps},
     serial::{Heard, HeardByte, LineOptions},
@@ -35,7 +36,7 @@ use serde::Serialize;
 use stepscope_capture::{
     Capture, ChannelMap, Recorded,
     capture::TimedByte,
-    channel_map::{MapError, PulseSource},
+    channel_map::{MapError, PulseSource, written},
     recorded::{Records, Rounding, TooLate},
     timebase::Timebase,
 };
@@ -94,8 +95,13 @@ impl Ask {
 pub enum OpenError {
     /// The map is wrong.
     Map(MapError),
-    /// Nothing says which channel is which signal; the names of its channels.
-    NoMap(Vec<String>),
+    /// Nothing says which channel is which signal.
+    NoMap {
+        /// Names of its channels.
+        names: Vec<String>,
+        /// A map that there can be.
+        example: String,
+    },
     /// A clock that there cannot be.
     Clock(u32),
     /// A rate of samples that there cannot be.
@@ -108,8 +114,8 @@ pub enum OpenError {
     Baud,
     /// A format of a line that there cannot be, and those that there are.
     Uart(String, &'static str),
-    /// Nothing steps, and a line cannot be decoded; why.
-    NoRate(String),
+    /// Nothing steps, and a line cannot be decoded; why, and what would help.
+    NoRate(String, Vec<Remedy>),
     /// A time has no cycle.
     TooLate(TooLate),
     /// Its positions stand for too many steps, or lead too far.
@@ -120,16 +126,7 @@ impl fmt::Display for OpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Map(error) => write!(f, "the channel map: {error}"),
-            Self::NoMap(names) => {
-                let name = |index: usize| names.get(index).map_or("CH0", String::as_str);
-                write!(
-                    f,
-                    "nothing says which channel is which signal; give a map, such as STEP0={},DIR0={}; the channels are {}",
-                    name(0),
-                    name(1.min(names.len().saturating_sub(1))),
-                    names.join(", ")
-                )
-            }
+            Self::NoMap { .. } => f.write_str("nothing says which channel is which signal"),
             Self::Clock(given) => {
                 write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
             }
@@ -142,7 +139,7 @@ impl fmt::Display for OpenError {
             ),
             Self::Baud => f.write_str("the bit rate is 0; give the bits a second"),
             Self::Uart(given, allowed) => write!(f, "the UART format: \"{given}\" is not one; {allowed}"),
-            Self::NoRate(why) => f.write_str(why),
+            Self::NoRate(why, _) => f.write_str(why),
             Self::TooLate(error) => error.fmt(f),
             Self::TooManySteps(most) => write!(
                 f,
@@ -153,6 +150,13 @@ impl fmt::Display for OpenError {
 }
 
 impl core::error::Error for OpenError {}
+
+/// A map of the first two channels.
+fn example(capture: &Capture) -> String {
+    let pairs = ["STEP0", "DIR0"].into_iter().zip(0..capture.channels.len());
+    let pairs = pairs.map(|(signal, index)| format!("{signal}={}", written(index, &capture.channels)));
+    pairs.collect::<Vec<_>>().join(",")
+}
 
 /// Why a capture cannot be laid beside a model by a step, or a byte.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,8 +243,8 @@ pub struct Opened {
     pub count: usize,
     /// Names of its channels.
     pub names: Vec<String>,
-    /// What was not read, and what has to be known of it, a sentence each.
-    pub notes: Vec<String>,
+    /// What was not read, and what has to be known of it.
+    pub notes: Vec<Note>,
     /// The map as text; empty where there are no levels.
     pub map: String,
     /// Clock of the cycles, in Hz.
@@ -412,7 +416,7 @@ impl Opened {
         let map = if ask.both_edges { map.with_both_edges() } else { map };
         let names: Vec<String> = capture.channels.iter().map(|channel| channel.name.clone()).collect();
         if !capture.changes.is_empty() && map.entries().is_empty() {
-            return Err(OpenError::NoMap(names));
+            return Err(OpenError::NoMap { example: example(capture), names });
         }
         let what = match () {
             () if !capture.bytes.is_empty() => "bytes",
@@ -424,7 +428,7 @@ impl Opened {
             what,
             count: capture.len(),
             names,
-            notes: capture.left_out.clone(),
+            notes: capture.left_out.iter().cloned().map(Note::from).collect(),
             map: map.to_text(capture),
             clock_hz: USUAL_CLOCK_HZ,
             rounding: String::new(),
@@ -458,10 +462,10 @@ impl Opened {
         (self.rounding, self.is_rounded) = (rounding.to_string(), rounding.rounded > 0);
         if rounding.ambiguous > 0 {
             let (s, verb) = if rounding.ambiguous == 1 { ("", "counts") } else { ("s", "count") };
-            self.notes.push(format!(
+            self.notes.push(Note::from(format!(
                 "{} change{s} of an encoder or of CW and CCW {verb} no step, since both lines changed or were high at once: use a higher sample rate, or check the map",
                 rounding.ambiguous
-            ));
+            )));
         }
     }
 
@@ -503,9 +507,9 @@ impl Opened {
             let all = heard(capture.bytes.iter(), cycle);
             let baud = ask.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
             if ask.baud.is_none() {
-                self.notes.push(format!(
+                self.notes.push(Note::from(format!(
                     "the file does not say the bit rate; by the times of its bytes {baud} baud is taken: give it"
-                ));
+                )));
             }
             let lines = self.lines_of(capture, map).into_iter();
             let lines = lines.map(|(line, bytes)| {
@@ -533,10 +537,10 @@ impl Opened {
         };
         let found: Vec<_> = lines.into_iter().filter_map(of).collect();
         if capture.channels.len() > 1 && found.is_empty() {
-            self.notes.push(format!(
-                "bytes of {} are taken together, as RX; choose one by a map, such as RX=#0",
-                self.names.join(", ")
-            ));
+            self.notes.push(Note {
+                text: format!("bytes of {} are taken together, as RX", self.names.join(", ")),
+                remedy: Some(Remedy::ChooseLine),
+            });
         }
         if capture.channels.len() <= 1 || found.is_empty() {
             return Vec::from([(Levels::RX, capture.bytes.iter().collect())]);
@@ -561,21 +565,29 @@ impl Opened {
                     "channel {motor} counts each edge of an encoder: the timing check leaves out its pulses"
                 ),
             };
-            self.notes.push(note);
+            self.notes.push(note.into());
         }
         for hint in map.edge_hints(capture) {
             let motor = hint.motor;
-            let name = capture.channels.get(hint.channel).map_or("", |channel| channel.name.as_str());
+            let channel = written(hint.channel, &capture.channels);
             if hint.both_edges {
                 let steps = hint.edges.map_or("twice as many".to_owned(), |edges| edges.to_string());
-                self.notes.push(format!(
-                    "both edges of STEP{motor} are evenly spaced: a driver that steps on both edges makes {steps} steps of it; for such a driver use --both-edges, or DEDGE{motor}={name} in the map"
-                ));
+                self.notes.push(Note {
+                    text: format!(
+                        "both edges of STEP{motor} are evenly spaced: a driver that steps on both edges makes {steps} steps of it"
+                    ),
+                    remedy: Some(Remedy::BothEdges { motor, channel: channel.clone() }),
+                });
             }
             if hint.idles_high {
-                self.notes.push(format!(
-                    "STEP{motor} idles high and has low pulses: steps are counted where a pulse ends; if the driver steps where it begins, use STEP{motor}=!{name} in the map"
-                ));
+                let entry = map.entries().iter().find(|entry| entry.bit == u32::from(motor));
+                let inverted = !entry.is_some_and(|entry| entry.inverted);
+                self.notes.push(Note {
+                    text: format!(
+                        "STEP{motor} idles high and has low pulses: steps are counted where a pulse ends"
+                    ),
+                    remedy: Some(Remedy::OtherEdge { motor, channel, inverted }),
+                });
             }
         }
     }
@@ -602,14 +614,14 @@ impl Opened {
         let is_something =
             !self.report.channels.is_empty() || self.report.lines.iter().any(|line| line.problem.is_none());
         if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_something) {
-            return Err(OpenError::NoRate(line.to_text()));
+            return Err(OpenError::NoRate(line.to_text(), line.remedies.clone()));
         }
         for channel in &self.report.channels {
             if self.has_levels() && !map.has_direction(channel.channel) {
                 let number = channel.channel;
-                self.notes.push(format!(
+                self.notes.push(Note::from(format!(
                     "no channel is DIR{number}: all steps of channel {number} count to the right"
-                ));
+                )));
             }
         }
         Ok(())

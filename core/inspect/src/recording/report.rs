@@ -16,6 +16,7 @@
 use super::serial::{LineOptions, MEASURED_EDGES, edges, hear_among, parity_of_seven};
 use super::{
     figures::StepFigures,
+    remedy::Remedy,
     serial::{Guess, Heard, Measured, guess, line_name},
 };
 #[cfg(feature = "capture")]
@@ -58,10 +59,12 @@ pub struct LineReport {
     pub baud: u32,
     /// Data bits, parity and stop bits, such as `8N1`.
     pub format: String,
-    /// Why it was not decoded, and what would help.
+    /// Why it was not decoded.
     pub problem: Option<String>,
-    /// What is doubtful about its bytes, and what would help.
+    /// What is doubtful about its bytes.
     pub hint: Option<String>,
+    /// What would help with that.
+    pub remedies: Vec<Remedy>,
     /// Its bytes.
     pub heard: Heard,
     /// What they seem to be.
@@ -164,24 +167,20 @@ const EIGHT_N_ONE: &str = "8N1";
 
 /// Why no rate was found, and what would help.
 #[cfg(feature = "capture")]
-fn no_rate(why: &NoRate) -> String {
-    match why {
-        NoRate::Ambiguous(rates) => {
-            let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
-            format!("its pulses fit several bit rates ({}); give one with --baud", rates.join(", "))
-        }
-        _ => {
-            let other = other(why).map_or_else(String::new, |other| format!(": {other}"));
-            format!(
-                "no bit rate fits its pulses{other}; give the bit rate with --baud, or the format with --uart"
-            )
-        }
+fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
+    if let NoRate::Ambiguous(rates) = why {
+        let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
+        return (format!("its pulses fit several bit rates ({})", rates.join(", ")), [Remedy::Baud].into());
     }
+    let other = other(why, line);
+    let found = other.as_ref().map_or_else(String::new, |(text, _)| format!(": {text}"));
+    let remedies = other.into_iter().map(|(_, remedy)| remedy).chain([Remedy::BaudOrFormat]);
+    (format!("no bit rate fits its pulses{found}"), remedies.collect())
 }
 
 /// What would fit.
 #[cfg(feature = "capture")]
-fn other(why: &NoRate) -> Option<String> {
+fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     match why {
         NoRate::Format(format) => {
             let text = format.to_string();
@@ -190,9 +189,9 @@ fn other(why: &NoRate) -> Option<String> {
                 Some("O") => "the errors look like odd parity",
                 _ => "the words have another format",
             };
-            Some(format!("{what}: try --uart {text}"))
+            Some((what.into(), Remedy::Format(text)))
         }
-        NoRate::Inverted => Some("the line looks inverted: map it with !, such as RX=!CH1".into()),
+        NoRate::Inverted => Some(("the line looks inverted".into(), Remedy::InvertLine(line))),
         _ => None,
     }
 }
@@ -217,6 +216,7 @@ impl LineReport {
             format: format.to_string(),
             problem: None,
             hint: None,
+            remedies: Vec::new(),
             heard: Heard::default(),
             guess: Guess::Other,
         };
@@ -225,7 +225,8 @@ impl LineReport {
             (None, Ok(found)) => found.bit,
             (None, Err(NoRate::NoEdges)) => return None,
             (None, Err(why)) => {
-                line.problem = Some(no_rate(why));
+                let (problem, remedies) = no_rate(why, line.name);
+                (line.problem, line.remedies) = (Some(problem), remedies);
                 return Some(line);
             }
         };
@@ -234,17 +235,23 @@ impl LineReport {
         line.guess = guess(&line.heard.bytes, bit as u64);
         let Heard { bytes, framing_errors, parity_errors } = &line.heard;
         let wrong = framing_errors.len() + parity_errors.len();
-        line.hint = match found {
-            Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => other(&why),
+        let hint = match found {
+            Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => {
+                other(&why, line.name).map(|(text, remedy)| (text, Some(remedy)))
+            }
             Ok(found) if wrong * 8 > bytes.len() && found.usual != baud => {
-                Some(format!("its pulses look like {} baud", libm::round(hz / found.measured)))
+                Some((format!("its pulses look like {} baud", libm::round(hz / found.measured)), None))
             }
             _ if format == Format::default() => parity_of_seven(bytes).map(|parity| {
                 let name = if parity == 'E' { "even" } else { "odd" };
-                format!("all bytes look like 7 data bits with {name} parity: try --uart 7{parity}1")
+                let text = format!("all bytes look like 7 data bits with {name} parity");
+                (text, Some(Remedy::Format(format!("7{parity}1"))))
             }),
             _ => None,
         };
+        if let Some((text, remedy)) = hint {
+            (line.hint, line.remedies) = (Some(text), remedy.into_iter().collect());
+        }
         Some(line)
     }
 
@@ -265,6 +272,7 @@ impl LineReport {
             format: EIGHT_N_ONE.into(),
             problem: None,
             hint: None,
+            remedies: Vec::new(),
             heard,
             guess,
         }

@@ -1,0 +1,39 @@
+//! What would help with a recording, by the options of the command.
+
+use stepscope_core::inspect::recording::{
+    remedy::{Note, Remedy},
+    report::LineReport,
+};
+
+/// The end of a sentence that says what would help.
+pub(super) fn option(remedy: &Remedy) -> String {
+    match remedy {
+        Remedy::BothEdges { motor, channel } => {
+            format!("; for such a driver use --both-edges, or DEDGE{motor}={channel} in the map")
+        }
+        Remedy::OtherEdge { motor, channel, inverted } => {
+            let mark = if *inverted { "!" } else { "" };
+            format!("; if the driver steps where it begins, use STEP{motor}={mark}{channel} in the map")
+        }
+        Remedy::InvertLine(line) => format!(": map it with !, such as {line}=!CH1"),
+        Remedy::ChooseLine => "; choose one by a map, such as RX=#0".to_owned(),
+        Remedy::Format(format) => format!(": try --uart {format}"),
+        Remedy::Baud => "; give one with --baud".to_owned(),
+        Remedy::BaudOrFormat => "; give the bit rate with --baud, or the format with --uart".to_owned(),
+    }
+}
+
+/// A note with what would help.
+pub(super) fn note(Note { text, remedy }: &Note) -> String {
+    text.clone() + &remedy.as_ref().map(option).unwrap_or_default()
+}
+
+/// What a line says, or why it says nothing, with what would help.
+pub(super) fn line(line: &LineReport) -> String {
+    of_line(&line.to_text(), line)
+}
+
+/// A sentence on a line with what would help.
+pub(super) fn of_line(text: &str, line: &LineReport) -> String {
+    text.to_owned() + &line.remedies.iter().map(option).collect::<String>()
+}

@@ -1,0 +1,49 @@
+//! What would help with a recording, for the command and the page to word: one by its options, the other by its fields.
+
+use alloc::string::String;
+
+/// A way to read a recording otherwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// Count a step on both edges of STEP.
+    BothEdges {
+        /// The motor.
+        motor: u8,
+        /// Its channel, as a map names it.
+        channel: String,
+    },
+    /// Count steps where the other edge of STEP is.
+    OtherEdge {
+        /// The motor.
+        motor: u8,
+        /// Its channel, as a map names it.
+        channel: String,
+        /// Whether the channel is to be inverted; else it is no longer to be.
+        inverted: bool,
+    },
+    /// Invert a line: RX or TX.
+    InvertLine(&'static str),
+    /// Choose the channel whose bytes are those of RX.
+    ChooseLine,
+    /// Decode with another format, such as `8E1`.
+    Format(String),
+    /// Choose one of several bit rates.
+    Baud,
+    /// Give the bit rate, or another format.
+    BaudOrFormat,
+}
+
+/// Something to know about a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// In a sentence.
+    pub text: String,
+    /// What would help.
+    pub remedy: Option<Remedy>,
+}
+
+impl From<String> for Note {
+    fn from(text: String) -> Self {
+        Self { text, remedy: None }
+    }
+}
