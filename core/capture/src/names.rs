@@ -49,7 +49,7 @@ pub(crate) enum Meaning {
     Unknown,
 }
 
-const WORDS: [(&str, Kind); 33] = [
+const WORDS: [(&str, Kind); 37] = [
     ("STEP", Kind::Step),
     ("STEPS", Kind::Step),
     ("STP", Kind::Step),
@@ -83,6 +83,10 @@ const WORDS: [(&str, Kind); 33] = [
     ("TXD", Kind::Tx),
     ("DE", Kind::De),
     ("TXEN", Kind::De),
+    ("SCHRITT", Kind::Step),
+    ("TAKT", Kind::Clock),
+    ("RICHTUNG", Kind::Dir),
+    ("FREIGABE", Kind::En),
 ];
 /// Words of an enable that is active low.
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
@@ -101,21 +105,26 @@ const PHASES: [(&str, Kind); 8] = [
 ];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
 /// Words that say nothing of the motor; with a number they are one: `MOTOR1`.
-const NOISE: [&str; 26] = [
+const NOISE: [&str; 30] = [
     "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN",
-    "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I",
+    "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I", "ALL",
+    "BOTH", "COMMON", "SHARED",
 ];
+/// Signals in names that are written as one word: `FLSTEP`, `FLDIR`.
+const JOINED: [(&str, Kind); 3] = [("STEP", Kind::Step), ("DIRECTION", Kind::Dir), ("DIR", Kind::Dir)];
 /// What a number makes the name of a pin or a probe.
 const PINS: [&str; 16] = [
     "D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG",
     "LOGIC",
 ];
 /// Words of what is no signal, whatever stands beside them.
-const OTHERS: [&str; 60] = [
+const OTHERS: [&str; 62] = [
     "ACK",
     "ALARM",
     "ALM",
     "BUSY",
+    "CHANGE",
+    "CHANGED",
     "CNT",
     "COUNT",
     "COUNTER",
@@ -235,7 +244,12 @@ impl Meaning {
         let negative = last.trim_end().trim_end_matches(')').ends_with('-')
             || last.to_ascii_uppercase().ends_with("_N")
             || words.iter().any(|word| word == "MINUS");
-        let axis = axis.or_else(|| axis_of(&rest)).or_else(|| axis_of_scope(scope)).unwrap_or_default();
+        let several = || (kind == Kind::Dir).then(|| axes_of(&rest)).flatten();
+        let axis = axis
+            .or_else(several)
+            .or_else(|| axis_of(&rest))
+            .or_else(|| axis_of_scope(scope))
+            .unwrap_or_default();
         let weak = kinds.iter().all(|(_, word)| UP_DOWN.contains(word));
         let pulse = has(Kind::Step) || has(Kind::Clock);
         // UP and DOWN are pulses only where they are called so, or stand alone in the name.
@@ -243,6 +257,16 @@ impl Meaning {
             return Self::Unknown;
         }
         Self::Signal(Named { kind, inverted, negative, pulse, axis, scope: scope.to_owned() })
+    }
+
+    /// The signal in a name of one word, without regard to the other names, and what is left of the name.
+    pub(crate) fn joined(name: &str) -> Option<Named> {
+        let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
+        let upper = last.to_ascii_uppercase();
+        let (word, kind) = JOINED.into_iter().find(|(word, _)| upper.matches(word).count() == 1)?;
+        let axis = upper.replacen(word, "", 1);
+        let scope = scope.to_owned();
+        Some(Named { kind, inverted: false, negative: false, pulse: false, axis, scope })
     }
 
     /// Whether a name, of any file, speaks for a signal of a motor or its line.
@@ -316,6 +340,21 @@ fn letters(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
+/// Whether an axis is that of several motors that share a DIR, and of this one, too: `XY`.
+pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
+    axes.len() > 1
+        && axes.chars().all(|letter| AXES.contains(letter))
+        && axis.len() == 1
+        && axes.contains(axis)
+}
+
+/// Words that two names have in common, but those of pins.
+pub(crate) fn shared_words(one: &str, other: &str) -> usize {
+    let others = words(other);
+    let is_pin = |word: &str| PINS.contains(&letters(word)) && digits(word).is_some();
+    words(one).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
+}
+
 /// The number that a word ends with.
 fn digits(word: &str) -> Option<String> {
     let digits = word.get(letters(word).len()..)?;
@@ -323,16 +362,31 @@ fn digits(word: &str) -> Option<String> {
 }
 
 /// The signal of a word: STEP, STEP1, STEPX, XSTEP2; with what it says of the axis.
-fn signal(word: &str) -> Option<(&'static str, Kind, Option<String>)> {
-    let text = letters(word);
+fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
+    let text = letters(given);
     let known = |text: &str| WORDS.iter().find(|(known, _)| *known == text).copied();
     if let Some((known, kind)) = known(text) {
-        return Some((known, kind, digits(word)));
+        return Some((known, kind, digits(given)));
     }
     if ENCODER.contains(&text) {
         return None;
     }
-    let axis = |letter: &str| letter.len() == 1 && AXES.contains(letter);
+    if let Some((word, kind, axis)) = text.strip_suffix("PIN").and_then(signal) {
+        return Some((word, kind, axis.or_else(|| digits(given))));
+    }
+    let several = text
+        .strip_suffix("DIR")
+        .or_else(|| text.strip_prefix("DIR"))
+        .filter(|axes| axes.len() > 1 && axes.bytes().all(|letter| b"XYZ".contains(&letter)));
+    if let Some(axes) = several {
+        return Some(("DIR", Kind::Dir, Some(axes.to_owned())));
+    }
+    // Left and right are only axes of what a motor must have.
+    let axis = |letter: &str| {
+        letter.len() == 1
+            && (AXES.contains(letter)
+                || "LR".contains(letter) && (text.contains("STEP") || text.contains("DIR")))
+    };
     let (first, rest) = text.split_at_checked(1)?;
     let (start, end) = text.split_at_checked(text.len().checked_sub(1)?)?;
     let (letter, found) =
@@ -343,7 +397,7 @@ fn signal(word: &str) -> Option<(&'static str, Kind, Option<String>)> {
         };
     let is_motor =
         matches!(found.1, Kind::Step | Kind::Dir | Kind::En) && found.0.len() > 2 || found.0 == "EN";
-    is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(word).unwrap_or_default()))))
+    is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(given).unwrap_or_default()))))
 }
 
 /// Whether a word is an axis by itself: `X`, `2`, `E1`.
@@ -354,6 +408,13 @@ fn is_axis(word: &str) -> bool {
 
 fn is_noise(word: &str) -> bool {
     NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&letters(word))
+}
+
+/// The axes of a DIR that several motors share: `X`, `Y`.
+fn axes_of(words: &[&str]) -> Option<String> {
+    let is_letter = |word: &&&str| word.len() == 1 && AXES.contains(**word);
+    let axes: Vec<&str> = words.iter().filter(is_letter).copied().collect();
+    (axes.len() > 1).then(|| axes.concat())
 }
 
 /// The axis of the words that are no signal.

@@ -11,7 +11,7 @@
 use crate::{
     capture::{Capture, Change},
     channel_map::{ChannelMap, Entry, Input},
-    names::{AXES, Kind, Meaning, Named, are_indexed},
+    names::{AXES, Kind, Meaning, Named, are_indexed, is_of_several, shared_words},
     uart::{self, Edge},
 };
 use std::collections::BTreeSet;
@@ -107,7 +107,9 @@ impl<'a> Proposal<'a> {
         let indexed = are_indexed(names());
         let changes: Vec<Change> = capture.changes.iter().take(MAX_LOOKED_AT).collect();
         let behavior = behaviours(&changes, capture.channels.len());
-        let meanings = names().map(|name| Meaning::of(name, indexed)).collect();
+        let mut meanings: Vec<Meaning> = names().map(|name| Meaning::of(name, indexed)).collect();
+        join(&mut meanings, names());
+        number_pins(&mut meanings);
         Self { capture, meanings, changes, behavior, motors: Vec::new(), others: Vec::new() }
     }
 
@@ -227,10 +229,23 @@ impl<'a> Proposal<'a> {
             }),
         );
         let mut pairs: Vec<(bool, usize, usize, usize)> = Vec::new();
-        for (at, motor) in self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()) {
+        let lacking: Vec<(usize, &Motor)> =
+            self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()).collect();
+        for (at, motor) in lacking.iter().copied() {
+            // As many DIR as STEP of one name: the first goes with the first.
+            let is_like = |axis: &str| axis == motor.axis;
+            let steps: Vec<usize> =
+                lacking.iter().filter(|(_, other)| is_like(&other.axis)).map(|(at, _)| *at).collect();
+            let like: Vec<usize> = (0..dirs.len())
+                .filter(|place| dirs.get(*place).is_some_and(|(_, dir)| is_like(&dir.axis)))
+                .collect();
             for (place, (channel, named)) in dirs.iter().enumerate() {
                 if named.axis == motor.axis {
-                    let distance = motor.step().map_or(0, |step| step.abs_diff(*channel));
+                    let order = |all: &[usize], one: usize| all.iter().position(|other| *other == one);
+                    let distance = match (order(&steps, at), order(&like, place)) {
+                        (Some(step), Some(dir)) if steps.len() == like.len() => step.abs_diff(dir),
+                        _ => motor.step().map_or(0, |step| step.abs_diff(*channel)),
+                    };
                     pairs.push((named.scope != motor.scope, distance, at, place));
                 }
             }
@@ -249,15 +264,20 @@ impl<'a> Proposal<'a> {
             free.map(|((channel, named), _)| (*channel, named.clone())).collect::<Vec<_>>()
         };
         let left = free(&used);
-        let common = left.iter().find(|(_, named)| named.axis.is_empty()).map(|(channel, _)| *channel);
+        let mut nobodys = dirs.iter().filter(|(_, named)| named.axis.is_empty());
+        let sole_common = nobodys.next().filter(|_| nobodys.next().is_none());
+        let common = left.iter().find(|(_, named)| named.axis.is_empty()).or(sole_common);
+        let common = common.map(|(channel, _)| *channel);
         // One motor and one DIR belong together, unless both say that they are of another axis.
         let sole = match (self.motors.as_slice(), left.as_slice()) {
             ([motor], [(channel, _)]) if motor.axis.is_empty() => Some(*channel),
             _ => None,
         };
-        // X1 and X2 share the DIR of X.
+        // X1 and X2 share the DIR of X; X and Y that of XY.
         let of_stem = |axis: &str| {
-            let found = left.iter().find(|(_, named)| !named.axis.is_empty() && stem(axis) == named.axis);
+            let found = left.iter().find(|(_, named)| {
+                !named.axis.is_empty() && stem(axis) == named.axis || is_of_several(&named.axis, axis)
+            });
             found.map(|(channel, _)| *channel)
         };
         let mut taken = Vec::new();
@@ -413,6 +433,8 @@ impl<'a> Proposal<'a> {
             return;
         }
         let free = self.free_of_lines();
+        let name =
+            |channel: usize| self.capture.channels.get(channel).map_or("", |channel| channel.name.as_str());
         let mut pairs: Vec<(Fit, usize, usize)> = Vec::new();
         for channel in &free {
             let changes = self.edges(*channel);
@@ -423,9 +445,17 @@ impl<'a> Proposal<'a> {
                 }
                 let own = near.get(place).copied().unwrap_or(u64::MAX);
                 let others = || near.iter().zip(&steps).enumerate().filter(|(other, _)| *other != place);
-                let is_others = others().any(|(_, (near, (.., edges)))| {
-                    near.saturating_mul(2) < own && is_next_to(*near, changes.len(), edges)
-                });
+                // Names decide before behavior: X-Foo and X-Bar are of one motor.
+                let shared = |step: usize| shared_words(name(step), name(*channel));
+                let by_name = steps.iter().map(|(_, step, _)| shared(*step));
+                let (most, least) = (by_name.clone().max(), by_name.min());
+                let is_others = if most > least {
+                    Some(shared(*step)) < most
+                } else {
+                    others().any(|(_, (near, (.., edges)))| {
+                        near.saturating_mul(2) < own && is_next_to(*near, changes.len(), edges)
+                    })
+                };
                 let others = others().map(|(_, (near, _))| *near).min().unwrap_or(u64::MAX);
                 let fit = Fit {
                     is_others,
@@ -548,6 +578,50 @@ impl<'a> Proposal<'a> {
             }
         }
         ChannelMap::of(entries)
+    }
+}
+
+/// Names of one word, `FLSTEP` and `FLDIR`, mean something where STEP and DIR have the same rest.
+fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
+    let joined: Vec<Option<Named>> = names
+        .zip(meanings.iter())
+        .map(|(name, meaning)| if *meaning == Meaning::Unknown { Meaning::joined(name) } else { None })
+        .collect();
+    for (meaning, named) in meanings.iter_mut().zip(&joined) {
+        let Some(named) = named else { continue };
+        let is_partner = |other: &Named| other.axis == named.axis && other.kind != named.kind;
+        if joined.iter().flatten().any(is_partner) {
+            *meaning = Meaning::Signal(named.clone());
+        }
+    }
+}
+
+/// Numbers of pins are not those of motors: as many STEP as DIR, and no number twice. They are paired in order.
+fn number_pins(meanings: &mut [Meaning]) {
+    let numbers = |kind: Kind| -> Vec<&str> {
+        let signals = meanings.iter().filter_map(|meaning| match meaning {
+            Meaning::Signal(named) if named.kind == kind => Some(named.axis.as_str()),
+            _ => None,
+        });
+        signals.collect()
+    };
+    let (steps, dirs) = (numbers(Kind::Step), numbers(Kind::Dir));
+    let mut all: Vec<&str> = steps.iter().chain(&dirs).copied().collect();
+    all.sort_unstable();
+    let is_number = |axis: &&str| !axis.is_empty() && axis.bytes().all(|byte| byte.is_ascii_digit());
+    let are_pins = steps.len() == dirs.len()
+        && all.iter().all(is_number)
+        && all.windows(2).all(|pair| pair.first() != pair.last());
+    let (mut steps, mut dirs) = (0_u32, 0_u32);
+    for meaning in meanings.iter_mut().filter(|_| are_pins) {
+        let Meaning::Signal(named) = meaning else { continue };
+        let count = match named.kind {
+            Kind::Step => &mut steps,
+            Kind::Dir => &mut dirs,
+            _ => continue,
+        };
+        named.axis = count.to_string();
+        *count += 1;
     }
 }
 
@@ -805,6 +879,38 @@ mod tests {
                 "STEP0=X_STEP,A1=SPINDLE_ENC_A,B1=SPINDLE_ENC_B,DIR0=X_DIR",
             ),
             (&["step_count[0]", "step_count[1]", "microstep", "step_led", "next_step"], ""),
+            // Left and right, pins, one word, German.
+            (&["LSTEP", "LDIR", "RSTEP", "RDIR"], "STEP0=LSTEP,STEP1=RSTEP,DIR0=LDIR,DIR1=RDIR"),
+            (&["STEPL", "STEPR", "DIRR", "DIRL"], "STEP0=STEPL,STEP1=STEPR,DIR0=DIRL,DIR1=DIRR"),
+            (&["FLSTEP", "FRSTEP", "FLDIR", "FRDIR"], "STEP0=FLSTEP,STEP1=FRSTEP,DIR0=FLDIR,DIR1=FRDIR"),
+            (&["TIMESTEP", "REDIR"], ""),
+            (
+                &["STEPPIN_X", "DIRPIN_X", "STEPPIN_Y", "DIRPIN_Y"],
+                "STEP0=STEPPIN_X,STEP1=STEPPIN_Y,DIR0=DIRPIN_X,DIR1=DIRPIN_Y",
+            ),
+            (&["stepPin1", "dirPin1"], "STEP1=stepPin1,DIR1=dirPin1"),
+            (
+                &["X-Takt", "Y-Takt", "X-Richtung", "Y-Richtung"],
+                "STEP0=X-Takt,STEP1=Y-Takt,DIR0=X-Richtung,DIR1=Y-Richtung",
+            ),
+            // One DIR for several motors, by its name.
+            (&["STEP", "STEP2", "DIR"], "STEP0=STEP,STEP2=STEP2,DIR0=DIR,DIR2=DIR"),
+            (&["X_STEP", "Y_STEP", "DIR_BOTH"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR_BOTH,DIR1=DIR_BOTH"),
+            (&["STEP0", "STEP1", "COMMON_DIR"], "STEP0=STEP0,STEP1=STEP1,DIR0=COMMON_DIR,DIR1=COMMON_DIR"),
+            (&["STEP0", "STEP1", "DIR_ALL"], "STEP0=STEP0,STEP1=STEP1,DIR0=DIR_ALL,DIR1=DIR_ALL"),
+            (&["STEP0", "STEP1", "DIR_SHARED"], "STEP0=STEP0,STEP1=STEP1,DIR0=DIR_SHARED,DIR1=DIR_SHARED"),
+            (&["X_STEP", "Y_STEP", "XY_DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=XY_DIR,DIR1=XY_DIR"),
+            (&["X_STEP", "Y_STEP", "XYDIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=XYDIR,DIR1=XYDIR"),
+            (
+                &["X_STEP", "Y_STEP", "Z_STEP", "DIR X/Y", "Z_DIR"],
+                "STEP0=X_STEP,STEP1=Y_STEP,STEP2=Z_STEP,DIR0=DIR X/Y,DIR1=DIR X/Y,DIR2=Z_DIR",
+            ),
+            // Numbers of pins.
+            (
+                &["pin3_step", "pin4_dir", "pin5_step", "pin6_dir"],
+                "STEP0=pin3_step,STEP1=pin5_step,DIR0=pin4_dir,DIR1=pin6_dir",
+            ),
+            (&["step2", "step3", "dir5", "dir6"], "STEP0=step2,STEP1=step3,DIR0=dir5,DIR1=dir6"),
             (&["DE/RE", "RS485_TX", "RS485_RX"], "RX=RS485_RX,TX=RS485_TX,DE=DE/RE"),
         ] {
             assert_eq!(proposed(names, &[]), expected, "{names:?}");
@@ -870,6 +976,12 @@ mod tests {
         assert_eq!(found, "STEP0=D0,STEP1=D2,DIR0=D1,DIR1=D3");
         let found = proposed(&["D0", "D1", "D2", "D3"], &levels(0, &[&[6750], &x, &[4849], &y]));
         assert_eq!(found, "STEP0=D1,STEP1=D3,DIR0=D0,DIR1=D2");
+        // Names decide before behavior.
+        let names = ["X-Foo", "Y-Foo", "Y-Bar", "X-Bar"];
+        let (near_x, near_y) = ([2095], [137 + 117 * 20 - 5]);
+        let (x, y) = (pulses(100, 60, 100, 10), pulses(137, 50, 117, 10));
+        let found = proposed(&names, &levels(0, &[&x, &y, &near_x, &near_y]));
+        assert_eq!(found, "STEP0=X-Foo,STEP1=Y-Foo,DIR0=X-Bar,DIR1=Y-Bar");
         // Both turn where the one channel changes.
         let (x, y) = (pulses(100, 40, 100, 10), pulses(140, 40, 100, 10));
         let found = proposed(&["X_STEP", "Y_STEP", "D2"], &levels(0, &[&x, &y, &[2130, 3120]]));
