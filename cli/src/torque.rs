@@ -73,7 +73,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
         return Err(Failure::Axis(path.clone(), axis, axes.len()));
     }
     let mut asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    if !axes.is_empty() && asked.all(|(_, given)| Machine::of(given).is_none()) {
+    if !axes.is_empty() && asked.all(|(_, given)| given.motor.is_none()) {
         let detail = "no motor; give one, such as \"motor\": {} for that of Song, Han and Lu 2021";
         let place = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
         return Err(wrong(vec![Problem::new(place, ValueError::Conflict { detail })]));

@@ -65,7 +65,6 @@ fn times_and_rates_are_those_of_the_file() {
         ("dsview.csv", &[], "shortest_interval_s", 0.001),
         ("dsview.csv", &[], "longest_interval_s", 0.003),
         ("d-6666ps.vcd", &[], "shortest_interval_s", 6.666e-6),
-        ("d-6666ps.vcd", &[], "longest_interval_s", 6.666e-6),
         ("83ns.vcd", &[], "shortest_interval_s", 9.96e-6),
         ("83ns.vcd", &[], "longest_interval_s", 9.96e-6),
         ("83ns.vcd", &[], "greatest_acceleration_steps_s2", 0.0),
