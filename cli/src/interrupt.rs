@@ -11,7 +11,7 @@ use std::{
 
 /// Exit code of a command that was ended so.
 pub(crate) const EXIT_CODE: u8 = 130;
-/// After this many a live session ends at once, whatever it does.
+/// After this many a command ends at once, whatever it does.
 const AT_ONCE: usize = 3;
 
 static WATCHED: AtomicBool = AtomicBool::new(false);
@@ -36,7 +36,13 @@ pub(crate) fn count() -> usize {
 }
 
 fn came() {
-    if WATCHED.load(Ordering::SeqCst) && COUNT.fetch_add(1, Ordering::SeqCst) + 1 < AT_ONCE {
+    let at_once = COUNT.fetch_add(1, Ordering::SeqCst) + 1 >= AT_ONCE;
+    if WATCHED.load(Ordering::SeqCst) && !at_once {
+        return;
+    }
+    // Held until the end of the process: no file is renamed meanwhile. Where files are in place already, the command ends by itself.
+    let committed = output::committed();
+    if *committed && !at_once {
         return;
     }
     output::remove_temporary();

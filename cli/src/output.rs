@@ -15,7 +15,7 @@ use std::{
     fs,
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 use tempfile::TempPath;
 
@@ -162,8 +162,10 @@ impl Outputs {
         Ok(Box::new(file))
     }
 
-    /// Gives every file its name; all have been written and flushed.
+    /// Gives every file its name; all have been written and flushed. A request to end comes before all of them or after.
     pub(crate) fn commit(self) -> Result<(), Failure> {
+        let mut committed = committed();
+        *committed |= !self.waiting.is_empty();
         for Waiting { given, name, temporary } in self.waiting {
             let path = temporary.to_path_buf();
             temporary.persist(&name).map_err(|error| Failure::File(given, error.error))?;
@@ -171,6 +173,13 @@ impl Outputs {
         }
         Ok(())
     }
+}
+
+static COMMITTED: Mutex<bool> = Mutex::new(false);
+
+/// Whether files have got their names; locked while they get them.
+pub(crate) fn committed() -> MutexGuard<'static, bool> {
+    COMMITTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes one file with what `write` gives it, and gives it its name.
@@ -238,7 +247,7 @@ fn is_file(path: &Path) -> bool {
 /// Temporary files that are being written.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn lock() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+fn lock() -> MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
