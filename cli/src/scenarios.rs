@@ -11,7 +11,7 @@ use std::{
 use stepscope_core::{
     capture::samples::sample,
     scenario::{
-        MAX_TEXT_BYTES, Scenario, link,
+        MAX_TEXT_BYTES, Problem, Scenario, ValueError, link,
         presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
     },
     sim::Experiment,
@@ -40,7 +40,12 @@ pub(crate) fn judged_after(
         check(&scenario)?;
     }
     let experiment = Experiment::of_lenient(&scenario, unread);
-    let experiment = experiment.map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
+    let wrong = |problems: Vec<Problem>| Failure::Scenario(path.to_owned(), problems);
+    let experiment = experiment.map_err(wrong)?;
+    if experiment.jogs_without_end() {
+        let detail = "the run has no end, because a jog button stays pressed; give run_cycles, or release the button in inputs";
+        return Err(wrong(vec![Problem::new("run_cycles", ValueError::Conflict { detail })]));
+    }
     Ok((Rc::new(scenario), Rc::new(experiment)))
 }
 

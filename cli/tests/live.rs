@@ -481,19 +481,20 @@ fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
             server.signal(Signal::TERM);
             continue;
         }
-        // The first reply that the next client gets is that to its own frame.
-        let mut stream = loop {
-            let mut stream = TcpStream::connect(address).expect("it listens");
-            let positions = emit(0, Kind::Positions as u8, &[]);
+        // The first reply that the next client gets is that to its own frame. One that meets the end of the flood is lost.
+        let mut stream = None;
+        for _ in 0..200 {
+            let mut next = TcpStream::connect(address).expect("it listens");
+            next.set_read_timeout(Some(Duration::from_secs(2))).expect("it can be");
             // A frame that was cut when the client before was dropped ends here.
-            stream.write_all(&[&[0], &positions[..]].concat()).expect("it reads");
-            // A frame that meets the reply to the client before is lost: then the next try asks again.
-            stream.set_read_timeout(Some(Duration::from_secs(2))).expect("it can be");
+            let sent = next.write_all(&[&[0], &emit(0, Kind::Positions as u8, &[])[..]].concat());
             let mut first = [0];
-            if matches!(stream.peek(&mut first), Ok(1)) && first != *b"s" {
-                break stream;
+            if sent.is_ok() && matches!(next.peek(&mut first), Ok(1)) && first != *b"s" {
+                stream = Some(next);
+                break;
             }
-        };
+        }
+        let mut stream = stream.expect("the next client is served");
         let reply = reply(&mut stream);
         assert_eq!(reply.len(), 17 + 4 * 2, "{pace}: {reply:?}");
         drop(stream);
@@ -615,4 +616,44 @@ fn a_closed_standard_output_costs_no_stop_and_no_recording() {
     assert!(code == Some(141) && err.contains("recorded"), "{code:?} {err}");
     let state = ended(command(&["run", text(&record)]).output().expect("it runs")).1;
     assert!(state.contains("state STOPPED"), "{state}");
+}
+
+#[test]
+fn a_jog_that_is_held_has_an_end_or_is_refused() {
+    let held = r#"{ "cycle": 320000, "input": "jog_plus" }"#;
+    let scenario = |name: &str, inputs: &str, more: &str| {
+        let controller =
+            r#""debounce_cycles": 1000, "memory": { "byte_write_cycles": 10, "hold_up_cycles": 1000 }"#;
+        let axis = if more == "axis" { r#", "axis": { "max_switch_at": 50 }"# } else { "" };
+        let end = if more == "end" { r#", "run_cycles": 16000000"# } else { "" };
+        file(
+            name,
+            &format!(
+                r#"{{ "source": {{ "standalone": [ {{ {controller}{axis}, "inputs": [ {inputs} ] }} ] }}{end} }}"#
+            ),
+        )
+    };
+    let run = |path: &Path| ended(command(&["run", text(path)]).output().expect("it runs"));
+    let endless = scenario("jog.json", held, "");
+    let (code, out, err) = run(&endless);
+    assert!(
+        code == Some(2) && err.contains("run_cycles: ") && err.contains("jog button stays pressed"),
+        "{code:?} {out}{err}"
+    );
+    let released = format!(r#"{held}, {{ "cycle": 3200000, "input": "jog_plus", "level": 0 }}"#);
+    for path in [
+        scenario("jog-end.json", held, "end"),
+        scenario("jog-axis.json", held, "axis"),
+        scenario("jog-off.json", &released, ""),
+    ] {
+        let (code, out, err) = run(&path);
+        assert_eq!(code, Some(0), "{path:?}: {out}{err}");
+    }
+    let record = endless.with_file_name("live-jog-recording.json");
+    let arguments = [text(&endless), "--once", "--pace", "max", "--record", text(&record)];
+    let (code, out, err) = typed(&arguments, "wait 20ms\npress jog_plus\nwait 100ms\n");
+    assert!(
+        code == Some(0) && err.contains("still pressed") && err.contains("recorded"),
+        "{code:?} {out}{err}"
+    );
 }

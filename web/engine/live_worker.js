@@ -64,7 +64,7 @@ function rest(ms) {
 /**
  * A port's two streams: what comes is handed on at once, with its time.
  * @param {{readable: ReadableStream<Uint8Array>, writable: WritableStream<Uint8Array>}} streams
- * @param {(bytes: Uint8Array) => void} hear
+ * @param {(bytes: Uint8Array) => void | Promise<void>} hear Reading goes on when it is done.
  */
 function openPort({ readable, writable }, hear) {
   const reader = readable.getReader();
@@ -116,8 +116,9 @@ function openPort({ readable, writable }, hear) {
     for (;;) {
       const { value, done } = await reader.read();
       if (done) throw new Error("the port was closed at its other end");
-      hear(value);
+      const heard = hear(value);
       wake();
+      await heard;
     }
   };
   read().catch(port.lose);
@@ -203,9 +204,20 @@ async function serve({ serve: json, ...streams }) {
   const device = new core.LiveDevice(json, LAG_MS, Date.now());
   const began = performance.now();
   const now = () => performance.now() - began;
-  /** @type {{bytes: Uint8Array, at: number}[]} */
-  const heard = [];
-  const port = openPort(streams, (bytes) => heard.push({ bytes, at: now() }));
+  /** What was read and waits for the line. @type {{bytes: Uint8Array, at: number, taken: () => void} | null} */
+  let heard = null;
+  const hear = (/** @type {Uint8Array} */ bytes) =>
+    new Promise((/** @type {(value: void) => void} */ taken) => {
+      heard = { bytes, at: now(), taken };
+    });
+  const port = openPort(streams, hear);
+  const take = () => {
+    if (!heard) return;
+    const { bytes, at, taken } = heard;
+    const rest = bytes.subarray(device.receive(bytes, at));
+    heard = rest.length > 0 ? { bytes: rest, at: now(), taken } : null;
+    if (!heard) taken();
+  };
   let missed = 0;
   asked = { stop: false, end: false };
   const report = () => postMessage({ state: { ...device.state(), missed } });
@@ -223,7 +235,7 @@ async function serve({ serve: json, ...streams }) {
       let behind = turnRound();
       while (behind && now() - since < TURN_MS) behind = turnRound();
       // What was read does not come before its time.
-      if (!behind) for (const { bytes, at } of heard.splice(0)) device.receive(bytes, at);
+      if (!behind) take();
       tell();
       await rest(behind ? 0 : Math.min(IDLE_MS, device.wait()));
     }

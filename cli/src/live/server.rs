@@ -174,6 +174,11 @@ impl Server {
                 errors.map_or_else(|| text.clone(), |errors| format!("{text}  line errors: {errors}"))
             });
         }
+        if interrupt::count() == 0 && self.session.jogs_without_end() {
+            self.line.note(
+                "a jog button is still pressed; the session ends here. Add `release` lines to end the jog",
+            );
+        }
         Ok(())
     }
 
@@ -230,7 +235,8 @@ impl Server {
 
     /// Whether a session that nobody says anything to any more has come to its end: a panel's when all is done that was typed.
     fn is_over(&self) -> bool {
-        self.panel.as_ref().is_none_or(|panel| panel.is_done() && self.session.is_at_rest())
+        let is_last = || self.session.is_at_rest() || self.session.jogs_without_end();
+        self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
     /// The cycle to which it is worth going, and behind which no round goes: something is to be written or pressed then.

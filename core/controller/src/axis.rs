@@ -47,6 +47,16 @@ impl Place {
         ]
     }
 
+    /// Whether a move in this direction reaches a limit switch.
+    pub(crate) fn has_switch_ahead(&self, right: bool) -> bool {
+        let Axis { min_switch_at, max_switch_at, hard_min, hard_max, .. } = self.axis;
+        if right {
+            max_switch_at.is_some_and(|at| hard_max.is_none_or(|end| at <= end))
+        } else {
+            min_switch_at.is_some_and(|at| hard_min.is_none_or(|end| at >= end))
+        }
+    }
+
     /// Zero is set: what place and position differ by now is no error.
     pub(crate) fn zero_is_set(&mut self, position: i32) {
         self.zero = self.place.saturating_sub(position.into());

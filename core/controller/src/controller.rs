@@ -14,7 +14,7 @@ use crate::{
     eeprom::Eeprom,
     input::Signal,
     journal::{self, Valid},
-    motion::{Motion, interval},
+    motion::{ENDLESS, Motion, Purpose, interval},
     numbers::Numbers,
     panel::{PanelRecord, Word},
     parameters::Parameters,
@@ -236,6 +236,16 @@ impl Controller {
         let motion = self.motion.as_ref().map_or(NEVER, Motion::rise);
         let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies).min(self.eeprom.due());
         motion.min(waits).min(self.shows).min(self.inputs.due()).min(self.script.due())
+    }
+
+    /// Whether it jogs, has no limit ahead, and no input is to come.
+    pub(crate) fn jogs_without_end(&self) -> bool {
+        let endless = |motion: &Motion| {
+            let jogs = matches!(motion.purpose, Purpose::Jog(_)) && motion.is_due && !motion.brakes;
+            jogs && motion.rem > ENDLESS / 2 && !self.axis.has_switch_ahead(motion.right)
+        };
+        let is_last = self.script.due() == NEVER && self.inputs.due() == NEVER && self.dies == NEVER;
+        is_last && self.motion.as_ref().is_some_and(endless)
     }
 
     /// The panel's record of this cycle, where there is one.

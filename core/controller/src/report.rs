@@ -52,6 +52,12 @@ impl StandAlone {
         self.controllers.get(i)?.eeprom.begun().map(Instant)
     }
 
+    /// Whether a jog goes on for ever unless an input changes: its button stays pressed, and no limit is ahead.
+    #[must_use]
+    pub fn jogs_without_end(&self) -> bool {
+        self.controllers.iter().any(crate::controller::Controller::jogs_without_end)
+    }
+
     /// Its state.
     #[must_use]
     pub fn state(&self, i: usize) -> Option<State> {

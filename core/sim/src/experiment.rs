@@ -222,6 +222,15 @@ impl Experiment {
         self.segments.as_deref()
     }
 
+    /// Whether a run has no end because a jog button of a stand-alone controller stays pressed: no limit is ahead, and the
+    /// scenario has no `run_cycles`.
+    #[cfg(feature = "controller")]
+    #[must_use]
+    pub fn jogs_without_end(&self) -> bool {
+        let has_end = self.checked.run.is_some() || self.cost.end_cycle < END_OF_TIME;
+        !has_end && self.stand_alone().is_some_and(crate::stand_alone::jogs_without_end)
+    }
+
     /// The stand-alone controllers; `None` where a line or segments run the scenario.
     #[cfg(feature = "controller")]
     #[must_use]

@@ -48,7 +48,7 @@ use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
 use core::fmt;
 #[cfg(feature = "controller")]
 use stepscope_controller::{
-    NotEntered,
+    NotEntered, StandAlone,
     input::{Change, Signal},
 };
 use stepscope_peripheral::{
@@ -197,6 +197,13 @@ impl Session {
             return false;
         }
         self.run.is_at_rest() && self.replies.is_empty()
+    }
+
+    /// Whether a stand-alone controller jogs, and nothing that was pressed so far ends it.
+    #[cfg(feature = "controller")]
+    #[must_use]
+    pub fn jogs_without_end(&self) -> bool {
+        self.presses.are_done() && self.run.stand_alone().is_some_and(StandAlone::jogs_without_end)
     }
 
     /// Whether bytes are on the line, or a reply is to come or under way.

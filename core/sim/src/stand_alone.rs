@@ -36,6 +36,13 @@ impl Cost {
     }
 }
 
+/// Whether a run of these controllers comes to a jog that has no end.
+pub(crate) fn jogs_without_end(controllers: &Checked) -> bool {
+    let mut tried = StandAlone::new(controllers);
+    tried.run_events(Instant::NEVER, MAX_TRIED_EVENTS, &mut Counted(0));
+    tried.jogs_without_end()
+}
+
 /// Cycles in which something can change that a trial goes through.
 const MAX_TRIED_EVENTS: u64 = 10_000_000;
 

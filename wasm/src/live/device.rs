@@ -7,7 +7,7 @@ use stepscope_core::{
     peripheral::units::{Cycles, Instant},
     sim::{
         live_trace::LiveTrace,
-        session::{Pace, Session, SessionClock},
+        session::{Input, Pace, Session, SessionClock},
         session_times::SessionTimes,
     },
 };
@@ -15,6 +15,8 @@ use wasm_bindgen::prelude::*;
 
 /// Cycles of a round at most: as many records, at the very most.
 const MAX_ROUND: u64 = 1_000_000;
+/// So many rounds' bytes are on the line ahead of the model, so that it wakes for a frame's end and not for each byte.
+const ROUNDS_AHEAD: u64 = 10;
 /// Records of the live trace, of all controllers together.
 const MAX_RECORDS: usize = 1_000_000;
 /// What is told of the live trace: positions of so many seconds, at so many times, of so many controllers.
@@ -65,6 +67,8 @@ struct Recorded {
 #[wasm_bindgen]
 pub struct LiveDevice {
     session: Session,
+    /// Bytes that the line has not taken.
+    input: Input,
     clock: SessionClock,
     /// The last records of each controller.
     traces: Vec<LiveTrace>,
@@ -91,6 +95,7 @@ impl LiveDevice {
             traces: vec![LiveTrace::new(MAX_RECORDS / controllers.max(1)); controllers],
             times: SessionTimes::new(unix_ms as u64, pace.to_string(), lag_ms.into(), true),
             session,
+            input: Input::default(),
             clock,
             replies: 0,
             latest_ns: 0,
@@ -108,7 +113,9 @@ impl LiveDevice {
         let now = self.session.now();
         let clock_hz = u64::from(self.session.experiment().config().clock_hz());
         let target = self.clock.target(nanos(ms), now);
-        let to = target.min(Instant(now.0 + (clock_hz / 1000).clamp(1, MAX_ROUND)));
+        let step = (clock_hz / 1000).clamp(1, MAX_ROUND);
+        let to = target.min(Instant(now.0 + step));
+        self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
         if to > now {
             self.session.advance(to, &mut self.traces);
         }
@@ -132,10 +139,14 @@ impl LiveDevice {
         bytes
     }
 
-    /// Bytes that were read at a time, while the model stands where it stands.
-    pub fn receive(&mut self, bytes: &[u8], ms: f64) {
-        self.times.chunk(nanos(ms), self.session.now(), bytes.len());
-        self.session.receive(bytes);
+    /// Bytes that were read at a time, while the model stands where it stands; returns how many of them there was room for.
+    /// The others wait outside, so that nothing is read faster than the line takes it.
+    pub fn receive(&mut self, bytes: &[u8], ms: f64) -> usize {
+        let count = self.input.push(bytes);
+        if count > 0 {
+            self.times.chunk(nanos(ms), self.session.now(), count);
+        }
+        count
     }
 
     /// How long nothing is due, in ms, if nothing is heard; infinite where nothing is on the line.

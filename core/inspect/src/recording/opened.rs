@@ -879,6 +879,30 @@ mod tests {
     }
 
     #[test]
+    fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
+        let read = |text: &str| {
+            read(std::io::Cursor::new(text.to_owned()), &Limits::default(), &mut |_| true).capture
+        };
+        let log = "12:00:00.5 TX 55 AA\n12:00:00.6 RX 01\n";
+        let lines = |map: Option<&str>| {
+            let ask = Ask { map: map.map(Into::into), baud: Some(9600), ..Ask::default() };
+            let opened = Opened::new(read(log), &ask).expect("it opens");
+            let bytes =
+                |line: &LineReport| line.heard.bytes.iter().map(|heard| heard.byte).collect::<Vec<_>>();
+            opened.report.lines.iter().map(|line| (line.name, bytes(line))).collect::<Vec<_>>()
+        };
+        assert_eq!(lines(None), [("RX", vec![1]), ("TX", vec![0x55, 0xaa])]);
+        assert_eq!(lines(Some("RX=TX,TX=RX")), [("RX", vec![0x55, 0xaa]), ("TX", vec![1])]);
+        // Times without a unit are no places: their length is asked for.
+        let table = "0,55\n1041,AA\n2083,01\n";
+        let asked = |sample_rate_hz| Ask { sample_rate_hz, baud: Some(9600), ..Ask::default() };
+        assert_eq!(Opened::new(read(table), &asked(None)).err(), Some(OpenError::NoSampleRate));
+        let opened = Opened::new(read(table), &asked(Some(1_000_000))).expect("it opens");
+        let starts = opened.report.lines[0].heard.bytes.iter().map(|heard| heard.start.0).collect::<Vec<_>>();
+        assert_eq!(starts, [0, 1041, 2083]);
+    }
+
+    #[test]
     fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
         let whole = opened();
         let part = |most, from_s, to_s| {
