@@ -17,7 +17,8 @@ fn dumps_of_any_program_are_read() {
              $scope begin a $end $var reg 1 ! STEP $end $upscope $end\r\n$var wire 1 !! DIR $end\r\n\
              $var wire 1 ! alias $end $upscope $end\r\n$enddefinitions $end\r\n\
              $dumpvars 0! 0!! $end\r\n#0\r\n#5\r\n1!\r\n0!\r\n#6 1!! 1! #7 1! #9\r\n\r\n",
-            "Vcd 1/10000000 [top.a.STEP top.DIR top.alias] 0:0 6:7 end 9",
+            "Vcd 1/10000000 [top.a.STEP top.DIR top.alias] 0:0 6:7 end 9\n\
+             - 1 pulse starts and ends at one time of the file, lost (top.a.STEP); record times more finely",
         ),
         // Vectors, short values, a range that falls, one that rises, one beside its name, a single bit of one.
         (
@@ -830,6 +831,41 @@ fn more_than_is_allowed_ends_the_reading_and_what_was_read_stays() {
         assert_eq!(reading.capture.len(), found);
         assert_eq!(reading.error.map(|error| error.to_string()).as_deref(), expected);
     }
+}
+
+#[test]
+fn pulses_within_one_time_of_the_file_are_counted() {
+    let lost = |text: &str| read_bytes(text).capture.left_out;
+    let table = "millis,STEP,DIR\n0,0,1\n1,1,1\n1,0,1\n2,1,1\n2,0,1\n3,1,0\n4,1,1\n4,1,0\n5,0,0\n";
+    assert_eq!(
+        lost(table),
+        ["2 pulses start and end at one time of the file, lost (STEP); record times more finely"]
+    );
+    // The first levels of a file change nothing.
+    assert_eq!(lost("millis,STEP,DIR\n0,1,1\n0,0,1\n1,0,0\n"), [""; 0]);
+    let dump = "$var wire 1 s STEP $end $var wire 1 g glitch $end $enddefinitions $end #0 1s 0s 0g #5 1s 0s 1g 0g #6 1s #7 0s";
+    assert_eq!(
+        lost(dump),
+        ["1 pulse starts and ends at one time of the file, lost (STEP); record times more finely"]
+    );
+}
+
+#[test]
+fn a_count_beside_step_and_dir_is_no_position() {
+    let levels = |column: &str, values: [&str; 3]| {
+        let [first, second, third] = values;
+        let text = format!("time_us,{column},STEP,DIR\n0,{first},0,1\n10,{second},1,1\n15,{third},0,1\n");
+        told(&read_bytes(text))
+    };
+    for column in ["count", "counter", "pos", "steps", "n", "mode"] {
+        let expected = format!(
+            "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- columns that are no levels: {column}"
+        );
+        assert_eq!(levels(column, ["0", "1", "2"]), expected);
+    }
+    let expected = "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- columns that are no levels: pos";
+    assert_eq!(levels("pos", ["0", "1", "1"]), expected);
+    assert!(told(&read_bytes("time_us,pos,DIR\n0,0,1\n10,1,1\n")).starts_with("PositionsCsv"));
 }
 
 #[test]

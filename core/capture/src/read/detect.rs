@@ -13,7 +13,10 @@ use super::{
     saleae, sigrok, stepscope,
     times::TimeUnit,
 };
-use crate::capture::Format;
+use crate::{
+    capture::Format,
+    names::{Kind, Meaning},
+};
 
 /// What can be read.
 pub(super) const UNKNOWN: &str = "no kind of file that can be read here; give a value change dump (.vcd), a session or \
@@ -30,11 +33,13 @@ pub(super) struct Found {
     pub(super) whole_times: bool,
     /// Bytes in hexadecimal with a number before them, which no head names.
     pub(super) table: Option<hex::Table>,
+    /// Columns of a table of levels that are none, by their bits: a count beside STEP and DIR.
+    pub(super) others: u64,
 }
 
 impl Found {
     const fn of(format: Format) -> Self {
-        Self { format, whole_times: false, table: None }
+        Self { format, whole_times: false, table: None, others: 0 }
     }
 }
 
@@ -151,15 +156,20 @@ fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Found> {
     }
     let whole_times = times().all(|time| Decimal::parse(time).is_none_or(|time| time.places == 0))
         && times().any(|time| Decimal::parse(time).is_some());
-    let found = |format| Some(Found { whole_times, ..Found::of(format) });
     let is_level = |field: &[u8]| matches!(field, b"0" | b"1" | b"X" | b"\"0\"" | b"\"1\"");
     let levels = rows.iter().all(|row| {
         let mut all = fields(row, separator).enumerate();
         all.all(|(at, field)| at == time || is_level(field))
     });
+    let found = |format| Some(Found { whole_times, ..Found::of(format) });
     let lower = |name: &String| name.trim().to_lowercase();
     let named = names.iter().enumerate().any(|(at, name)| at != time && lower(name).starts_with("pos"));
-    if named || !levels && positions::position_column(&names, time).is_some() {
+    let others = others_than_levels(&names, time, &|at| {
+        rows.iter().all(|row| fields(row, separator).nth(at).is_some_and(is_level))
+    });
+    if others.is_none() && named
+        || others.is_none() && !levels && positions::position_column(&names, time).is_some()
+    {
         return found(Format::PositionsCsv);
     }
     let first = names.first().map(lower).unwrap_or_default();
@@ -168,6 +178,31 @@ fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Found> {
         _ if first == "time [s]" || first == "time[s]" => found(Format::SaleaeCsv),
         _ => found(Format::LevelsCsv),
     }
+    .map(|found| Found { others: others.unwrap_or(0), ..found })
+}
+
+/// In a table with levels of STEP and DIR, the columns that are no levels, such as a count, by their bits.
+fn others_than_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) -> bool) -> Option<u64> {
+    let meanings: Vec<Meaning> = names.iter().map(|name| Meaning::of(name, false)).collect();
+    let has = |kind: Kind| {
+        let is_kind = |meaning: &Meaning| matches!(meaning, Meaning::Signal(named) if named.kind == kind);
+        meanings.iter().enumerate().any(|(at, meaning)| at != time && is_kind(meaning) && is_level(at))
+    };
+    if !has(Kind::Step) || !has(Kind::Dir) {
+        return None;
+    }
+    let mut others = 0;
+    for (at, (name, meaning)) in names.iter().zip(&meanings).enumerate().take(64) {
+        let is_signal = matches!(meaning, Meaning::Signal(_));
+        let is_other = match (is_level(at), positions::is_position(name)) {
+            (true, is_position) => is_position && !is_signal,
+            (false, is_position) => is_position || !is_signal,
+        };
+        if at != time && is_other && TimeUnit::named(name).is_none() {
+            others |= 1 << at;
+        }
+    }
+    Some(others)
 }
 
 fn without_quotes(field: &[u8]) -> &[u8] {

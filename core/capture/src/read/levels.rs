@@ -11,7 +11,7 @@ use super::{
     decimal::Decimal,
     fields::{Fields, fields, separator},
     reading::Reader,
-    recorder::{Recorder, quoted},
+    recorder::{Names, Recorder, quoted},
     selection::select,
     sigrok::parse_rate,
     times::{TimeUnit, Times},
@@ -23,6 +23,8 @@ pub(super) struct LevelsTable {
     recorder: Recorder,
     /// Whether the first times are whole numbers, which without a unit are no seconds.
     whole_times: bool,
+    /// Columns that are no channels, by their bits.
+    others: u64,
     head: Head,
     columns: Option<Columns>,
     /// Levels of channels that have no bit, or no data (`X`).
@@ -56,9 +58,9 @@ enum Column {
 }
 
 impl LevelsTable {
-    pub(super) const fn new(recorder: Recorder, whole_times: bool) -> Self {
+    pub(super) const fn new(recorder: Recorder, whole_times: bool, others: u64) -> Self {
         let head = Head { rate: None, decimal_commas: false };
-        Self { recorder, whole_times, head, columns: None, unknown: 0, quoted: Fields::new() }
+        Self { recorder, whole_times, others, head, columns: None, unknown: 0, quoted: Fields::new() }
     }
 
     /// The columns by the names in the first row. A row of numbers is none: then the first column is the time.
@@ -89,7 +91,13 @@ impl LevelsTable {
         }
         let (mut list, mut channels) = (Vec::new(), Vec::new());
         let mut bit = 0;
+        let mut left_out = Names::new();
         for (at, name) in names.iter().enumerate() {
+            if at < 64 && self.others >> at & 1 == 1 {
+                left_out.add(name);
+                list.push(Column::Other);
+                continue;
+            }
             if at == time || others.contains(&at) {
                 list.push(if at == time { Column::Time } else { Column::Other });
                 continue;
@@ -99,6 +107,9 @@ impl LevelsTable {
             channels.push(if name.is_empty() { numbered } else { name.clone() });
             list.push(Column::Level(None, name));
             bit += 1;
+        }
+        if !left_out.is_empty() {
+            self.recorder.leave_out(format!("columns that are no levels: {}", left_out.told()));
         }
         if bit == 0 {
             return Err("the head of the table names no channel; name the time and then each channel".into());

@@ -88,7 +88,7 @@ pub fn read_wanted<R: BufRead + Seek>(
         Ok(source) => source,
         Err(what) => return refusal(ReadError::whole(what)),
     };
-    let Found { format, whole_times, table } = match detect::detect(source.head()) {
+    let Found { format, whole_times, table, others } = match detect::detect(source.head()) {
         Ok(found) => found,
         Err(what) => return refusal(ReadError::whole(what)),
     };
@@ -103,7 +103,7 @@ pub fn read_wanted<R: BufRead + Seek>(
         Format::SigrokSession => session::read(source, recorder),
         Format::SigrokCsv => by_line(source, sigrok::Samples::new(recorder)),
         Format::LevelsCsv | Format::SaleaeCsv | Format::EdgesCsv => {
-            by_line(source, levels::LevelsTable::new(recorder, whole_times))
+            by_line(source, levels::LevelsTable::new(recorder, whole_times, others))
         }
         Format::SaleaeBytes => by_line(source, saleae::DecodedBytes::new(recorder)),
         Format::Trace => by_line(source, stepscope::TraceText::new(recorder)),

@@ -2,7 +2,10 @@
 
 use core::mem;
 
-use crate::capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition};
+use crate::{
+    capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition},
+    names::{Kind, Meaning},
+};
 
 /// Most sentences of [`Capture::left_out`].
 const MAX_LEFT_OUT: usize = 20;
@@ -18,6 +21,9 @@ pub(super) struct Recorder {
     most: usize,
     /// The latest row of levels.
     latest: Option<Change>,
+    /// Bits that have changed at the time of the latest row, and the pulses of each channel that it has lost.
+    changed: u64,
+    lost: [u64; MAX_CHANNELS],
     /// Channels for which there is no bit.
     beyond: Names,
     /// Names of channels that are read before all others.
@@ -26,7 +32,15 @@ pub(super) struct Recorder {
 
 impl Recorder {
     pub(super) const fn new(format: Format, most: usize) -> Self {
-        Self { capture: Capture::new(format), most, latest: None, beyond: Names::new(), wanted: Vec::new() }
+        Self {
+            capture: Capture::new(format),
+            most,
+            latest: None,
+            changed: 0,
+            lost: [0; MAX_CHANNELS],
+            beyond: Names::new(),
+            wanted: Vec::new(),
+        }
     }
 
     /// How many changes, bytes or positions are read at most.
@@ -67,10 +81,13 @@ impl Recorder {
         match &mut self.latest {
             Some(latest) if latest.levels == levels => Ok(()),
             Some(latest) if latest.tick == tick => {
+                let changed = latest.levels ^ levels;
                 latest.levels = levels;
+                self.edges(changed);
                 Ok(())
             }
             _ => {
+                self.changed = self.latest.map_or(0, |before| before.levels ^ levels);
                 self.settle();
                 let changes = &mut self.capture.changes;
                 fits(changes.len(), self.most, "changes")?;
@@ -79,6 +96,51 @@ impl Recorder {
                 Ok(())
             }
         }
+    }
+
+    /// Bits that change: one that has changed at this time already was a pulse, which is lost. The first levels of a file are
+    /// no changes.
+    pub(super) fn edges(&mut self, changed: u64) {
+        let mut pulses = self.changed & changed;
+        self.changed ^= if self.latest.is_some() { changed } else { 0 };
+        while pulses != 0 {
+            if let Some(lost) = self.lost.get_mut(pulses.trailing_zeros() as usize) {
+                *lost = lost.saturating_add(1);
+            }
+            pulses &= pulses - 1;
+        }
+    }
+
+    /// What comes is of another time.
+    pub(super) const fn next_time(&mut self) {
+        self.changed = 0;
+    }
+
+    /// Says which pulses begin and end at one time, where they may count: simulators write many others.
+    fn leave_out_lost(&mut self) {
+        let is_dump = self.capture.format == Format::Vcd;
+        let counts = |name: &str| match Meaning::of(name, false) {
+            Meaning::Signal(named) => match named.kind {
+                Kind::Step | Kind::Cw | Kind::Ccw | Kind::A | Kind::B | Kind::Rx | Kind::Tx => true,
+                Kind::Clock => !is_dump,
+                Kind::Dir | Kind::En | Kind::De => false,
+            },
+            Meaning::Unknown => !is_dump,
+            Meaning::Other => false,
+        };
+        let lost = self.capture.channels.iter().zip(&self.lost);
+        let sentences: Vec<String> = lost
+            .filter(|(channel, lost)| **lost > 0 && counts(&channel.name))
+            .map(|(channel, lost)| {
+                let pulses = if *lost == 1 { "pulse starts and ends" } else { "pulses start and end" };
+                format!(
+                    "{} {pulses} at one time of the file, lost ({}); record times more finely",
+                    grouped(*lost),
+                    channel.name
+                )
+            })
+            .collect();
+        sentences.into_iter().for_each(|sentence| self.leave_out(sentence));
     }
 
     /// Nothing more comes for the tick of the latest row. Room for it was made when it came.
@@ -150,6 +212,7 @@ impl Recorder {
     /// What was read.
     pub(super) fn finish(mut self) -> Capture {
         self.settle();
+        self.leave_out_lost();
         if !self.beyond.is_empty() {
             let sentence = format!(
                 "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",

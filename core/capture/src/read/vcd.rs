@@ -187,8 +187,11 @@ impl Vcd {
             ));
         }
         // Values without a time are those of the first.
-        if time > self.now && self.touched {
-            self.recorder.levels(self.now, self.levels)?;
+        if time > self.now {
+            if self.touched {
+                self.recorder.levels(self.now, self.levels)?;
+            }
+            self.recorder.next_time();
         }
         (self.now, self.touched) = (time, true);
         Ok(())
@@ -213,7 +216,9 @@ impl Vcd {
         }
         if let Some(variable) = self.variables.find(code) {
             let high = if value == Value::High { variable.first_bit } else { 0 };
-            self.levels = self.levels & !variable.all_bits | high;
+            let levels = self.levels & !variable.all_bits | high;
+            self.recorder.edges(self.levels ^ levels);
+            self.levels = levels;
             self.unknown += u64::from(value == Value::Unknown);
             self.touched = true;
         }
@@ -224,7 +229,9 @@ impl Vcd {
             return;
         }
         if let Some((levels, changed, unknown)) = self.variables.vector(code) {
-            self.levels = self.levels & !changed | levels;
+            let levels = self.levels & !changed | levels;
+            self.recorder.edges(self.levels ^ levels);
+            self.levels = levels;
             self.unknown += unknown;
             self.touched = true;
         }
