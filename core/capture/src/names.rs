@@ -191,7 +191,9 @@ impl Meaning {
         let name = without_index(name, indexed);
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
         let words = words(last);
-        if words.iter().any(|word| OTHERS.contains(&letters(word))) {
+        let has_word = |all: &[&str]| words.iter().any(|word| all.contains(&word.as_str()));
+        let is_rest = has_word(&["STEPS"]) && has_word(&["LEFT", "REMAINING", "TODO"]);
+        if is_rest || words.iter().any(|word| OTHERS.contains(&letters(word))) {
             return Self::Other;
         }
         let mut kinds: Vec<(Kind, &str)> = Vec::new();

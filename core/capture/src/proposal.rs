@@ -893,6 +893,7 @@ mod tests {
                 &["X-Takt", "Y-Takt", "X-Richtung", "Y-Richtung"],
                 "STEP0=X-Takt,STEP1=Y-Takt,DIR0=X-Richtung,DIR1=Y-Richtung",
             ),
+            (&["DIRECTION_CHANGED", "STEPS_LEFT", "STEP", "DIR"], "STEP0=STEP,DIR0=DIR"),
             // One DIR for several motors, by its name.
             (&["STEP", "STEP2", "DIR"], "STEP0=STEP,STEP2=STEP2,DIR0=DIR,DIR2=DIR"),
             (&["X_STEP", "Y_STEP", "DIR_BOTH"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR_BOTH,DIR1=DIR_BOTH"),
