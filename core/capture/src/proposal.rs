@@ -660,7 +660,7 @@ fn nearness(changes: &[u64], edges: &[u64]) -> u64 {
 fn is_next_to(nearness: u64, changes: usize, edges: &[u64]) -> bool {
     let intervals = edges.iter().zip(edges.iter().skip(2)).map(|(from, to)| to - from);
     let shortest = intervals.min().unwrap_or(0);
-    nearness.saturating_mul(10) <= shortest.saturating_mul(changes as u64)
+    nearness.saturating_mul(20) <= shortest.saturating_mul(changes as u64)
 }
 
 /// Whether there are steps between so many percent of the changes of a channel.
