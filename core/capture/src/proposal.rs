@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! name       STEP and DIR of one motor belong together (names.rs); one DIR without an axis is that of all motors without
-//! behavior   RX     pulses are whole bits of words with a stop bit; inverted where the line is low when idle
-//!            A, B   edges of two channels alternate, evenly
+//! behavior   A, B   edges of two channels alternate, evenly
+//!            RX     pulses are whole bits of words with a stop bit; inverted where the line is low when idle
 //!            STEP   the most pulses; more motors have pulses of about this width
 //!            DIR    changes seldom: at both levels there are steps, and not while STEP is high, where one does so
 //! ```
@@ -119,8 +119,9 @@ impl<'a> Proposal<'a> {
         self.dirs_by_name();
         let named = self.motors.len();
         self.sort_motors();
-        self.lines_by_behavior();
+        // A bit rate may fit an encoder at constant speed.
         self.encoders_by_behavior();
+        self.lines_by_behavior();
         self.steps_by_behavior();
         self.dirs_by_behavior();
         self.polarity();
@@ -370,7 +371,7 @@ impl<'a> Proposal<'a> {
 
     fn encoders_by_behavior(&mut self) {
         let busy = |channel: &usize| self.behavior(*channel).changes() >= MIN_ENCODER_EDGES as u64 / 2;
-        let free: Vec<usize> = self.free_of_lines().into_iter().filter(busy).collect();
+        let free: Vec<usize> = self.free().into_iter().filter(busy).collect();
         let edges: Vec<Vec<u64>> = free
             .iter()
             .map(|channel| {
@@ -1010,6 +1011,20 @@ mod tests {
     fn edges_that_alternate_are_an_encoder() {
         let a: Vec<u64> = (0..40).map(|k| 100 + 40 * k + k % 3).collect();
         let b: Vec<u64> = (0..40).map(|k| 120 + 40 * k + k % 5).collect();
+        assert_eq!(proposed(&["D0", "D1"], &levels(0, &[&a, &b])), "A0=D0,B0=D1");
+        // At constant speed, with turns, a bit rate fits each channel.
+        let (mut a, mut b, mut at) = (Vec::new(), Vec::new(), 1000);
+        for edges in [41, 33, 27, 60, 39] {
+            for _ in 0..edges {
+                let is_a = a.len() == b.len();
+                if is_a {
+                    a.push(at)
+                } else {
+                    b.push(at)
+                }
+                at += 100;
+            }
+        }
         assert_eq!(proposed(&["D0", "D1"], &levels(0, &[&a, &b])), "A0=D0,B0=D1");
         // Pulses that overlap are not spaced like its edges, and STEP with DIR does not alternate.
         let overlapping = [&pulses(100, 40, 400, 10)[..], &pulses(105, 40, 400, 10)];

@@ -1,6 +1,7 @@
 //! The bit rate of a line: of all bit times that its shortest pulse allows, the one that most words and edges fit.
 
 use super::{Edge, Fault, Format, each_word};
+use std::collections::BTreeSet;
 
 /// Rates that lines have.
 const USUAL: [u32; 26] = [
@@ -8,6 +9,8 @@ const USUAL: [u32; 26] = [
     128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000, 2_000_000,
     3_000_000,
 ];
+/// One of them that is five times a far more usual one, and only taken where no other one fits.
+const RARE: u32 = 576_000;
 /// How far a measured rate may be from a usual one: oscillators are that far off.
 const NEAR: f64 = 0.02;
 /// Least samples per bit.
@@ -21,6 +24,10 @@ const STEP: f64 = 1.0 + 1.0 / 128.0;
 const MAX_MEASURED: usize = 16;
 /// Share of words that may have faults at a rate that fits.
 const MAX_FAULTS: f64 = 0.2;
+/// Different bytes by which a rate that is not usual is known.
+const LEAST_VALUES: usize = 3;
+/// What happens once in so many times is no chance.
+const NO_CHANCE: u64 = 64;
 /// Pulses, words and share of faults of a channel that is taken for a line by what it does.
 const LINE_PULSES: usize = 12;
 const LINE_WORDS: u32 = 3;
@@ -42,7 +49,7 @@ pub struct Estimate {
 pub enum NoRate {
     /// The line does not change.
     NoEdges,
-    /// All words have one low pulse of one length, which several usual rates fit; none of them may be meant.
+    /// Several usual rates fit, with other bytes each: words are few, or much the same.
     Ambiguous(Vec<u32>),
     /// No rate fits.
     None,
@@ -66,8 +73,6 @@ struct Quality {
     fitted: Option<f64>,
     /// A bit for each length of low pulses, in bits.
     lows: u32,
-    /// Words with more than one low pulse.
-    several: u32,
 }
 
 impl Quality {
@@ -88,7 +93,6 @@ impl Quality {
             found.squares += word.squares;
             counted += word.edges - 1;
             (sxx, sxy) = (sxx + word.sxx, sxy + word.sxy);
-            found.several += u32::from(word.edges > 2);
             found.lows |= low_lengths(word.levels, format);
         });
         found.share = if found.words == 0 { 1.0 } else { f64::from(odd) / f64::from(found.words) };
@@ -119,6 +123,11 @@ impl Quality {
         // What sampling and slow edges explain.
         let most = 0.02 + 0.25 / (self.bit * self.bit);
         self.words > 0 && self.share <= MAX_FAULTS && self.squares <= most
+    }
+
+    /// Whether it has no more faults than another, and edges that are off by no more than sampling explains.
+    fn fits_as_well_as(&self, best: &Self) -> bool {
+        self.share <= best.share + 0.001 && self.squares <= 2.0 * best.squares + 0.2 / (self.bit * self.bit)
     }
 }
 
@@ -180,32 +189,114 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
     }
     let edges = edges.get(..MEASURED_EDGES).unwrap_or(edges);
     let mut best = best_quality(edges, format).ok_or(NoRate::None)?;
-    let near = |quality: &Quality| hz.and_then(|hz| usual(hz, quality.bit));
-    if best.lows.count_ones() == 1 && best.several == 0 {
-        // One pulse per word, of one length, may be any number of bits.
-        let length = best.bit * f64::from(best.lows.trailing_zeros());
-        let each = (1..=9).map(|bits| length / f64::from(bits)).filter(|bit| *bit >= LEAST_BIT);
-        let fitting = each.map(|bit| Quality::of(edges, bit, format)).filter(Quality::fits);
-        let all: Vec<(Quality, u32)> = fitting.filter_map(|each| Some((each, near(&each)?))).collect();
-        match all.as_slice() {
-            [(only, _)] => best = only.refined(edges, format),
-            [] if hz.is_some() => return Err(NoRate::None),
+    if let Some(hz) = hz {
+        let fitting = fitting_usual(edges, format, hz, &best);
+        match fitting.as_slice() {
+            [(only, _)] => best = *only,
+            [] if words(edges, best.bit, format).values() < LEAST_VALUES => return Err(NoRate::None),
             [] => {}
             several => return Err(NoRate::Ambiguous(several.iter().map(|(_, rate)| *rate).collect())),
         }
     }
     let measured = best.bit;
-    let usual = near(&best).filter(|rate| {
+    let usual = hz.and_then(|hz| usual(hz, measured)).filter(|rate| {
         let bit = hz.unwrap_or_default() / f64::from(*rate);
-        let words = |bit| {
-            let mut words = Vec::new();
-            super::decode(edges.iter().copied(), bit, format, |word| words.push((word.byte, word.fault)));
-            words
-        };
-        words(bit) == words(measured)
+        words(edges, bit, format) == words(edges, measured, format)
     });
     let bit = usual.zip(hz).map_or(measured, |(rate, hz)| hz / f64::from(rate));
     Ok(Estimate { bit, measured, usual })
+}
+
+/// Words that a line has at a bit time.
+#[derive(PartialEq)]
+struct Words(Vec<(u8, Option<Fault>)>);
+
+impl Words {
+    /// How many different bytes there are.
+    fn values(&self) -> usize {
+        self.0.iter().map(|(byte, _)| *byte).collect::<BTreeSet<u8>>().len()
+    }
+
+    /// Whether it is text, of more than one character.
+    fn is_text(&self) -> bool {
+        let is_text = |(byte, fault): &(u8, Option<Fault>)| {
+            fault.is_none() && matches!(byte, b' '..=b'~' | b'\r' | b'\n' | b'\t')
+        };
+        self.values() > 1 && self.0.iter().all(is_text)
+    }
+}
+
+fn words(edges: &[Edge], bit: f64, format: Format) -> Words {
+    let mut words = Vec::new();
+    super::decode(edges.iter().copied(), bit, format, |word| words.push((word.byte, word.fault)));
+    Words(words)
+}
+
+/// The usual rates that fit about as well as the bit time that fits best, with other bytes each. Few different bytes may
+/// fit several, and a bit time that is not usual by chance, so that all usual rates are tried.
+fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec<(Quality, u32)> {
+    let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
+    let fit = |rate: &u32| {
+        let bit = hz / f64::from(*rate);
+        if usual(hz, best.bit) == Some(*rate) {
+            return Some((*best, *rate));
+        }
+        if bit < LEAST_BIT {
+            return None;
+        }
+        let first = Quality::of(tried, bit, format).refined(tried, format);
+        if !first.fits() {
+            return None;
+        }
+        let own = Quality::of(edges, first.bit, format).refined(edges, format);
+        let fits = own.fits() && own.fits_as_well_as(best) && usual(hz, own.bit) == Some(*rate);
+        fits.then_some((own, *rate))
+    };
+    let mut found: Vec<(Quality, u32)> = USUAL.iter().filter_map(fit).collect();
+    found.dedup_by(|next, before| words(edges, next.0.bit, format) == words(edges, before.0.bit, format));
+    // The lowest one may be right in spite of pauses.
+    if let Some((lowest, rate)) = found.first().copied() {
+        let is_likely = |(own, other): &(Quality, u32)| {
+            *other == rate || *other != RARE && !is_too_fast(tried, own.bit, lowest.bit / own.bit, format)
+        };
+        found.retain(is_likely);
+    }
+    let is_text = |(own, _): &&(Quality, u32)| words(edges, own.bit, format).is_text();
+    let mut texts = found.iter().filter(is_text);
+    if let (Some(only), None) = (texts.next(), texts.next()) {
+        return vec![*only];
+    }
+    found
+}
+
+/// Whether a rate is some times too high: the edges of all words lie at every second bit, or every third and so on, and so
+/// many of them that this is no chance; or most words have a short pause after them, as those have that begin amid another.
+fn is_too_fast(edges: &[Edge], bit: f64, times: f64, format: Format) -> bool {
+    let mut different = BTreeSet::new();
+    // From six times on nearly each low bit of the lower rate is a word.
+    let short = if times > 5.5 { 9.0 * times } else { 10.0 };
+    let (mut before, mut pauses, mut others) = (None, 0, 0);
+    each_word(edges.iter().copied(), bit, format, &mut |start, word, _| {
+        // Words that are repeated count once.
+        different.insert(word.levels);
+        if let Some(before) = before.replace(start) {
+            let pause = (start - before) as f64 / bit - f64::from(format.bits());
+            *(if (1.3..short).contains(&pause) { &mut pauses } else { &mut others }) += 1;
+        }
+    });
+    let places = || {
+        different.iter().flat_map(|levels| {
+            (1..format.bits()).filter(move |at| (levels >> at ^ levels >> (at - 1)) & 1 == 1)
+        })
+    };
+    let is_multiple = |divisor: u8| {
+        let on = places().filter(|at| at % divisor == 0).count();
+        let off = places().count() - on;
+        // The start of the next word may lie anywhere. One edge of `divisor` is at such a bit by chance.
+        let more = on.saturating_sub(4 * off) as u32;
+        u64::from(divisor).saturating_pow(more) >= NO_CHANCE
+    };
+    pauses > others || (2..=4).any(is_multiple)
 }
 
 /// The usual rate next to a bit time, as near as oscillators, or the samples of a word, explain.
@@ -248,10 +339,8 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     let all: Vec<Quality> = lowest.into_iter().take(MAX_MEASURED).map(refined).collect();
     let best = *all.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
     // Of those that fit as well the longest bit: shorter ones split each bit in several.
-    let as_well = |each: &&Quality| {
-        each.share <= best.share + 0.001 && each.squares <= 2.0 * best.squares + 0.2 / (each.bit * each.bit)
-    };
-    let best = *all.iter().filter(as_well).max_by(|a, b| a.bit.total_cmp(&b.bit))?;
+    let best =
+        *all.iter().filter(|each| each.fits_as_well_as(&best)).max_by(|a, b| a.bit.total_cmp(&b.bit))?;
     best.fits().then_some(best)
 }
 

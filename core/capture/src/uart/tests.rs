@@ -120,7 +120,8 @@ fn few_bytes_are_enough_where_one_usual_rate_fits() {
         (b"A", 115_200, Ok(())),
         (b"ok", 250_000, Ok(())),
         (b"\x00", 9600, Ok(())),
-        (b"\x0f", 9600, Ok(())),
+        // It is FE 80 at 19200 baud.
+        (b"\x0f", 9600, Err(NoRate::Ambiguous(vec![9600, 19_200]))),
         (b"\x00\x00\x00", 9600, Ok(())),
         (b"UUUUUUUU", 19_200, Ok(())),
         (b"\x00\xff\x00", 57_600, Ok(())),
@@ -136,6 +137,50 @@ fn few_bytes_are_enough_where_one_usual_rate_fits() {
         }
     }
     assert_eq!(measured(&[], 1e6), Err(NoRate::NoEdges));
+}
+
+/// A usual rate that fits is taken before one that is not usual; several that fit are asked for.
+#[test]
+fn repeated_bytes_are_right_or_several_rates_fit() {
+    let mut wrong = Vec::new();
+    let (mut right, mut asked) = (0, 0);
+    for (baud, ratio) in
+        [(250_000, 4.0), (115_200, 500.0 / 115.2), (9600, 50.0 / 9.6), (115_200, 8.68), (19_200, 16.0)]
+    {
+        for (count, together) in [(50, 1), (50, 7), (50, 50), (12, 3), (100, 2)] {
+            for byte in (0..=255_u8).step_by(if together == 7 { 1 } else { 5 }) {
+                let bytes = vec![byte; count];
+                let mut at = 0;
+                let gap = || {
+                    at += 1;
+                    if together < 50 && at % together == 0 { 50.37 } else { 0.0 }
+                };
+                let edges = line(&bytes, ratio, Format::default(), gap, || 0);
+                match measured(&edges, f64::from(baud) * ratio) {
+                    Ok((Some(usual), found)) if usual == baud && found == bytes => right += 1,
+                    Err(NoRate::Ambiguous(rates)) if rates.contains(&baud) => asked += 1,
+                    other => wrong.push(format!(
+                        "{baud} {ratio} {count} {together} {byte:02x} {:?}",
+                        other.map(|(rate, bytes)| (rate, bytes.len(), bytes.first().copied()))
+                    )),
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {right} and {asked} {wrong:#?}", wrong.len());
+    assert!(right > 3 * asked, "{right} {asked}");
+}
+
+#[test]
+fn text_and_random_bytes_are_not_asked_for() {
+    let mut seeded = Seeded(5);
+    for step in 0..240 {
+        let ratio = 4.0 + f64::from(step) / 20.0;
+        let bytes: Vec<u8> = (0..8).map(|_| seeded.next() as u8).collect();
+        let mut gaps = Seeded(seeded.next());
+        let edges = line(&bytes, ratio, Format::default(), || gaps.part() * 3.0, || 0);
+        assert_eq!(measured(&edges, 115_200.0 * ratio), Ok((Some(115_200), bytes)), "{ratio}");
+    }
 }
 
 #[test]

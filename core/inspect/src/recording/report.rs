@@ -13,7 +13,9 @@
 //! ```
 
 #[cfg(feature = "capture")]
-use super::serial::{LineOptions, MEASURED_EDGES, edges, hear_among, parity_of_seven};
+use super::serial::{
+    HeardByte, LineOptions, MEASURED_EDGES, edges, hear_among, is_text_of_seven, parity_of_seven,
+};
 use super::{
     figures::StepFigures,
     remedy::Remedy,
@@ -196,6 +198,20 @@ fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     }
 }
 
+/// What would show bytes of seven bits that were decoded with eight.
+#[cfg(feature = "capture")]
+fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
+    if is_text_of_seven(bytes) {
+        let text = "all bytes look like text of 7 data bits with 2 stop bits, or 1 and pauses";
+        return Some((text.into(), Some(Remedy::Format("7N2".into()))));
+    }
+    parity_of_seven(bytes).map(|parity| {
+        let name = if parity == 'E' { "even" } else { "odd" };
+        let text = format!("all bytes look like 7 data bits with {name} parity");
+        (text, Some(Remedy::Format(format!("7{parity}1"))))
+    })
+}
+
 impl LineReport {
     /// Of a line that changes.
     #[cfg(feature = "capture")]
@@ -242,11 +258,7 @@ impl LineReport {
             Ok(found) if wrong * 8 > bytes.len() && found.usual != baud => {
                 Some((format!("its pulses look like {} baud", libm::round(hz / found.measured)), None))
             }
-            _ if format == Format::default() => parity_of_seven(bytes).map(|parity| {
-                let name = if parity == 'E' { "even" } else { "odd" };
-                let text = format!("all bytes look like 7 data bits with {name} parity");
-                (text, Some(Remedy::Format(format!("7{parity}1"))))
-            }),
+            _ if format == Format::default() => seven_bits(bytes),
             _ => None,
         };
         if let Some((text, remedy)) = hint {

@@ -17,6 +17,8 @@
 //! assert!(matches!(guess(&heard.bytes, 139), Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }));
 //! ```
 
+#[cfg(feature = "capture")]
+use alloc::collections::BTreeSet;
 use alloc::{vec, vec::Vec};
 #[cfg(feature = "capture")]
 use stepscope_capture::uart::{Edge, Estimate, Fault, Format, decode, estimate};
@@ -87,9 +89,12 @@ pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl It
     })
 }
 
-/// Words that are read under another format, so that it shows: as many different ones have one parity by chance once in 256.
+/// Words that are read under another format, so that it shows, and how many of them are different: as many have one parity
+/// by chance once in 32.
 #[cfg(feature = "capture")]
-const PARITY_WORDS: u32 = 8;
+const FORMAT_WORDS: usize = 8;
+#[cfg(feature = "capture")]
+const PARITY_WORDS: u32 = 6;
 
 /// The parity that eight bits of each byte have, seven of data and the parity bit: `E` or `O`. `None` where they have none, or
 /// too few of them are different.
@@ -104,10 +109,22 @@ pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
             *word |= 1 << (heard.byte & 63);
         }
     }
-    if seen.iter().map(|word| word.count_ones()).sum::<u32>() < PARITY_WORDS {
+    if bytes.len() < FORMAT_WORDS || seen.iter().map(|word| word.count_ones()).sum::<u32>() < PARITY_WORDS {
         return None;
     }
     if even { Some('E') } else { odd.then_some('O') }
+}
+
+/// Whether bytes look like text of seven bits, with a stop bit or a pause where the eighth one is. Other bytes with their
+/// top bit set may well have eight.
+#[cfg(feature = "capture")]
+pub(super) fn is_text_of_seven(bytes: &[HeardByte]) -> bool {
+    let is_text = |heard: &&HeardByte| matches!(heard.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
+    // Packets of a few such bytes are no text.
+    bytes.len() >= FORMAT_WORDS
+        && bytes.iter().all(|heard| heard.byte & 0x80 != 0)
+        && bytes.iter().map(|heard| heard.byte).collect::<BTreeSet<u8>>().len() >= 4
+        && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
 /// A byte, and where its start bit was seen.
@@ -311,6 +328,25 @@ mod tests {
             );
         }
         assert_eq!(measured_baud(&line(1_000_000, 9600, &[]), Levels::RX, 1_000_000), None);
+    }
+
+    #[test]
+    fn seven_bits_are_known_by_their_text() {
+        let heard = |bytes: &[u8]| -> Vec<HeardByte> {
+            bytes.iter().map(|byte| HeardByte { start: Instant(0), byte: *byte }).collect()
+        };
+        let top = |text: &[u8]| heard(&text.iter().map(|byte| byte | 0x80).collect::<Vec<_>>());
+        assert!(is_text_of_seven(&top(b"G1 X10\r\n")));
+        assert!(!is_text_of_seven(&top(b"G1 X10\n")));
+        assert!(!is_text_of_seven(&top(b"AAAAAAAAAA")));
+        assert!(!is_text_of_seven(&heard(b"G1 X10\r\n")));
+        assert!(!is_text_of_seven(&top(&[1, 5, 1, 5, 1, 5, 1, 5, 1])));
+        let even = |text: &[u8]| -> Vec<HeardByte> {
+            let parity = |byte: &u8| if byte.count_ones() % 2 == 1 { byte | 0x80 } else { *byte };
+            heard(&text.iter().map(parity).collect::<Vec<_>>())
+        };
+        assert_eq!(parity_of_seven(&even(b"G1 X10\r\n")), Some('E'));
+        assert_eq!(parity_of_seven(&even(b"ABABABABAB")), None);
     }
 
     #[test]
