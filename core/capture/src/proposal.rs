@@ -474,7 +474,8 @@ impl<'a> Proposal<'a> {
         // As many as there are motors: the first goes with the first, whether DIR comes before STEP or after it.
         let fitting = pairs.iter().filter(|(fit, ..)| !fit.one_level).map(|(_, channel, _)| *channel);
         let fitting: BTreeSet<usize> = fitting.collect();
-        if fitting.len() == steps.len() {
+        let is_one_each = fitting.len() == steps.len();
+        if is_one_each {
             let mut by_channel: Vec<usize> = steps.iter().map(|(_, step, _)| *step).collect();
             by_channel.sort_unstable();
             for (fit, channel, at) in &mut pairs {
@@ -489,7 +490,7 @@ impl<'a> Proposal<'a> {
         let mut used = Vec::new();
         for (fit, channel, at) in pairs {
             let is_common = is_sole && fit.is_shared && !fit.is_others;
-            if fit.is_others || used.contains(&channel) && !is_common {
+            if fit.is_others && !is_one_each || used.contains(&channel) && !is_common {
                 continue;
             }
             if let Some(motor) = self.motors.get_mut(at).filter(|motor| motor.lacks_dir()) {
