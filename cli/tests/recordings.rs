@@ -148,7 +148,7 @@ fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
 fn each_edge_is_a_step_also_where_edges_are_a_tick_apart() {
     let rows = |row: &dyn Fn(u64) -> String| -> String { (0..=40).map(row).collect() };
     let dedge = format!("time_us,STEP\n{}", rows(&|k| format!("{k},{}\n", k % 2)));
-    let encoder = format!("time_us,A,B\n{}", rows(&|k| format!("{k},{},{}\n", (k + 1) / 2 % 2, k / 2 % 2)));
+    let encoder = format!("time_us,A,B\n{}", rows(&|k| format!("{k},{},{}\n", k.div_ceil(2) % 2, k / 2 % 2)));
     for (text, map) in [(dedge, "DEDGE0=STEP"), (encoder, "A0=A,B0=B")] {
         let (code, out, err) = stepscope(&["capture", "-", "--map", map, "--json"], &text);
         assert_eq!(code, Some(0), "{map}: {err}");
