@@ -94,7 +94,7 @@ impl Step {
                 command.args(words("doc --no-deps --workspace --locked")).env("RUSTDOCFLAGS", "-D warnings");
                 run::to_end(command).await
             }
-            Self::Native => cargo("test --workspace --locked").await,
+            Self::Native => cargo("test --workspace --locked --no-fail-fast").await,
             Self::Vcd => dump_readers::test().await,
             Self::Avr => avr::test().await,
             Self::Live => judges::test().await,

@@ -35,7 +35,7 @@ impl core::error::Error for TooLong {}
 /// Runs an experiment and keeps what its first `controllers` do.
 ///
 /// # Errors
-/// [`TooLong`]. Memory never holds more than [`MAX_RECORDS`], and what comes with them.
+/// [`TooLong`] for more than [`MAX_RECORDS`].
 pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<Recording>), TooLong> {
     record_within(experiment, controllers, MAX_RECORDS)
 }
@@ -45,17 +45,16 @@ fn record_within(
     controllers: usize,
     most: u64,
 ) -> Result<(Run, Vec<Recording>), TooLong> {
-    // Of segments the number is exact; elsewhere it counts edges of the line that may not come.
-    if let Some(segments) = experiment.segments()
-        && experiment.cost().records > most
-    {
-        return Err(TooLong::Steps(segments.steps()));
+    // The steps of segments are known before the run; elsewhere the edges are counted as they come.
+    let segments = experiment.segments();
+    if let Some(steps) = segments.map(|segments| segments.steps()).filter(|steps| *steps > most / 2) {
+        return Err(TooLong::Steps(steps));
     }
     let mut recordings: Vec<Recording> = (0..controllers).map(|_| Recording::default()).collect();
     let mut run = experiment.start();
     while !run.advance_each(SLICE, &mut recordings) {
         let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
-        if records > most {
+        if segments.is_none() && records > most {
             return Err(TooLong::Edges);
         }
     }
@@ -91,8 +90,8 @@ mod tests {
             "4294967295 steps; up to 24000000 are analyzed: give a shorter motion, or end the run sooner with run_cycles"
         );
         let experiment = Experiment::from_json(&json(1000)).expect("it runs");
-        assert!(record_within(&experiment, 1, 2001).is_ok());
-        assert_eq!(record_within(&experiment, 1, 2000).err(), Some(TooLong::Steps(1000)));
+        assert!(record_within(&experiment, 1, 2000).is_ok());
+        assert_eq!(record_within(&experiment, 1, 1999).err(), Some(TooLong::Steps(1000)));
     }
 
     #[test]
