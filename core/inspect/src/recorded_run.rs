@@ -1,5 +1,14 @@
 //! A run that is kept in memory to be analyzed, in bounded memory: one that makes too many steps is refused, before it
 //! begins where that is known.
+//!
+//! ```
+//! use stepscope_inspect::recorded_run::record_run;
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let (_, recordings) = record_run(&experiment, 1).expect("it is short");
+//! assert!(!recordings[0].trace.is_empty());
+//! ```
 
 use alloc::vec::Vec;
 use core::fmt;

@@ -11,10 +11,12 @@
 
 use crate::{
     bisection::least_near,
-    crossing::MAX_OFF,
     exact::{Exact, Natural},
     round_half_up, square_root,
 };
+
+/// How far a speed in f64 may be off, relative to it: 64 roundings.
+const MAX_OFF: f64 = 32.0 * f64::EPSILON;
 
 /// Steps up to which a search for a speed ends exactly; no move has as many.
 const MAX_STEPS: u64 = 1 << 52;

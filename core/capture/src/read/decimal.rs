@@ -3,6 +3,12 @@
 //! ```text
 //! 0.00125   125 and 5 places        1e-05   1 and 5 places        -2.5E3   -2500 and 0 places
 //! ```
+//!
+//! ```
+//! use stepscope_capture::read::decimal::Decimal;
+//!
+//! assert_eq!(Decimal::parse(b"0.00125"), Some(Decimal { mantissa: 125, places: 5 }));
+//! ```
 
 /// `mantissa / 10^places`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
