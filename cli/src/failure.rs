@@ -1,11 +1,14 @@
 //! Why a command has no result, in words and as an exit code.
 
-use crate::{interrupt, terminal::Escaped};
+use crate::terminal::Escaped;
 use std::{fmt, io, path::PathBuf, process::ExitCode};
 use stepscope_core::{
     inspect::{recorded_run::TooLong, run_fingerprint::RunFingerprintError, vcd::TooCoarse},
     scenario::{MAX_TEXT_BYTES, Problem, link::LinkError},
 };
+
+/// Exit code of a command that a signal ended.
+pub(crate) const INTERRUPTED: u8 = 130;
 
 /// Why there is no result.
 #[derive(Debug)]
@@ -103,7 +106,7 @@ impl Failure {
             _ if self.is_closed_pipe() => ExitCode::from(141),
             Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
-            Self::Interrupted => ExitCode::from(interrupt::EXIT_CODE),
+            Self::Interrupted => ExitCode::from(INTERRUPTED),
             Self::Output(..)
             | Self::Timescale(_)
             | Self::TooLong(..)

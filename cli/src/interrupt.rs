@@ -3,14 +3,15 @@
 //! From its first line on, a command that is ended so removes its temporary files and ends with exit code 130. A live session
 //! counts them instead ([`watch`]): it has motors to stop.
 
-use crate::{failure::Failure, output};
+use crate::{
+    failure::{Failure, INTERRUPTED},
+    output,
+};
 use std::{
     io,
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
-/// Exit code of a command that was ended so.
-pub(crate) const EXIT_CODE: u8 = 130;
 /// After this many a command ends at once, whatever it does.
 const AT_ONCE: usize = 3;
 
@@ -46,7 +47,7 @@ fn came() {
         return;
     }
     output::remove_temporary();
-    std::process::exit(EXIT_CODE.into());
+    std::process::exit(INTERRUPTED.into());
 }
 
 #[cfg(unix)]

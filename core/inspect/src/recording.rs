@@ -49,4 +49,5 @@ pub mod replies;
 pub mod report;
 pub mod scenario;
 pub mod serial;
+mod side;
 pub mod tolerance;

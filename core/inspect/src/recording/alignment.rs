@@ -28,42 +28,8 @@
 
 use super::{drift::Drift, matching::Matching, tolerance::Tolerance};
 use serde::Serialize;
-use stepscope_peripheral::trace::Step;
 
-/// Steps, or bytes, by a clock of their own.
-#[derive(Clone, Copy, Debug)]
-pub struct Side<'a> {
-    /// All of a channel.
-    pub steps: &'a [Step],
-    /// Cycles per second.
-    pub clock_hz: u32,
-    /// The values of bytes; empty for steps.
-    pub values: &'a [u8],
-}
-
-impl Side<'_> {
-    /// Cycles from a step to another, negative where that is earlier.
-    fn since(&self, from: usize, index: usize) -> Option<i128> {
-        Some(i128::from(self.steps.get(index)?.cycle) - i128::from(self.steps.get(from)?.cycle))
-    }
-
-    /// Seconds from the first step to a step of the side.
-    pub(super) fn seconds(&self, step: &Step) -> f64 {
-        let first = self.steps.first().map_or(0, |first| first.cycle);
-        // Times that go back, which no recording has, stay times.
-        step.cycle.wrapping_sub(first).cast_signed() as f64 / f64::from(self.clock_hz.max(1))
-    }
-
-    /// Seconds from the first step to step `index`.
-    pub(super) fn at_s(&self, index: usize) -> Option<f64> {
-        self.steps.get(index).map(|step| self.seconds(step))
-    }
-
-    /// The sign of a step's direction.
-    pub(super) fn direction(&self, index: usize) -> i32 {
-        Step::direction(self.steps, index).signum()
-    }
-}
+pub use super::side::Side;
 
 /// A step that is off.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -279,6 +245,7 @@ impl<'a> Alignment<'a> {
 mod tests {
     use super::*;
     use alloc::vec::Vec;
+    use stepscope_peripheral::trace::Step;
 
     fn steps(cycles: impl Iterator<Item = u64>) -> Vec<Step> {
         (1..).zip(cycles).map(|(position, cycle)| Step { cycle, position }).collect()

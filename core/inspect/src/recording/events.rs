@@ -31,35 +31,7 @@ use stepscope_peripheral::{
     trace::steps,
 };
 
-/// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// The steps of a channel.
-    Steps,
-    /// The bytes of RX.
-    Bytes,
-}
-
-impl Kind {
-    /// In words, several of them.
-    #[must_use]
-    pub const fn plural(self) -> &'static str {
-        match self {
-            Self::Steps => "steps",
-            Self::Bytes => "bytes",
-        }
-    }
-
-    /// In words, one of them.
-    #[must_use]
-    pub const fn singular(self) -> &'static str {
-        match self {
-            Self::Steps => "step",
-            Self::Bytes => "byte",
-        }
-    }
-}
+pub use super::side::Kind;
 
 /// Steps or bytes with their times.
 #[derive(Clone, Debug, PartialEq, Eq)]

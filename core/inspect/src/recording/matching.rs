@@ -10,8 +10,22 @@
 //! when it is due makes further hypotheses: steps are missing, steps are extra, this step is late, or all from here on
 //! are. The cheapest wins once the steps behind it have shown which one fits. At most 16 hypotheses live at a time, and
 //! their number in total is bounded, so time and memory grow linearly with the steps.
+//!
+//! ```
+//! use stepscope_inspect::recording::{alignment::Side, matching::Matching};
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // The third of seven steps is missing from the recording.
+//! let steps = |cycles: &[u64]| -> Vec<Step> {
+//!     (1..).zip(cycles).map(|(position, &cycle)| Step { cycle, position }).collect()
+//! };
+//! let (plan, recorded) = (steps(&[100, 200, 300, 400, 500, 600, 700]), steps(&[100, 200, 400, 500, 600, 700]));
+//! let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
+//! let matching = Matching::of(side(&recorded), side(&plan));
+//! assert_eq!([1, 2, 3].map(|step| matching.recorded(step)), [Some(1), None, Some(2)]);
+//! ```
 
-use super::alignment::Side;
+use super::side::Side;
 use alloc::{rc::Rc, vec, vec::Vec};
 
 /// A planned and a recorded step.

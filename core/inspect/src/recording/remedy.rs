@@ -1,4 +1,11 @@
 //! What would help with a recording, for the command and the page to word: one by its options, the other by its fields.
+//!
+//! ```
+//! use stepscope_inspect::recording::remedy::{Note, Remedy};
+//!
+//! let note = Note { text: "no bit rate fits".into(), remedy: Some(Remedy::Format("8E1".into())) };
+//! assert!(note.remedy.is_some() && Note::from(note.text).remedy.is_none());
+//! ```
 
 use alloc::string::String;
 
