@@ -1,10 +1,14 @@
 //! Why a command has no result, in words and as an exit code.
 
 use crate::terminal::Escaped;
-use std::{fmt, io, path::PathBuf, process::ExitCode};
+use std::{
+    fmt, io,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 use stepscope_core::{
     inspect::{recorded_run::TooLong, run_fingerprint::RunFingerprintError, vcd::TooCoarse},
-    scenario::{MAX_TEXT_BYTES, Problem, link::LinkError},
+    scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError},
 };
 
 /// Exit code of a command that a signal ended.
@@ -138,6 +142,13 @@ impl Failure {
             | Self::SilentlyWrong(_) => ExitCode::from(3),
         }
     }
+}
+
+/// A refusal: the scenario has no plant.
+pub(crate) fn no_plant(path: &Path) -> Failure {
+    let detail = "no plant, so nothing is driven; give \"plant\": {}";
+    let problem = Problem::new("plant", ValueError::Conflict { detail });
+    Failure::Scenario(path.to_owned(), vec![problem])
 }
 
 impl fmt::Display for Failure {

@@ -1,12 +1,11 @@
 //! `stepscope settling`, `stepscope limits` and `stepscope resonance`: what the motors of a scenario's plant can do.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, no_plant},
     json::Tables,
     motors::Replacing,
     output::{self, Outputs},
     parallel,
-    plant::no_plant,
     progress::Progress,
     quantity::{Acceleration, PeakPart, Rate},
     scenario_file, terminal,

@@ -1,6 +1,10 @@
 //! `--motor` and `--drive`, and `stepscope plant --motors`: motors and drivers out of the list.
 
-use crate::{failure::Failure, json::Tables, plant::no_plant, scenarios, terminal};
+use crate::{
+    failure::{Failure, no_plant},
+    json::Tables,
+    scenarios, terminal,
+};
 use clap::Args;
 use serde_json::json;
 use std::{

@@ -1,7 +1,7 @@
 //! `stepscope plant`: what the pulses of a scenario do to its motors, their supply and its sensors.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, no_plant},
     json::Tables,
     motors::{self, Replacing},
     output::{Out, Outputs, STANDARD},
@@ -35,7 +35,6 @@ use stepscope_core::{
         parameters::Setup,
         settling::Deviation,
     },
-    scenario::{Problem, ValueError},
     sim::{Experiment, plant_run::PlantRun},
 };
 
@@ -76,13 +75,6 @@ pub(crate) struct Arguments {
     /// Show the progress also where standard error is no terminal.
     #[arg(long)]
     progress: bool,
-}
-
-/// A refusal: the scenario has no plant.
-pub(crate) fn no_plant(path: &Path) -> Failure {
-    let detail = "no plant, so nothing is driven; give \"plant\": {}";
-    let problem = Problem::new("plant", ValueError::Conflict { detail });
-    Failure::Scenario(path.to_owned(), vec![problem])
 }
 
 /// Writes points while the plant runs.

@@ -18,8 +18,6 @@
 //! assert_eq!(ChannelMap::parse(&map.to_text(&capture), &capture), Ok(map));
 //! ```
 
-pub use crate::spacing::EdgeHint;
-
 use crate::capture::{Capture, Channel};
 use core::fmt;
 use stepscope_peripheral::signal::{self, Levels, MAX_CHANNELS};
@@ -120,6 +118,21 @@ pub enum PulseSource {
     CwCcw,
     /// The edges of a quadrature encoder, whose phase gives DIR.
     Quadrature,
+}
+
+/// What the edges of a motor's STEP look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EdgeHint {
+    /// The motor.
+    pub motor: u8,
+    /// Index of its channel.
+    pub channel: usize,
+    /// Rising and falling edges are evenly spaced: a driver that steps on both edges makes a step of each.
+    pub both_edges: bool,
+    /// It idles high and its pulses are low.
+    pub idles_high: bool,
+    /// Its edges; `None` where there are more changes than were inspected.
+    pub edges: Option<u64>,
 }
 
 /// A signal and the channel that it was recorded on.

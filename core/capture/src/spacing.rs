@@ -2,28 +2,13 @@
 
 use crate::{
     capture::Capture,
-    channel_map::{ChannelMap, Entry, Input},
+    channel_map::{ChannelMap, EdgeHint, Entry, Input},
 };
 
 /// Changes that are inspected.
 const MAX_CHANGES: usize = 1_000_000;
 /// Fewest intervals between edges that say something.
 const MIN_INTERVALS: u64 = 14;
-
-/// What the edges of a motor's STEP look like.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct EdgeHint {
-    /// The motor.
-    pub motor: u8,
-    /// Index of its channel.
-    pub channel: usize,
-    /// Rising and falling edges are evenly spaced: a driver that steps on both edges makes a step of each.
-    pub both_edges: bool,
-    /// It idles high and its pulses are low.
-    pub idles_high: bool,
-    /// Its edges; `None` where there are more changes than were inspected.
-    pub edges: Option<u64>,
-}
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {

@@ -1,5 +1,6 @@
 //! A line of a table as its fields: quotation marks as in RFC 4180, blanks around a field taken off.
 
+use super::{decimal::Decimal, recorder::quoted};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 /// Most fields of a line.
@@ -101,4 +102,19 @@ pub(super) fn separator(line: &[u8]) -> u8 {
 pub(super) fn fields(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> {
     let is_field = move |field: &&[u8]| separator != b' ' || !field.is_empty();
     line.split(move |byte| *byte == separator).map(<[u8]>::trim_ascii).filter(is_field)
+}
+
+/// What is wrong with a field that should be a level.
+pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
+    let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
+    format!(
+        "{} is {}; a level is 0 or 1: {}",
+        if name.is_empty() { "a level" } else { name },
+        quoted(field),
+        if analog {
+            "export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it"
+        } else {
+            "export digital channels only"
+        }
+    )
 }

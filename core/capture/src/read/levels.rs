@@ -9,7 +9,7 @@
 
 use super::{
     decimal::Decimal,
-    fields::{Fields, fields, separator},
+    fields::{Fields, fields, not_a_level, separator},
     reading::Reader,
     recorder::{Names, Recorder, quoted},
     selection::select,
@@ -318,18 +318,3 @@ fn row<'l>(
 }
 
 const NO_ROWS: &str = "the table has a head and no rows; record again, or export the whole of the recording";
-
-/// What is wrong with a field that should be a level.
-pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
-    let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
-    format!(
-        "{} is {}; a level is 0 or 1: {}",
-        if name.is_empty() { "a level" } else { name },
-        quoted(field),
-        if analog {
-            "export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it"
-        } else {
-            "export digital channels only"
-        }
-    )
-}

@@ -17,8 +17,7 @@ mod head;
 
 use super::{
     decimal::whole,
-    fields::Fields,
-    levels::not_a_level,
+    fields::{Fields, not_a_level},
     reading::Reader,
     recorder::{Names, Recorder, quoted},
     selection::select,
