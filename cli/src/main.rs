@@ -4,6 +4,8 @@
 
 mod calibrate;
 mod capture;
+#[cfg(test)]
+mod command_line_tests;
 mod failure;
 mod faults;
 mod files;

@@ -92,26 +92,6 @@ impl FromStr for ExactMicroseconds {
 mod tests {
     use super::*;
 
-    /// A new option of a number takes a type of this file.
-    #[test]
-    fn no_option_is_an_unchecked_number() {
-        fn check(command: &clap::Command) {
-            for argument in command.get_arguments() {
-                let parsed = argument.get_value_parser().type_id();
-                let unchecked =
-                    parsed == std::any::TypeId::of::<f64>() || parsed == std::any::TypeId::of::<f32>();
-                assert!(
-                    !unchecked,
-                    "{} --{}: use a type of quantity.rs",
-                    command.get_name(),
-                    argument.get_id()
-                );
-            }
-            command.get_subcommands().for_each(check);
-        }
-        check(&crate::command_line());
-    }
-
     #[test]
     fn only_finite_numbers_in_range_are_taken() {
         let range = "use 0 to 1000000000 microseconds";

@@ -1,0 +1,125 @@
+//! Every option of every command is classified: its paths in `paths.rs`, its numbers in `quantity.rs`.
+
+use crate::{
+    failure::Failure,
+    paths::{PATHS, check},
+};
+use clap::Command;
+use std::{any::TypeId, collections::BTreeSet, fs, path::PathBuf};
+
+/// Command lines that together have every path of their command, each as NAME of a file of its own: `{NAME}`.
+const LINES: &[&str] = &[
+    "run {scenario} --driver {driver} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
+    "serve {scenario} --record {record} --pty {pty}",
+    "faults {file}",
+    "tables {scenario} --steps {steps} --out {out}",
+    "measures {scenario}",
+    "torque {scenario} --out {out}",
+    "plant {scenario} --csv {csv} --vcd {vcd}",
+    "settling {scenario} --write {write}",
+    "limits {scenario}",
+    "resonance {scenario}",
+    "capture {file} --against {against} --driver {driver} --late {late} --scenario {scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
+    "powercut {scenario}",
+    "calibrate {table}",
+    "sine sweep --out {out}",
+    "sine best --out {out}",
+    "sine vertices --segments 3 --out {out}",
+    "sine segments {scenario} --out {out}",
+    "points {table}",
+];
+
+/// Every command without commands of its own, and its name.
+fn commands(command: &Command, name: &str, found: &mut Vec<(String, Command)>) {
+    if !command.has_subcommands() {
+        found.push((name.trim_start().to_owned(), command.clone()));
+    }
+    command
+        .get_subcommands()
+        .for_each(|inner| commands(inner, &format!("{name} {}", inner.get_name()), found));
+}
+
+/// Arguments that are paths by their type, or files by their name in the help.
+fn paths_of(command: &Command) -> BTreeSet<String> {
+    const NAMES: [&str; 5] = ["FILE", "FOLDER", "TABLE", "DEVICE", "PORT"];
+    let is_path = |argument: &&clap::Arg| {
+        let named =
+            argument.get_value_names().unwrap_or_default().iter().any(|name| NAMES.contains(&name.as_str()));
+        argument.get_value_parser().type_id() == TypeId::of::<PathBuf>() || named
+    };
+    command.get_arguments().filter(is_path).map(|argument| argument.get_id().to_string()).collect()
+}
+
+#[test]
+fn every_path_of_every_command_is_classified() {
+    let mut all = Vec::new();
+    commands(&crate::command_line(), "", &mut all);
+    assert!(all.len() >= 20, "{}", all.len());
+    for (name, command) in all {
+        let paths = PATHS.iter().find(|paths| paths.command == name);
+        let known = paths.map(|paths| [paths.read, paths.written, paths.other].concat()).unwrap_or_default();
+        let known: BTreeSet<String> = known.into_iter().map(str::to_owned).collect();
+        assert_eq!(paths_of(&command), known, "{name}: classify its paths in cli/src/paths.rs");
+    }
+}
+
+/// The command line, with `file` of each name but where `instead` says otherwise.
+fn line(template: &str, file: impl Fn(&str) -> String, instead: Option<(&str, String)>) -> Vec<String> {
+    let word = |word: &str| match word.strip_prefix('{').and_then(|word| word.strip_suffix('}')) {
+        None => word.to_owned(),
+        Some(name) => match &instead {
+            Some((other, path)) if *other == name => path.clone(),
+            _ => file(name),
+        },
+    };
+    std::iter::once("stepscope".to_owned()).chain(template.split(' ').map(word)).collect()
+}
+
+#[test]
+fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let judged =
+        |words: Vec<String>| check(&crate::command_line().try_get_matches_from(words).expect("a line"));
+    for paths in PATHS {
+        let templates = LINES.iter().filter(|line| line.starts_with(paths.command));
+        for template in templates {
+            for name in paths.read {
+                fs::write(file(name), "input").expect("a file");
+            }
+            judged(line(template, file, None)).expect("each has a file of its own");
+            for written in paths.written {
+                for read in paths.read {
+                    let found = judged(line(template, file, Some((written, file(read)))));
+                    assert!(matches!(found, Err(Failure::Output(..))), "{template}: {written} over {read}");
+                }
+                for other in paths.written.iter().filter(|other| *other != written) {
+                    let found = judged(line(template, file, Some((written, file(other)))));
+                    assert!(matches!(found, Err(Failure::Output(..))), "{template}: {written} over {other}");
+                }
+            }
+        }
+        let is_tried = LINES.iter().any(|line| line.starts_with(paths.command));
+        assert!(is_tried || paths.written.is_empty(), "{}", paths.command);
+        let tried: String = LINES.iter().filter(|line| line.starts_with(paths.command)).copied().collect();
+        let mut names = paths.read.iter().chain(paths.written);
+        assert!(!is_tried || names.all(|name| tried.contains(&format!("{{{name}}}"))), "{tried}");
+    }
+    let twice = ["stepscope", "capture", "-", "--against", "-"].map(str::to_owned).to_vec();
+    assert!(matches!(judged(twice), Err(Failure::Option(_))));
+}
+
+/// A new option of a number takes a type of quantity.rs.
+#[test]
+fn no_option_is_an_unchecked_number() {
+    fn check(command: &clap::Command) {
+        for argument in command.get_arguments() {
+            let parsed = argument.get_value_parser().type_id();
+            let unchecked =
+                parsed == std::any::TypeId::of::<f64>() || parsed == std::any::TypeId::of::<f32>();
+            assert!(!unchecked, "{} --{}: use a type of quantity.rs", command.get_name(), argument.get_id());
+        }
+        command.get_subcommands().for_each(check);
+    }
+    check(&crate::command_line());
+}
