@@ -172,7 +172,9 @@ impl<'ast> Visit<'ast> for Seen {
     }
 
     fn visit_macro(&mut self, called: &'ast Macro) {
-        let text = called.tokens.to_string().replace("::", " :: ").replace('.', " . ");
+        // Visibility names no module here, either.
+        let text = called.tokens.to_string().replace("pub (crate)", "pub");
+        let text = text.replace("::", " :: ").replace('.', " . ");
         let spaced: String = text
             .chars()
             .flat_map(|c| {
