@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::path::Path;
 
 fn recording(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/uart").join(name).display().to_string()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name).display().to_string()
 }
 
 /// The bytes of a recording, read from a file or from standard input.

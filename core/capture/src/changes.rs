@@ -21,6 +21,9 @@
 
 use std::{collections::TryReserveError, slice, vec};
 
+/// Changes that are inspected to tell what a channel is: its beginning shows it.
+pub(crate) const MAX_INSPECTED: usize = 1_000_000;
+
 /// The levels of all channels from a tick on, until the next change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Change {

@@ -2,11 +2,10 @@
 
 use crate::{
     capture::Capture,
+    changes::MAX_INSPECTED,
     channel_map::{ChannelMap, EdgeHint, Entry, Input},
 };
 
-/// Changes that are inspected.
-const MAX_CHANGES: usize = 1_000_000;
 /// Fewest intervals between edges that say something.
 const MIN_INTERVALS: u64 = 14;
 
@@ -54,7 +53,7 @@ impl ChannelMap {
         let mut motors: Vec<(u8, Entry, Edges)> = self.entries().iter().filter_map(step).collect();
         let Some(first) = capture.changes.first().filter(|_| !motors.is_empty()) else { return Vec::new() };
         let mut before = first.levels;
-        for change in capture.changes.iter().take(MAX_CHANGES) {
+        for change in capture.changes.iter().take(MAX_INSPECTED) {
             let changed = core::mem::replace(&mut before, change.levels) ^ change.levels;
             for (_, entry, edges) in &mut motors {
                 if changed >> entry.channel & 1 == 1 {
@@ -68,7 +67,7 @@ impl ChannelMap {
                 && entry.level(before)
                 && edges.low.saturating_mul(4) < edges.high;
             let both_edges = edges.is_even();
-            let count = (capture.changes.len() <= MAX_CHANGES).then_some(edges.intervals + 1);
+            let count = (capture.changes.len() <= MAX_INSPECTED).then_some(edges.intervals + 1);
             let hint = EdgeHint { motor, channel: entry.channel, both_edges, idles_high, edges: count };
             (hint.both_edges || hint.idles_high).then_some(hint)
         };

@@ -1,0 +1,108 @@
+//! What each channel does: how often it changes, how wide its pulses are, and whether it is a serial line.
+
+use crate::{
+    capture::Change,
+    uart::{self, Edge},
+};
+
+/// Edges by which a line is known.
+const LINE_EDGES: usize = 600;
+/// Pulses that a channel has to have, so that it is taken for STEP.
+pub(super) const MIN_STEPS: u64 = 4;
+
+/// What a channel does.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Behavior {
+    pub(super) first: bool,
+    pub(super) last: bool,
+    pub(super) rises: u64,
+    pub(super) falls: u64,
+    /// Ticks that it was high between its first and last change, and low.
+    pub(super) high: u64,
+    pub(super) low: u64,
+    /// Longest time at a level between two changes, and the shortest.
+    pub(super) longest_high: u64,
+    pub(super) longest_low: u64,
+    pub(super) shortest_high: u64,
+    pub(super) shortest_low: u64,
+    /// When it changed last.
+    pub(super) since: Option<u64>,
+    /// Whether it is a serial line, and inverted.
+    pub(super) line: Option<bool>,
+}
+
+impl Behavior {
+    pub(super) fn changes(&self) -> u64 {
+        self.rises + self.falls
+    }
+
+    /// Whether its pulses are low.
+    pub(super) const fn idles_high(&self) -> bool {
+        self.first && self.high > self.low
+    }
+
+    /// The widest of its pulses.
+    pub(super) const fn longest_pulse(&self) -> u64 {
+        if self.idles_high() { self.longest_low } else { self.longest_high }
+    }
+
+    /// Pulses of one width, low at rest, as no line has them.
+    pub(super) const fn is_pulses(&self) -> bool {
+        !self.first
+            && !self.last
+            && self.rises >= 2 * MIN_STEPS
+            && self.longest_high <= self.shortest_high.saturating_mul(2)
+    }
+}
+
+/// What each channel does.
+pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
+    let never = u64::MAX;
+    let none = Behavior { shortest_high: never, shortest_low: never, ..Behavior::default() };
+    let mut all = vec![none; channels];
+    let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return all };
+    for (channel, each) in all.iter_mut().enumerate() {
+        (each.first, each.last) = (first.levels >> channel & 1 == 1, last.levels >> channel & 1 == 1);
+    }
+    each_pulse(changes, &mut all, &mut |each, length, high| {
+        *(if high { &mut each.high } else { &mut each.low }) += length;
+        let longest = if high { &mut each.longest_high } else { &mut each.longest_low };
+        *longest = length.max(*longest);
+        let shortest = if high { &mut each.shortest_high } else { &mut each.shortest_low };
+        *shortest = length.min(*shortest);
+    });
+    let mut edges: Vec<Vec<Edge>> = vec![Vec::new(); channels];
+    for pair in changes.windows(2) {
+        let [before, now] = pair else { continue };
+        let mut changed = before.levels ^ now.levels;
+        while changed != 0 {
+            let channel = changed.trailing_zeros();
+            changed &= changed - 1;
+            if let Some(edges) = edges.get_mut(channel as usize).filter(|edges| edges.len() < LINE_EDGES) {
+                edges.push(Edge { at: now.tick, high: now.levels >> channel & 1 == 1 });
+            }
+        }
+    }
+    for (each, edges) in all.iter_mut().zip(&edges) {
+        each.line = uart::looks_like_a_line(edges);
+    }
+    all
+}
+
+/// Calls for each time between two changes of one channel: how long, and its level.
+fn each_pulse(changes: &[Change], all: &mut [Behavior], pulse: &mut dyn FnMut(&mut Behavior, u64, bool)) {
+    for pair in changes.windows(2) {
+        let [before, now] = pair else { continue };
+        let mut changed = before.levels ^ now.levels;
+        while changed != 0 {
+            let channel = changed.trailing_zeros();
+            changed &= changed - 1;
+            let Some(each) = all.get_mut(channel as usize) else { continue };
+            let was_high = before.levels >> channel & 1 == 1;
+            *(if was_high { &mut each.falls } else { &mut each.rises }) += 1;
+            if let Some(since) = each.since.replace(now.tick) {
+                pulse(each, now.tick - since, was_high);
+            }
+        }
+    }
+}

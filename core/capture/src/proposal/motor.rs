@@ -1,0 +1,52 @@
+//! A motor that is being put together.
+
+/// Where the steps of a motor come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    None,
+    Step(usize),
+    CwCcw(usize, usize),
+    Encoder(usize, usize),
+}
+/// A motor that is being put together.
+#[derive(Clone, Debug)]
+pub(super) struct Motor {
+    pub(super) axis: String,
+    pub(super) scope: String,
+    pub(super) source: Source,
+    pub(super) dir: Option<usize>,
+    /// STEP is low where it is active.
+    pub(super) inverted: bool,
+}
+
+impl Motor {
+    pub(super) fn new(axis: &str, scope: &str, source: Source) -> Self {
+        Self { axis: axis.to_owned(), scope: scope.to_owned(), source, dir: None, inverted: false }
+    }
+
+    pub(super) const fn step(&self) -> Option<usize> {
+        match self.source {
+            Source::Step(channel) => Some(channel),
+            _ => None,
+        }
+    }
+
+    pub(super) fn has(&self, channel: usize) -> bool {
+        self.dir == Some(channel)
+            || match self.source {
+                Source::None => false,
+                Source::Step(step) => step == channel,
+                Source::CwCcw(one, other) | Source::Encoder(one, other) => one == channel || other == channel,
+            }
+    }
+
+    /// Whether it steps, and nothing tells its direction.
+    pub(super) const fn lacks_dir(&self) -> bool {
+        matches!(self.source, Source::Step(_)) && self.dir.is_none()
+    }
+}
+
+/// An axis without its number.
+pub(super) fn stem(axis: &str) -> &str {
+    axis.trim_end_matches(|c: char| c.is_ascii_digit())
+}
