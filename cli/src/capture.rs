@@ -28,7 +28,7 @@ use std::{
 use stepscope_core::{
     capture::{
         ChannelMap,
-        read::{self, Limits, Reading},
+        read::{self, Limits, Reading, Wanted},
         samples::sample,
     },
     inspect::{recording::opened::Opened, torque::Machine},
@@ -120,7 +120,8 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     let path = &arguments.file;
     let failed = |error: io::Error| Failure::File(path.clone(), error);
     let limits = Limits::default();
-    let wanted = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
+    let channels = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
+    let wanted = Wanted { channels, base: arguments.base };
     let mut progress = Progress::new("capture", arguments.progress);
     let mut piped = |input: &mut dyn Read| {
         let mut bytes = Vec::new();

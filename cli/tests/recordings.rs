@@ -181,3 +181,46 @@ fn pulses_are_checked_with_their_real_widths() {
         assert!(violations.iter().all(|row| row["rule"] == rule), "{file}: {violations:?}");
     }
 }
+
+#[test]
+fn steps_of_any_channel_are_written_without_a_plan() {
+    let dump = "two-motors-one-dir.vcd";
+    let (code, of_second, err) = capture(dump, &["--steps", "-", "--channel", "1"]);
+    assert_eq!((code, of_second.lines().count(), err.as_str()), (Some(0), 51, ""));
+    assert_ne!(of_second, capture(dump, &["--steps", "-"]).1);
+    let (code, out, err) = capture(dump, &["--steps", "-", "--channel", "5"]);
+    assert!(code == Some(2) && out.is_empty(), "{out}{err}");
+    assert!(
+        err.contains("channel 5 has no steps to write; channels with steps: 0, 1 (--channel K)"),
+        "{err}"
+    );
+    let (code, _, err) = capture(dump, &["--channel", "1"]);
+    assert!(code == Some(2) && err.contains("--against") && err.contains("--steps"), "{err}");
+}
+
+#[test]
+fn a_log_of_klipper_without_its_frequency_asks_for_the_controllers_clock() {
+    let log = "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=1000 count=3 add=0\n";
+    let (code, out, err) = stepscope(&["capture", "-"], log);
+    assert!(code == Some(2) && out.is_empty(), "{out}{err}");
+    assert!(
+        err.contains("has no CLOCK_FREQ; give the clock of its controller") && !err.contains("time_us"),
+        "{err}"
+    );
+    let (code, out, err) = stepscope(&["capture", "-", "--sample-rate", "16000000"], log);
+    assert!(code == Some(0) && out.contains("3 steps"), "{out}{err}");
+}
+
+#[test]
+fn directions_of_annotations_are_lines_of_their_own_and_the_base_is_an_option() {
+    let annotations = "uart-1: rx-data: 72\nuart-1: tx-data: 65\nuart-1: rx-data: 73\n";
+    for (base, expected) in [("hex", ["72", "73", "65"]), ("dec", ["48", "49", "41"])] {
+        let options = ["capture", "-", "--baud", "9600", "--bytes", "-", "--base", base];
+        let (code, out, err) = stepscope(&options, annotations);
+        let found: Vec<_> = out.lines().skip(1).map(|row| (&row[..2], &row[row.len() - 2..])).collect();
+        let expected: Vec<_> = ["RX", "RX", "TX"].into_iter().zip(expected).collect();
+        assert_eq!((code, found, err.as_str()), (Some(0), expected, ""), "{base}");
+    }
+    let (code, _, err) = stepscope(&["capture", "-", "--base", "12"], annotations);
+    assert!(code == Some(2) && err.contains("use hex, dec, oct or bin"), "{err}");
+}

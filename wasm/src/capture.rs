@@ -7,7 +7,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
-        read::{Limits, Reading, read, read_wanted},
+        read::{Limits, Reading, Wanted, read, read_wanted},
         samples,
     },
     inspect::{
@@ -75,6 +75,8 @@ impl Seek for Pieces {
 pub struct CaptureFile {
     capture: Capture,
     error: Option<String>,
+    /// The map that it was read for, where one was given.
+    map: Option<String>,
     opened: Option<Opened>,
     /// What was said of it, where it stands where it was recorded.
     asked: Option<Ask>,
@@ -101,8 +103,12 @@ struct Facts<'a> {
     format: String,
     channels: Vec<&'a str>,
     count: usize,
-    /// Proposed; empty where there are no levels, or nothing says what a channel is.
+    /// The map that it was read for, or a proposed one; empty where there are no levels, or nothing says what a channel is.
     map: String,
+    /// Why it could not be read for that map.
+    map_error: Option<String>,
+    /// Channels beyond the first 64.
+    left_out: u64,
     has_levels: bool,
     has_bytes: bool,
     has_times: bool,
@@ -134,12 +140,20 @@ struct Asked {
     to_s: Option<f64>,
 }
 
+/// A map as text: the given one, or, without it or where it is wrong, the proposed one; and what is wrong.
+fn map_of(capture: &Capture, given: Option<&str>) -> (String, Option<String>) {
+    let found = given.map(|map| ChannelMap::parse(map, capture)).transpose();
+    let error = found.as_ref().err().map(ToString::to_string);
+    let map = found.ok().flatten().unwrap_or_else(|| ChannelMap::proposed(capture));
+    (map.to_text(capture), error)
+}
+
 /// The option of `look` that has to be changed.
 const fn field_of(error: &OpenError) -> &'static str {
     match error {
         OpenError::Map(_) | OpenError::NoMap { .. } => "map",
         OpenError::Clock(_) => "clock_hz",
-        OpenError::SampleRate | OpenError::NoSampleRate => "sample_rate_hz",
+        OpenError::SampleRate | OpenError::NoSampleRate(_) => "sample_rate_hz",
         OpenError::NoBaud | OpenError::Baud | OpenError::NoRate(..) => "baud",
         OpenError::Uart(..) => "uart",
         _ => "",
@@ -209,10 +223,11 @@ impl CaptureFile {
         let pieces = Pieces { read: read_piece, at: 0, size: size.max(0.0) as u64 };
         let mut tell = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
         let limits = Limits { most: most as usize };
-        let wanted = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
+        let channels = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
+        let wanted = Wanted { channels, ..Wanted::default() };
         let input = BufReader::with_capacity(PIECE, pieces);
         let Reading { capture, error } = read_wanted(input, &limits, &wanted, &mut tell);
-        Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None }
+        Self { capture, error: error.map(|error| error.to_string()), map, opened: None, asked: None }
     }
 
     /// One of the samples; none of another name.
@@ -220,20 +235,29 @@ impl CaptureFile {
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
         let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
-        Some(Self { capture, error: error.map(|error| error.to_string()), opened: None, asked: None })
+        Some(Self {
+            capture,
+            error: error.map(|error| error.to_string()),
+            map: None,
+            opened: None,
+            asked: None,
+        })
     }
 
-    /// What it holds: `{format, channels, count, map, has_levels, has_bytes, has_times, notes, error}`.
+    /// What it holds: `{format, channels, count, map, map_error, left_out, has_levels, has_bytes, has_times, notes, error}`.
     ///
     /// # Errors
     /// Never in practice.
     pub fn facts(&self) -> Result<JsValue, JsError> {
         let capture = &self.capture;
+        let (map, map_error) = map_of(capture, self.map.as_deref());
         object(&Facts {
             format: capture.format.to_string(),
             channels: capture.channels.iter().map(|channel| channel.name.as_str()).collect(),
             count: capture.len(),
-            map: ChannelMap::proposed(capture).to_text(capture),
+            map,
+            map_error,
+            left_out: capture.channels_left_out,
             has_levels: !capture.changes.is_empty(),
             has_bytes: !capture.bytes.is_empty(),
             has_times: capture.timebase.is_some(),
@@ -443,6 +467,22 @@ mod tests {
         capture::{Change, Channel, Format},
         timebase::Timebase,
     };
+
+    #[test]
+    fn of_many_channels_those_of_the_typed_map_are_read() {
+        let names: Vec<String> = (0..100).map(|at| format!("top.W{at}")).collect();
+        let table = format!("Time [s],{}\n0{}\n", names.join(","), ",1".repeat(100));
+        let typed = "STEP0=W98,DIR0=!top.W99";
+        let wanted = Wanted { channels: ChannelMap::channel_names(typed), ..Wanted::default() };
+        let capture = read_wanted(io::Cursor::new(table), &Limits::default(), &wanted, &mut |_| true).capture;
+        assert_eq!((capture.channels.len(), capture.channels_left_out), (64, 36));
+        assert_eq!(map_of(&capture, Some(typed)), ("STEP0=top.W98,DIR0=!top.W99".into(), None));
+        let (map, error) = map_of(&capture, Some("STEP0=W97"));
+        assert!(
+            map.is_empty() && error.is_some_and(|error| error.contains("there is no channel W97")),
+            "{map}"
+        );
+    }
 
     #[test]
     fn notes_name_the_fields_of_the_dialog_whatever_the_names_of_the_channels() {

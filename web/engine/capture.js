@@ -4,7 +4,7 @@ import { compiled } from "./wasm.js";
 
 /**
  * @typedef {{format: string, channels: string[], count: number, map: string, has_levels: boolean, has_bytes: boolean, has_times: boolean,
- *   notes: string[], error: string | null}} Facts
+ *   map_error: string | null, left_out: number, notes: string[], error: string | null}} Facts  `left_out`: channels beyond the first 64.
  * @typedef {{channel: number, figures: {steps: number, right: number, left: number, turns: number, position: number,
  *   first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null, greatest_rate_steps_s: number | null,
  *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
@@ -26,8 +26,11 @@ const MOST_SHOWN = 20_000_000;
 /** Records that are handed on at a time. */
 const PIECE = 1 << 19;
 
-/** @param {File | string} file  Or the name of a sample. @param {(part: number) => void} onProgress */
-export function openCapture(file, onProgress) {
+/**
+ * @param {File | string} file  Or the name of a sample. @param {(part: number) => void} onProgress
+ * @param {string} [map]  Its channels are read first where the file has more than 64.
+ */
+export function openCapture(file, onProgress, map) {
   const worker = new Worker(/** @type {string} */ (byId("main").dataset.captureWorker), { type: "module" });
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
   const asked = new Map();
@@ -51,7 +54,7 @@ export function openCapture(file, onProgress) {
     };
     compiled("capture").then((module) => {
       worker.postMessage({ module });
-      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST_READ });
+      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST_READ, map });
     }, reject);
   });
 

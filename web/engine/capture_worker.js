@@ -1,7 +1,7 @@
 /**
  * The worker that reads files of logic analysers: it reads them piece by piece, keeps what they hold and maps it.
  *
- * In: first of all {module}, the compiled code; {file, most}, the file and how much of it is kept, for {progress} now and
+ * In: first of all {module}, the compiled code; {file, most, map}, the file, how much of it is kept and the map whose channels are read first, for {progress} now and
  * then, and {facts} or {error}; {sample}, the name of a sample, in the file's place; {id, method, args} for an answer {id, value} or {id, error}. Ending the worker cancels.
  */
 import init, * as core from "../pkg-capture/stepscope_wasm.js";
@@ -18,8 +18,8 @@ const ready = new Promise((resolve) => {
 /** @type {any} */
 let opened = null;
 
-/** @param {File} file @param {number} most */
-function open(file, most) {
+/** @param {File} file @param {number} most @param {string} [map] */
+function open(file, most, map) {
   const reader = new FileReaderSync();
   let told = performance.now();
   const piece = (/** @type {number} */ at, /** @type {number} */ length) =>
@@ -30,7 +30,7 @@ function open(file, most) {
     told = now;
     postMessage({ progress: bytes / Math.max(1, file.size) });
   };
-  opened = new core.CaptureFile(piece, file.size, watch, most);
+  opened = new core.CaptureFile(piece, file.size, watch, most, map);
   return opened.facts();
 }
 
@@ -38,7 +38,7 @@ self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
   try {
     await ready;
-    if ("file" in data) postMessage({ facts: open(data.file, data.most) });
+    if ("file" in data) postMessage({ facts: open(data.file, data.most, data.map) });
     else if ("sample" in data) {
       opened = core.CaptureFile.sample(data.sample);
       postMessage({ facts: opened.facts(), sample: core.sample_facts(data.sample) });

@@ -11,7 +11,7 @@ import { createChannelTable } from "./channel_table.js";
 import { offerDifferences } from "./differences.js";
 import { keep, stands } from "./kept.js";
 import { message } from "./link.js";
-import { choiceField, numberField, sentence, timeField } from "./recording_fields.js";
+import { choiceField, numberField, sentence, textField, timeField } from "./recording_fields.js";
 import { save } from "./save.js";
 import { ownIsKept } from "./storage.js";
 import { around } from "./verdict.js";
@@ -58,16 +58,17 @@ const MAX_NOTE = 2000;
 /** How long the experiment before may run, in ms. */
 const PATIENCE_MS = 60_000;
 
-/** @param {Page} page @param {File | string} source  Or the name of a sample. */
-export async function openRecording(page, source) {
+/** @param {Page} page @param {File | string} source  Or the name of a sample. @param {string} [map]  Its channels are read first. */
+export async function openRecording(page, source, map) {
   const what = typeof source === "string" ? "" : ` ${source.name}, ${si(source.size, "B", 3)}`;
   const about = element("p", { "aria-live": "polite" }, `Reading${what}…`);
   const bar = element("progress", { max: "1", value: "0", "aria-label": "Read" });
   const percent = element("p", { "aria-hidden": "true" });
-  const capture = openCapture(source, (part) => {
+  const report = (/** @type {number} */ part) => {
     bar.value = part;
     percent.textContent = `${Math.floor(100 * part)} %`;
-  });
+  };
+  const capture = openCapture(source, report, map);
   const dialog = dialogOf(() => capture.close());
   dialog.body.append(about, bar, percent);
   try {
@@ -80,7 +81,12 @@ export async function openRecording(page, source) {
       page.dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
       await resultOf(page);
     }
-    if (dialog.isOpen()) show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, dialog);
+    if (!dialog.isOpen()) return;
+    const again = (/** @type {string} */ map) => {
+      dialog.close();
+      return openRecording(page, source, map);
+    };
+    show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, dialog, null, { map, again });
   } catch (error) {
     dialog.close();
     throw error;
@@ -166,8 +172,9 @@ async function resultOf({ now }) {
 /**
  * @param {Page} page @param {string} file  Its name. @param {ReturnType<typeof openCapture>} capture @param {Facts} facts
  * @param {ReturnType<typeof dialogOf>} dialog @param {Said | null} [earlier]  What was said of it before.
+ * @param {{map?: string, again?: (map: string) => Promise<void>}} [reading]  The map it was read for, and how to read it for another one.
  */
-function show(page, file, capture, facts, { body, foot, close }, earlier = null) {
+function show(page, file, capture, facts, { body, foot, close }, earlier = null, { map, again } = {}) {
   const { engine, dispatch, now } = page;
   const { format, channels } = facts;
   const table = createChannelTable(channels);
@@ -237,8 +244,19 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
   let looked = null;
   let timer = 0;
   let asking = 0;
-  if (hasMap) table.put(keptMap(channels) ?? facts.map);
+  if (hasMap) table.put((map === undefined && keptMap(channels)) || facts.map);
   showFields();
+  // Of more than 64 channels those of the map are read first.
+  const wanted = textField("Channel map", "STEP0=top.motor.STEP,DIR0=top.motor.DIR");
+  const reread = button("Read again", "Read the file again: the channels of the map first", () => {
+    if (wanted.value() === "") return wanted.fail("The map is missing; name the channels to read.");
+    void again?.(wanted.value()).catch((error) => {
+      const text = `${file} cannot be opened: ${message(error)}`;
+      dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
+    });
+  });
+  wanted.set(map ?? "");
+  if (facts.map_error) wanted.fail(sentence(facts.map_error));
 
   const notes = [...(facts.error ? [`Read in part: ${facts.error}`] : []), ...facts.notes];
   fill(
@@ -246,6 +264,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null)
     element("h2", {}, file),
     element("p", {}, `${format}, ${counted(facts.count, facts.has_levels ? "change" : isBytes ? "byte" : "row")}`),
     ...notes.map((note) => element("p", { class: "note" }, sentence(note))),
+    ...(again && facts.left_out > 0 ? [wanted.label, element("p", {}, reread)] : []),
     ...(hasMap ? [table.node, mapError] : []),
     element("div", { class: "fields" }, ...fields.map(({ label }) => label)),
     whole.node,

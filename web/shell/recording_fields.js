@@ -87,6 +87,18 @@ export function timeField(name, empty) {
   };
 }
 
+/** A text that may be left empty. @param {string} name @param {string} placeholder */
+export function textField(name, placeholder) {
+  const input = element("input", { type: "text", placeholder, size: "40" });
+  return {
+    ...labeled(name, "", input, () => ""),
+    value: () => input.value.trim(),
+    set: (/** @type {string} */ value) => {
+      input.value = value;
+    },
+  };
+}
+
 /** One of several values, the first by itself. @param {string} name @param {[string, string][]} values */
 export function choiceField(name, values) {
   const input = element("select", {}, ...values.map(([value, text]) => element("option", { value }, text)));

@@ -7,10 +7,10 @@ use crate::{
     quantity::{ExactMicroseconds, Microseconds},
     timing,
 };
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
 use stepscope_core::{
-    capture::uart,
+    capture::{read::Base, uart},
     inspect::{
         recording::opened::{Ask, OpenError},
         vcd::Timescale,
@@ -19,6 +19,7 @@ use stepscope_core::{
 
 /// What `stepscope capture` takes.
 #[derive(Args)]
+#[command(group(ArgGroup::new("of_channel").args(["against", "steps"]).multiple(true)))]
 pub(crate) struct Arguments {
     /// Recording to read, or `-` for standard input
     ///
@@ -48,12 +49,15 @@ pub(crate) struct Arguments {
     /// Data bits, parity and stop bits of RX and TX: 7 or 8, N, E or O, 1 or 2, such as 7E1 (default 8N1)
     #[arg(long, value_name = "FORMAT", value_parser = uart)]
     pub(super) uart: Option<uart::Format>,
+    /// Base of decoded bytes in annotations, logs and tables: hex, dec, oct or bin; without it, their digits tell
+    #[arg(long, value_name = "BASE", value_parser = base)]
+    pub(super) base: Option<Base>,
     /// Compare with the run of this scenario, step by step, or byte by byte where no channel steps: a JSON file, or a
     /// preset's name. Reports missing, extra and late ones; ends with 3 if there are any.
     #[arg(long, value_name = "SCENARIO")]
     pub(super) against: Option<PathBuf>,
-    /// The channel that is compared.
-    #[arg(long, value_name = "K", default_value_t = 0, requires = "against")]
+    /// Channel that --against compares and --steps writes
+    #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel")]
     pub(super) channel: u8,
     /// The scenario's step, or byte, from 0, that comes at one time in both; without it the first that both have.
     #[arg(long, value_name = "STEP", requires = "against")]
@@ -108,6 +112,10 @@ pub(crate) struct Arguments {
     pub(super) timing: timing::Options,
 }
 
+fn base(text: &str) -> Result<Base, String> {
+    text.parse().map_err(str::to_owned)
+}
+
 fn uart(text: &str) -> Result<uart::Format, String> {
     text.parse().map_err(str::to_owned)
 }
@@ -155,7 +163,7 @@ impl Arguments {
     /// What the recording lacks, and the option that gives it.
     pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
         let option = match error {
-            OpenError::NoSampleRate => " (--sample-rate HZ)".to_owned(),
+            OpenError::NoSampleRate(_) => " (--sample-rate HZ)".to_owned(),
             OpenError::NoBaud => " (--baud BAUD)".to_owned(),
             OpenError::NoMap { names, example } => {
                 format!("; give a map, such as {example}; the channels are {} (--map MAP)", names.join(", "))

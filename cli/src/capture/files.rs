@@ -36,6 +36,15 @@ pub(super) fn write(
         arguments.vcd_timescale.of_clock(recording.clock_hz).map_err(Failure::Timescale)?;
     }
     // Validated before a file is begun.
+    let channels = &recording.report.channels;
+    if arguments.steps.is_some() && channels.iter().all(|found| found.channel != arguments.channel) {
+        let others: Vec<String> = channels.iter().map(|found| found.channel.to_string()).collect();
+        let others = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
+        return Err(arguments.wrong(format!(
+            "channel {} has no steps to write; channels with steps: {others} (--channel K)",
+            arguments.channel
+        )));
+    }
     let made =
         arguments.scenario.as_ref().map(|path| scenario(path, arguments, recording, base)).transpose()?;
     let mut file = |path: &Option<PathBuf>, write: &dyn Fn(&mut Out) -> io::Result<()>| {

@@ -124,6 +124,8 @@ pub struct Capture {
     pub positions: Vec<TimedPosition>,
     /// The last tick that the file tells something of.
     pub end: u64,
+    /// Channels of the file beyond [`MAX_CHANNELS`], which are not read.
+    pub channels_left_out: u64,
     /// What the file holds and was not read, a sentence each: analogue channels, levels that are neither high nor low.
     pub left_out: Vec<String>,
 }
@@ -140,6 +142,7 @@ impl Capture {
             bytes: Vec::new(),
             positions: Vec::new(),
             end: 0,
+            channels_left_out: 0,
             left_out: Vec::new(),
         }
     }

@@ -1,7 +1,7 @@
 //! Small files of each kind, and what is read of them.
 
 use crate::common::{check, read_bytes, told};
-use stepscope_capture::read::{Limits, Reading, read, read_wanted};
+use stepscope_capture::read::{Limits, Reading, Wanted, read, read_wanted};
 
 #[test]
 fn dumps_of_any_program_are_read() {
@@ -158,7 +158,7 @@ fn tables_of_levels_are_read() {
         ),
         (
             "Time [s],A\n1e30,0\n",
-            "SaleaeCsv 1/1 [A] end 0\n! line 2: the time “1e30” has more digits than fit: at most 19 are kept",
+            "SaleaeCsv 1/1 [A] end 0\n! line 2: the time “1e30” is too long for 64 bits; give times since the recording's beginning",
         ),
         (
             "Time [s],A\n",
@@ -562,7 +562,7 @@ fn logs_with_a_time_per_line_are_read() {
         ),
         // What is no byte is refused, and so is a fall of the clock.
         (
-            "12:00:00.5 55\n12:00:00.6 RX (2): 55 AA\n",
+            "12:00:00.5 55\n12:00:00.6 RX 2 55 AA\n",
             &format!(
                 "SerialLog 1/10 [bytes] 0:0:55 end 1{}\n! line 2: “2” is not a byte; give each as two hexadecimal \
                       digits, with or without 0x, such as 55 AA 0x01",
@@ -597,42 +597,48 @@ fn logs_with_a_time_per_line_are_read() {
 fn annotations_of_sigrok_are_read() {
     let unnamed = "- no annotation names RX or TX: all bytes are assigned to one line";
     let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
+    let both = "- RX and TX are named as in the decoder, and kept apart: RX is taken as the line to the controller; if that is TX, exchange the channels of RX and TX";
     check(&[
         ("uart-1: 55\nuart-1: AA\n", &format!("Annotations [uart-1] 0:0:55 1:0:aa end 1\n{unnamed}")),
-        ("uart-1: rx-data: 41\nuart-1: tx-data: 42\n", "Annotations [RX TX] 0:0:41 1:1:42 end 1"),
         (
-            "0-100 uart-1: Start bit\n100-200 uart-1: 1\n100-900 uart-1: 41\n900-1000 uart-1: Stop bit\n\
+            "uart-1: rx-data: 4A\nuart-1: tx-data: 42\n",
+            &format!("Annotations [RX TX] 0:0:4a 1:1:42 end 1\n{both}"),
+        ),
+        (
+            "0-100 uart-1: Start bit\n100-200 uart-1: 1\n100-900 uart-1: 4A\n900-1000 uart-1: Stop bit\n\
              2000-2100 uart-1: Start bit\n2100-2900 uart-1: 42\n2900-3000 uart-1: Frame error\n",
             &format!(
-                "Annotations [uart-1] 0:0:41 2000:0:42! end 2000\n\
+                "Annotations [uart-1] 0:0:4a 2000:0:42! end 2000\n\
                  - other annotations skipped: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
             ),
         ),
         (
-            "123-456 UART: RX data: 41\n1123-1456 UART: TX data: 42\n",
-            &format!("Annotations [RX TX] 123:0:41 1123:1:42 end 1123\n{late}"),
+            "123-456 UART: RX data: 4A\n1123-1456 UART: TX data: 42\n",
+            &format!("Annotations [RX TX] 123:0:4a 1123:1:42 end 1123\n{late}\n{both}"),
         ),
-        ("123-456,UART,RX data,41\n", &format!("Annotations [RX] 123:0:41 end 123\n{late}")),
+        ("123-456,UART,RX data,4A\n", &format!("Annotations [RX] 123:0:4a end 123\n{late}")),
         // Directions that overlap: each has its own start bit, order and frame error.
         (
             "0-10 UART: RX bits: Start bit\n5-15 UART: TX bits: Start bit\n15-95 UART: TX data: 42\n\
-             10-90 UART: RX data: 41\n95-105 UART: TX warnings: Frame error\n100-110 UART: RX bits: Start bit\n\
+             10-90 UART: RX data: 4A\n95-105 UART: TX warnings: Frame error\n100-110 UART: RX bits: Start bit\n\
              110-190 UART: RX data: 43\n",
-            "Annotations [RX TX] 0:0:41 5:1:42! 100:0:43 end 100\n\
-             - other annotations skipped: Start bit, Start bit, Frame error, Start bit",
+            &format!(
+                "Annotations [RX TX] 0:0:4a 5:1:42! 100:0:43 end 100\n\
+                 - other annotations skipped: Start bit, Start bit, Frame error, Start bit\n{both}"
+            ),
         ),
         (
-            "10-90 UART: RX data: 41\n5-85 UART: TX data: 42\n2-9 UART: RX data: 43\n",
+            "10-90 UART: RX data: 4A\n5-85 UART: TX data: 42\n2-9 UART: RX data: 43\n",
             &format!(
-                "Annotations [RX TX] 5:1:42 10:0:41 end 10\n{late}\n\
+                "Annotations [RX TX] 5:1:42 10:0:4a end 10\n{late}\n{both}\n\
                  ! line 3: sample 2 comes after sample 10 of the same line; sort the lines by sample, and give one recording \
                  per file"
             ),
         ),
         (
-            "uart-1: 55\n9-10 uart-1: AA\n",
+            "uart-1: 5A\n9-10 uart-1: AA\n",
             &format!(
-                "Annotations [uart-1] 0:0:55 end 0\n{unnamed}\n\
+                "Annotations [uart-1] 0:0:5a end 0\n{unnamed}\n\
              ! line 2: “9-10 uart-1: AA” has samples, and the lines before have none; export all with them, or all without"
             ),
         ),
@@ -877,6 +883,7 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.channels.len(), 64);
     assert_eq!(reading.capture.channels[63].name, "W3");
+    assert_eq!(reading.capture.channels_left_out, 100_006);
     assert_eq!(reading.capture.changes.first().expect("a row").levels, 1 << 63);
     assert_eq!(
         reading.capture.left_out,
@@ -915,6 +922,7 @@ fn of_more_than_64_channels_those_that_are_wanted_or_telling_are_read_first() {
     );
     let wanted =
         ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);
+    let wanted = Wanted { channels: wanted.to_vec(), ..Wanted::default() };
     let reading = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true);
     let found = names(&reading);
     assert_eq!(found[59..], ["tb.instr[39]", "tb.STEP", "tb.DIR", "tb.last", "tb.wide[3999999999]"]);

@@ -6,4 +6,5 @@ mod common;
 mod formats;
 mod hostile;
 mod round_trip;
+mod values;
 mod writers;

@@ -5,15 +5,19 @@
 //! ```
 //!
 //! Samples are ticks; the file does not give their rate. A byte's annotation begins with its first bit of data; where the
-//! start bit before it has an annotation, the byte begins there.
+//! start bit before it has an annotation, the byte begins there. The decoder's option `format` is not in the file: all values
+//! together tell the base.
 
 use super::{
+    base::{Base, Digits, Guess},
     decimal::whole,
     reading::Reader,
     recorder::{Names, Recorder, quoted},
 };
 use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
 use std::collections::BTreeMap;
+
+const NO_BYTES: &str = "the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)";
 
 /// Annotations that are being read.
 pub(super) struct Annotations {
@@ -26,7 +30,50 @@ pub(super) struct Annotations {
     is_data: bool,
     /// Whether no annotation names RX or TX.
     is_unnamed: bool,
+    /// The digits of each byte, since only all of them tell its base.
+    values: Vec<Value>,
+    digits: Digits,
+    /// Whether there are bytes as letters.
+    is_text: bool,
+    /// Whether start bits are annotated, and so are the bits of data.
+    has_bits: bool,
     others: Names,
+}
+
+/// Up to 8 digits of a byte: three with 4 bits each, or eight of 1 bit, and how many they are.
+#[derive(Clone, Copy)]
+struct Value(u16);
+
+impl Value {
+    /// `None` where the text cannot be a byte of any base.
+    fn of(text: &[u8]) -> Option<Self> {
+        let bits = match text.len() {
+            1..=3 => 4,
+            8 if text.iter().all(|digit| matches!(digit, b'0' | b'1')) => 1,
+            _ => return None,
+        };
+        let packed = text
+            .iter()
+            .try_fold(0_u16, |packed, digit| Some(packed << bits | char::from(*digit).to_digit(16)? as u16));
+        packed.map(|packed| Self((text.len() as u16) << 12 | packed))
+    }
+
+    fn byte(self, base: Base) -> Option<u8> {
+        let length = match base {
+            Base::Hexadecimal => Some(2),
+            Base::Octal => Some(3),
+            Base::Binary => Some(8),
+            Base::Decimal => None,
+        };
+        if length.is_some_and(|length| length != self.0 >> 12) {
+            return None;
+        }
+        let (count, bits) = (self.0 >> 12, if self.0 >> 12 == 8 { 1 } else { 4 });
+        let digit = |at: u16| char::from_digit(u32::from(self.0 >> (at * bits) & ((1 << bits) - 1)), 16);
+        let digits: Option<Vec<u8>> =
+            (0..count).rev().map(|at| digit(at).and_then(|digit| u8::try_from(digit).ok())).collect();
+        base.byte(&digits?)
+    }
 }
 
 /// What came last on a channel: RX and TX may overlap.
@@ -66,12 +113,12 @@ impl Annotation {
         is_uart.then(|| Self { samples, decoder: decoder.into(), class: class.into(), text: text.into() })
     }
 
-    /// The byte, if it is one: two hexadecimal digits of a class of data.
-    fn byte(&self) -> Option<u8> {
-        let class = self.class.to_lowercase();
-        let is_data = class.is_empty() || class.contains("data") && !class.contains("bit");
-        let is_pair = self.text.len() == 2 && self.text.bytes().all(|byte| byte.is_ascii_hexdigit());
-        if is_data && is_pair { u8::from_str_radix(&self.text, 16).ok() } else { None }
+    /// Whether it may be a byte. Where bits are annotated and no class is given, 0 and 1 are those.
+    fn may_be_data(&self, has_bits: bool) -> bool {
+        match self.class.to_lowercase().as_str() {
+            "" => !has_bits || !matches!(self.text.as_str(), "0" | "1"),
+            class => class.contains("data") && !class.contains("bit"),
+        }
     }
 }
 
@@ -97,6 +144,10 @@ impl Annotations {
             lines: BTreeMap::new(),
             is_data: false,
             is_unnamed: false,
+            values: Vec::new(),
+            digits: Digits::new(),
+            is_text: false,
+            has_bits: false,
             others: Names::new(),
         }
     }
@@ -113,6 +164,59 @@ impl Annotations {
         };
         let channel = self.recorder.channel_named(name);
         channel.ok_or_else(|| format!("more than {MAX_CHANNELS} decoders; export those of one line"))
+    }
+
+    /// The base of all values.
+    fn base(&mut self) -> Result<Base, String> {
+        if let Some(base) = self.recorder.base {
+            return Ok(base);
+        }
+        let guess = self.digits.guess();
+        let is_hexadecimal =
+            matches!(guess, Guess::Sure(Base::Hexadecimal) | Guess::Unclear(Base::Hexadecimal, _));
+        if self.is_text && !is_hexadecimal {
+            return Err(NO_BYTES.into());
+        }
+        match guess {
+            Guess::Sure(base) => {
+                if base != Base::Hexadecimal {
+                    self.recorder.leave_out(format!("the bytes are read as {}", base.name()));
+                }
+                Ok(base)
+            }
+            Guess::Unclear(Base::Hexadecimal, _) => {
+                self.recorder.leave_out(
+                    "the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, print \
+                     them with format=hex"
+                        .into(),
+                );
+                Ok(Base::Hexadecimal)
+            }
+            Guess::Unclear(one, other) => Err(format!(
+                "the bytes may be {} or {}; print them with format=hex (sigrok-cli -P uart:format=hex)",
+                one.name(),
+                other.name()
+            )),
+            // Up to the first that does not fit.
+            Guess::Unknown => Ok(Base::Hexadecimal),
+        }
+    }
+
+    /// Gives each byte its value. The first that has none in the base of all ends the bytes.
+    fn set_bytes(&mut self) -> Result<(), String> {
+        if self.values.is_empty() {
+            return Ok(());
+        }
+        let base = self.base().inspect_err(|_| self.recorder.capture.bytes.clear())?;
+        let mut bytes = self.recorder.capture.bytes.iter_mut().zip(&self.values);
+        let wrong = bytes.position(|(byte, value)| {
+            let found = value.byte(base);
+            byte.byte = found.unwrap_or(0);
+            found.is_none()
+        });
+        let Some(wrong) = wrong else { return Ok(()) };
+        self.recorder.capture.bytes.truncate(wrong);
+        Err(format!("byte {wrong}, from 0, is not {}; print all of them with format=hex", base.name()))
     }
 
     fn line(&mut self, channel: u8) -> &mut Line {
@@ -141,8 +245,12 @@ impl Reader for Annotations {
             ));
         }
         let text = annotation.text.to_lowercase();
-        let Some(byte) = annotation.byte() else {
+        let may_be_data = annotation.may_be_data(self.has_bits);
+        let value = Value::of(annotation.text.as_bytes()).filter(|_| may_be_data);
+        let Some(value) = value else {
+            self.is_text |= may_be_data && annotation.text.chars().count() == 1;
             if text == "start bit" || text == "start" || text == "s" {
+                self.has_bits = true;
                 let channel = self.channel(&annotation)?;
                 self.line(channel).start = annotation.samples.map(|(from, _)| from);
             } else if text.starts_with("frame error") {
@@ -173,10 +281,15 @@ impl Reader for Annotations {
             ));
         }
         self.line(channel).last = Some((place, tick));
-        self.recorder.byte(TimedByte { tick, channel, byte, framing_error: false })
+        self.recorder.byte(TimedByte { tick, channel, byte: 0, framing_error: false })?;
+        self.digits.take(annotation.text.as_bytes());
+        self.values.try_reserve(1).map_err(|_| "no memory for more bytes; export a shorter time")?;
+        self.values.push(value);
+        Ok(())
     }
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
+        let found = self.set_bytes();
         self.recorder.sort_bytes();
         if !self.others.is_empty() {
             self.recorder.leave_out(format!("other annotations skipped: {}", self.others.told()));
@@ -187,12 +300,22 @@ impl Reader for Annotations {
             );
         }
         let is_empty = self.recorder.capture.is_empty();
+        let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
+        if named("RX") && named("TX") {
+            self.recorder.leave_out(
+                "RX and TX are named as in the decoder, and kept apart: RX is taken as the line to the controller; if that \
+                 is TX, exchange the channels of RX and TX"
+                    .into(),
+            );
+        }
         if self.is_unnamed && !is_empty {
             self.recorder
                 .leave_out("no annotation names RX or TX: all bytes are assigned to one line".into());
         }
-        let missing = if is_empty {
-            Err("the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)".into())
+        let missing = if found.is_err() {
+            found
+        } else if is_empty {
+            Err(NO_BYTES.into())
         } else {
             Ok(())
         };

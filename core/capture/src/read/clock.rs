@@ -17,6 +17,7 @@ pub(super) struct Stamp {
     pub(super) dated: Dated,
     /// Bytes of the text that belong to it.
     pub(super) length: usize,
+    pub(super) has_seconds: bool,
 }
 
 /// What a time says about its day.
@@ -35,10 +36,12 @@ impl Stamp {
     pub(super) fn parse(text: &[u8]) -> Option<Self> {
         let Some((days, dated, date)) = date(text) else {
             let (seconds, length) = clock(text)?;
-            return Some(Self { seconds, dated: Dated::No, length });
+            return Some(Self { seconds, dated: Dated::No, length, has_seconds: true });
         };
         let gap = text.get(date).filter(|gap| b"Tt _".contains(gap)).map(|_| date + 1)?;
-        let (of_day, clock) = clock(text.get(gap..)?)?;
+        let time = text.get(gap..)?;
+        let seconds = clock(time);
+        let (of_day, clock) = seconds.or_else(|| minutes(time))?;
         let mut length = gap + clock;
         let rest = text.get(length..)?;
         let zone = zone(rest).or_else(|| {
@@ -48,7 +51,14 @@ impl Stamp {
         length += zone.map_or(0, |(_, length)| length);
         let before = days * 86_400 - i128::from(zone.map_or(0, |(seconds, _)| seconds));
         let mantissa = before.checked_mul(power_of_ten(of_day.places)?)?.checked_add(of_day.mantissa)?;
-        Some(Self { seconds: Decimal { mantissa, ..of_day }, dated, length })
+        let has_seconds = seconds.is_some();
+        Some(Self { seconds: Decimal { mantissa, ..of_day }, dated, length, has_seconds })
+    }
+
+    /// Reads `12:34`, which may be two bytes as well.
+    pub(super) fn without_seconds(text: &[u8]) -> Option<Self> {
+        let (seconds, length) = minutes(text)?;
+        Some(Self { seconds, dated: Dated::No, length, has_seconds: false })
     }
 }
 
@@ -127,6 +137,20 @@ fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
     Some((Decimal { mantissa, places }, length + 1 + count))
 }
 
+/// Seconds since midnight of `12:34`, and its length.
+fn minutes(text: &[u8]) -> Option<(Decimal, usize)> {
+    let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
+    text.get(one).filter(|mark| **mark == b':')?;
+    let (minute, two) = number(text.get(one + 1..)?)?;
+    let is_end = match text.get(one + 3..).unwrap_or_default() {
+        [b':', next, ..] => !next.is_ascii_digit(),
+        [next, ..] => !next.is_ascii_alphanumeric(),
+        [] => true,
+    };
+    let mantissa = i128::from(hour * 3600 + minute * 60);
+    (hour <= 23 && two == 2 && minute <= 59 && is_end).then_some((Decimal { mantissa, places: 0 }, one + 3))
+}
+
 /// Seconds of `Z`, `+01:00` or `-0130`, and its length.
 fn zone(text: &[u8]) -> Option<(i64, usize)> {
     let sign = match text.first()? {
@@ -165,6 +189,8 @@ mod tests {
             ("0000-01-01T00:00:00Z", None),
             ("24:00:00", None),
             ("12:00", None),
+            ("2026-01-31 12:34 55", Some((1_769_862_840, 0, " 55"))),
+            ("2026-01-31 12:34:99 55", None),
             ("12:00:00.1234567890123", None),
         ] {
             let found = Stamp::parse(text.as_bytes())

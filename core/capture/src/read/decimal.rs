@@ -91,6 +91,23 @@ impl Decimal {
         Some(number)
     }
 
+    /// This number minus another, exactly; `None` where that does not fit.
+    pub(super) fn minus(self, other: Self) -> Option<Self> {
+        let places = self.places.max(other.places);
+        let mantissa = |number: Self| number.mantissa.checked_mul(power_of_ten(places - number.places)?);
+        Some(Self { mantissa: mantissa(self)?.checked_sub(mantissa(other)?)?, places })
+    }
+
+    /// The number with exactly `places` places, rounded to the nearest, halves up; `None` where it does not fit.
+    pub(super) fn rounded(self, places: u32) -> Option<Self> {
+        let number = self.with_places(places)?;
+        let Some(unit) = power_of_ten(number.places - places) else {
+            return Some(Self { mantissa: 0, places });
+        };
+        let mantissa = number.mantissa.checked_add(unit / 2)?.div_euclid(unit);
+        Some(Self { mantissa, places })
+    }
+
     /// The number where it is whole.
     pub(super) fn whole(self) -> Option<i128> {
         self.with_places(0).filter(|number| number.places == 0).map(|number| number.mantissa)
@@ -158,6 +175,19 @@ mod tests {
         }
         assert_eq!(Decimal::parse(b"12.00").and_then(Decimal::whole), Some(12));
         assert_eq!(Decimal::parse(b"12.50").and_then(Decimal::whole), None);
+        let rounded =
+            |text: &str, places| Decimal::parse(text.as_bytes())?.rounded(places).map(|found| found.mantissa);
+        for (text, places, expected) in [
+            ("0.25", 1, Some(3)),
+            ("-0.25", 1, Some(-2)),
+            ("5.000000000000013e-06", 18, Some(5_000_000_000_000)),
+            ("5.0000000000005e-06", 18, Some(5_000_000_000_001)),
+            ("1e-60", 0, Some(0)),
+            ("7", 3, Some(7000)),
+            ("1e30", 18, None),
+        ] {
+            assert_eq!(rounded(text, places), expected, "{text}");
+        }
         assert_eq!(whole(b"18446744073709551615"), Some(u64::MAX));
         assert_eq!(whole(b"18446744073709551616"), None);
     }

@@ -3,12 +3,13 @@
 
 use super::{
     annotations,
+    base::Base,
     decimal::Decimal,
     dump,
     fields::{Fields, fields, separator},
-    hex, klipper,
+    hex, hex_table, klipper,
     levels::{Layout, column_names, is_comment},
-    nearest, positions,
+    log_line, nearest, positions,
     recorder::quoted,
     saleae, sigrok, stepscope,
     times::TimeUnit,
@@ -31,8 +32,8 @@ pub(super) struct Found {
     pub(super) format: Format,
     /// Whether all times in the first rows of a table are whole numbers: without a unit they are no seconds then.
     pub(super) whole_times: bool,
-    /// Bytes in hexadecimal with a number before them, which no head names.
-    pub(super) table: Option<hex::Table>,
+    /// How a table of times and bytes is split.
+    pub(super) table: Option<hex_table::Table>,
     /// Columns of a table of levels that are none, by their bits: a count beside STEP and DIR.
     pub(super) others: u64,
 }
@@ -48,8 +49,8 @@ const FULL: usize = (1 << 16) - 3;
 /// Lines that are looked at.
 const MAX_LINES: usize = 200;
 
-/// The kind of the file that begins with `head`.
-pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
+/// The kind of the file that begins with `head`; `base` is that of its bytes, where whoever reads gives it.
+pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
     if head.trim_ascii().is_empty() {
         return Err("the file is empty; record or export again".into());
     }
@@ -80,7 +81,10 @@ pub(super) fn detect(head: &[u8]) -> Result<Found, String> {
     }
     let comments = lines.iter().take_while(|line| is_comment(line) && !is_sample(line)).count();
     let (before, table) = lines.split_at(comments);
-    let of_table = table.first().and_then(|head| by_head(head, table.get(1..).unwrap_or_default()));
+    let of_table = match table.split_first() {
+        Some((head, rows)) => by_head(head, rows, base)?,
+        None => None,
+    };
     let says =
         |word: &[u8]| lines.iter().take(5).any(|line| line.windows(word.len()).any(|text| text == word));
     let is_of_sigrok = says(b"libsigrok") && !says(b"libsigrok4DSL")
@@ -129,21 +133,28 @@ fn binary(head: &[u8]) -> Option<&'static str> {
 
 /// The kind of a table by the names of its columns, and by its first rows where a name may stand for either: an encoder
 /// has lines and a position.
-fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Found> {
+fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Found>, String> {
     let mut columns = Fields::new();
     let separator = separator(line);
-    columns.split(line, separator).ok()?;
+    if columns.split(line, separator).is_err() {
+        return Ok(None);
+    }
     let names = column_names(&columns, separator);
     if names.iter().any(|name| name == "logic") {
-        return Some(Found::of(Format::SigrokCsv));
+        return Ok(Some(Found::of(Format::SigrokCsv)));
     }
     if saleae::is_head(&names) {
-        return Some(Found::of(Format::SaleaeBytes));
+        return Ok(Some(Found::of(Format::SaleaeBytes)));
     }
-    if hex::head(line).is_some() {
-        return Some(Found::of(Format::HexBytes));
+    if let Some(table) = hex_table::by_head(line, rows, base)? {
+        return Ok(Some(Found { table: Some(table), ..Found::of(Format::HexBytes) }));
     }
-    let Layout { time, unit, .. } = Layout::of(&names)?;
+    Ok(by_names(&names, separator, rows))
+}
+
+/// A table of levels or positions, by the names of its columns.
+fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
+    let Layout { time, unit, .. } = Layout::of(names)?;
     names.get(1)?;
     let times = || {
         rows.iter()
@@ -164,11 +175,11 @@ fn by_head(line: &[u8], rows: &[&[u8]]) -> Option<Found> {
     let found = |format| Some(Found { whole_times, ..Found::of(format) });
     let lower = |name: &String| name.trim().to_lowercase();
     let named = names.iter().enumerate().any(|(at, name)| at != time && lower(name).starts_with("pos"));
-    let others = others_than_levels(&names, time, &|at| {
+    let others = others_than_levels(names, time, &|at| {
         rows.iter().all(|row| fields(row, separator).nth(at).is_some_and(is_level))
     });
     if others.is_none() && named
-        || others.is_none() && !levels && positions::position_column(&names, time).is_some()
+        || others.is_none() && !levels && positions::position_column(names, time).is_some()
     {
         return found(Format::PositionsCsv);
     }
@@ -218,7 +229,7 @@ fn by_rows(lines: &[&[u8]]) -> Option<Found> {
         return Some(Found::of(Format::Trace));
     }
     let said: Vec<&[u8]> =
-        lines.iter().filter(|line| !hex::without_comment(line).is_empty()).copied().collect();
+        lines.iter().filter(|line| !log_line::without_comment(line).is_empty()).copied().collect();
     let first = *said.first()?;
     if dump::is_dump(&said) {
         return Some(Found::of(Format::HexDump));
@@ -246,10 +257,10 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
     let separator = separator(lines.first()?);
     let rows: Vec<Vec<&[u8]>> = lines.iter().map(|line| fields(line, separator).collect()).collect();
     let columns = rows.first().map_or(0, Vec::len);
-    if let Some(table) = hex::table(lines) {
+    if let Some(table) = hex_table::by_rows(lines) {
         let may_be_positions = columns == 2 && rows.iter().all(|row| row.len() == 2);
         let found = Found { table: Some(table), ..Found::of(Format::HexBytes) };
-        return Some((!may_be_positions || hex::is_hexadecimal(lines, table)).then_some(found));
+        return Some((!may_be_positions || hex_table::is_hexadecimal(lines, table)).then_some(found));
     }
     let number = |field: &&[u8]| Decimal::parse(field);
     let times: Vec<Decimal> = rows.iter().map(|row| row.first().and_then(number)).collect::<Option<_>>()?;

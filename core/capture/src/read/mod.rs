@@ -20,6 +20,7 @@
 
 pub mod decimal;
 
+mod base;
 mod clock;
 mod detect;
 mod fields;
@@ -33,8 +34,10 @@ mod times;
 mod annotations;
 mod dump;
 mod hex;
+mod hex_table;
 mod klipper;
 mod levels;
+mod log_line;
 mod nearest;
 mod positions;
 mod saleae;
@@ -50,7 +53,8 @@ use recorder::Recorder;
 use source::Source;
 use std::io::{BufRead, Seek};
 
-pub use reading::{Limits, ReadError, Reading};
+pub use base::Base;
+pub use reading::{Limits, ReadError, Reading, Wanted};
 
 /// Reads a file of any of the kinds. `watch` hears now and then how many bytes of it have been read, and ends the reading
 /// by `false`.
@@ -64,36 +68,36 @@ pub use reading::{Limits, ReadError, Reading};
 /// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”; "));
 /// ```
 pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(u64) -> bool) -> Reading {
-    read_wanted(input, limits, &[], watch)
+    read_wanted(input, limits, &Wanted::default(), watch)
 }
 
-/// Reads a file as [`read`] does; where it has more than [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS) channels, those of
-/// these names are read before all others: whole names, or their last parts.
+/// Reads a file as [`read`] does, with what the file leaves open: which of more than
+/// [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS) channels are read, and the base of its bytes.
 ///
 /// ```
-/// use stepscope_capture::read::{Limits, read_wanted};
+/// use stepscope_capture::read::{Limits, Wanted, read_wanted};
 ///
 /// let dump = "$var wire 100 ! bus [99:0] $end $enddefinitions $end #0 b0 ! #1 b1 !";
-/// let wanted = ["bus[99]".to_owned()];
+/// let wanted = Wanted { channels: vec!["bus[99]".to_owned()], ..Wanted::default() };
 /// let capture = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true).capture;
 /// assert_eq!(capture.channels.last().map(|channel| channel.name.as_str()), Some("bus[99]"));
 /// ```
 pub fn read_wanted<R: BufRead + Seek>(
     input: R,
     limits: &Limits,
-    wanted: &[String],
+    wanted: &Wanted,
     watch: &mut dyn FnMut(u64) -> bool,
 ) -> Reading {
     let mut source = match Source::open(input, watch) {
         Ok(source) => source,
         Err(what) => return refusal(ReadError::whole(what)),
     };
-    let Found { format, whole_times, table, others } = match detect::detect(source.head()) {
+    let Found { format, whole_times, table, others } = match detect::detect(source.head(), wanted.base) {
         Ok(found) => found,
         Err(what) => return refusal(ReadError::whole(what)),
     };
     let mut recorder = Recorder::new(format, limits.most);
-    recorder.wanted = wanted.to_vec();
+    (recorder.wanted, recorder.base) = (wanted.channels.clone(), wanted.base);
     match format {
         Format::Vcd => {
             let mut reader = vcd::Vcd::new(recorder);

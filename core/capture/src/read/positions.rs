@@ -45,6 +45,12 @@ impl Positions {
             return Ok(false);
         };
         let at = position_column(&names, time).unwrap_or(usize::from(time == 0));
+        if let Some((name, unit)) = names.get(at).and_then(|name| Some((name, unit_of(name)?))) {
+            return Err(format!(
+                "the column “{name}” is in {unit}, not in steps; multiply it by the steps per {unit}, round it, and name it \
+                 position"
+            ));
+        }
         let is_said = !self.whole_times || TimeUnit::is_said(names.get(time));
         self.times = Times::new(if is_said { unit } else { TimeUnit::Cycles });
         self.columns = Some((separator, time, at));
@@ -98,6 +104,24 @@ impl Reader for Positions {
         let missing = if capture.is_empty() { Err("the table has no positions".into()) } else { Ok(()) };
         (capture, missing)
     }
+}
+
+/// The unit of a column of positions that are not in steps: `position_mm`, `x [mm]`, `angle (deg)`.
+fn unit_of(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let last =
+        lower.split(|letter: char| !letter.is_alphabetic() && letter != '°').rfind(|word| !word.is_empty());
+    Some(match last? {
+        "mm" | "millimeter" | "millimeters" => "mm",
+        "um" | "µm" | "μm" => "µm",
+        "cm" => "cm",
+        "m" | "meter" | "meters" => "m",
+        "in" | "inch" | "inches" => "inch",
+        "deg" | "degree" | "degrees" | "°" => "degree",
+        "rad" | "radian" | "radians" => "radian",
+        "rev" | "revs" | "revolution" | "revolutions" | "turn" | "turns" => "turn",
+        _ => return None,
+    })
 }
 
 /// Whether a column of this name holds positions.

@@ -1,5 +1,6 @@
 //! What is given to a reading, and what comes of it.
 
+use super::base::Base;
 use crate::capture::Capture;
 use core::fmt;
 
@@ -14,6 +15,15 @@ impl Default for Limits {
     fn default() -> Self {
         Self { most: 120_000_000 }
     }
+}
+
+/// What whoever reads a file decides.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Channels that are read before all others: whole names, or their last parts.
+    pub channels: Vec<String>,
+    /// The base of decoded bytes; without it their digits or the head of their column tell it.
+    pub base: Option<Base>,
 }
 
 /// Where a file goes wrong, and how.

@@ -1,5 +1,6 @@
 //! What every reader writes into: rows of levels in the order of time, without those that change nothing.
 
+use super::base::Base;
 use core::mem;
 
 use crate::{
@@ -28,6 +29,8 @@ pub(super) struct Recorder {
     beyond: Names,
     /// Names of channels that are read before all others.
     pub(super) wanted: Vec<String>,
+    /// The base of decoded bytes, where whoever reads gives it.
+    pub(super) base: Option<Base>,
 }
 
 impl Recorder {
@@ -40,6 +43,7 @@ impl Recorder {
             lost: [0; MAX_CHANNELS],
             beyond: Names::new(),
             wanted: Vec::new(),
+            base: None,
         }
     }
 
@@ -191,6 +195,19 @@ impl Recorder {
         Some(())
     }
 
+    /// Makes ticks longer by a factor, rounded to the nearest; `None` where two changes would meet, and nothing is changed.
+    pub(super) fn coarsen(&mut self, factor: u64) -> Option<()> {
+        let map = |tick: u64| tick / factor + u64::from(tick % factor >= factor.div_ceil(2));
+        let mut before = None;
+        for change in self.capture.changes.iter().chain(self.latest) {
+            let tick = map(change.tick);
+            if before.replace(tick) == Some(tick) {
+                return None;
+            }
+        }
+        self.retime(|tick| Some(map(tick)))
+    }
+
     /// Notes what of the file was not read.
     pub(super) fn leave_out(&mut self, sentence: String) {
         if self.capture.left_out.len() < MAX_LEFT_OUT {
@@ -213,6 +230,7 @@ impl Recorder {
     pub(super) fn finish(mut self) -> Capture {
         self.settle();
         self.leave_out_lost();
+        self.capture.channels_left_out = self.beyond.count;
         if !self.beyond.is_empty() {
             let sentence = format!(
                 "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",

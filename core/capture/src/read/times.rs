@@ -4,6 +4,9 @@
 //! 0.001      places 3, tick 1           the time base is 1 ms
 //! 0.00125    places 5, tick 125         and now 10 us: the tick before becomes 100
 //! ```
+//!
+//! Ticks have 64 bits. Times with more places than fit, such as 5.000000000000013e-06 of a program's binary fractions, are
+//! rounded to the nearest tick, and a note says so.
 
 use super::{
     clock::{Dated, Stamp},
@@ -11,11 +14,16 @@ use super::{
     recorder::{Recorder, quoted},
 };
 use crate::timebase::Timebase;
+use core::{cmp::Ordering, ops::Range};
 
 /// Most places behind the point: ticks of 1 as.
 const MAX_PLACES: u32 = 18;
 /// Most places that are taken over from the first time even where they are zeros.
 const MAX_FIRST_PLACES: u32 = 12;
+/// Places that each time base keeps, however long the recording is: ns.
+const MIN_PLACES: u32 = 9;
+/// A first time in this range, in s, is one since 1970, or of a clock that has run for years: it becomes tick 0.
+const EPOCH_S: Range<i128> = 100_000_000..100_000_000_000;
 
 /// In what a table's times are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,8 +104,10 @@ pub(super) struct Times {
     unit: TimeUnit,
     /// Places of the time base; `None` before the first time.
     places: Option<u32>,
-    /// The time of tick 0, in ticks.
-    origin: i128,
+    /// The time of tick 0, in s.
+    origin: Decimal,
+    /// Whether times have more places than fit.
+    is_rounded: bool,
     /// The first time, where it is not tick 0 by itself.
     shifted_by: Option<String>,
     /// Of times without a date: whole days before the latest, and its time of day.
@@ -111,7 +121,16 @@ const DAY_S: i128 = 86_400;
 
 impl Times {
     pub(super) const fn new(unit: TimeUnit) -> Self {
-        Self { unit, places: None, origin: 0, shifted_by: None, days: 0, latest: None, unclear: None }
+        Self {
+            unit,
+            places: None,
+            origin: Decimal { mantissa: 0, places: 0 },
+            is_rounded: false,
+            shifted_by: None,
+            days: 0,
+            latest: None,
+            unclear: None,
+        }
     }
 
     /// The tick of a time in the column's unit, not before the last tick that `recorder` has.
@@ -137,51 +156,59 @@ impl Times {
         text: &[u8],
         recorder: &mut Recorder,
     ) -> Result<u64, String> {
-        let too_long = || format!("the time {} has more digits than fit: at most 19 are kept", quoted(text));
-        let places = match self.places {
-            Some(places) => places,
-            None => {
-                let places = time.places.min(MAX_FIRST_PLACES);
-                self.places = Some(places);
-                if time.mantissa < 0 {
-                    self.begin_at(time, text);
-                }
-                places
-            }
+        let too_long = || {
+            format!(
+                "the time {} is too long for 64 bits; give times since the recording's beginning",
+                quoted(text)
+            )
         };
-        let mut time = time.with_places(places).ok_or_else(too_long)?;
-        if time.places > places {
-            time = self.refine(time, recorder).ok_or_else(too_long)?;
+        if self.places.is_none() {
+            self.places = Some(time.places.min(MAX_FIRST_PLACES));
+            let is_epoch = self.unit != TimeUnit::Cycles
+                && time.rounded(0).is_some_and(|seconds| EPOCH_S.contains(&seconds.mantissa));
+            if time.mantissa < 0 || is_epoch {
+                self.begin_at(time, text);
+            }
         }
-        let tick = time.mantissa - self.origin;
-        if tick < i128::from(recorder.capture.end) {
-            return Err(format!(
+        let since = time.minus(self.origin).ok_or_else(too_long)?;
+        let tick =
+            if since.mantissa < 0 { None } else { Some(self.fitted(since, recorder).ok_or_else(too_long)?) };
+        tick.filter(|tick| *tick >= recorder.capture.end).ok_or_else(|| {
+            format!(
                 "the time {} is before the one of the row before; times must rise: sort the rows by time",
                 quoted(text)
-            ));
-        }
-        u64::try_from(tick).map_err(|_| too_long())
+            )
+        })
     }
 
     /// The first time becomes tick 0.
     fn begin_at(&mut self, first: Decimal, text: &[u8]) {
         self.shifted_by = Some(quoted(text));
-        self.places = Some(first.places.min(MAX_PLACES));
-        self.origin = first.with_places(first.places.min(MAX_PLACES)).map_or(0, |first| first.mantissa);
+        self.origin = first;
     }
 
-    /// Makes the time base as fine as this time needs.
-    fn refine(&mut self, time: Decimal, recorder: &mut Recorder) -> Option<Decimal> {
-        let places = self.places?;
-        if time.places > MAX_PLACES {
-            return None;
+    /// The tick of a time since tick 0. The time base becomes as fine as the time needs, or as fits.
+    fn fitted(&mut self, since: Decimal, recorder: &mut Recorder) -> Option<u64> {
+        let base = self.places?;
+        let needed = since.with_places(base).map_or(since.places.max(base), |since| since.places);
+        for places in (base.min(MIN_PLACES)..=needed.min(MAX_PLACES)).rev() {
+            let Some(tick) = since.rounded(places).and_then(|since| u64::try_from(since.mantissa).ok())
+            else {
+                continue;
+            };
+            let factor = power_of_ten(places.abs_diff(base)).and_then(|factor| u64::try_from(factor).ok())?;
+            let is_retimed = match places.cmp(&base) {
+                Ordering::Equal => Some(()),
+                Ordering::Greater => recorder.retime(|tick| tick.checked_mul(factor)),
+                Ordering::Less => recorder.coarsen(factor),
+            };
+            if is_retimed.is_some() {
+                self.is_rounded |= places < needed;
+                self.places = Some(places);
+                return Some(tick);
+            }
         }
-        let factor = power_of_ten(time.places - places)?;
-        let ticks = u64::try_from(factor).ok()?;
-        let origin = self.origin.checked_mul(factor)?;
-        recorder.retime(|tick| tick.checked_mul(ticks))?;
-        (self.origin, self.places) = (origin, Some(time.places));
-        Some(time)
+        None
     }
 
     /// The tick of a time of a clock, the first of which is tick 0.
@@ -235,6 +262,12 @@ impl Times {
         if let (TimeUnit::Seconds(_), Some(places)) = (self.unit, self.places) {
             let denominator = power_of_ten(places).and_then(|power| u64::try_from(power).ok());
             recorder.capture.timebase = denominator.and_then(|denominator| Timebase::new(1, denominator));
+        }
+        if self.is_rounded {
+            recorder.leave_out(format!(
+                "times have more decimal places than fit: they are rounded to the nearest 1e-{} s",
+                self.places.unwrap_or(MAX_PLACES)
+            ));
         }
         if self.days > 0 {
             let times = if self.days == 1 { "once".into() } else { format!("{} times", self.days) };

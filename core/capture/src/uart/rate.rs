@@ -11,6 +11,8 @@ const USUAL: [u32; 26] = [
 ];
 /// One of them that is five times a far more usual one, and only taken where no other one fits.
 const RARE: u32 = 576_000;
+/// Those that few lines have, which come last in a list of several that fit.
+const SELDOM: [u32; 8] = [14_400, 28_800, 31_250, 74_880, 76_800, 128_000, 256_000, RARE];
 /// How far a measured rate may be from a usual one: oscillators are that far off.
 const NEAR: f64 = 0.02;
 /// Least samples per bit.
@@ -49,7 +51,7 @@ pub struct Estimate {
 pub enum NoRate {
     /// The line does not change.
     NoEdges,
-    /// Several usual rates fit, with other bytes each: words are few, or much the same.
+    /// Several usual rates fit, with other bytes each: words are few, or much the same. The nearest and most usual is first.
     Ambiguous(Vec<u32>),
     /// No rate fits.
     None,
@@ -195,11 +197,11 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
             [(only, _)] => best = *only,
             [] if words(edges, best.bit, format).values() < LEAST_VALUES => return Err(NoRate::None),
             [] => {}
-            several => return Err(NoRate::Ambiguous(several.iter().map(|(_, rate)| *rate).collect())),
+            several => return Err(NoRate::Ambiguous(by_distance(several, hz))),
         }
     }
     let measured = best.bit;
-    let usual = hz.and_then(|hz| usual(hz, measured)).filter(|rate| {
+    let usual = hz.and_then(|hz| usual(hz, &best)).filter(|rate| {
         let bit = hz.unwrap_or_default() / f64::from(*rate);
         words(edges, bit, format) == words(edges, measured, format)
     });
@@ -238,7 +240,7 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let fit = |rate: &u32| {
         let bit = hz / f64::from(*rate);
-        if usual(hz, best.bit) == Some(*rate) {
+        if usual(hz, best) == Some(*rate) {
             return Some((*best, *rate));
         }
         if bit < LEAST_BIT {
@@ -249,7 +251,7 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
             return None;
         }
         let own = Quality::of(edges, first.bit, format).refined(edges, format);
-        let fits = own.fits() && own.fits_as_well_as(best) && usual(hz, own.bit) == Some(*rate);
+        let fits = own.fits() && own.fits_as_well_as(best) && usual(hz, &own) == Some(*rate);
         fits.then_some((own, *rate))
     };
     let mut found: Vec<(Quality, u32)> = USUAL.iter().filter_map(fit).collect();
@@ -299,12 +301,30 @@ fn is_too_fast(edges: &[Edge], bit: f64, times: f64, format: Format) -> bool {
     pauses > others || (2..=4).any(is_multiple)
 }
 
-/// The usual rate next to a bit time, as near as oscillators, or the samples of a word, explain.
-fn usual(hz: f64, bit: f64) -> Option<u32> {
-    let rate = hz / bit;
-    let off = |usual: &u32| (rate / f64::from(*usual) - 1.0).abs();
-    let most = NEAR.max(1.0 / (9.0 * bit));
-    USUAL.into_iter().filter(|usual| off(usual) <= most).min_by(|a, b| off(a).total_cmp(&off(b)))
+/// The usual rate next to a bit time, as near as oscillators, or the samples of its words, explain.
+fn usual(hz: f64, found: &Quality) -> Option<u32> {
+    let off = |usual: &u32| distance(hz, found.bit, *usual);
+    // A word measures its bit time to a sample in nine bits; many words do so better by the root of their number.
+    let by_samples = |off: f64| off * 9.0 * found.bit;
+    let is_near = |off: f64| off <= NEAR || by_samples(off) * by_samples(off) * f64::from(found.words) <= 1.0;
+    USUAL.into_iter().filter(|usual| is_near(off(usual))).min_by(|a, b| off(a).total_cmp(&off(b)))
+}
+
+/// How far a bit time is from a rate, as a part of it.
+fn distance(hz: f64, bit: f64, rate: u32) -> f64 {
+    (hz / bit / f64::from(rate) - 1.0).abs()
+}
+
+/// Rates that fit: the nearest first, in percent, and of those that are as near the more usual ones.
+fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
+    let mut rates: Vec<(u32, bool, u32)> = fitting
+        .iter()
+        .map(|(found, rate)| {
+            ((100.0 * distance(hz, found.bit, *rate) + 0.5) as u32, SELDOM.contains(rate), *rate)
+        })
+        .collect();
+    rates.sort_unstable();
+    rates.into_iter().map(|(.., rate)| rate).collect()
 }
 
 /// The bit time that fits best, where one fits.

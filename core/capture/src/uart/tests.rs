@@ -107,6 +107,18 @@ fn edges_may_be_a_sample_off() {
     assert!(wrong.is_empty(), "{} {wrong:#?}", wrong.len());
 }
 
+/// At 4 samples per bit a single word may be 2.8 % off, but not fifty of them: half of 250000 baud is not 128000.
+#[test]
+fn rates_are_only_listed_where_they_fit() {
+    for byte in 0..=255_u8 {
+        let edges = line(&[byte; 50], 4.0, Format::default(), || 0.37, || 0);
+        if let Err(NoRate::Ambiguous(rates)) = measured(&edges, 1e6) {
+            assert!(!rates.contains(&128_000), "{byte:02x} {rates:?}");
+            assert!(rates.contains(&250_000), "{byte:02x} {rates:?}");
+        }
+    }
+}
+
 fn measured(edges: &[Edge], hz: f64) -> Result<(Option<u32>, Vec<u8>), NoRate> {
     let found = estimate(edges, Format::default(), Some(hz))?;
     Ok((found.usual, decoded(edges, found.bit, Format::default()).0))
@@ -126,7 +138,7 @@ fn few_bytes_are_enough_where_one_usual_rate_fits() {
         (b"UUUUUUUU", 19_200, Ok(())),
         (b"\x00\xff\x00", 57_600, Ok(())),
         // Nine bits at 115200 baud last as long as three at 38400.
-        (b"\x00", 115_200, Err(NoRate::Ambiguous(vec![38_400, 76_800, 115_200]))),
+        (b"\x00", 115_200, Err(NoRate::Ambiguous(vec![38_400, 115_200, 76_800]))),
     ] {
         for hz in [1e9, 24e6, 4e6] {
             for gap in [0.4, 13.3] {

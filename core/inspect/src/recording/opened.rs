@@ -35,7 +35,7 @@ use core::fmt;
 use serde::Serialize;
 use stepscope_capture::{
     Capture, ChannelMap, Recorded,
-    capture::TimedByte,
+    capture::{Format, TimedByte},
     channel_map::{MapError, PulseSource, written},
     recorded::{Records, Rounding, TooLate},
     timebase::Timebase,
@@ -106,8 +106,8 @@ pub enum OpenError {
     Clock(u32),
     /// A rate of samples that there cannot be.
     SampleRate,
-    /// Its samples have no length.
-    NoSampleRate,
+    /// Its samples, or the ticks of a controller, have no length.
+    NoSampleRate(Format),
     /// Its bytes have no times, and no bit rate is given.
     NoBaud,
     /// A bit rate that there cannot be.
@@ -131,9 +131,23 @@ impl fmt::Display for OpenError {
                 write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
             }
             Self::SampleRate => f.write_str("the sample rate is 0; give the samples a second, in Hz"),
-            Self::NoSampleRate => f.write_str(
-                "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz: 1000000 for times in µs, or name their unit in the head of the table (time_us)",
-            ),
+            Self::NoSampleRate(format) => f.write_str(match format {
+                Format::Klipper => {
+                    "the log has no CLOCK_FREQ; give the clock of its controller as the sample rate, in Hz, such as 16000000"
+                }
+                Format::Annotations => {
+                    "the annotations count samples and do not say how long one lasts; give the sample rate of the recording, in Hz"
+                }
+                Format::Vcd | Format::SigrokSession | Format::SigrokCsv => {
+                    "the file does not say how long a sample lasts; give the sample rate, in Hz"
+                }
+                Format::Trace | Format::EdgesCsv => {
+                    "the file does not say how long a cycle lasts; give the clock as the sample rate, in Hz"
+                }
+                _ => {
+                    "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz: 1000000 for times in µs, or name their unit in the head of the table (time_us)"
+                }
+            }),
             Self::NoBaud => f.write_str(
                 "the bytes have no times; give the bit rate, and they are taken for sent back to back",
             ),
@@ -276,7 +290,7 @@ impl Opened {
     /// [`OpenError`].
     pub fn new(capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
         let (mut opened, map, base) = Self::before(&capture, ask)?;
-        let Some(base) = base else { return opened.back_to_back(&capture, ask).map(|()| opened) };
+        let Some(base) = base else { return opened.back_to_back(&capture, ask, &map).map(|()| opened) };
         let report = opened.without_levels(&capture, base, ask, &map)?;
         let (exact, lines) = (opened.exact_channels(&capture, &map, base, ask), ask.lines()?);
         let others = others_rounded(&capture, base, opened.clock_hz);
@@ -302,7 +316,7 @@ impl Opened {
     /// [`OpenError`].
     pub fn of_part(capture: &Capture, ask: &Ask, part: &Part) -> Result<Self, OpenError> {
         let (mut opened, map, base) = Self::before(capture, ask)?;
-        let Some(base) = base else { return opened.back_to_back(capture, ask).map(|()| opened) };
+        let Some(base) = base else { return opened.back_to_back(capture, ask, &map).map(|()| opened) };
         let clock_hz = opened.clock_hz;
         let report = opened.without_levels(capture, base, ask, &map)?;
         // Without levels there is one record, that of reset.
@@ -627,24 +641,27 @@ impl Opened {
         Ok(())
     }
 
-    /// Bytes without times are taken for sent back to back; levels without times cannot be used.
-    fn back_to_back(&mut self, capture: &Capture, ask: &Ask) -> Result<(), OpenError> {
-        if capture.bytes.is_empty() {
-            return Err(OpenError::NoSampleRate);
-        }
+    /// Bytes without times are taken for sent back to back on each line; levels without times cannot be used.
+    fn back_to_back(&mut self, capture: &Capture, ask: &Ask, map: &ChannelMap) -> Result<(), OpenError> {
         if !has_untimed_bytes(capture) {
-            return Err(OpenError::NoSampleRate);
+            return Err(OpenError::NoSampleRate(capture.format));
         }
         let baud = ask.baud.ok_or(OpenError::NoBaud)?;
         self.clock_hz = judged(ask.clock_hz.unwrap_or(USUAL_CLOCK_HZ))?;
         let times = BitTimes::new(self.clock_hz, baud);
-        let bytes = (0..).zip(&capture.bytes);
-        let bytes = bytes
-            .map(|(index, timed)| HeardByte { start: Instant(1 + times.byte(index).0), byte: timed.byte });
-        let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
-        self.end_s = times.byte(heard.bytes.len() as u64).0 as f64 / f64::from(self.clock_hz);
+        let mut last = 0;
+        for (line, bytes) in self.lines_of(capture, map) {
+            let bytes = (0..).zip(bytes);
+            let bytes = bytes.map(|(index, timed)| HeardByte {
+                start: Instant(1 + times.byte(index).0),
+                byte: timed.byte,
+            });
+            let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
+            last = last.max(heard.bytes.len() as u64);
+            self.report.lines.push(LineReport::of_heard_on(line, heard, self.clock_hz, baud));
+        }
+        self.end_s = times.byte(last).0 as f64 / f64::from(self.clock_hz);
         self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
-        self.report.lines.push(LineReport::of_heard(heard, self.clock_hz, baud));
         Ok(())
     }
 
@@ -893,10 +910,21 @@ mod tests {
         };
         assert_eq!(lines(None), [("RX", vec![1]), ("TX", vec![0x55, 0xaa])]);
         assert_eq!(lines(Some("RX=TX,TX=RX")), [("RX", vec![0x55, 0xaa]), ("TX", vec![1])]);
+        // Without times each direction is back to back by itself.
+        let annotations = "uart-1: rx-data: 41\nuart-1: tx-data: 42\nuart-1: tx-data: AA\n";
+        let ask = Ask { baud: Some(9600), ..Ask::default() };
+        let opened = Opened::new(read(annotations), &ask).expect("it opens");
+        let found: Vec<_> =
+            opened.report.lines.iter().map(|line| (line.name, line.heard.bytes.len())).collect();
+        assert_eq!(found, [("RX", 1), ("TX", 2)]);
+        assert_eq!(opened.report.lines[1].heard.bytes[0].start, opened.report.lines[0].heard.bytes[0].start);
         // Times without a unit are no places: their length is asked for.
         let table = "0,55\n1041,AA\n2083,01\n";
         let asked = |sample_rate_hz| Ask { sample_rate_hz, baud: Some(9600), ..Ask::default() };
-        assert_eq!(Opened::new(read(table), &asked(None)).err(), Some(OpenError::NoSampleRate));
+        assert_eq!(
+            Opened::new(read(table), &asked(None)).err(),
+            Some(OpenError::NoSampleRate(Format::HexBytes))
+        );
         let opened = Opened::new(read(table), &asked(Some(1_000_000))).expect("it opens");
         let starts = opened.report.lines[0].heard.bytes.iter().map(|heard| heard.start.0).collect::<Vec<_>>();
         assert_eq!(starts, [0, 1041, 2083]);

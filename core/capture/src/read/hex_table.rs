@@ -1,0 +1,210 @@
+//! Tables of times and bytes: `t_us,bytes`, `time_us,dir,data`, or rows `12.5,55 AA` without a head.
+
+use super::{
+    base::{Base, Digits, Guess},
+    decimal::Decimal,
+    fields::separator,
+    positions, row,
+    times::TimeUnit,
+};
+use crate::names::Meaning;
+
+/// How rows of a table are split, and what their bytes are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Table {
+    pub(super) separator: u8,
+    pub(super) unit: TimeUnit,
+    pub(super) direction: Direction,
+    pub(super) base: Base,
+    /// Whether the bytes fit another base, too.
+    pub(super) is_unclear: bool,
+}
+
+/// Where the direction of a row is, next to its bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    None,
+    Before,
+    After,
+}
+
+/// What the name of a column says of the base of its bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    Hexadecimal,
+    Decimal,
+    /// Bytes: mostly hexadecimal.
+    Bytes,
+    /// Nothing: its values decide.
+    Any,
+}
+
+/// A table by its head, without what only its rows tell.
+struct Head {
+    separator: u8,
+    unit: TimeUnit,
+    direction: Direction,
+    column: Column,
+    name: String,
+}
+
+impl Head {
+    fn parse(line: &[u8]) -> Option<Self> {
+        let separator = separator(line);
+        let names: Vec<String> = line
+            .split(|byte| *byte == separator)
+            .map(|name| String::from_utf8_lossy(name.trim_ascii()).into_owned())
+            .collect();
+        let (first, others) = names.split_first()?;
+        let unit = TimeUnit::of_column(first).filter(|unit| *unit != TimeUnit::Cycles)?;
+        let is_direction = |name: &str| {
+            ["dir", "direction", "port", "channel", "line", "rx/tx", "source"]
+                .contains(&name.to_lowercase().as_str())
+        };
+        let (direction, name) = match others {
+            [name] => (Direction::None, name),
+            [direction, name] if is_direction(direction) => (Direction::Before, name),
+            [name, direction] if is_direction(direction) => (Direction::After, name),
+            _ => return None,
+        };
+        let column = match name.to_lowercase().as_str() {
+            "hex" | "hexadecimal" => Column::Hexadecimal,
+            "dec" | "decimal" => Column::Decimal,
+            "bytes" | "byte" | "data" | "payload" | "raw" => Column::Bytes,
+            _ => Column::Any,
+        };
+        Some(Self { separator, unit, direction, column, name: name.clone() })
+    }
+
+    /// Whether the column may hold bytes: its name is that of no signal and no position, and its values have two digits.
+    fn may_be_bytes(&self, digits: &Digits) -> bool {
+        let is_value = ["value", "val"].contains(&self.name.to_lowercase().as_str());
+        let is_known = self.column != Column::Any || is_value;
+        let is_other =
+            positions::is_position(&self.name) || Meaning::of(&self.name, false) != Meaning::Unknown;
+        is_known || !is_other && digits.are_pairs()
+    }
+
+    fn base(&self, digits: &Digits) -> Result<(Base, bool), String> {
+        match (self.column, digits.guess()) {
+            (Column::Hexadecimal, _) => Ok((Base::Hexadecimal, false)),
+            (Column::Decimal, _) | (_, Guess::Sure(Base::Decimal)) => Ok((Base::Decimal, false)),
+            (_, Guess::Sure(Base::Hexadecimal)) => Ok((Base::Hexadecimal, false)),
+            (Column::Bytes, Guess::Unclear(Base::Hexadecimal, _)) => Ok((Base::Hexadecimal, true)),
+            (Column::Bytes, _) => Ok((Base::Hexadecimal, false)),
+            (Column::Any, _) => Err(format!(
+                "the values of the column “{}” may be decimal or hexadecimal bytes, or none; name it hex or dec, such as \
+                 time_us,hex, or position if they are positions",
+                self.name
+            )),
+        }
+    }
+}
+
+/// The table whose head is a line, by its first rows and, where whoever reads gives it, its base; `None` if it is no such
+/// head.
+pub(super) fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Table>, String> {
+    let Some(head) = Head::parse(line) else { return Ok(None) };
+    let mut table = Table {
+        separator: head.separator,
+        unit: head.unit,
+        direction: head.direction,
+        base: Base::Hexadecimal,
+        is_unclear: false,
+    };
+    let mut digits = Digits::new();
+    for row in rows {
+        let (_, _, bytes) = table.split(row);
+        words(bytes).for_each(|word| digits.take(word));
+    }
+    if !head.may_be_bytes(&digits) {
+        return Ok(None);
+    }
+    (table.base, table.is_unclear) = match base {
+        Some(base) => (base, false),
+        None => head.base(&digits)?,
+    };
+    Ok(Some(table))
+}
+
+/// Whether a line is the head of a table of bytes, for a table that has one.
+pub(super) fn is_head(line: &[u8]) -> bool {
+    Head::parse(line).is_some()
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    bytes.split(|byte| b" ,;\t".contains(byte)).filter(|word| !word.is_empty())
+}
+
+/// A field of a row, and the rest.
+fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
+    let line = line.trim_ascii();
+    let end = line.iter().position(|byte| *byte == separator).unwrap_or(line.len());
+    let (field, rest) = line.split_at(end);
+    (field.trim_ascii(), rest.get(1..).unwrap_or_default().trim_ascii())
+}
+
+impl Table {
+    /// Time, direction and bytes of a row.
+    pub(super) fn split<'l>(&self, line: &'l [u8]) -> (&'l [u8], &'l [u8], &'l [u8]) {
+        let (time, rest) = cut(line, self.separator);
+        match self.direction {
+            Direction::None => (time, b"", rest),
+            Direction::Before => {
+                let (direction, bytes) = cut(rest, self.separator);
+                (time, direction, bytes)
+            }
+            Direction::After => match rest.iter().rposition(|byte| *byte == self.separator) {
+                Some(at) => {
+                    let (bytes, direction) = rest.split_at(at);
+                    (time, direction.get(1..).unwrap_or_default().trim_ascii(), bytes.trim_ascii())
+                }
+                None => (time, b"", rest),
+            },
+        }
+    }
+}
+
+/// The table that lines without a head are: a number that rises, and bytes of two digits. Its times have no unit.
+pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
+    let separator = separator(lines.first()?);
+    let (mut before, mut is_number, mut is_whole) = (None::<Decimal>, false, true);
+    // Two columns that are no bytes of one row, as bytes may be where blanks separate them.
+    let mut are_pairs = separator != b' ';
+    let mut digits = Digits::new();
+    for line in lines {
+        let (time, rest) = cut(line, separator);
+        let number = Decimal::parse(time).filter(|number| number.mantissa >= 0)?;
+        let places = number.places.max(before.map_or(0, |before| before.places));
+        let whole = |number: Decimal| number.with_places(places).map(|number| number.mantissa);
+        if before.is_some_and(|before| whole(before) > whole(number)) {
+            return None;
+        }
+        are_pairs &= rest.len() == 2 && before.is_none_or(|before| whole(before) < whole(number));
+        before = Some(number);
+        is_number |= time.len() != 2;
+        is_whole &= number.places == 0 && time.iter().all(u8::is_ascii_digit);
+        let mut bytes = Vec::new();
+        let is_rest = row::parse(rest, &mut bytes).is_ok_and(|shape| shape.group == 1) && !bytes.is_empty();
+        let is_pair = |word: &[u8]| word.len() == 2 || word.starts_with(b"0x");
+        if !is_rest || !words(rest).all(is_pair) {
+            return None;
+        }
+        words(rest).for_each(|word| digits.take(word));
+    }
+    let unit = if is_whole { TimeUnit::Cycles } else { TimeUnit::Seconds(0) };
+    let is_unclear = digits.guess() != Guess::Sure(Base::Hexadecimal);
+    ((is_number || are_pairs) && lines.len() > 1).then_some(Table {
+        separator,
+        unit,
+        direction: Direction::None,
+        base: Base::Hexadecimal,
+        is_unclear,
+    })
+}
+
+/// Whether a table's bytes are surely no other numbers: one has a letter, `0x` or a zero before it, or there are several in
+/// a row.
+pub(super) fn is_hexadecimal(lines: &[&[u8]], table: Table) -> bool {
+    !table.is_unclear || lines.iter().any(|line| cut(line, table.separator).1.len() > 2)
+}

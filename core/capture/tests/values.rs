@@ -1,0 +1,222 @@
+//! Values that have several meanings: numbers of any base, lengths, directions and times of logs, units of positions.
+
+use crate::common::{check, read_bytes, told};
+use stepscope_capture::read::{Base, Limits, Wanted, read_wanted};
+
+#[test]
+fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
+    let timed = |texts: &str| -> String {
+        texts
+            .split(' ')
+            .enumerate()
+            .map(|(at, text)| format!("{}-{} uart-1: rx-data: {text}\n", 10 * at, 10 * at + 9))
+            .collect()
+    };
+    let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
+    let unclear = "- the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, print them \
+                   with format=hex";
+    let text = "the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A \
+                uart=rx-data)";
+    for (texts, expected) in [
+        (
+            "72 101 108 7",
+            format!("0:0:48 10:0:65 20:0:6c 30:0:07 end 30\n- the bytes are read as decimal\n{late}"),
+        ),
+        ("1 0 9", format!("0:0:01 10:0:00 20:0:09 end 20\n- the bytes are read as decimal\n{late}")),
+        ("110 145 007", format!("0:0:48 10:0:65 20:0:07 end 20\n- the bytes are read as octal\n{late}")),
+        ("01001000 00000111", format!("0:0:48 10:0:07 end 10\n- the bytes are read as binary\n{late}")),
+        ("48 6C 65", format!("0:0:48 10:0:6c 20:0:65 end 20\n{late}")),
+        ("48 65", format!("0:0:48 10:0:65 end 10\n{unclear}\n{late}")),
+        (
+            "110 145",
+            format!(
+                "end 10\n{late}\n! line 2: the bytes may be octal or decimal; print them with format=hex (sigrok-cli -P uart:format=hex)"
+            ),
+        ),
+        (
+            "4C 7 65",
+            format!(
+                "0:0:4c end 0\n{late}\n! line 3: byte 1, from 0, is not hexadecimal; print all of them with format=hex"
+            ),
+        ),
+        ("H 1 2", format!("end 20\n- other annotations skipped: H\n{late}\n! line 3: {text}")),
+    ] {
+        assert_eq!(told(&read_bytes(timed(texts))), format!("Annotations [RX] {expected}"), "{texts}");
+    }
+    // Whoever reads may say it.
+    let wanted = Wanted { base: Some(Base::Decimal), ..Wanted::default() };
+    let read = |text: &str| {
+        read_wanted(std::io::Cursor::new(text.to_owned()), &Limits::default(), &wanted, &mut |_| true)
+    };
+    assert_eq!(told(&read(&timed("72 65"))), format!("Annotations [RX] 0:0:48 10:0:41 end 10\n{late}"));
+    assert_eq!(told(&read("t_us,value\n0,65\n10,173\n")), "HexBytes 1/1000000 [bytes] 0:0:41 10:0:ad end 10");
+}
+
+#[test]
+fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
+    let first = |time: &str| {
+        format!("\n- the first time is “{time}”: it is taken as 0, and all others count from it")
+    };
+    let both = "- RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX";
+    let minutes = "- times have no seconds: all bytes of a minute have one time";
+    check(&[
+        // A direction at the end.
+        (
+            "[12:00:00.1] 55 AA ->\n[12:00:00.2] 01 <-\n",
+            &format!(
+                "SerialLog 1/10 [TX RX] 0:0:55 0:0:aa 1:1:01 end 1{}\n{both}",
+                first("[12:00:00.1] 55 AA ->")
+            ),
+        ),
+        ("0.1: 55 AA TX\n0.2: 01 RX\n", &format!("HexBytes 1/10 [TX RX] 1:0:55 1:0:aa 2:1:01 end 2\n{both}")),
+        (
+            "t_us,data,dir\n0,55 AA,->\n10,01,<-\n",
+            &format!("HexBytes 1/1000000 [TX RX] 0:0:55 0:0:aa 10:1:01 end 10\n{both}"),
+        ),
+        // The text of bytes is none.
+        (
+            "[12:00:00.1] 2d 3e  ->\n",
+            &format!("SerialLog 1/10 [bytes] 0:0:2d 0:0:3e end 0{}", first("[12:00:00.1] 2d 3e  ->")),
+        ),
+        (
+            "55 AA ->\n",
+            "HexBytes [] end 0\n! line 1: “55 AA ->” has a direction and no time; give each line a time, or the bytes of one \
+             direction only",
+        ),
+        // Numbers of bytes.
+        (
+            "12:00:00.5 RX: (02) 41 42\n12:00:00.6 RX (2 bytes): 41 42\n12:00:00.7 RX [10] 00 01 02 03 04 05 06 07 08 09\n\
+             12:00:00.8 RX len=1: 41\n",
+            &format!(
+                "SerialLog 1/10 [RX] 0:0:41 0:0:42 1:0:41 1:0:42 2:0:00 2:0:01 2:0:02 2:0:03 2:0:04 2:0:05 2:0:06 2:0:07 \
+                 2:0:08 2:0:09 3:0:41 end 3{}",
+                first("12:00:00.5 RX: (02) 41 42")
+            ),
+        ),
+        (
+            "12:00:00.5 RX: (04) 41 42\n",
+            &format!(
+                "SerialLog 1/10 [RX] 0:0:41 0:0:42 end 0{}\n- 1 of the numbers in brackets before the bytes of a line differ \
+                 from their number; they are left out",
+                first("12:00:00.5 RX: (04) 41 42")
+            ),
+        ),
+        (
+            "12:00:00.5 RX 04: 41 42\n",
+            &format!(
+                "SerialLog 1/10 [] end 0{}\n! line 1: “04:” before “41 42” may be a byte or a number of bytes; remove it, or \
+                 write all bytes in one way",
+                first("12:00:00.5 RX 04: 41 42")
+            ),
+        ),
+        ("(02) 41 42\n", "HexBytes [bytes] 0:0:41 1:0:42 end 1"),
+        (
+            "12:00:00.5 [41] [42] [43]\n",
+            &format!(
+                "SerialLog 1/10 [bytes] 0:0:41 0:0:42 0:0:43 end 0{}",
+                first("12:00:00.5 [41] [42] [43]")
+            ),
+        ),
+        // Times without seconds; bytes with colons between them.
+        (
+            "12:00 41 42\n12:01 43\n",
+            &format!("SerialLog 1/1 [bytes] 0:0:41 0:0:42 60:0:43 end 60{}\n{minutes}", first("12:00 41 42")),
+        ),
+        (
+            "[12:00] RX: 41\n",
+            &format!("SerialLog 1/1 [RX] 0:0:41 end 0{}\n{minutes}", first("[12:00] RX: 41")),
+        ),
+        (
+            "2026-11-26 12:00 41\n2026-11-26 12:02 42\n",
+            &format!(
+                "SerialLog 1/1 [bytes] 0:0:41 120:0:42 end 120{}\n{minutes}",
+                first("2026-11-26 12:00 41")
+            ),
+        ),
+        (
+            "01:02:03\n",
+            &format!("SerialLog 1/1 [] end 0{}\n! line 1: the file has no bytes", first("01:02:03")),
+        ),
+        ("12:00\n", "HexBytes [bytes] 0:0:12 1:0:00 end 1"),
+        ("12:00 41:42\n", "HexBytes [bytes] 0:0:12 1:0:00 2:0:41 3:0:42 end 3"),
+        // Seconds since 1970 count from the first.
+        (
+            "[1700000000.123] 41\n[1700000000.125] 42\n",
+            &format!("SerialLog 1/1000 [bytes] 0:0:41 2:0:42 end 2{}", first("[1700000000.123] 41")),
+        ),
+        (
+            "1700000000.5 RX 41\n1700000001 RX 42\n",
+            &format!(
+                "HexBytes 1/10 [RX] 0:0:41 end 0{}\n! line 2: “1700000001” is not a byte; give each as two hexadecimal digits, \
+                 with or without 0x, such as 55 AA 0x01",
+                first("1700000000.5 RX 41")
+            ),
+        ),
+    ]);
+}
+
+#[test]
+fn numbers_beside_times_are_never_silently_hexadecimal() {
+    let unclear = "- the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, name their \
+                   column dec (t_us,dec)";
+    check(&[
+        ("t_us,value\n0,65\n10,173\n20,7\n", "HexBytes 1/1000000 [bytes] 0:0:41 10:0:ad 20:0:07 end 20"),
+        ("t_us,value\n0,65\n10,AD\n", "HexBytes 1/1000000 [bytes] 0:0:65 10:0:ad end 10"),
+        ("t_us,dec\n0,65\n10,66\n", "HexBytes 1/1000000 [bytes] 0:0:41 10:0:42 end 10"),
+        ("t_us,hex\n0,65\n10,66\n", "HexBytes 1/1000000 [bytes] 0:0:65 10:0:66 end 10"),
+        ("t_us,byte\n0,65\n10,66\n", &format!("HexBytes 1/1000000 [bytes] 0:0:65 10:0:66 end 10\n{unclear}")),
+        ("t_us,data\n0,200\n10,66\n", "HexBytes 1/1000000 [bytes] 0:0:c8 10:0:42 end 10"),
+        ("time_s,NN\n0.5,4A\n1.0,42\n", "HexBytes 1/10 [bytes] 5:0:4a 10:0:42 end 10"),
+        (
+            "t_us,dec\n0,65\n10,256\n",
+            "HexBytes 1/1000000 [bytes] 0:0:41 end 10\n! line 3: “256” is not a decimal byte; give 0 to 255",
+        ),
+        ("10,4A\n20,42\n", "HexBytes [bytes] 10:0:4a 20:0:42 end 20"),
+        ("10 41\n20 42\n", "HexBytes [bytes] 0:0:10 1:0:41 2:0:20 3:0:42 end 3"),
+    ]);
+    for text in ["10,41\n20,42\n", "10;41\n20;42\n", "t_us,value\n0,65\n10,66\n", "time,NN\n10,41\n20,42\n"] {
+        let reading = read_bytes(text);
+        assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", told(&reading));
+    }
+}
+
+#[test]
+fn times_with_more_places_than_fit_are_rounded_and_told() {
+    check(&[
+        (
+            "time_s,STEP\n0,0\n5.000000000000013e-06,1\n0.00001,0\n",
+            "LevelsCsv 1/1000000000000000000 [STEP] 0:0 5000000000000:1 10000000000000:0 end 10000000000000\n\
+             - times have more decimal places than fit: they are rounded to the nearest 1e-18 s",
+        ),
+        // 64 bits are 18 s of these: later times make them coarser.
+        (
+            "time_s,STEP\n0,0\n0.30000000000000004,1\n2000,0\n",
+            "LevelsCsv 1/1000000000000000 [STEP] 0:0 300000000000000:1 2000000000000000000:0 end 2000000000000000000\n\
+             - times have more decimal places than fit: they are rounded to the nearest 1e-15 s",
+        ),
+        // Changes are not put together.
+        (
+            "time_s,STEP\n0,0\n1e-18,1\n2e-18,0\n2000,1\n",
+            "LevelsCsv 1/1000000000000000000 [STEP] 0:0 1:1 2:0 end 2\n! line 5: the time “2000” is too long for 64 bits; give \
+             times since the recording's beginning",
+        ),
+        (
+            "time_s,STEP\n1700000000.25,0\n1700000000.5,1\n",
+            "LevelsCsv 1/100 [STEP] 0:0 25:1 end 25\n- the first time is “1700000000.25”: it is taken as 0, and all others \
+             count from it",
+        ),
+    ]);
+}
+
+#[test]
+fn positions_in_other_units_than_steps_are_refused() {
+    for (name, unit) in
+        [("position_mm", "mm"), ("Position [mm]", "mm"), ("angle (deg)", "degree"), ("pos_turns", "turn")]
+    {
+        let error = read_bytes(format!("time_s,{name}\n0,0\n1,2\n")).error.expect("it is refused");
+        let expected = format!(
+            "is in {unit}, not in steps; multiply it by the steps per {unit}, round it, and name it position"
+        );
+        assert!(error.what.ends_with(&expected), "{error}");
+    }
+}
