@@ -175,6 +175,40 @@ fn a_session_whose_zip_lies_is_refused() {
     );
 }
 
+/// Readers differ in which of two values they take.
+#[test]
+fn a_session_that_gives_a_value_twice_is_refused() {
+    let refused = |files: &[(&str, &[u8])]| {
+        let all: Vec<_> = files.iter().map(|(name, held)| ((*name).to_string(), held.to_vec())).collect();
+        let reading = read(Cursor::new(writers::zip(&all, true)), &Limits::default(), &mut |_| true);
+        reading.error.map(|error| error.what)
+    };
+    let samples: (&str, &[u8]) = ("logic-1-1", &[0, 1, 0]);
+    assert_eq!(refused(&[("version", b"2"), ("metadata", METADATA), samples]), None);
+    assert_eq!(
+        refused(&[("version", b"2"), ("version", b"1"), ("metadata", METADATA), samples]).as_deref(),
+        Some("the zip has two files named “version”; save the session again")
+    );
+    for (key, line) in [
+        ("samplerate", "samplerate=2 MHz"),
+        ("samplerate", " samplerate = 1 MHz"),
+        ("unitsize", "unitsize=2"),
+        ("capturefile", "capturefile=logic-2"),
+        ("probe1", "probe1=B"),
+        ("probe1", "probe01=B"),
+    ] {
+        let metadata = [METADATA, line.as_bytes()].concat();
+        assert_eq!(
+            refused(&[("metadata", &metadata), samples]),
+            Some(format!("“metadata” gives {key} twice; save the session again")),
+            "{line}"
+        );
+    }
+    // Values of a second device decide nothing.
+    let metadata = [METADATA, b"[device 2]\nsamplerate=2 MHz\nprobe1=B\n"].concat();
+    assert_eq!(refused(&[("metadata", &metadata), samples]), None);
+}
+
 /// 70 pieces that are apart, each with a declared size of 4 GB.
 #[test]
 fn a_session_of_terabytes_is_refused() {

@@ -44,6 +44,7 @@ struct Packed {
 #[derive(Default)]
 struct Directory {
     metadata: Option<Packed>,
+    has_version: bool,
     /// Samples by the names of their files.
     pieces: Vec<(String, Packed)>,
     /// Whether it is a capture of Saleae Logic 2.
@@ -85,7 +86,7 @@ fn whole<R: BufRead + Seek>(
         .take(MAX_METADATA)
         .read_to_end(&mut text)
         .map_err(|error| format!("“metadata” cannot be read: {error}"))?;
-    let metadata = Metadata::parse(&String::from_utf8_lossy(&text));
+    let metadata = Metadata::parse(&String::from_utf8_lossy(&text))?;
     if !metadata.analogue.is_empty() {
         recorder.leave_out(format!("analogue channels: {}", names(&metadata.analogue).told()));
     }
@@ -148,9 +149,9 @@ fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, 
             .and_then(|data| data.checked_add(entry.compressed_size_hint()));
         directory.ranges.push((start, end.ok_or("a file of the zip ends beyond any file")?));
         match name.as_str() {
-            "metadata" if directory.metadata.is_some() => {
-                return Err("the zip has two files named “metadata”; save the session again".into());
-            }
+            "metadata" if directory.metadata.is_some() => return Err(two(&name)),
+            "version" if directory.has_version => return Err(two(&name)),
+            "version" => directory.has_version = true,
             "metadata" => directory.metadata = Some(packed),
             name if name.ends_with("/metadata") => {
                 directory.folder = name.strip_suffix("metadata").map(Into::into)
@@ -160,6 +161,10 @@ fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, 
             _ => directory.pieces.push((name, packed)),
         }
     }
+}
+
+fn two(name: &str) -> String {
+    format!("the zip has two files named “{name}”; save the session again")
 }
 
 /// Refuses files that share bytes: each byte of a zip is unpacked once at most.

@@ -162,7 +162,14 @@ impl Vcd {
         self.expected = Expected::Any;
         match keyword {
             Keyword::EndDefinitions => self.begin(),
-            Keyword::Timescale => self.recorder.capture.timebase = Some(self.header.timescale()?),
+            Keyword::Timescale => {
+                let timescale = Some(self.header.timescale()?);
+                let known = &mut self.recorder.capture.timebase;
+                if known.is_some() && *known != timescale {
+                    return Err("the dump gives two time scales; record again".into());
+                }
+                *known = timescale;
+            }
             Keyword::Scope => self.header.enter()?,
             Keyword::Upscope => self.header.leave(),
             Keyword::Var => {

@@ -7,6 +7,7 @@ use crate::{
     },
     timebase::Timebase,
 };
+use std::collections::BTreeSet;
 
 /// Most names that are kept, of either kind.
 const MAX_NAMES: usize = 1000;
@@ -24,7 +25,10 @@ pub(super) struct Metadata {
 }
 
 impl Metadata {
-    pub(super) fn parse(text: &str) -> Self {
+    /// # Errors
+    /// A value that is given twice: readers differ in which one they take.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let mut given = BTreeSet::new();
         let mut metadata = Self {
             devices: 0,
             rate: None,
@@ -39,33 +43,43 @@ impl Metadata {
             } else if let Some((key, value)) = line.split_once('=')
                 && metadata.devices <= 1
             {
-                metadata.set(key.trim(), value.trim());
+                let key = key.trim();
+                if metadata.set(key, value.trim()) && !given.insert(key) {
+                    return Err(format!("“metadata” gives {key} twice; save the session again"));
+                }
             }
         }
         metadata.probes.sort();
-        metadata
+        let same = |pair: &[(usize, String)]| match pair {
+            [(one, _), (other, _)] if one == other => Some(one + 1),
+            _ => None,
+        };
+        if let Some(probe) = metadata.probes.windows(2).find_map(same) {
+            return Err(format!("“metadata” gives probe{probe} twice; save the session again"));
+        }
+        Ok(metadata)
     }
 
-    fn set(&mut self, key: &str, value: &str) {
+    /// Takes a value; whether its key must be given once. Names of channels are compared by their bits.
+    fn set(&mut self, key: &str, value: &str) -> bool {
         let number = |digits: &str| whole(digits.as_bytes()).and_then(|number| usize::try_from(number).ok());
+        let numbered = |prefix| key.strip_prefix(prefix).and_then(number);
         match key {
             "samplerate" => self.rate = parse_rate(value),
             "capturefile" => self.capturefile = value.into(),
             "unitsize" => self.unitsize = number(value).unwrap_or(0),
             _ => {
-                if let Some(bit) =
-                    key.strip_prefix("probe").and_then(number).and_then(|probe| probe.checked_sub(1))
-                {
+                if let Some(bit) = numbered("probe").and_then(|probe| probe.checked_sub(1)) {
                     if self.probes.len() < MAX_NAMES {
                         self.probes.push((bit, value.into()));
                     }
-                } else if key.strip_prefix("analog").and_then(number).is_some()
-                    && self.analogue.len() < MAX_NAMES
-                {
+                } else if numbered("analog").is_some() && self.analogue.len() < MAX_NAMES {
                     self.analogue.push(value.into());
                 }
+                return false;
             }
         }
+        true
     }
 
     /// How long a sample is.

@@ -53,7 +53,11 @@ impl Head {
             if let Some(rate) =
                 text.strip_prefix("Samplerate:").or_else(|| text.strip_prefix("META samplerate:"))
             {
-                self.rate = parse_rate(rate.trim());
+                let rate = parse_rate(rate.trim());
+                if self.rate.is_some() && rate != self.rate {
+                    return Err("the head gives two sample rates; export again".into());
+                }
+                self.rate = rate;
             } else if let Some((_, names)) =
                 text.strip_prefix("Channels (").and_then(|text| text.split_once("):"))
             {
