@@ -52,6 +52,7 @@ use stepscope_controller::{
     input::{Change, Signal},
 };
 use stepscope_peripheral::{
+    config::Protocol,
     signal::{Event, Record, Sink},
     trace::Digest,
     units::{Cycles, Instant},
@@ -68,6 +69,9 @@ pub const MAX_RECORDED_SENDS: u64 = 400_000;
 
 /// Bit times from the last stop bit of a frame in which its reply has begun: 11, and what the controllers' clocks differ.
 const REPLY_BEGINS_BITS: u64 = 30;
+
+/// Ends a frame that is not whole: a byte that makes it fail its check, and the delimiter.
+const SPOILED_END: [u8; 2] = [0xff, 0];
 
 /// A byte of a controller's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +97,8 @@ pub struct Session {
     /// Where the last send begins, and how many bytes it has.
     last_send: Option<(Instant, u64)>,
     heard: u64,
+    /// Whether the last byte received is inside of a frame.
+    in_frame: bool,
     replies: VecDeque<ReplyByte>,
     /// Replies that begin before this cycle are for a host that has disconnected.
     replies_from: Instant,
@@ -147,6 +153,7 @@ impl Session {
                 .collect(),
             last_send: None,
             heard: 0,
+            in_frame: false,
             replies: VecDeque::new(),
             replies_from: Instant::RESET,
             digests: vec![Digest::default(); experiment.controllers()],
@@ -245,8 +252,12 @@ impl Session {
     }
 
     /// The host disconnects. Replies to what it has sent so far are dropped, also those that are still to come: the next host
-    /// must not take them for replies to its own frames.
+    /// must not take them for replies to its own frames. A frame that it did not finish is spoiled and ended, so that it is not
+    /// executed and the first frame of the next host is not taken for the rest of it.
     pub fn hang_up(&mut self) {
+        if self.in_frame {
+            self.receive(&SPOILED_END);
+        }
         self.replies.clear();
         let end = self.last_send.map_or(self.now(), |(start, sent)| start + self.times.byte(sent));
         self.replies_from = end.max(self.now()) + self.times.bit(REPLY_BEGINS_BITS);
@@ -268,6 +279,8 @@ impl Session {
             }
         }
         self.heard += count;
+        self.in_frame =
+            self.blank.line.protocol == Protocol::Framed && bytes.last().is_some_and(|byte| *byte != 0);
         let bus = self.run.bus_mut();
         if self.cut.is_some() {
             bus.forget_sent();

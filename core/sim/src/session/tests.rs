@@ -523,6 +523,36 @@ fn a_flood_is_taken_at_the_rate_of_the_line_and_what_is_kept_of_it_is_bounded() 
 }
 
 #[test]
+fn the_first_frame_of_a_host_is_not_taken_for_the_rest_of_the_frame_before() {
+    let status = frame::emit(0, 4, &[]);
+    let json = |protocol| {
+        format!(
+            r#"{{ "clock_hz": 1600, "line": {{ "baud": 100, "protocol": "{protocol}" }}, "bus": {{ "boot_cycles": 0 }} }}"#
+        )
+    };
+    // Up to a frame without its delimiter, and one that is too long.
+    let flood = vec![1; 700];
+    for unfinished in (0..status.len()).map(|sent| &status[..sent]).chain([&flood[..]]) {
+        let mut session = session(&json("framed"));
+        session.receive(unfinished);
+        session.hang_up();
+        session.hang_up();
+        let is_ended = unfinished.last().is_none_or(|byte| *byte == 0);
+        let sent = unfinished.len() as u64 + if is_ended { 0 } else { 2 };
+        assert_eq!(session.heard(), sent);
+        session.receive(&status);
+        session.advance::<Digest>(Instant(160 * (sent + 100)), &mut []);
+        assert_eq!(session.take_replies().count(), 17, "{unfinished:?}");
+        session.recording().verify().expect("the same");
+    }
+    // A raw packet has no delimiter: its gap ends it.
+    let mut session = session(&json("raw"));
+    session.receive(&[1]);
+    session.hang_up();
+    assert_eq!(session.heard(), 1);
+}
+
+#[test]
 fn a_host_never_hears_a_reply_to_the_host_before_it() {
     let json =
         r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" }, "bus": { "boot_cycles": 0 } }"#;
