@@ -235,7 +235,7 @@ const ROWS: [[&[Step]; 2]; 5] = [
 /// Runs the steps named in `only`, or all if it is empty. Those after one that fails run, too.
 ///
 /// # Errors
-/// The names of the steps that failed.
+/// The names of the steps that failed, and of those that were skipped.
 pub(crate) async fn run(only: &[Step]) -> Result<()> {
     let start = Instant::now();
     let report = RefCell::default();
@@ -264,7 +264,13 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
     let skipped = with(|outcome| matches!(outcome, Outcome::Skipped(_)));
     let passed = report.len() - failed.len() - skipped.len();
     println!("{passed} passed, {} failed, {} skipped", failed.len(), skipped.len());
-    ensure!(failed.is_empty() && skipped.is_empty(), "failed: {}", [failed, skipped].concat().join(", "));
+    let mut lists = Vec::new();
+    for (what, names) in [("failed", failed), ("skipped", skipped)] {
+        if !names.is_empty() {
+            lists.push(format!("{what}: {}", names.join(", ")));
+        }
+    }
+    ensure!(lists.is_empty(), lists.join("; "));
     Ok(())
 }
 
