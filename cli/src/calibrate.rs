@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// A CSV file with the columns length_mm (or length_cm, length_m) and steps, a measurement a row; `-` reads
     /// standard input.
     table: PathBuf,
-    /// Print it as JSON: one object of tables (docs/command.md).
+    /// Print the result as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
 }

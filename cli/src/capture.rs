@@ -1,4 +1,4 @@
-//! `stepscope capture`: a recording of one's own firmware or host, looked at like a run.
+//! `stepscope capture`: a recording of your own firmware or host, analyzed like a run.
 //!
 //! ```text
 //! file -> read -> channel map, clock -> records -> report, timing, comparison with a scenario's run, files
@@ -14,6 +14,7 @@ use crate::{
     failure::Failure,
     json::Tables,
     output::{Outputs, STANDARD},
+    pipe,
     progress::Progress,
     scenarios, timing,
     torque::{self, Driven},
@@ -21,7 +22,6 @@ use crate::{
 pub(crate) use arguments::Arguments;
 use beside::Beside;
 use std::{
-    fs::File,
     io::{self, BufReader, Cursor, Read},
     path::Path,
 };
@@ -39,7 +39,7 @@ use stepscope_core::{
 /// Maximum bytes of a recording from standard input or a pipe, which is kept in memory: it cannot be read twice.
 const MAX_PIPED: u64 = 1 << 30;
 
-/// Reads the recording, tells what it comes to and writes what was asked for.
+/// Reads the recording, reports on it and writes the requested files.
 pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     let Reading { capture, error } = read(arguments)?;
@@ -47,16 +47,18 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         return Err(arguments.wrong(error));
     }
     let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.cannot_open(&error))?;
-    // A line that was mapped is wanted; one that was only proposed may be none.
+    // Only a line that the user mapped has to be one.
     let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
     if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
         return Err(arguments.wrong(advice::line(line)));
     }
-    let beside =
-        arguments.against.as_deref().map(|path| Beside::of(arguments, &recording, path)).transpose()?;
-    let base = arguments.against.as_deref().map(scenarios::read).transpose()?;
-    let scenario = Scenario { clock_hz: recording.clock_hz, ..base.clone().unwrap_or_default() };
-    // Pulses that were made up of positions have no width to check.
+    // A pipe can be read only once.
+    let against = arguments.against.as_deref().map(scenarios::judged).transpose()?;
+    let plan = arguments.against.as_deref().zip(against.as_ref());
+    let beside = plan.map(|(path, plan)| Beside::of(arguments, &recording, path, plan)).transpose()?;
+    let base = against.as_ref().map(|(scenario, _)| &**scenario);
+    let scenario = Scenario { clock_hz: recording.clock_hz, ..base.cloned().unwrap_or_default() };
+    // Pulses made from positions have no width.
     let mut check = arguments
         .timing
         .check_times(&arguments.file, &scenario, recording.is_rounded)?
@@ -65,8 +67,8 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         recording.records.iter().for_each(|record| check.record(*record));
     }
-    let driven = driven(arguments, &recording, base.as_ref());
-    files::write(arguments, &mut outputs, &recording, beside.as_ref(), base.as_ref())?;
+    let driven = driven(arguments, &recording, base);
+    files::write(arguments, &mut outputs, &recording, beside.as_ref(), base)?;
     if let (Some(path), Some(check)) = (&arguments.timing.violations, &check) {
         let written = timing::write_violations(outputs.create(path)?, check, recording.clock_hz);
         written.map_err(|error| Failure::File(path.clone(), error))?;
@@ -85,7 +87,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         }
         tables.print()?;
     } else {
-        // What goes to standard output stands there alone.
+        // A file on standard output must not be mixed with text.
         if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
             text::print(&recording, arguments.map.is_none(), beside.as_ref(), &driven)
                 .map_err(Failure::output)?;
@@ -104,7 +106,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     check.map_or(Ok(()), |check| arguments.timing.verdict(&check))
 }
 
-/// What the steps ask of their motors, where these are known: the one that is named, or those of the scenario beside.
+/// The demand of the steps on their motors: those of the scenario, or the named one.
 fn driven(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Vec<Driven> {
     let none = Scenario { source: Source::Segments(SegmentLists::default()), ..Scenario::default() };
     let named = arguments.named.named(base.unwrap_or(&none));
@@ -138,7 +140,7 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     if path == Path::new(STANDARD) {
         return piped(&mut io::stdin());
     }
-    let mut file = match File::open(path) {
+    let mut file = match pipe::to_read(path) {
         Ok(file) => file,
         // A sample of that name, where there is no such file.
         Err(error) => {

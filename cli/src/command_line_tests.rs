@@ -111,15 +111,34 @@ fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
 
 /// A new option of a number takes a type of quantity.rs.
 #[test]
-fn no_option_is_an_unchecked_number() {
-    fn check(command: &clap::Command) {
-        for argument in command.get_arguments() {
+fn every_option_of_a_number_refuses_what_is_none() {
+    let mut all = Vec::new();
+    commands(&crate::command_line(), "", &mut all);
+    let mut tried = 0;
+    for (name, command) in all {
+        for argument in command.get_opts() {
             let parsed = argument.get_value_parser().type_id();
-            let unchecked =
-                parsed == std::any::TypeId::of::<f64>() || parsed == std::any::TypeId::of::<f32>();
-            assert!(!unchecked, "{} --{}: use a type of quantity.rs", command.get_name(), argument.get_id());
+            let is_text = parsed == TypeId::of::<PathBuf>() || parsed == TypeId::of::<String>();
+            if is_text || !argument.get_action().takes_values() {
+                continue;
+            }
+            let option = argument.get_long().expect("every option has a long name");
+            for given in ["-1", "NaN", "-nan", "inf", "-inf", "1e999", "", "99999999999999999999999999"] {
+                let option = format!("--{option}={given}");
+                let words = ["stepscope"].into_iter().chain(name.split(' ')).chain([option.as_str()]);
+                let error = crate::command_line().try_get_matches_from(words).expect_err(&option);
+                let error = error.to_string();
+                // An empty one is refused by clap itself.
+                let is_told = ["use ", "give ", "possible values", "lists them"];
+                assert!(
+                    error.contains(&format!("--{}", argument.get_long().unwrap_or_default()))
+                        && (given.is_empty() || error.contains(given))
+                        && (given.is_empty() || is_told.iter().any(|told| error.contains(told))),
+                    "{name} {option}: {error}"
+                );
+            }
+            tried += 1;
         }
-        command.get_subcommands().for_each(check);
     }
-    check(&crate::command_line());
+    assert!(tried >= 50, "{tried}");
 }

@@ -17,73 +17,60 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// Why there is no result.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// A file could not be read or written.
     File(PathBuf, io::Error),
-    /// An output that cannot be one beside the others, and why.
+    /// An output that cannot be used, and why.
     Output(PathBuf, &'static str),
-    /// The dump's timescale does not go with the clock.
+    /// The dump's timescale is coarser than a cycle.
     Timescale(TooCoarse),
     /// The file is longer than this many bytes.
     TooLong(PathBuf, u64),
-    /// A scenario would be longer than one that can be read; what makes it shorter.
+    /// A scenario too long to be read again; what makes it shorter.
     LongScenario(PathBuf, &'static str),
-    /// The scenario's file is not text.
     NotText(PathBuf),
-    /// The scenario is wrong.
     Scenario(PathBuf, Vec<Problem>),
     /// The link is wrong, or the scenario does not fit in one.
     Link(LinkError),
-    /// A link to be verified does not carry its sender's digests.
+    /// A link without its sender's digests cannot be verified.
     NoProof,
-    /// They cannot be read.
+    /// Its sender's digests cannot be read.
     RunFingerprint(RunFingerprintError),
-    /// The run is not the one that a link's sender saw; where they part.
+    /// The run differs from that of the link's sender; the first difference.
     OtherRun(String),
-    /// A run is too long to be analyzed.
     LongAnalysis(PathBuf, TooLong),
-    /// There is no such preset.
     Preset(String),
-    /// Records of a panel, where there is none.
     NoPanel(PathBuf),
-    /// Power cuts of a run that is too long, or has no end.
+    /// Power cuts of a run that is too long.
     LongRun(PathBuf),
-    /// Power cuts of a scenario without a stand-alone controller.
     NoStandAlone(PathBuf),
-    /// A timing check without a driver.
     NoDriver(PathBuf),
-    /// The scenario has no controller of this number, but so many.
+    /// The number given, and the number of controllers.
     Controller(PathBuf, usize, usize),
-    /// The scenario has no axis of this number, but so many.
+    /// The number given, and the number of axes.
     Axis(PathBuf, usize, usize),
-    /// A table cannot be used, and why.
     Table(PathBuf, String),
-    /// A recording cannot be used, and why.
     Recording(PathBuf, String),
-    /// A recording could be read in part only, and why.
+    /// A recording is truncated, and why.
     PartOnly(PathBuf, String),
-    /// A recording is not what the model makes.
+    /// A recording differs from the plan.
     NotTheModel(String),
-    /// The timing check found this many violations, and none was to be.
+    /// Violations that the timing check found, with --strict.
     Violations(u64),
     /// A strict timing check of a recording without steps.
     NoSteps,
-    /// A port cannot be used, and why.
     Port(String, String),
-    /// An option cannot be as it is, and why.
     Option(String),
-    /// The port went while it was used.
     LostPort(String),
-    /// A session was not in real time: how often its clock was set back, and by how many ms.
+    /// How often the session's clock was set back, and by how many ms.
     NotRealTime(u64, f64),
-    /// A recording does not give the session again.
+    /// A recording does not reproduce its session.
     NotRecorded(PathBuf, String),
-    /// What was sent is not known to be done.
+    /// Sent ticks that are not confirmed.
     NotVerified(String),
-    /// Ctrl-C ended it, after its report.
+    /// Ctrl-C, after the report.
     Interrupted,
-    /// So many seeds of a fault sweep with the framed protocol went wrong, and none was to.
+    /// Seeds of a fault sweep with wrong steps in spite of the framed protocol.
     WrongSteps(u64),
-    /// So many power cuts left a position that is trusted and wrong, and none was to.
+    /// Power cuts that left a wrong position that is trusted.
     SilentlyWrong(u64),
 }
 
@@ -93,20 +80,19 @@ impl Failure {
         Self::File(PathBuf::from("standard output"), error)
     }
 
-    /// The system has no threads to give.
+    /// The system cannot start threads.
     pub(crate) fn threads(error: io::Error) -> Self {
         Self::File(PathBuf::from("threads"), error)
     }
 
-    /// Whether what failed is only that nobody reads any more, as behind `| head`.
+    /// Whether the reader of standard output is gone, as behind `| head`.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::File(_, error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
-    /// The command's exit code.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            // What a shell says of a command that its closed pipe has ended.
+            // As a shell reports a command that SIGPIPE ended.
             _ if self.is_closed_pipe() => ExitCode::from(141),
             Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
@@ -208,7 +194,7 @@ impl fmt::Display for Failure {
             ),
             Self::SilentlyWrong(count) => write!(
                 f,
-                "after {count} power cuts a position is trusted and wrong, which must not be; the first is in the table with --json"
+                "after {count} power cuts a position is wrong but trusted; the table of --json has the first of these cuts"
             ),
             Self::NoDriver(path) => write!(
                 f,
@@ -216,7 +202,7 @@ impl fmt::Display for Failure {
                 Escaped::path(path)
             ),
             Self::Controller(path, given, 1) => {
-                write!(f, "{}: there is no controller {given}; the scenario has one, 0", Escaped::path(path))
+                write!(f, "{}: there is no controller {given}; the scenario has only 0", Escaped::path(path))
             }
             Self::Controller(path, given, count) => {
                 let most = count - 1;
@@ -232,7 +218,7 @@ impl fmt::Display for Failure {
             }
             Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", Escaped::path(path)),
             Self::PartOnly(path, why) => {
-                write!(f, "{}: not read to its end: {why}; what stands above is of what could be read", Escaped::path(path))
+                write!(f, "{}: the recording is truncated: {why}; the results above are those of the part before", Escaped::path(path))
             }
             Self::NotTheModel(how) | Self::Option(how) | Self::NotVerified(how) => f.write_str(how),
             Self::Port(name, why) => write!(f, "{}: {why}", Escaped(name)),
@@ -244,8 +230,8 @@ impl fmt::Display for Failure {
                     "this machine did not keep up: the session's clock was set back {times} ({count}), by {ms:.0} ms in all. The run is exact for what it was given, but was not in real time; give a longer --lag or a lower --pace"
                 )
             }
-            Self::NotRecorded(path, why) => write!(f, "{}: written, but it is not the session: {why}", Escaped::path(path)),
-            Self::Interrupted => f.write_str("ended by Ctrl-C"),
+            Self::NotRecorded(path, why) => write!(f, "{}: written, but it does not reproduce the session: {why}", Escaped::path(path)),
+            Self::Interrupted => f.write_str("stopped by Ctrl-C"),
             Self::Violations(count) => {
                 let s = if *count == 1 { "" } else { "s" };
                 write!(f, "{count} violation{s} of the driver's timing")

@@ -1,7 +1,8 @@
 //! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
 
 use crate::{
-    failure::Failure, json::Tables, parallel, progress::Progress, scenario_file, scenarios, terminal,
+    failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenario_file, scenarios,
+    terminal,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -29,35 +30,36 @@ const MAX_NAMED: usize = 8;
 /// What `stepscope faults` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario whose orders are sent: a JSON file, or a preset's name; `-` reads standard input. Its noise and its
-    /// receivers' rates give way to those of each seed. Without a file two motors turn against each
-    /// other for 40 ticks.
+    /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
+    ///
+    /// Each seed has its own noise and receivers' rates. Without a file two motors turn against each other for 40
+    /// ticks.
     file: Option<PathBuf>,
-    /// How many seeds to run.
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Number of seeds to run
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole::<u32>(1..=u32::MAX.into()))]
     seeds: u32,
-    /// The first of them.
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    /// First seed
+    #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole::<u32>(0..=u32::MAX.into()))]
     from: u32,
-    /// What stands around the orders.
+    /// Framing protocol
     #[arg(long, value_enum, default_value_t = Which::Both)]
     protocol: Which,
-    /// Threads that run seeds; without it one for each processor. The result is the same.
-    #[arg(long, value_name = "N")]
+    /// Number of threads (default: one per processor); the result is the same
+    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
     threads: Option<NonZero<usize>>,
-    /// Run this seed alone.
-    #[arg(long, value_name = "SEED", conflicts_with_all = ["seeds", "from"])]
+    /// Run only this seed
+    #[arg(long, value_name = "SEED", conflicts_with_all = ["seeds", "from"], value_parser = whole::<u32>(0..=u32::MAX.into()))]
     seed: Option<u32>,
-    /// Write the scenario of `--seed` as JSON and run nothing; `stepscope run` runs it.
+    /// Write the scenario of `--seed` as JSON and run nothing; `stepscope run` runs it
     #[arg(long, requires = "seed")]
     scenario: bool,
-    /// Print the share link of the scenario of `--seed` and run nothing.
+    /// Print the share link of the scenario of `--seed` and run nothing
     #[arg(long, requires = "seed", conflicts_with = "scenario")]
     link: bool,
-    /// Print the counts as JSON: one object of tables (docs/command.md).
+    /// Print the counts as JSON: one object of tables (docs/command.md)
     #[arg(long, conflicts_with_all = ["scenario", "link"])]
     json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }

@@ -7,7 +7,7 @@ use crate::{
     output::{self, Outputs},
     parallel,
     progress::Progress,
-    quantity::{Acceleration, PeakPart, Rate},
+    quantity::{Acceleration, PeakPart, Rate, whole},
     scenario_file, terminal,
 };
 use clap::Args;
@@ -32,20 +32,20 @@ use stepscope_core::{
 /// What all three take.
 #[derive(Args)]
 pub(crate) struct Common {
-    /// The scenario, which has a plant: a JSON file, or a preset's name; `-` reads standard input.
+    /// Scenario with a plant: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// Only the motor of this channel, from 0.
-    #[arg(long, value_name = "K")]
+    /// Channel of the motor, from 0 (default: all)
+    #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     channel: Option<usize>,
     #[command(flatten)]
     replacing: Replacing,
-    /// Print the results as JSON: one object of tables (docs/command.md).
+    /// Print the results as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
-    /// Threads; without it one for each processor. The result is the same.
-    #[arg(long, value_name = "N")]
+    /// Number of threads (default: one per processor); the result is the same
+    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
     threads: Option<NonZero<usize>>,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }
@@ -55,14 +55,13 @@ pub(crate) struct Common {
 pub(crate) struct SettlingArguments {
     #[command(flatten)]
     common: Common,
-    /// The part of the peak that still counts as settled.
-    #[arg(long, default_value = "0.2", allow_negative_numbers = true)]
+    /// Part of the peak that counts as settled
+    #[arg(long, default_value = "0.2")]
     share: PeakPart,
-    /// T_step, how long a step is looked at, in cycles; without it the slot of the bus.
-    #[arg(long, value_name = "CYCLES")]
+    /// T_step, the time to observe a step, in cycles (default: the slot of the bus)
+    #[arg(long, value_name = "CYCLES", value_parser = whole::<NonZero<u32>>(1..=u32::MAX.into()))]
     t_step: Option<NonZero<u32>>,
-    /// Write the scenario with the greatest of the settling times as `bus.settle_cycles` (`-`: standard output, and nothing
-    /// else there).
+    /// Write the scenario with the longest settling time as `bus.settle_cycles`
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
 }
@@ -72,11 +71,11 @@ pub(crate) struct SettlingArguments {
 pub(crate) struct LimitsArguments {
     #[command(flatten)]
     common: Common,
-    /// Steps of a trial of starting and stopping; without it a turn.
-    #[arg(long, value_name = "N")]
+    /// Steps per trial of starting and stopping (default: one turn)
+    #[arg(long, value_name = "N", value_parser = whole::<NonZero<u64>>(1..=MAX_STEPS))]
     steps: Option<NonZero<u64>>,
-    /// Acceleration of the ramp to the pull-out rate, in steps/s^2.
-    #[arg(long, value_name = "A", default_value = "200000", allow_negative_numbers = true)]
+    /// Acceleration of the ramp to the pull-out rate, in steps/s^2
+    #[arg(long, value_name = "A", default_value = "200000")]
     ramp: Acceleration,
 }
 
@@ -85,14 +84,14 @@ pub(crate) struct LimitsArguments {
 pub(crate) struct ResonanceArguments {
     #[command(flatten)]
     common: Common,
-    /// The least rate in full steps/s.
-    #[arg(long, value_name = "RATE", default_value = "20", allow_negative_numbers = true)]
+    /// Minimum rate, in full steps/s
+    #[arg(long, value_name = "RATE", default_value = "20")]
     from: Rate,
-    /// The greatest.
-    #[arg(long, value_name = "RATE", default_value = "400", allow_negative_numbers = true)]
+    /// Maximum rate
+    #[arg(long, value_name = "RATE", default_value = "400")]
     to: Rate,
-    /// From one rate to the next.
-    #[arg(long, value_name = "RATE", default_value = "4", allow_negative_numbers = true)]
+    /// Rate increment
+    #[arg(long, value_name = "RATE", default_value = "4")]
     rung: Rate,
 }
 
@@ -236,9 +235,6 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
 pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let ramp = arguments.ramp.get();
-    if arguments.steps.is_some_and(|steps| steps.get() > MAX_STEPS) {
-        return Err(wrong_option(path, "--steps are those of each try; give 1 to 10000000"));
-    }
     let (_, _, motors) = motors(common)?;
     let turn = |setup: &Setup| setup.motors.first().map_or(1, Motor::steps_a_turn);
     // The pull-out rates first: they take longer.
@@ -299,7 +295,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let count = (to - from) / rung + 1e-9;
     if !(to >= from && count < MAX_RATES) {
         let what = format!(
-            "--from {from} --to {to} --rung {rung}: give rates that rise, and at most {MAX_RATES} of them"
+            "--from {from} --to {to} --rung {rung}: use rates that rise, at most {MAX_RATES} of them"
         );
         return Err(wrong_option(path, &what));
     }

@@ -1,6 +1,6 @@
 //! The `stepscope` command: the native front of the model.
 //!
-//! Results go to standard output, errors to standard error; [`EXIT_CODES`] says how a command ends.
+//! Results go to standard output, errors to standard error.
 
 mod calibrate;
 mod capture;
@@ -22,6 +22,7 @@ mod output;
 mod panel;
 mod parallel;
 mod paths;
+mod pipe;
 mod plant;
 mod points;
 mod powercut;
@@ -45,21 +46,22 @@ use std::{
     io::{self, Write},
     process::ExitCode,
 };
+use stepscope_core::inspect::plain_text::is_unsafe;
 
-/// How a command ends, below the help of each.
+/// Follows the help of each command.
 const EXIT_CODES: &str = "\
 Exit codes:
-  0    done
-  1    a file could not be read or written, or a recording not to its end; a port could not be opened
-  2    the scenario, the link, the recording or the command line is wrong
-  3    something was to hold and does not: --strict found violations, faults found wrong steps on a framed line,
-       powercut found a position that is trusted and wrong, open --verify found another run than the link's,
-       capture --against another than the model's, send could not confirm what it sent, serve was not in real time
-  4    send, serve: the port was lost; what is known was told
-  130  ended by Ctrl-C; no file was changed
-  141  standard output was closed, as behind | head";
+  0    success
+  1    a file could not be read or written, the recording is truncated, or a port could not be opened
+  2    the scenario, the link, the recording or the command line is invalid
+  3    a check failed: timing violations with --strict, wrong steps on a framed line (faults), a wrong position
+       that is trusted (powercut), a run that differs from the link's (open --verify) or from the plan
+       (capture --against), commands that are not confirmed (send), a session not in real time (serve)
+  4    the port was lost (send, serve); the report says what is known
+  130  stopped by Ctrl-C; no file was changed
+  141  standard output was closed, for example by | head";
 
-/// A stepper-motion laboratory: runs scenarios to the clock cycle.
+/// Simulate and check stepper motion to the clock cycle
 #[derive(Parser)]
 #[command(name = "stepscope", version, arg_required_else_help = true)]
 struct Arguments {
@@ -69,78 +71,91 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Runs a scenario: digest, status, trace and other files.
+    /// Run a scenario and write its digest, status, trace and other files
     Run(run::Arguments),
-    /// Serves a scenario's controllers against the wall clock: other programs talk to them through a pseudo-terminal, a socket or
-    /// a real port, and the session can be recorded.
+    /// Serve a scenario's controllers in real time
+    ///
+    /// Other programs connect through a pseudo-terminal, a socket or a real port. The session can be recorded.
     Serve(live::serve::Arguments),
-    /// Sends a scenario's ticks to real controllers and has them confirmed, tick by tick and position by position.
+    /// Send a scenario's ticks to real controllers and confirm each one
+    ///
+    /// On a framed line every tick and the final positions are confirmed; raw packets are only timed.
     Send(live::send::Arguments),
-    /// Sends the same orders over a line that goes wrong in as many ways as there are seeds, and counts
-    /// what was executed wrong, twice or not at all, with and without the framed protocol.
+    /// Simulate random line faults (one run per seed)
+    ///
+    /// Counts commands that were executed wrong, twice or not at all, with and without the framed protocol.
     Faults(faults::Arguments),
-    /// Writes the step times of an axis as a table for a firmware (C, AVR, Rust, CSV), or what each form of
-    /// table costs and how far its steps are off.
+    /// Write the step times of an axis as a table for a firmware
+    ///
+    /// C, AVR, Rust or CSV; without --format a summary of what each form of table costs and how far its steps are off.
     Tables(tables::Arguments),
-    /// Runs a scenario and tells how good an axis is, in numbers: the ideal curve, the steps that are made of
-    /// it and the pulses as they come held against each other, peaks, durations, distortion.
+    /// Report tracking error, peaks and distortion of an axis
+    ///
+    /// Compares the ideal curve, the planned steps and the actual pulses.
     Measures(measures::Arguments),
-    /// Says whether the motors have the torque that a scenario's plans ask for, and which ramps they can
-    /// follow; or writes a motor's torque-speed curve.
+    /// Check that the motors have enough torque for the planned motion
+    ///
+    /// Also reports which ramps they can follow, or writes the torque-speed curve of a motor.
     Torque(torque::Arguments),
-    /// Runs a scenario that has a plant and tells what its pulses do to the motors, their supply and the sensors.
+    /// Simulate motors, supply and sensors driven by the pulses
     Plant(plant::Arguments),
-    /// Measures how long the supply current of each motor takes to settle after a step (the patent's delta t_p), and
-    /// can write it into a scenario.
+    /// Measure how long the supply current of each motor settles after a step
+    ///
+    /// The patent's delta t_p. Can write the result into a scenario.
     Settling(limits::SettlingArguments),
-    /// Searches the rate at which each motor of a plant starts and stops, and the one to which a ramp brings it.
+    /// Search the start-stop rate and the pull-out rate of each motor
     Limits(limits::LimitsArguments),
-    /// Maps how far each motor of a plant swings at each rate, and where it loses steps (CSV).
+    /// Map the swing of each motor and lost steps over the step rate (CSV)
     Resonance(limits::ResonanceArguments),
-    /// Opens a recording (a dump, a logic analyser's file, bytes, positions) and tells what its steps and bytes come to,
-    /// whether a driver could follow, how it stands to a scenario's run; or makes a scenario of it.
+    /// Analyze a recording of a logic analyzer, a simulation or a serial line
+    ///
+    /// Reports steps and bytes, checks a driver's timing, compares with a scenario's run, or writes a scenario that
+    /// reproduces it.
     Capture(capture::Arguments),
-    /// Cuts the power of stand-alone controllers in as many cycles as there are, and counts where the position is known
-    /// afterwards, known to be lost, or silently wrong; finds the hold-up that is just enough, and the memory's life.
+    /// Cut the power of stand-alone controllers and check the restored position
+    ///
+    /// Counts the cycles after which the position is known, known to be lost, or silently wrong. Also finds the
+    /// shortest sufficient hold-up time and the life of the memory.
     Powercut(powercut::Arguments),
-    /// Steps a millimetre by least squares, from measured lengths and the steps that made them.
+    /// Compute steps per millimeter from measured lengths (least squares)
     Calibrate(calibrate::Arguments),
-    /// Looks for the segments that make a sine with least distortion.
+    /// Find the segments that make a sine with least distortion
     #[command(subcommand)]
     Sine(sine::Command),
-    /// Writes a scenario whose one move is the curve through the points of a table (CSV of time, position).
+    /// Write a scenario that moves along the points of a table (CSV of time, position)
     Points(points::Arguments),
-    /// Writes the scenario of a share link as JSON.
+    /// Write the scenario of a share link as JSON
     Open {
-        /// The link, or what stands behind its `#`.
+        /// Link, or the part after its `#`
         link: String,
-        /// Also run it, and say on standard error whether the run is the one that the sender of the link
-        /// saw, or where the first difference is. Ends with 3 if it is another.
+        /// Run it, and compare the run with that of the link's sender
+        ///
+        /// The result goes to standard error; exit code 3 if the run differs.
         #[arg(long)]
         verify: bool,
     },
-    /// Lists the presets, or writes one as JSON.
+    /// List the presets, or write one as JSON
     Presets {
-        /// The preset to write.
+        /// Preset to write
         id: Option<String>,
         /// Print the list as JSON: one object of tables (docs/command.md).
         #[arg(long, conflicts_with = "id")]
         json: bool,
     },
-    /// Lists the drivers that pulses can be checked against, with their data sheets' figures.
+    /// List the drivers that --driver takes, with their limits and sources
     Drivers {
         /// Print the list as JSON: one object of tables (docs/command.md).
         #[arg(long)]
         json: bool,
     },
-    /// Writes what completes this command's words in a shell.
+    /// Generate shell completions
     Completions {
-        /// The shell.
+        /// Shell
         shell: clap_complete::Shell,
     },
-    /// Writes the manual page of this command, or a page of each of its commands into a folder.
+    /// Write the manual page, or one page per command into a folder
     Man {
-        /// The folder, which is made if it is not there.
+        /// Folder to write to; it is created if needed
         #[arg(long, value_name = "FOLDER")]
         dir: Option<std::path::PathBuf>,
     },
@@ -148,8 +163,13 @@ enum Command {
 
 /// The command line, with the exit codes below the help of each command.
 fn command_line() -> clap::Command {
+    // `-1` is a value that is out of range, and no option.
+    fn negative(argument: clap::Arg) -> clap::Arg {
+        let takes = argument.get_long().is_some() && argument.get_action().takes_values();
+        if takes { argument.allow_negative_numbers(true) } else { argument }
+    }
     fn with_codes(command: clap::Command) -> clap::Command {
-        command.after_help(EXIT_CODES).mut_subcommands(with_codes)
+        command.after_help(EXIT_CODES).mut_args(negative).mut_subcommands(with_codes)
     }
     with_codes(Arguments::command())
 }
@@ -171,7 +191,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             if !failure.is_closed_pipe() {
-                // Who has closed standard error has the exit code.
+                // If standard error is closed, the exit code remains.
                 let _ = writeln!(terminal::err(), "{failure}");
             }
             failure.exit_code()
@@ -206,10 +226,10 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Prints help, the version, or what is wrong with the command line, and gives the exit code.
+/// Prints help, the version, or the error in the command line; returns the exit code.
 fn usage(error: &clap::Error) -> io::Result<ExitCode> {
-    // What was typed is repeated, also to a terminal.
-    let is_unsafe = |c| terminal::is_unsafe(c) && c != '\n' && c != '\t';
+    // The message repeats what was typed.
+    let is_unsafe = |c| is_unsafe(c) && c != '\n' && c != '\t';
     if !error.use_stderr() {
         error.print()?;
         io::stdout().flush()?;

@@ -3,6 +3,7 @@
 use crate::{
     failure::{Failure, no_plant},
     json::Tables,
+    quantity::whole,
     scenarios, terminal,
 };
 use clap::Args;
@@ -22,10 +23,14 @@ use stepscope_core::{
 /// Motor and driver in the place of the scenario's.
 #[derive(Args)]
 pub(crate) struct Replacing {
-    /// Give every motor these figures, at its rated current; `stepscope plant --motors` lists them. Supply and load stay.
+    /// Give every motor these figures, at its rated current
+    ///
+    /// `stepscope plant --motors` lists them. Supply and load stay.
     #[arg(long, value_name = "MOTOR", value_parser = motor)]
     motor: Option<&'static MotorSheet>,
-    /// Give every motor this driver; `stepscope plant --motors` lists them.
+    /// Give every motor this driver
+    ///
+    /// `stepscope plant --motors` lists them.
     #[arg(long, value_name = "DRIVER", value_parser = drive)]
     drive: Option<&'static DriveSheet>,
 }
@@ -33,12 +38,13 @@ pub(crate) struct Replacing {
 /// The motor that torque is judged for.
 #[derive(Args)]
 pub(crate) struct Named {
-    /// Judge for this motor at its rated current, in the place of the scenario's; `stepscope plant --motors` lists them.
-    /// Supply and load stay: 24 V and none where the scenario has no motor.
+    /// Check this motor at its rated current, in place of the scenario's
+    ///
+    /// `stepscope plant --motors` lists them. Supply and load stay: 24 V and no load if the scenario has no motor.
     #[arg(long, value_name = "MOTOR", value_parser = motor)]
     pub(crate) motor: Option<&'static MotorSheet>,
-    /// Microsteps in a full step of that motor, where no axis tells; without it 16.
-    #[arg(long, value_name = "N", requires = "motor", value_parser = clap::value_parser!(u16).range(1..=512))]
+    /// Microsteps per full step of that motor, if no axis gives them (default: 16)
+    #[arg(long, value_name = "N", requires = "motor", value_parser = whole::<u16>(1..=512))]
     pub(crate) microsteps: Option<u16>,
 }
 

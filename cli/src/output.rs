@@ -1,15 +1,14 @@
-//! Files that a command writes: each stands under its name only when all of them are written.
+//! Output files: they get their names only when all of them are written.
 //!
 //! ```text
-//! judge     no output is the input or another output, by whatever path; one at most is standard output
-//! create    a temporary file beside each
+//! judge     no output is the input or another output, by whatever path; at most one is standard output
+//! create    a temporary file next to each
 //! commit    every temporary file gets its name
 //! ```
 //!
-//! What ends a command before, be it an error, a full disk, Ctrl-C or a kill, leaves what stood there. What is no plain
-//! file, such as a pipe or a device, is written as it is.
+//! An error, a full disk, Ctrl-C or a kill before that leaves the existing files. Pipes and devices are written directly.
 
-use crate::failure::Failure;
+use crate::{failure::Failure, pipe};
 use same_file::Handle;
 use std::{
     fs,
@@ -19,12 +18,11 @@ use std::{
 };
 use tempfile::TempPath;
 
-/// What stands for standard input or output in place of a path.
+/// Standard input or output in place of a path.
 pub(crate) const STANDARD: &str = "-";
-/// Links that are followed before a path is taken to be a circle.
+/// Links to follow before a path counts as a circle.
 const MAX_LINKS: u32 = 40;
 
-/// Where what is written goes.
 pub(crate) type Out = BufWriter<Box<dyn Write>>;
 
 /// The outputs of one command.
@@ -33,21 +31,19 @@ pub(crate) struct Outputs {
     waiting: Vec<Waiting>,
 }
 
-/// A file that is written and has not got its name yet.
+/// A written file without its name.
 struct Waiting {
-    /// As it was given.
     given: PathBuf,
     /// The file that a link leads to, or itself.
     name: PathBuf,
     temporary: TempPath,
 }
 
-/// What a path leads to.
 #[derive(PartialEq)]
 enum Identity {
-    /// Something that is there: also by another path, or by a hard link.
+    /// An existing file, by whatever path or hard link.
     There(Handle),
-    /// A file that is not there yet, in its real folder.
+    /// A new file, in its real folder.
     New(PathBuf),
 }
 
@@ -56,7 +52,7 @@ impl Identity {
         if path == Path::new(STANDARD) {
             return Handle::stdin().ok().map(Self::There);
         }
-        // Opening a pipe would take it from who reads it afterwards.
+        // A pipe can be opened only once.
         if !is_file(path) {
             return None;
         }
@@ -68,11 +64,10 @@ impl Identity {
             return Handle::stdout().ok().map(Self::There);
         }
         let name = followed(path);
-        // Nothing is there to be destroyed.
         if name == Path::new("/dev/null") {
             return None;
         }
-        if !is_pipe(&name)
+        if (!pipe::is_named_pipe(&name) || is_open_file(&name))
             && let Ok(handle) = Handle::from_path(&name)
         {
             return Some(Self::There(handle));
@@ -83,7 +78,7 @@ impl Identity {
 }
 
 impl Outputs {
-    /// Judges where the outputs of a command go before any of them is written.
+    /// Checks the outputs of a command before any of them is written.
     ///
     /// # Errors
     /// [`Failure::Output`] if two of them, or one and an input, are the same.
@@ -102,17 +97,17 @@ impl Outputs {
                 before.iter().find(|(other, known)| same(known) || is_standard(other) && is_standard(path))
             {
                 let detail = if is_standard(other) || is_standard(path) {
-                    "goes to standard output, where another output goes; give a file for all but one of them"
+                    "standard output already has another output; give a file for all but one of them"
                 } else {
                     "would be written twice; give each output a file of its own"
                 };
                 return Err(Failure::Output(path.to_owned(), detail));
             }
-            // A terminal is what many commands read and write.
+            // A terminal may be both.
             if identity.as_ref().is_some_and(|identity| inputs.contains(identity)) && is_file(path) {
                 return Err(Failure::Output(
                     path.to_owned(),
-                    "is what is read, and would be overwritten; give another file",
+                    "is an input, and would be overwritten; give another file",
                 ));
             }
             before.push((path, identity));
@@ -120,7 +115,7 @@ impl Outputs {
         Ok(Self::default())
     }
 
-    /// Begins a file beside `path`, or takes standard output for `-`.
+    /// Creates a file next to `path`; `-` is standard output.
     pub(crate) fn create(&mut self, path: &Path) -> Result<Out, Failure> {
         let out = self.open(path).map_err(|error| Failure::File(path.to_owned(), error))?;
         Ok(BufWriter::new(out))
@@ -131,26 +126,29 @@ impl Outputs {
             return Ok(Box::new(io::stdout()));
         }
         let name = followed(path);
+        if is_folder_name(&name) {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
         let known = fs::metadata(&name).ok();
         if known.as_ref().is_some_and(|known| !known.is_file()) || is_open_file(&name) {
-            return Ok(Box::new(fs::OpenOptions::new().write(true).open(&name)?));
+            return Ok(Box::new(pipe::to_write(&name)?));
         }
         if known.is_some() {
-            // What may not be written may not be replaced.
+            // A file that cannot be written must not be replaced.
             fs::OpenOptions::new().append(true).open(&name)?;
         }
         let mut start = name.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_owned();
-        // A name may have 255 bytes, and this one becomes longer.
+        // A name has at most 255 bytes.
         if start.len() > 200 {
             start = "stepscope".into();
         }
         start.push(".");
         let mut builder = tempfile::Builder::new();
         builder.prefix(&start).suffix(".part");
-        // As any new file has them, or those of the file that is replaced.
+        // The usual permissions of a new file.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // Known before Ctrl-C can come.
+        // Registered before Ctrl-C can interrupt.
         let mut temporaries = lock();
         let (file, temporary) = builder.tempfile_in(folder(&name))?.into_parts();
         temporaries.push(temporary.to_path_buf());
@@ -162,27 +160,67 @@ impl Outputs {
         Ok(Box::new(file))
     }
 
-    /// Gives every file its name; all have been written and flushed. A request to end comes before all of them or after.
+    /// Gives every file its name; all have been written and flushed. A signal ends the command before all of them or after. If
+    /// one file cannot get its name, what the others replaced is restored.
     pub(crate) fn commit(self) -> Result<(), Failure> {
         let mut committed = committed();
-        *committed |= !self.waiting.is_empty();
+        if let Some(folder) = self.waiting.iter().find(|waiting| waiting.name.is_dir()) {
+            return Err(Failure::File(folder.given.clone(), io::ErrorKind::IsADirectory.into()));
+        }
+        let mut replaced = Vec::new();
         for Waiting { given, name, temporary } in self.waiting {
             let path = temporary.to_path_buf();
-            temporary.persist(&name).map_err(|error| Failure::File(given, error.error))?;
+            let backup = Replaced::of(name);
+            if let Err(error) = temporary.persist(&backup.name) {
+                replaced.into_iter().rev().for_each(Replaced::restore);
+                return Err(Failure::File(given, error.error));
+            }
+            replaced.push(backup);
             lock().retain(|other| *other != path);
         }
+        *committed |= !replaced.is_empty();
         Ok(())
+    }
+}
+
+/// A file that another one replaces.
+struct Replaced {
+    name: PathBuf,
+    existed: bool,
+    /// A second name of what it was; none where the file system has no hard links.
+    backup: Option<TempPath>,
+}
+
+impl Replaced {
+    fn of(name: PathBuf) -> Self {
+        let existed = fs::symlink_metadata(&name).is_ok();
+        let mut builder = tempfile::Builder::new();
+        builder.prefix("stepscope.").suffix(".old");
+        let backup = existed.then(|| builder.make_in(folder(&name), |path| fs::hard_link(&name, path)));
+        let backup = backup.and_then(Result::ok).map(tempfile::NamedTempFile::into_temp_path);
+        Self { name, existed, backup }
+    }
+
+    fn restore(self) {
+        if let Some(backup) = self.backup {
+            // What cannot be restored stays under its second name.
+            if let Err(error) = backup.persist(&self.name) {
+                let _ = error.path.keep();
+            }
+        } else if !self.existed {
+            let _ = fs::remove_file(self.name);
+        }
     }
 }
 
 static COMMITTED: Mutex<bool> = Mutex::new(false);
 
-/// Whether files have got their names; locked while they get them.
+/// Whether files have their names; locked while they get them.
 pub(crate) fn committed() -> MutexGuard<'static, bool> {
     COMMITTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Writes one file with what `write` gives it, and gives it its name.
+/// Writes one file.
 pub(crate) fn write_whole(
     mut outputs: Outputs,
     path: &Path,
@@ -194,7 +232,7 @@ pub(crate) fn write_whole(
     outputs.commit()
 }
 
-/// The folder that a file stands in.
+/// The folder of a file.
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -202,7 +240,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Where links lead, the last of them also to what is not there yet.
+/// The file that links lead to, even if it does not exist yet.
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -215,25 +253,25 @@ fn followed(path: &Path) -> PathBuf {
     path
 }
 
-/// Whether a path is a file that some process has open, as `/dev/stdout` is in the end: it is written where it stands, and
-/// not replaced.
+/// Whether a path is a file that a process has open, as `/dev/stdout` is: it cannot be replaced.
 fn is_open_file(path: &Path) -> bool {
     let folder = fs::canonicalize(folder(path)).unwrap_or_default();
     cfg!(unix) && (folder.starts_with("/proc") || folder.starts_with("/dev/fd"))
 }
 
-/// Whether a path is a pipe with a name: opening it waits for the other end.
-fn is_pipe(path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        !is_open_file(path) && fs::metadata(path).is_ok_and(|known| known.file_type().is_fifo())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = path;
-        false
-    }
+/// Whether a path is that of a file, or of one that can be made: no device, pipe, folder or standard output.
+pub(crate) fn can_be_file(path: &Path) -> bool {
+    let name = followed(path);
+    path != Path::new(STANDARD)
+        && !is_open_file(&name)
+        && !is_folder_name(&name)
+        && fs::metadata(&name)
+            .map_or_else(|error| error.kind() == io::ErrorKind::NotFound, |known| known.is_file())
+}
+
+/// Whether a path is that of a folder even if nothing is there: `name/`.
+fn is_folder_name(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(std::path::is_separator)
 }
 
 /// Whether a path, or standard output for `-`, leads to a plain file.
@@ -244,19 +282,55 @@ fn is_file(path: &Path) -> bool {
     Handle::stdout().is_ok_and(|out| out.as_file().metadata().is_ok_and(|known| known.is_file()))
 }
 
-/// Temporary files that are being written.
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn lock() -> MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files of a command that is ended. No file begins or gets its name any more.
+/// Removes the temporary files before a command is ended.
 pub(crate) fn remove_temporary() {
     let temporary = lock();
     for path in temporary.iter() {
         let _ = fs::remove_file(path);
     }
-    // The lock stays.
+    // Nobody may create another one.
     std::mem::forget(temporary);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder takes the last name while the files are written.
+    #[test]
+    fn files_that_cannot_all_get_their_names_change_nothing() {
+        for (taken, is_late, remain) in [("folder", false, 3), ("file/inside", true, 1)] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = |name: &str| folder.path().join(name);
+            fs::write(path("old"), "old").expect("a file");
+            fs::create_dir(path("file")).expect("a folder");
+            let mut outputs = Outputs::default();
+            for name in ["old", "new", taken] {
+                outputs
+                    .create(&path(name))
+                    .and_then(|mut out| {
+                        out.write_all(b"written").and_then(|()| out.flush()).map_err(Failure::output)
+                    })
+                    .expect("there is room");
+            }
+            if is_late {
+                // Its folder is gone, with the file in it.
+                fs::remove_dir_all(path("file")).expect("it is ours");
+            } else {
+                fs::create_dir_all(path("folder/full")).expect("a folder");
+            }
+            let failed = outputs.commit().expect_err("a name is taken");
+            assert!(matches!(&failed, Failure::File(given, _) if *given == path(taken)), "{failed}");
+            assert_eq!(fs::read_to_string(path("old")).expect("it was there"), "old", "{taken}");
+            assert!(!path("new").exists());
+            let left = fs::read_dir(folder.path()).expect("a folder").count();
+            assert_eq!(left, remain, "{taken}: files are left next to them");
+        }
+    }
 }

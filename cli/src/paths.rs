@@ -69,11 +69,15 @@ pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
             .flatten()
             .map(PathBuf::as_path)
     };
+    if let Some(path) = given(&["pty", "dir"]).find(|path| *path == Path::new(STANDARD)) {
+        let detail = "is standard output, and this is the name of a link or a folder; give a name";
+        return Err(Failure::Output(path.to_owned(), detail));
+    }
     if given(paths.read).filter(|path| *path == Path::new(STANDARD)).count() > 1 {
         let why = "-: standard input can be read once; give a file for all inputs but one";
         return Err(Failure::Option(why.to_owned()));
     }
-    // A table as JSON goes to standard output, but where --out says where.
+    // JSON goes to standard output unless there is --out.
     let table = inner.try_get_one::<bool>("json").ok().flatten().is_some_and(|json| *json);
     let table = (table && !paths.written.contains(&"out")).then_some(Path::new(STANDARD));
     Outputs::judge(given(paths.read), given(paths.written).chain(table)).map(drop)

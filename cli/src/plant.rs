@@ -6,6 +6,7 @@ use crate::{
     motors::{self, Replacing},
     output::{Out, Outputs, STANDARD},
     progress::Progress,
+    quantity::whole,
     terminal,
 };
 use clap::Args;
@@ -46,33 +47,33 @@ const MAX_SLIPS: usize = 20;
 /// What `stepscope plant` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, which has a plant: a JSON file, or a preset's name; `-` reads standard input.
+    /// Scenario with a plant: a JSON file or a preset's name; `-` reads standard input
     #[arg(required_unless_present = "motors")]
     scenario: Option<PathBuf>,
     #[command(flatten)]
     replacing: Replacing,
-    /// List the motors and drivers that --motor and --drive take, with their sources, and run nothing.
+    /// List the motors and drivers that --motor and --drive take, with their sources
     #[arg(long, conflicts_with_all = ["scenario", "motor", "drive", "controller", "digest", "csv", "vcd"])]
     motors: bool,
-    /// Of several controllers take this one.
-    #[arg(long, value_name = "K", default_value_t = 0)]
+    /// Controller to report
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole::<usize>(0..=u64::MAX))]
     controller: usize,
-    /// Print only the digest of the plant: XXH64, 16 hexadecimal digits.
+    /// Print only the digest of the plant: XXH64, 16 hexadecimal digits
     #[arg(long, conflicts_with = "json")]
     digest: bool,
-    /// Write a table of the grid's points: voltage, currents, angles, lost steps, codes (`-`: standard output).
+    /// Write a table of the simulated points: voltage, currents, angles, lost steps, codes
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a value change dump of signals and, as real variables, analogue values.
+    /// Write a value change dump of signals and analog values
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
-    /// Of the points write every Nth only.
-    #[arg(long, value_name = "N", default_value = "1")]
+    /// Write only every Nth point
+    #[arg(long, value_name = "N", default_value = "1", value_parser = whole::<NonZero<u64>>(1..=u64::MAX))]
     every: NonZero<u64>,
-    /// Print the results as JSON: one object of tables (docs/command.md).
+    /// Print the results as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }

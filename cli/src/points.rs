@@ -18,13 +18,13 @@ pub(crate) struct Arguments {
     /// The table: two columns, time in s and position, with or without a line of names; `-` reads
     /// standard input.
     table: PathBuf,
-    /// Unit of the positions.
+    /// Unit of the positions
     #[arg(long, value_enum, default_value = "steps")]
     unit: UnitName,
-    /// Length of one step in mm, for positions in mm.
-    #[arg(long, required_if_eq("unit", "mm"), allow_negative_numbers = true)]
+    /// Length of one step in mm, for positions in mm
+    #[arg(long, required_if_eq("unit", "mm"))]
     step_mm: Option<Millimeters>,
-    /// Straight from point to point, in place of a smooth curve from rest to rest.
+    /// Connect the points by straight lines, not by a smooth curve from rest to rest
     #[arg(long)]
     straight: bool,
 }

@@ -1,6 +1,8 @@
 //! `stepscope powercut`: what a stand-alone controller knows of its position after the power went away, cut by cut.
 
-use crate::{failure::Failure, json::Tables, parallel, progress::Progress, scenarios, terminal};
+use crate::{
+    failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenarios, terminal,
+};
 use clap::Args;
 use serde_json::{Value, json};
 use std::{
@@ -26,25 +28,25 @@ const BYTE_TIMES: u64 = 17;
 /// What `stepscope powercut` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario, whose source is `standalone`: a JSON file, or a preset's name; `-` reads standard input.
+    /// Scenario with a source `standalone`: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
     /// How many cycles to cut the power in: every one of a run that is no longer, else seeded ones, half of them while a
     /// record is written.
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole::<u32>(1..=10_000_000))]
     cuts: u32,
-    /// Where the seeded cycles begin.
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    /// Random seed of the cycles
+    #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = whole::<u64>(0..=u64::MAX))]
     seed: u64,
-    /// Writes that a cell of the memory bears.
-    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Write cycles that a cell of the memory endures
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = whole::<u32>(1..=u32::MAX.into()))]
     endurance: u32,
-    /// Threads that make the cuts; without it one for each processor. The result is the same.
-    #[arg(long, value_name = "N")]
+    /// Number of threads (default: one per processor); the result is the same
+    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
     threads: Option<NonZero<usize>>,
-    /// Print the counts as JSON: one object of tables (docs/command.md).
+    /// Print the counts as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }

@@ -6,10 +6,10 @@
 //! --within-us=-1      out of range; use 0 to 1000000000 microseconds
 //! ```
 //!
-//! An option takes its type (`error_us: Option<Microseconds>`) and needs no `value_parser`; give it
-//! `allow_negative_numbers = true`, so that `-1` is not taken for an option. A new quantity is one more row below.
+//! An option takes its type (`error_us: Option<Microseconds>`) and needs no `value_parser`. A new quantity is one more row below.
+//! An option of a whole number has the `value_parser` [`whole`].
 
-use std::{fmt, str::FromStr};
+use std::{fmt, ops::RangeInclusive, str::FromStr};
 use stepscope_core::{capture::read::decimal::Decimal, inspect::recording::tolerance::Tolerance};
 
 /// Defines number types with their range and unit.
@@ -71,6 +71,26 @@ fn number(text: &str, from: f64, to: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
+/// The `value_parser` of a whole number. `range` has no maximum where the number is compared with something else later.
+pub(crate) fn whole<T: FromStr>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
+    let (from, to) = range.into_inner();
+    move |text| {
+        let found = text.parse::<u64>().ok().filter(|number| (from..=to).contains(number));
+        found.and_then(|_| text.parse().ok()).ok_or_else(|| {
+            let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
+            let is_whole = !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
+            let what = if is_whole { "out of range" } else { "not a whole number" };
+            if to == u64::MAX {
+                format!("{what}; use {from} or more")
+            } else {
+                format!("{what}; use {from} to {to}")
+            }
+        })
+    }
+}
+
 /// A time in us, kept as the decimal number that was given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ExactMicroseconds(pub(crate) Tolerance);
@@ -118,5 +138,20 @@ mod tests {
         }
         assert_eq!("25".parse::<Microseconds>().expect("a time").to_string(), "25");
         assert!("0.00000000000001".parse::<ExactMicroseconds>().is_err());
+    }
+
+    #[test]
+    fn only_whole_numbers_in_range_are_taken() {
+        let parse = whole::<u8>(1..=16);
+        assert_eq!(parse("16"), Ok(16));
+        for text in ["0", "17", "-1", "256", "18446744073709551616", "-99999999999999999999999"] {
+            assert_eq!(parse(text), Err("out of range; use 1 to 16".to_owned()), "{text}");
+        }
+        for text in ["", "-", "1.5", "1e3", "NaN", "inf", "0x10", "1_000", " 1"] {
+            assert_eq!(parse(text), Err("not a whole number; use 1 to 16".to_owned()), "{text}");
+        }
+        let parse = whole::<std::num::NonZero<usize>>(1..=u64::MAX);
+        assert_eq!(parse("0"), Err("out of range; use 1 or more".to_owned()));
+        assert!(parse("18446744073709551616").is_err());
     }
 }

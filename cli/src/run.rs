@@ -8,6 +8,7 @@ use crate::{
     output::{Out, Outputs},
     panel,
     progress::Progress,
+    quantity::whole,
     scenarios, status, terminal, timing,
 };
 use clap::Args;
@@ -24,60 +25,68 @@ use stepscope_core::{
     sim::{Experiment, Run, Summary},
 };
 
-/// Records between two looks at how far a run is.
+/// Records between two reports of the progress.
 const SLICE: u64 = 1 << 16;
 
 /// What `stepscope run` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario: a JSON file, or a preset's name; `-` reads standard input.
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// Print only the digest of the trace: XXH64, 16 hexadecimal digits; of several controllers, one a
-    /// line.
+    /// Print only the digest of the trace: XXH64, 16 hexadecimal digits
+    ///
+    /// One line per controller.
     #[arg(long)]
     digest: bool,
-    /// Print positions, fault flags and ticks done; on a framed line also the controller's state, what
-    /// the host reached and counted, and the load of the line.
+    /// Print positions, fault flags and completed ticks
+    ///
+    /// On a framed line also the controller's state, the host's counters and the load of the line.
     #[arg(long)]
     status: bool,
-    /// Print the share link of the scenario: what stands behind the page's address. It carries the digests
-    /// of this run, so that whoever opens it can tell whether theirs is the same.
+    /// Print the share link of the scenario
+    ///
+    /// It contains the digests of this run, so that `stepscope open --verify` can compare.
     #[arg(long)]
     link: bool,
-    /// Write the trace: one record a line, cycle and levels in hexadecimal (`-`: standard output).
+    /// Write the trace: one record per line, cycle and levels in hexadecimal
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write a value change dump, for GTKWave, Surfer or PulseView.
+    /// Write a value change dump, for GTKWave, Surfer or PulseView
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
-    /// What the dump counts time in: 1, 10 or 100 of s, ms, us, ns, ps or fs, at most a cycle, so that none is lost. A
-    /// cycle is round(t*clock); the clock stands in the dump's head.
+    /// Time unit of the dump: 1, 10 or 100 of s, ms, us, ns, ps or fs
+    ///
+    /// At most one cycle, so that no time is lost. A cycle is round(t*clock); the header of the dump has the clock.
     #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
     vcd_timescale: Timescale,
-    /// Write a table of the signals: cycle, time in s, and a level each.
+    /// Write a table of the signals: cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a table of the packets, with what the controller did with each (CSV as in RFC 4180).
+    /// Write a table of the packets, with the controller's reaction to each (CSV)
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write what the panels of stand-alone controllers show, controller after controller: cycle, word, position and
-    /// display of each record (CONTROLLER.md G8), and what the word says: state, alarm, trust, outputs, group, loop (CSV).
+    /// Write the panel of stand-alone controllers as a table (CSV)
+    ///
+    /// Cycle, word, position and display of each record, and the meaning of the word: state, alarm, trust, outputs,
+    /// group, loop.
     #[arg(long, value_name = "FILE")]
     panel: Option<PathBuf>,
-    /// Write the scenario with what was done to the line as its source: every byte and the cycle it is
-    /// sent in, and every forced level, those of noise among them; or, where segments run it, as their
-    /// lists. Run in its turn, it gives the same traces.
+    /// Write the scenario with every byte, forced level or segment as its source
+    ///
+    /// Noise included. Its run gives the same traces.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
-    /// Of several controllers take this one: 0 is the scenario's own, 1 the first of `controllers`.
-    /// Without it digest and status are those of all, files and timing those of controller 0.
-    #[arg(long, value_name = "K")]
+    /// Controller to report: 0 is the scenario's own, 1 the first of `controllers`
+    ///
+    /// By default digest and status are those of all controllers, files and timing those of controller 0.
+    #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     controller: Option<usize>,
-    /// Print status, timing and link as JSON: one object of tables (docs/command.md). No file goes to standard output
-    /// then.
+    /// Print status, timing and link as JSON: one object of tables (docs/command.md)
+    ///
+    /// No file can go to standard output then.
     #[arg(long)]
     json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
     #[command(flatten)]
@@ -89,7 +98,7 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    /// Whether something else than digest and status was asked for.
+    /// Whether anything but digest and status is requested.
     const fn asks_for_a_file(&self) -> bool {
         self.trace.is_some()
             || self.vcd.is_some()
@@ -102,15 +111,17 @@ impl Arguments {
     }
 }
 
-/// Runs the scenario and writes what was asked for; digest and status if nothing was.
+/// Runs the scenario and writes the requested files and texts; by default digest and status.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let mut outputs = Outputs::default();
+    let mut timing = None;
     let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
         if arguments.panel.is_some() && !matches!(scenario.source, Source::Standalone(_)) {
             return Err(Failure::NoPanel(path.clone()));
         }
-        arguments.timing.check(path, scenario).map(drop)
+        timing = arguments.timing.check(path, scenario)?;
+        Ok(())
     })?;
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
@@ -119,7 +130,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {
-        station.timing = arguments.timing.check(path, &scenario)?;
+        station.timing = timing;
         station.files = open(arguments, &mut outputs, chosen, config, experiment.stand_alone())?;
     }
     if arguments.link {
@@ -128,7 +139,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
     let (line, violations) = (create(&arguments.line)?, create(&arguments.timing.violations)?);
     for warned in experiment.stand_alone().iter().flat_map(|controllers| controllers.warnings()) {
-        // Who has closed standard error hears no warnings.
         let _ = writeln!(terminal::err(), "warning: {warned}");
     }
     let finished = go(&experiment, &mut stations, arguments.progress);
@@ -191,7 +201,7 @@ fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Fail
     Ok(link::with_part(link, "d", &proof.emit()))
 }
 
-/// The whole run, or as much of it as its files take; a long one says how far it is.
+/// Runs to the end, or until a file cannot be written.
 fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
     let mut progress = Progress::new("run", wanted);
     let mut run = experiment.start();

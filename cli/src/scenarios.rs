@@ -1,9 +1,8 @@
 //! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
 
-use crate::{failure::Failure, json, scenario_file, terminal, verify};
+use crate::{failure::Failure, json, pipe, scenario_file, terminal, verify};
 use serde_json::json;
 use std::{
-    fs,
     io::{self, Read, Write},
     path::Path,
     rc::Rc,
@@ -69,7 +68,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let input: Box<dyn Read> = if path == Path::new("-") {
         Box::new(io::stdin())
     } else {
-        Box::new(fs::File::open(path).map_err(failed)?)
+        Box::new(pipe::to_read(path).map_err(failed)?)
     };
     let mut bytes = Vec::new();
     input.take(MAX_TEXT_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
@@ -100,7 +99,7 @@ pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
     if verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
 }
 
-/// Lists the presets, or writes the one that is asked for as JSON.
+/// Lists the presets, or writes one as JSON.
 pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
     if let Some(id) = id {
         let preset = preset(id).ok_or_else(|| Failure::Preset(id.to_owned()))?;

@@ -6,7 +6,7 @@ use crate::{
     output::{self, Outputs},
     parallel,
     progress::Progress,
-    quantity::{AmplitudePart, Hertz, Seconds},
+    quantity::{AmplitudePart, Hertz, Seconds, whole},
     scenarios,
 };
 use clap::{Args, Subcommand};
@@ -31,39 +31,41 @@ use stepscope_core::{
 /// What `stepscope sine` does.
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// What each largest deviation d1 of a range gives: segments, distortion, Euclidean distance.
+    /// Report segments, distortion and distance for each maximum deviation d1 of a range
     Sweep {
         #[command(flatten)]
         range: Range,
-        /// How many values of d1, from one end of the range to the other.
-        #[arg(long, value_name = "N", default_value = "500", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+        /// Number of values of d1 in the range
+        #[arg(long, value_name = "N", default_value = "500", value_parser = whole::<u32>(2..=1_000_000))]
         points: u32,
     },
-    /// The d1 with least distortion in a range; all polylines that the range has are compared.
+    /// Find the d1 with least distortion in a range
+    ///
+    /// All polylines that the range has are compared.
     Best {
         #[command(flatten)]
         range: Range,
-        /// Of those with so many segments a quarter.
-        #[arg(long, value_name = "N")]
+        /// Compare only polylines with this number of segments per quarter
+        #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
         segments: Option<usize>,
     },
-    /// The vertices of so many segments a quarter that give least distortion, on the curve or free.
+    /// Find the vertices with least distortion for a number of segments per quarter
     Vertices {
-        /// Segments of a quarter.
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_SEGMENTS as i64))]
+        /// Segments per quarter
+        #[arg(long, value_name = "N", value_parser = whole::<u8>(1..=MAX_SEGMENTS as u64))]
         segments: u8,
-        /// Vertices may leave the curve.
+        /// Allow vertices off the curve
         #[arg(long)]
         free: bool,
         #[command(flatten)]
         common: Common,
     },
-    /// The segments of a scenario's sines: where they break, their steps and rates, and the bytes of a quarter.
+    /// Report the segments of a scenario's sines: vertices, steps, rates, bytes per quarter
     Segments {
-        /// The scenario, whose source is a motion: a JSON file, or a preset's name; `-` reads standard input.
+        /// Scenario with a motion: a JSON file or a preset's name; `-` reads standard input
         scenario: PathBuf,
-        /// Only this axis, from 0.
-        #[arg(long, value_name = "K")]
+        /// Axis, from 0 (default: all)
+        #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
         axis: Option<usize>,
         #[command(flatten)]
         written: Written,
@@ -73,24 +75,38 @@ pub(crate) enum Command {
 /// A range of d1.
 #[derive(Args)]
 pub(crate) struct Range {
-    /// Least d1, in parts of the amplitude.
-    #[arg(long, value_name = "D1", default_value = "0.002", allow_negative_numbers = true)]
+    /// Minimum d1, as a part of the amplitude
+    #[arg(long, value_name = "D1", default_value = "0.002")]
     from: AmplitudePart,
-    /// Greatest d1.
-    #[arg(long, value_name = "D1", default_value = "0.06", allow_negative_numbers = true)]
+    /// Maximum d1
+    #[arg(long, value_name = "D1", default_value = "0.06")]
     to: AmplitudePart,
-    /// Bandwidth (-3 dB, first order) of the accelerometer on the rig, in Hz: one more column tells the
-    /// distortion of the acceleration that it feels.
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true, requires = "period_s")]
+    /// Add the distortion that an accelerometer of this bandwidth measures, in Hz
+    ///
+    /// -3 dB, first order; needs --period-s.
+    #[arg(long, value_name = "HZ", requires = "period_s")]
     sensor_hz: Option<Hertz>,
-    /// Time of one period in s, which the sensor's bandwidth is held against.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, requires = "sensor_hz")]
+    /// Time of one period, in s, for --sensor-hz
+    #[arg(long, value_name = "S", requires = "sensor_hz")]
     period_s: Option<Seconds>,
     #[command(flatten)]
     common: Common,
 }
 
 impl Range {
+    /// Its ends.
+    ///
+    /// # Errors
+    /// A range that falls.
+    fn ends(&self) -> Result<(f64, f64), Failure> {
+        let (from, to) = (self.from.get(), self.to.get());
+        if from <= to {
+            return Ok((from, to));
+        }
+        let why = format!("--to {to} is below --from {from}; use --to {from} to 1, or a lower --from");
+        Err(Failure::Option(why))
+    }
+
     fn bounds(&self) -> Bounds {
         let sensor =
             self.sensor_hz.zip(self.period_s).map(|(sensor_hz, period_s)| sensor_hz.get() * period_s.get());
@@ -101,8 +117,8 @@ impl Range {
 /// What all of them take.
 #[derive(Args)]
 pub(crate) struct Common {
-    /// Highest harmonic of the distortion.
-    #[arg(long, value_name = "K", default_value = "399", value_parser = clap::value_parser!(u16).range(3..=9999))]
+    /// Highest harmonic of the distortion
+    #[arg(long, value_name = "K", default_value = "399", value_parser = whole::<u16>(3..=9999))]
     order: u16,
     #[command(flatten)]
     written: Written,
@@ -111,10 +127,10 @@ pub(crate) struct Common {
 /// Where a table goes, and how.
 #[derive(Args)]
 pub(crate) struct Written {
-    /// Where the table goes (`-`: standard output).
+    /// Output file (`-`: standard output)
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
-    /// Write it as JSON: one object of tables (docs/command.md).
+    /// Print the table as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
 }
@@ -127,22 +143,16 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         Command::Segments { written, .. } => written,
     };
     let outputs = Outputs::default();
-    let sines = match command {
-        Command::Segments { scenario, axis, .. } => sines(scenario, *axis)?,
-        _ => Vec::new(),
-    };
+    let (mut sines, mut rows) = (Vec::new(), Vec::new());
+    match command {
+        Command::Segments { scenario, axis, .. } => sines = self::sines(scenario, *axis)?,
+        Command::Sweep { range, points } => rows = sweep(range, *points)?,
+        Command::Best { range, segments } => rows = vec![best(range, *segments)?],
+        Command::Vertices { .. } => {}
+    }
     output::write_whole(outputs, &written.out, |out| match command {
-        Command::Sweep { range, points } => sweep(range, *points, out),
-        Command::Best { range, segments } => {
-            let rows = Distinct::new(range.from.get(), range.to.get(), range.bounds());
-            let asked = |row: &Row| segments.is_none_or(|segments| segments == row.segments);
-            let best = sine_polyline::best(rows.filter(asked));
-            if written.json {
-                return json_of("sine best", "polylines", best.iter().map(cells)).write(out);
-            }
-            head(range, out)?;
-            best.iter().try_for_each(|best| row(best, out))
-        }
+        Command::Sweep { range, .. } => polylines("sine sweep", range, &rows, out),
+        Command::Best { range, .. } => polylines("sine best", range, &rows, out),
         Command::Vertices { segments, free, common } => {
             let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
             vertices((*segments).into(), freedom, common, out)
@@ -242,13 +252,32 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
     Tables::of(command).with(table, rows)
 }
 
-fn sweep(range: &Range, points: u32, out: &mut impl Write) -> io::Result<()> {
+fn sweep(range: &Range, points: u32) -> Result<Vec<Row>, Failure> {
+    let (from, to) = range.ends()?;
     let (progress, measure) = (Progress::new("sweep", false), Measure::new(range.bounds()));
-    let rows = parallel::each(points.into(), None, progress, |index| {
-        measure.row(swept(range.from.get(), range.to.get(), points, index as u32))
-    })?;
+    parallel::each(points.into(), None, progress, |index| measure.row(swept(from, to, points, index as u32)))
+        .map_err(Failure::threads)
+}
+
+fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
+    let (from, to) = range.ends()?;
+    let (mut least, mut most) = (usize::MAX, 0);
+    let rows = Distinct::new(from, to, range.bounds()).inspect(|row| {
+        (least, most) = (least.min(row.segments), most.max(row.segments));
+    });
+    let best = sine_polyline::best(rows.filter(|row| only.is_none_or(|only| only == row.segments)));
+    best.ok_or_else(|| {
+        let given = only.unwrap_or(0);
+        let why = format!(
+            "--segments {given}: no d1 from {from} to {to} gives as many; use {least} to {most}, or another range"
+        );
+        Failure::Option(why)
+    })
+}
+
+fn polylines(command: &'static str, range: &Range, rows: &[Row], out: &mut impl Write) -> io::Result<()> {
     if range.common.written.json {
-        return json_of("sine sweep", "polylines", rows.iter().map(cells)).write(out);
+        return json_of(command, "polylines", rows.iter().map(cells)).write(out);
     }
     head(range, out)?;
     rows.iter().try_for_each(|found| row(found, out))

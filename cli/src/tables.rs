@@ -5,7 +5,7 @@ use crate::{
     json::Tables,
     kept_run,
     output::{self, Outputs},
-    quantity::Microseconds,
+    quantity::{Microseconds, whole},
     scenarios,
     steps::steps_of_table,
     terminal,
@@ -42,47 +42,53 @@ pub(crate) struct Arguments {
     /// that its run makes are taken. With --steps it gives clock and pulses, and may be left out: 16 MHz and the default bus.
     #[arg(required_unless_present = "steps")]
     scenario: Option<PathBuf>,
-    /// Tables of these steps instead, as axis 0: CSV with a row for each step, its time from the start in a column cycle,
-    /// time_s, time_ms or time_us, and, if steps go both ways, dir: 1 or right, 0 or left.
+    /// Make tables of these steps instead, as axis 0
+    ///
+    /// CSV with one row per step: its time from the start in a column cycle, time_s, time_ms or time_us, and, if steps
+    /// go both ways, dir: 1 or right, 0 or left.
     #[arg(long, value_name = "FILE")]
     steps: Option<PathBuf>,
-    /// How the step times are kept; a summary without it shows all three.
+    /// Form of the table (default in a summary: all three)
     #[arg(long, value_enum)]
     form: Option<FormName>,
-    /// Greatest error of a step in a compressed table, in us.
-    #[arg(long, value_name = "US", default_value = "25", allow_negative_numbers = true)]
+    /// Maximum error of a step in a compressed table, in us
+    #[arg(long, value_name = "US", default_value = "25")]
     error_us: Microseconds,
     /// In a compressed table no step is off by more than this part of the shorter interval beside it, or, of one that is
     /// never late, of the interval before it: 2 for a half, as in Klipper.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
     interval_part: Option<NonZeroU32>,
-    /// On which side of its due time a step of a compressed table may be.
+    /// Allow steps of a compressed table to be early, or early and late
     #[arg(long, value_enum, default_value = "both")]
     window: WindowName,
-    /// How a compressed table is searched for. The fewest entries are looked for in tables of whole cycles, and of others
-    /// where the error is so small that a window has up to 4096 units; else both are the same.
+    /// Search method of a compressed table
+    ///
+    /// `fewest` searches tables of whole cycles, and others where the error is so small that a window has up to 4096
+    /// units; else both methods are the same.
     #[arg(long, value_enum, default_value = "fewest")]
     search: Search,
-    /// Widths of an entry: q16 (20 bytes, 1/65536 cycle), q8 (8 bytes, 1/256 cycle), ticks (8 bytes, whole
-    /// cycles) or klipper, another name of ticks: the numbers that its queue_step takes. A summary without it shows all of them.
+    /// Widths of an entry: q16, q8, ticks or klipper (default in a summary: all)
+    ///
+    /// q16 has 20 bytes and 1/65536 cycle, q8 8 bytes and 1/256 cycle, ticks 8 bytes and whole cycles. klipper is
+    /// another name of ticks: the numbers that its queue_step takes.
     #[arg(long, value_name = "WIDTHS", value_parser = widths)]
     entries: Option<EntryFormat>,
-    /// What is written: source code or CSV of one axis, or a summary of all.
+    /// Output format: source code or CSV of one axis, or a summary
     #[arg(long, value_enum, default_value = "summary")]
     format: Written,
-    /// The axis whose table is written, from 0.
-    #[arg(long, value_name = "K", default_value = "0")]
-    axis: usize,
+    /// Axis to write, from 0 (default: 0; in a summary, all)
+    #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
+    axis: Option<usize>,
     /// Name of the table in source code: up to 32 small letters, digits and underscores, a letter first, and not letters
     /// alone; `axis_K` without it. Refused is what C keeps for itself: names that begin with is, to, str, mem, wcs or
     /// e and a letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_
     /// or tss_.
     #[arg(long, value_parser = name)]
     name: Option<String>,
-    /// Where it goes (`-`: standard output).
+    /// Output file (`-`: standard output)
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
-    /// Write the summary as JSON: one object of tables (docs/command.md).
+    /// Print the summary as JSON: one object of tables (docs/command.md)
     #[arg(long, conflicts_with_all = ["format", "name"])]
     json: bool,
 }
@@ -277,14 +283,14 @@ fn made(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Fai
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = Outputs::default();
     let axes = Axes::new(arguments)?;
+    let axis = arguments.axis.unwrap_or(0);
+    let steps = axes.axes.get(axis);
+    let steps = steps.ok_or_else(|| Failure::Axis(axes.path.clone(), axis, axes.axes.len()))?;
     let Some(language) = arguments.format.language() else {
         return output::write_whole(outputs, &arguments.out, |out| {
             if arguments.json { json_of(&axes, arguments).write(out) } else { summary(&axes, arguments, out) }
         });
     };
-    let axis = arguments.axis;
-    let steps = axes.axes.get(axis);
-    let steps = steps.ok_or_else(|| Failure::Axis(axes.path.clone(), axis, axes.axes.len()))?;
     let form = arguments.form.unwrap_or(FormName::Compressed);
     let format = arguments.entries.unwrap_or(EntryFormat::Q16);
     let table = axes.kept(steps, form, format).map_err(|cause| axes.refused(axis, cause))?;
@@ -303,7 +309,7 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Each axis, form and width that is asked for, with its table or why there is none.
+/// Each requested axis, form and width, with its table or why there is none.
 fn each<'a>(
     axes: &'a Axes,
     arguments: &'a Arguments,
@@ -312,7 +318,9 @@ fn each<'a>(
     let forms = forms.into_iter().filter(|form| arguments.form.is_none_or(|only| only == *form));
     let formats = EntryFormat::ALL.into_iter();
     let formats = formats.filter(|format| arguments.entries.is_none_or(|only| only == *format));
-    axes.axes.iter().enumerate().flat_map(move |(axis, steps)| {
+    let chosen =
+        axes.axes.iter().enumerate().filter(|(axis, _)| arguments.axis.is_none_or(|only| only == *axis));
+    chosen.flat_map(move |(axis, steps)| {
         let formats = formats.clone();
         forms.clone().flat_map(move |form| {
             formats.clone().map(move |format| (axis, form, format, axes.kept(steps, form, format)))

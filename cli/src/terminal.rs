@@ -8,6 +8,7 @@ use std::{
     io::{self, StderrLock, StdoutLock, Write},
     path::Path,
 };
+use stepscope_core::inspect::plain_text::is_unsafe;
 
 /// Standard output for text.
 pub(crate) fn out() -> Text<StdoutLock<'static>> {
@@ -17,12 +18,6 @@ pub(crate) fn out() -> Text<StdoutLock<'static>> {
 /// Standard error for text.
 pub(crate) fn err() -> Text<StderrLock<'static>> {
     Text { to: io::stderr().lock(), split: Vec::new() }
-}
-
-/// Whether a character can steer a terminal, or change the order in which text is shown.
-pub(crate) fn is_unsafe(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
 
 /// A writer of text that escapes what is unsafe in it. Line feeds and tabs stay.

@@ -24,18 +24,21 @@ const MAX_WRITTEN: usize = 1_000_000;
 /// What `stepscope run` takes about the timing check.
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Check the pulses against the scenario's driver: the shortest times, what they have to spare,
-    /// and the first violations.
+    /// Check the pulses against the scenario's driver
+    ///
+    /// Prints the shortest times, their slack, and the first violations.
     #[arg(long)]
     timing: bool,
-    /// Check against this driver, whatever the scenario names: one that `stepscope drivers` lists, limits of your own such as
-    /// custom:step_high_ns=1000,dir_setup_ns=200, or a JSON file with them.
+    /// Check STEP, DIR and EN against a driver's timing
+    ///
+    /// One that `stepscope drivers` lists, limits of your own such as custom:step_high_ns=1000,dir_setup_ns=200, or a
+    /// JSON file with them; in place of the driver that the scenario names.
     #[arg(long, value_name = "DRIVER")]
     driver: Option<PathBuf>,
-    /// Write a table of the violations, up to a million.
+    /// Write the violations as a table, up to a million
     #[arg(long, value_name = "FILE")]
     pub(crate) violations: Option<PathBuf>,
-    /// End with exit code 3 if the timing check finds a violation.
+    /// End with exit code 3 if the timing check finds a violation
     #[arg(long)]
     strict: bool,
 }
@@ -52,13 +55,16 @@ fn driver(path: &Path) -> Result<TimingRules, String> {
     if let Some(fields) = text.strip_prefix(CUSTOM) {
         return custom(fields);
     }
-    if !path.is_file() {
-        let ids = DRIVERS.map(|sheet| sheet.id).join(", ");
-        return Err(format!(
-            "neither a driver nor a file; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file"
-        ));
-    }
-    let read = scenarios::text(path).map_err(|error| error.to_string())?;
+    let read = scenarios::text(path).map_err(|error| match error {
+        Failure::File(_, error) if error.kind() == io::ErrorKind::NotFound => {
+            let ids = DRIVERS.map(|sheet| sheet.id).join(", ");
+            format!(
+                "neither a driver nor a file; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file"
+            )
+        }
+        Failure::File(_, error) => error.to_string(),
+        error => error.to_string(),
+    })?;
     rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
 }
 
@@ -103,12 +109,12 @@ fn allowed() -> String {
 }
 
 impl Options {
-    /// Whether a timing check was asked for.
+    /// Whether any option requests a timing check.
     pub(crate) const fn asked(&self) -> bool {
         self.timing || self.driver.is_some() || self.violations.is_some() || self.strict
     }
 
-    /// The check, if one was asked for.
+    /// The timing check, if one is requested.
     pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
         self.check_times(path, scenario, false)
     }
@@ -135,7 +141,7 @@ impl Options {
 
     /// Prints what the check found.
     pub(crate) fn report(&self, check: &TimingCheck, clock_hz: u32) -> Result<(), Failure> {
-        // A table on standard output stands alone, as the other files do.
+        // A table on standard output must not be mixed with text.
         if self.violations.is_none() || self.timing {
             print(check, clock_hz).map_err(Failure::output)?;
         }
@@ -255,7 +261,7 @@ fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
     }
 }
 
-/// A rule's columns; `-` where nothing is asked for or nothing was measured.
+/// A rule's columns; `-` without a limit or a measurement.
 fn columns(result: &RuleResult, clock_hz: u32) -> (String, String, String, String, String) {
     let none = || "-".to_owned();
     let asked = result.nanos > 0;

@@ -205,18 +205,23 @@ fn what_a_file_does_not_tell_is_asked_for() {
     asks(&[
         (LEVELS, &[], 2, rate),
         (LEVELS, &["--sample-rate", "1000"], 0, ""),
-        (LEVELS, &["--sample-rate", "0"], 2, "the sample rate is 0"),
+        (
+            LEVELS,
+            &["--sample-rate", "0"],
+            2,
+            "'0' for '--sample-rate <HZ>': out of range; use 1 to 1000000000000",
+        ),
         ("0 700000000\n5 700000001\nff 700000000\n", &[], 2, rate),
         ("81 05\n", &[], 2, "the bytes have no times; give the bit rate"),
         ("81 05\n", &["--baud", "115200"], 0, ""),
-        ("81 05\n", &["--baud", "0"], 2, "the bit rate is 0"),
+        ("81 05\n", &["--baud", "0"], 2, "'0' for '--baud <BAUD>': out of range; use 1 to 1000000000"),
         (
             "Time [s],A,B\n0,0,0\n1,1,0\n2,0,1\n",
             &[],
             2,
             "nothing says which channel is which signal; give a map, such as STEP0=A,DIR0=B; the channels are A, B",
         ),
-        (DUMP, &["--clock", "5"], 2, "the clock: 5 Hz; give 11 to 1000000000 Hz"),
+        (DUMP, &["--clock", "5"], 2, "'5' for '--clock <HZ>': out of range; use 11 to 1000000000"),
     ]);
 }
 
@@ -263,8 +268,8 @@ fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing(
     assert_eq!(code, Some(1), "{err}");
     assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
     assert!(
-        err.starts_with("-: not read to its end: line 3: ")
-            && err.ends_with("; what stands above is of what could be read\n"),
+        err.starts_with("-: the recording is truncated: line 3: ")
+            && err.ends_with("; the results above are those of the part before\n"),
         "{err}"
     );
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");
@@ -663,8 +668,12 @@ fn timing_limits_of_ones_own_need_no_scenario() {
     }
     let (code, _, err) = stepscope(&["run", "framed-link", "--driver", "nonesuch"], "");
     assert!(code == Some(2) && err.contains("use one of a4988, a4979, drv8825"), "{err}");
-    let (code, out, _) =
-        stepscope(&["run", "framed-link", "--driver", "custom:step_high_ns=2001", "--strict"], "");
-    assert!(code.is_some_and(|code| [0, 3].contains(&code)) && out.contains("2001"), "{out}");
+    // Its pulses are 2500 ns wide.
+    for (limit, expected) in [(2500, 0), (2501, 3)] {
+        let driver = format!("custom:step_high_ns={limit}");
+        let (code, out, _) = stepscope(&["run", "framed-link", "--driver", &driver, "--strict"], "");
+        assert_eq!(code, Some(expected), "{driver}: {out}");
+        assert!(out.contains(&format!("step_high           {limit}         2500 ")), "{out}");
+    }
     assert!(stepscope(&["drivers"], "").1.contains("--driver custom:step_high_ns="));
 }

@@ -107,13 +107,13 @@ fn a_file_of_something_else_ends_every_command_with_2() {
 #[test]
 fn seeds_that_are_not_there_are_refused() {
     for (options, expected) in [
-        (&["--seeds", "0"] as &[&str], "0 is not in 1..="),
+        (&["--seeds", "0"] as &[&str], "'0' for '--seeds <N>': out of range; use 1 to 4294967295"),
         (
             &["--from", "4294967295"],
             "--from 4294967295 with --seeds 1000: the last seed is 4294967295; use --seeds 1 to 1",
         ),
         (&["--from", "4294967294", "--seeds", "3"], "use --seeds 1 to 2, or a lower --from"),
-        (&["--from", "4294967296"], "4294967296 is not in "),
+        (&["--from", "4294967296"], "'4294967296' for '--from <SEED>': out of range; use 0 to 4294967295"),
     ] {
         let (code, out, err) = stepscope(&[&["faults"], options].concat(), "");
         assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}");
@@ -165,6 +165,69 @@ fn numbers_that_are_none_are_refused_by_every_option() {
         let (code, out, err) = stepscope(arguments, "{}");
         assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}: {err}");
     }
+}
+
+/// Numbers that depend on each other or on the scenario: the message has the value given and what is allowed.
+#[test]
+fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
+    let sweep = "--to 0.002 is below --from 0.06; use --to 0.06 to 1";
+    let axis = "there is no axis 18446744073709551615; the scenario has 2 axes, from 0";
+    let controller = "there is no controller 18446744073709551615; the scenario has only 0";
+    let channel = "there is no axis 18446744073709551615; the scenario has 1 axis, from 0";
+    const MOST: &str = "18446744073709551615";
+    let rows: &[(&[&str], &str)] = &[
+        (&["sine", "sweep", "--from", "0.06", "--to", "0.002"], sweep),
+        (&["sine", "best", "--from", "0.06", "--to", "0.002"], sweep),
+        (&["sine", "best", "--segments", "0"], "'0' for '--segments <N>': out of range; use 1 or more"),
+        (
+            &["sine", "best", "--segments", MOST],
+            "--segments 18446744073709551615: no d1 from 0.002 to 0.06 gives as many; use 2 to 10",
+        ),
+        (&["sine", "vertices", "--segments", "33"], "out of range; use 1 to 32"),
+        (
+            &["sine", "segments", "sine-2022-d00054", "--axis", MOST],
+            "there is no axis 18446744073709551615; the scenario has 1 axis",
+        ),
+        (&["tables", "framed-link", "--axis", MOST], axis),
+        (&["tables", "framed-link", "--axis", MOST, "--json"], axis),
+        (&["tables", "framed-link", "--axis", MOST, "--format", "c"], axis),
+        (&["measures", "framed-link", "--axis", MOST], axis),
+        (&["torque", "framed-link", "--axis", MOST], axis),
+        (&["run", "framed-link", "--controller", MOST], controller),
+        (&["plant", "resonance-full-steps", "--controller", MOST], controller),
+        (&["settling", "resonance-full-steps", "--channel", MOST], channel),
+        (&["limits", "resonance-full-steps", "--channel", MOST], channel),
+        (&["resonance", "resonance-full-steps", "--channel", MOST], channel),
+        (
+            &["resonance", "resonance-full-steps", "--from", "3", "--to", "2"],
+            "--from 3 --to 2 --rung 4: use rates that rise",
+        ),
+        (&["settling", "resonance-full-steps", "--t-step", "1"], "T_step is 1 cycles; give --t-step 80 to "),
+        (
+            &["capture", "recorded-step-table", "--against", "framed-link", "--channel", "16"],
+            "'16' for '--channel <K>': out of range; use 0 to 15",
+        ),
+        (
+            &["capture", "recorded-step-table", "--against", "framed-link", "--align", MOST],
+            "--align 18446744073709551615: the plan has ",
+        ),
+        (&["capture", "recorded-step-table", "--map", "STEP16=#0"], "use STEP0 to STEP15"),
+        (&["capture", "recorded-step-table", "--map", "STEP0=#99"], "there is no channel #99; the file has "),
+        (&["send", "framed-link", "--port", "/dev/null", "--lead", "255"], "out of range; use 0 to 254"),
+        (&["serve", "framed-link", "--tcp", "127.0.0.1:99999"], "use both, such as 127.0.0.1:4000"),
+        (&["serve", "framed-link", "--tcp", "127.0.0.1:0", "--pace=-1"], "give 0.001 to 100"),
+    ];
+    for (arguments, expected) in rows {
+        let (code, out, err) = stepscope(arguments, "");
+        assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}: {err}");
+        assert!(err.contains(expected), "{arguments:?}: {err}");
+    }
+    // The summary of one axis.
+    let (code, out, err) = stepscope(&["tables", "framed-link", "--axis", "1", "--form", "exact"], "");
+    assert_eq!((code, err.as_str(), out.lines().count()), (Some(0), "", 4), "{out}");
+    assert!(out.lines().skip(1).all(|line| line.starts_with("   1 exact")), "{out}");
+    // Both ends may be the same.
+    assert_eq!(stepscope(&["sine", "best", "--from", "0.01", "--to", "0.01"], "").0, Some(0));
 }
 
 /// Analyses that keep a run are refused before it begins where it is too long; a run itself takes any length.

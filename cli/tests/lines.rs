@@ -76,7 +76,7 @@ fn each_controller_has_its_digest_status_and_files() {
 #[test]
 fn a_controller_that_is_not_there_ends_with_2() {
     let (several, one) = (scenario("three.json", NOISY), scenario("one.json", "{}"));
-    for (path, given, says) in [(&several, "3", "give 0 to 2"), (&one, "1", "the scenario has one, 0")] {
+    for (path, given, says) in [(&several, "3", "give 0 to 2"), (&one, "1", "the scenario has only 0")] {
         let (code, out, err) = stepscope(&["run", path, "--controller", given]);
         assert_eq!((code, out.as_str()), (Some(2), ""));
         assert!(err.contains(says), "{err}");

@@ -16,6 +16,8 @@ mod lines;
 mod live;
 mod measures;
 mod outputs;
+#[cfg(unix)]
+mod pipes;
 mod plant;
 mod program;
 mod recordings;

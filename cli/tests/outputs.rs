@@ -55,9 +55,9 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
         std::os::unix::fs::symlink("in.json", folder.join("soft.json")).expect("a link");
         std::os::unix::fs::symlink("new.vcd", folder.join("soft.vcd")).expect("a link");
     }
-    let input = "is what is read, and would be overwritten";
+    let input = "is an input, and would be overwritten";
     let twice = "would be written twice";
-    let standard = "goes to standard output, where another output goes";
+    let standard = "standard output already has another output";
     let rows: &[(&[&str], &str)] = &[
         (&["run", "in.json", "--trace", "in.json"], input),
         (&["run", "in.json", "--line", "./sub/../in.json"], input),
@@ -98,10 +98,10 @@ fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
         let arguments = ["capture", "recorded-step-table", "--against", "s.json", output, "s.json"];
         let (code, out, err) = in_folder(&folder, &arguments);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{output}");
-        assert!(err.starts_with("s.json: is what is read, and would be overwritten"), "{err}");
+        assert!(err.starts_with("s.json: is an input, and would be overwritten"), "{err}");
     }
     let (code, _, err) = in_folder(&folder, &["tables", "in.json", "--steps", "s.json", "--out", "./s.json"]);
-    assert!(code == Some(2) && err.contains("is what is read"), "{err}");
+    assert!(code == Some(2) && err.contains("is an input"), "{err}");
     assert_eq!(fs::read_to_string(folder.join("s.json")).expect("a file"), "{}");
 }
 
@@ -167,6 +167,19 @@ fn a_command_that_fails_changes_no_file() {
     assert!(err.starts_with(line), "{err}");
     assert_eq!(files(&folder), ["in.json", "old.trace"]);
     assert_eq!(fs::read_to_string(folder.join("old.trace")).expect("a file"), "old");
+}
+
+/// A name that cannot be given at the end is refused at the beginning.
+#[test]
+fn the_name_of_a_folder_is_no_output() {
+    let folder = folder("names");
+    fs::create_dir(folder.join("there")).expect("a folder");
+    for name in ["new/", "there/", "there", "."] {
+        let (code, out, err) = in_folder(&folder, &["run", "framed-link", "--trace", name]);
+        assert_eq!((code, out.as_str()), (Some(1), ""), "{name}: {err}");
+        assert!(err.starts_with(&format!("{name}: ")), "{err}");
+    }
+    assert_eq!(files(&folder), ["there"]);
 }
 
 #[cfg(target_os = "linux")]

@@ -119,7 +119,7 @@ fn the_help_of_every_command_tells_the_exit_codes() {
         assert_eq!(code, Some(0), "{command:?}");
         for line in [
             "Exit codes:",
-            "  2    the scenario, the link, the recording or the command line is wrong",
+            "  2    the scenario, the link, the recording or the command line is invalid",
             "  141  ",
         ] {
             assert!(out.contains(line), "{command:?}: {out}");

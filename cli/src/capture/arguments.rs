@@ -1,10 +1,10 @@
-//! What `stepscope capture` is asked for.
+//! The arguments of `stepscope capture`.
 
 use super::advice;
 use crate::{
     failure::Failure,
     motors::Named,
-    quantity::{ExactMicroseconds, Microseconds},
+    quantity::{ExactMicroseconds, Microseconds, whole},
     timing,
 };
 use clap::{ArgGroup, Args};
@@ -37,73 +37,85 @@ pub(crate) struct Arguments {
     /// Count a step on both edges of each STEP: DEDGE in place of STEP in the map
     #[arg(long)]
     pub(super) both_edges: bool,
-    /// Clock that times become cycles of, in Hz; without it the file's own, of which each time is a whole cycle.
-    #[arg(long, value_name = "HZ")]
+    /// Clock that times are converted to, in Hz
+    ///
+    /// The default is the file's own clock, in which each time is a whole number of cycles.
+    #[arg(long, value_name = "HZ", value_parser = whole::<u32>(11..=1_000_000_000))]
     pub(super) clock: Option<u32>,
-    /// Samples a second, where the file does not tell.
-    #[arg(long, value_name = "HZ")]
+    /// Sample rate, in Hz, if the file does not contain it
+    #[arg(long, value_name = "HZ", value_parser = whole::<u64>(1..=1_000_000_000_000))]
     pub(super) sample_rate: Option<u64>,
-    /// Bit rate of RX and TX; without it that of their pulses.
-    #[arg(long, value_name = "BAUD")]
+    /// Bit rate of RX and TX; the default is measured from their pulses
+    #[arg(long, value_name = "BAUD", value_parser = whole::<u32>(1..=1_000_000_000))]
     pub(super) baud: Option<u32>,
-    /// Data bits, parity and stop bits of RX and TX: 7 or 8, N, E or O, 1 or 2, such as 7E1 (default 8N1)
+    /// Data bits, parity and stop bits of RX and TX, such as 7E1 (default 8N1)
     #[arg(long, value_name = "FORMAT", value_parser = uart)]
     pub(super) uart: Option<uart::Format>,
-    /// Base of decoded bytes in annotations, logs and tables: hex, dec, oct or bin; without it, their digits tell
+    /// Base of decoded bytes in annotations, logs and tables: hex, dec, oct or bin (default: by their digits)
     #[arg(long, value_name = "BASE", value_parser = base)]
     pub(super) base: Option<Base>,
-    /// Compare with the run of this scenario, step by step, or byte by byte where no channel steps: a JSON file, or a
-    /// preset's name. Reports missing, extra and late ones; ends with 3 if there are any.
+    /// Compare with the run of this scenario, step by step
+    ///
+    /// A JSON file or a preset's name. Bytes are compared where no channel steps. Reports missing, additional and late
+    /// steps; exit code 3 if there are any.
     #[arg(long, value_name = "SCENARIO")]
     pub(super) against: Option<PathBuf>,
-    /// Channel that --against compares and --steps writes
-    #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel")]
+    /// Channel to compare with --against, or to write with --steps
+    #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel", value_parser = whole::<u8>(0..=15))]
     pub(super) channel: u8,
-    /// The scenario's step, or byte, from 0, that comes at one time in both; without it the first that both have.
-    #[arg(long, value_name = "STEP", requires = "against")]
+    /// Align both at this step of the plan, from 0
+    ///
+    /// The default is the first step, or byte, that both have.
+    #[arg(long, value_name = "STEP", requires = "against", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) align: Option<usize>,
-    /// How far a step, or byte, may be off, in us, that time included; without it a cycle of the slower clock.
-    #[arg(long, value_name = "US", requires = "against", allow_negative_numbers = true)]
+    /// Accept steps that are off by up to this time, in us
+    ///
+    /// Applies to bytes, too. The default is one cycle of the slower clock.
+    #[arg(long, value_name = "US", requires = "against")]
     pub(super) within_us: Option<ExactMicroseconds>,
-    /// Write how late each step, or byte, is: a table, with a row for each missing or extra one.
+    /// Write the delay of each step, or byte, as a table
+    ///
+    /// One row per missing or additional one, too.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
-    /// Write the scenario that gives the recording again: its bytes, where RX has some, sent to the controllers of
-    /// --against, else its steps.
+    /// Write a scenario that reproduces the recording
+    ///
+    /// Its bytes, if RX has any, sent to the controllers of --against, else its steps.
     #[arg(long, value_name = "FILE")]
     pub(super) scenario: Option<PathBuf>,
-    /// Make the scenario of the steps, also where RX has bytes.
+    /// Make the scenario from the steps even if RX has bytes
     #[arg(long, requires = "scenario")]
     pub(super) of_steps: bool,
-    /// How far the scenario's steps may be from those recorded, in us: fewer segments.
-    #[arg(long, value_name = "US", requires = "scenario", allow_negative_numbers = true)]
+    /// Maximum error of the scenario's steps, in us: larger errors take fewer segments
+    #[arg(long, value_name = "US", requires = "scenario")]
     pub(super) error_us: Option<Microseconds>,
-    /// Write the step times of a channel as a table for `stepscope tables --steps`: cycle, direction.
+    /// Write the step times of a channel as a table for `stepscope tables --steps`
     #[arg(long, value_name = "FILE")]
     pub(super) steps: Option<PathBuf>,
-    /// Write the bytes of RX as a table: time, byte.
+    /// Write the bytes of RX as a table: time, byte
     #[arg(long, value_name = "FILE")]
     pub(super) bytes: Option<PathBuf>,
-    /// Write what RX and TX say, packet by packet: frames with their check and meaning, replies of the device among them; a
-    /// table that can be opened and sent again.
+    /// Write the packets of RX and TX as a table, with their check and meaning
+    ///
+    /// Replies of the device are among them. The table can be opened and sent again.
     #[arg(long, value_name = "FILE")]
     pub(super) packets: Option<PathBuf>,
-    /// Write the trace: one record a line, cycle and levels in hexadecimal.
+    /// Write the trace: one record per line, cycle and levels in hexadecimal
     #[arg(long, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
-    /// Write a value change dump with the signals' names.
+    /// Write a value change dump with the signals' names
     #[arg(long, value_name = "FILE")]
     pub(super) vcd: Option<PathBuf>,
-    /// What the dump counts time in.
+    /// Time unit of the dump
     #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
     pub(super) vcd_timescale: Timescale,
-    /// Write a table of the signals: cycle, time in s, and a level each.
+    /// Write a table of the signals: cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
-    /// Print all of it as JSON: one object of tables (docs/command.md).
+    /// Print the report as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     pub(super) json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     pub(super) progress: bool,
     #[command(flatten)]
@@ -125,7 +137,7 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    /// The files that are asked for.
+    /// The requested files.
     pub(super) fn outputs(&self) -> impl Iterator<Item = &Path> {
         [
             &self.late,
@@ -143,7 +155,7 @@ impl Arguments {
         .map(PathBuf::as_path)
     }
 
-    /// What is said of the recording.
+    /// How to open the recording.
     pub(super) fn ask(&self) -> Ask {
         Ask {
             map: self.map.clone(),
@@ -160,7 +172,7 @@ impl Arguments {
         self.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
-    /// What the recording lacks, and the option that gives it.
+    /// Why the recording cannot be opened, and the option that helps.
     pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
         let option = match error {
             OpenError::NoSampleRate(_) => " (--sample-rate HZ)".to_owned(),

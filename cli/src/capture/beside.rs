@@ -1,12 +1,16 @@
 //! A recording compared with a scenario's run.
 
 use super::arguments::Arguments;
-use crate::{failure::Failure, kept_run, scenarios};
-use std::path::Path;
-use stepscope_core::inspect::recording::{
-    events::{self, Events},
-    opened::Opened,
-    tolerance::Tolerance,
+use crate::{failure::Failure, kept_run};
+use std::{path::Path, rc::Rc};
+use stepscope_core::{
+    inspect::recording::{
+        events::{self, Events},
+        opened::Opened,
+        tolerance::Tolerance,
+    },
+    scenario::Scenario,
+    sim::Experiment,
 };
 
 /// A recording's steps, or bytes, compared with a plan's.
@@ -19,9 +23,13 @@ pub(super) struct Beside {
 
 impl Beside {
     /// The recording compared with the run of a scenario.
-    pub(super) fn of(arguments: &Arguments, recording: &Opened, path: &Path) -> Result<Self, Failure> {
-        let (scenario, experiment) = scenarios::judged(path)?;
-        let run = kept_run::of(path, &experiment)?;
+    pub(super) fn of(
+        arguments: &Arguments,
+        recording: &Opened,
+        path: &Path,
+        (scenario, experiment): &(Rc<Scenario>, Rc<Experiment>),
+    ) -> Result<Self, Failure> {
+        let run = kept_run::of(path, experiment)?;
         let recorded = recording.events(arguments.channel);
         let baud = recording
             .report

@@ -8,7 +8,7 @@ use super::{
     stop_watch::{StopWatch, wake_on_time},
     wire::Wire,
 };
-use crate::{failure::Failure, interrupt, json::Tables, scenarios, terminal};
+use crate::{failure::Failure, interrupt, json::Tables, quantity::whole, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -41,32 +41,34 @@ const ALL: u8 = 255;
 /// What `stepscope send` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario whose ticks are sent: a JSON file, or a preset's name.
+    /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// Where to: a serial port, tcp:ADDRESS, or pty:PATH.
+    /// Port to send to: a serial port, tcp:ADDRESS or pty:PATH
     #[arg(long, value_name = "PORT")]
     port: String,
-    /// How much longer than on the line a reply may take, in ms: what the system and the adapter add.
-    #[arg(long, value_name = "MS", default_value_t = 50, value_parser = clap::value_parser!(u64).range(0..=60_000))]
+    /// Additional time for a reply, in ms, for the system and the adapter
+    #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(0..=60_000))]
     slack: u64,
-    /// Of raw packets send so many ahead, less than the queue holds: what a late write may cost.
-    #[arg(long, value_name = "PACKETS", default_value_t = 0)]
+    /// Send this number of raw packets ahead; must be less than the queue holds
+    ///
+    /// Late writes of up to this many packets cause no gap.
+    #[arg(long, value_name = "PACKETS", default_value_t = 0, value_parser = whole::<u8>(0..=254))]
     lead: u8,
-    /// Who turns an RS-485 transceiver.
+    /// Select what switches the direction of an RS-485 transceiver
     #[arg(long, value_enum, default_value_t)]
     rs485: Rs485,
-    /// What is sent is heard again: it is compared and taken out.
+    /// Expect an echo of the sent bytes, and compare it
     #[arg(long)]
     echo: bool,
-    /// Print the report as JSON: one object of tables (docs/command.md).
+    /// Print the report as JSON: one object of tables (docs/command.md)
     #[arg(long)]
     json: bool,
-    /// Show the progress also where standard error is no terminal.
+    /// Show the progress even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }
 
-/// Sends the ticks, and says what is known of them.
+/// Sends the ticks and reports which are confirmed.
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));

@@ -7,7 +7,13 @@ use super::{
     recording::{self, beside},
     server::{Pacing, Server, Settings},
 };
-use crate::{failure::Failure, interrupt, output::Outputs, scenarios, terminal};
+use crate::{
+    failure::Failure,
+    interrupt,
+    output::{self, Outputs},
+    quantity::whole,
+    scenarios, terminal,
+};
 use clap::Args;
 use std::{
     io::Write,
@@ -20,52 +26,72 @@ use stepscope_core::sim::session::{Pace, Session};
 #[derive(Args)]
 #[command(group(clap::ArgGroup::new("where").args(["pty", "tcp", "port"])))]
 pub(crate) struct Arguments {
-    /// The scenario: a JSON file, or a preset's name. Of it the controllers and their line are served; what it sends is left
-    /// out, for the host comes from outside. Stand-alone controllers have no line: lines on standard input, such as `press start
-    /// 100ms`, are their buttons (`help` tells all), and what the scenario presses is left out.
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
+    ///
+    /// Its controllers and their line are served; the packets it sends are left out, as the host is another program.
+    /// Stand-alone controllers have no line: lines on standard input, such as `press start 100ms`, press their buttons
+    /// (`help` lists them).
     scenario: PathBuf,
-    /// Make a pseudo-terminal and print its path; LINK becomes a symbolic link to it.
+    /// Make a pseudo-terminal and print its path; LINK becomes a symbolic link to it
     #[cfg_attr(not(unix), arg(hide = true))]
     #[arg(long, value_name = "LINK", num_args = 0..=1)]
     pty: Option<Option<PathBuf>>,
-    /// Listen on an address, such as 127.0.0.1:4000 (port 0: one that is free): the line's bytes as they are, one client.
-    #[arg(long, value_name = "ADDRESS")]
+    /// Listen on an address, such as 127.0.0.1:4000 (port 0: any free port)
+    ///
+    /// One client at a time; the line's bytes are sent as they are.
+    #[arg(long, value_name = "ADDRESS", value_parser = address)]
     tcp: Option<SocketAddr>,
-    /// Listen also where others than this machine can connect.
+    /// Allow addresses that other machines can reach
     #[arg(long, requires = "tcp")]
     open: bool,
-    /// Answer a real host on a real port.
+    /// Answer a host on this serial port
     #[arg(long, value_name = "DEVICE")]
     port: Option<PathBuf>,
-    /// How late the model may be, in ms, before its clock is set back. That is told, and ends with exit code 3.
-    #[arg(long, value_name = "MS", default_value_t = 50, value_parser = clap::value_parser!(u64).range(1..=60_000))]
+    /// Maximum delay of the model, in ms, before its clock is set back
+    ///
+    /// A clock that was set back is reported, and ends with exit code 3.
+    #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(1..=60_000))]
     lag: u64,
-    /// How fast time goes, 0.001 to 100; or `max`: the line takes no time, and the model goes on by itself where the host
-    /// is silent for 10 ms.
+    /// Speed of time, 0.001 to 100, or `max`
+    ///
+    /// With `max` bytes take no time, and the model goes on by itself when the host is silent for 10 ms.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = pace)]
     pace: Pacing,
-    /// Write the session as a scenario, whose run gives the same digest (that is checked), and beside it NAME.session.json
-    /// with its wall-clock times.
+    /// Record the session as a scenario, with its wall-clock times in NAME.session.json
+    ///
+    /// The scenario is run again to check that it gives the same digest.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// End when the client goes; stand-alone controllers: when standard input has ended and nothing can change any more.
+    /// Stop when the client disconnects
+    ///
+    /// Stand-alone controllers stop when standard input has ended and nothing can change any more.
     #[arg(long)]
     once: bool,
-    /// Show the status also where standard error is no terminal.
+    /// Show the status even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    text.parse().map_err(|_| "not an address and a port; use both, such as 127.0.0.1:4000".to_owned())
 }
 
 fn pace(text: &str) -> Result<Pacing, String> {
     if text == "max" { Ok(Pacing::Max) } else { Ok(Pacing::Real(text.parse::<Pace>()?)) }
 }
 
-/// Serves until it is told to end.
+/// Serves until Ctrl-C, or with --once until the client disconnects.
 pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let beside = arguments.record.as_deref().map(beside);
-    let files = arguments.record.iter().chain(&beside).map(PathBuf::as_path);
-    let mut outputs = Outputs::judge(Some(path), files)?;
+    let files = || arguments.record.iter().chain(&beside).map(PathBuf::as_path);
+    if let Some(path) = files().find(|path| !output::can_be_file(path)) {
+        let detail =
+            "is no file, and a recording is two: NAME.json and NAME.session.json; give --record NAME.json";
+        return Err(Failure::Output(path.to_owned(), detail));
+    }
+    let link = arguments.pty.iter().flatten().map(PathBuf::as_path);
+    let mut outputs = Outputs::judge(Some(path), files().chain(link))?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
@@ -73,14 +99,14 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
         (Some(record), Some(beside)) => Some((create(record)?, create(beside)?)),
         _ => None,
     };
-    // Until here a signal ends the command at once, also while it waits for a pipe.
+    // Before this a signal ends the command at once, also while it waits for a pipe.
     interrupt::watch()?;
     let port = open(arguments, &session)?;
     let Arguments { pace, lag, once, progress, .. } = *arguments;
     let records = arguments.record.is_some();
     let mut server = Server::new(&Settings { pacing: pace, lag, records, once, progress }, session, port);
     let ended = server.run();
-    // What is recorded does not depend on whether somebody reads standard output.
+    // A closed standard output must not lose the recording.
     let printed = server.print_end().map_err(Failure::output);
     if let Some(files) = files {
         let record = files.0.0.clone();
@@ -104,7 +130,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens where the line goes, and says where that is.
+/// Opens the port of the line and prints its address.
 fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failure> {
     if session.run().stand_alone().is_some() {
         return buttons(arguments);

@@ -1,5 +1,6 @@
 //! What `stepscope measures` takes on its command line.
 
+use crate::quantity::whole;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -9,13 +10,13 @@ pub(crate) struct Arguments {
     /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Where its source is no motion there is no
     /// ideal curve, and the steps themselves are measured.
     pub(super) scenario: PathBuf,
-    /// The axis, or channel, from 0; that of the scenario's `analysis` without it.
-    #[arg(long, value_name = "K")]
+    /// Axis, or channel, from 0 (default: that of the scenario's `analysis`)
+    #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) axis: Option<usize>,
-    /// How it is written: for the eye, as one JSON object, or as a table of one figure a row.
+    /// Output format: text, one JSON object, or a table of one figure per row
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: Written,
-    /// Write all figures as JSON: one object of tables, a figure a row (docs/command.md).
+    /// Print all figures as JSON: one object of tables (docs/command.md)
     #[arg(long, conflicts_with = "format")]
     pub(super) json: bool,
 }

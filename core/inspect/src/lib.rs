@@ -49,6 +49,7 @@ pub mod motors;
 pub mod packet_table;
 #[cfg(feature = "controller")]
 pub mod panel;
+pub mod plain_text;
 #[cfg(feature = "plant")]
 pub mod plant;
 #[cfg(feature = "plant")]

@@ -27,6 +27,7 @@
 //! assert!(text.contains("#define AXIS_0_STEPS 3200ull"));
 //! ```
 
+use crate::plain_text::is_unsafe;
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
 use stepscope_motion::quantise::{Entry, EntryFormat, Stored};
@@ -121,13 +122,7 @@ impl Source<'_> {
         let error = self.table.error;
         // A comment in C must not end before its end, nor may a line be continued, or its order be changed for who reads it.
         let plain = |c: char| {
-            if c.is_control()
-                || matches!(c, '*' | '\\' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-            {
-                ' '
-            } else {
-                c
-            }
+            if is_unsafe(c) || matches!(c, '*' | '\\') { ' ' } else { c }
         };
         write!(out, "{mark}")?;
         self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;

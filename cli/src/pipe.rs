@@ -1,0 +1,56 @@
+//! Opens files that may be named pipes. The system opens such a pipe only when another program opens its other end, so the wait for
+//! that is bounded.
+
+use std::{
+    fs::{File, OpenOptions},
+    io,
+    path::Path,
+    sync::mpsc::sync_channel,
+    thread,
+    time::Duration,
+};
+
+/// How long the other end of a pipe may take to open.
+const WAIT: Duration = Duration::from_secs(10);
+
+/// Opens a file to read it.
+pub(crate) fn to_read(path: &Path) -> io::Result<File> {
+    open(path, OpenOptions::new().read(true), "writes to")
+}
+
+/// Opens a file or a device that exists, to write to it.
+pub(crate) fn to_write(path: &Path) -> io::Result<File> {
+    open(path, OpenOptions::new().write(true), "reads from")
+}
+
+fn open(path: &Path, options: &OpenOptions, does: &str) -> io::Result<File> {
+    if !is_named_pipe(path) {
+        return options.open(path);
+    }
+    let (sender, opened) = sync_channel(1);
+    let (name, options) = (path.to_owned(), options.clone());
+    // The system cannot be interrupted while it opens a pipe: in a thread, which ends with the command.
+    let open = move || drop(sender.send(options.open(name)));
+    thread::Builder::new().name("pipe".to_owned()).spawn(open)?;
+    opened.recv_timeout(WAIT).unwrap_or_else(|_| {
+        let seconds = WAIT.as_secs();
+        let why = format!(
+            "a named pipe, and no other program opened it within {seconds} s; start the program that {does} it, or give a file"
+        );
+        Err(io::Error::new(io::ErrorKind::TimedOut, why))
+    })
+}
+
+/// Whether a path leads to a pipe.
+pub(crate) fn is_named_pipe(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        std::fs::metadata(path).is_ok_and(|known| known.file_type().is_fifo())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = path;
+        false
+    }
+}
