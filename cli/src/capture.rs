@@ -16,7 +16,8 @@ use crate::{
     output::{Outputs, STANDARD},
     pipe,
     progress::Progress,
-    scenarios, timing,
+    scenarios,
+    timing::{self, TimeUnit},
     torque::{self, Driven},
 };
 pub(crate) use arguments::Arguments;
@@ -31,7 +32,7 @@ use stepscope_core::{
         read::{self, Limits, Reading, Wanted},
         samples::sample,
     },
-    inspect::{recording::opened::Opened, torque::Machine},
+    inspect::{recording::opened::Opened, timing::TimingCheck, torque::Machine},
     peripheral::signal::Sink,
     scenario::{Scenario, SegmentLists, Source},
 };
@@ -46,31 +47,41 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
         return Err(arguments.wrong(error));
     }
+    // A pipe can be read only once.
+    let against = arguments.against.as_deref().map(scenarios::judged).transpose()?;
+    let base = against.as_ref().map(|(scenario, _)| &**scenario);
+    let rules = arguments.timing.rules(&arguments.file, &base.cloned().unwrap_or_default())?;
+    let most_kept = arguments.timing.most_kept();
+    // In the file's own ticks before its memory is taken over: rounded to cycles, a short pulse could pass.
+    let in_ticks = rules.as_ref().map(|rules| {
+        Opened::timing_in_ticks(&capture, &arguments.ask(), rules, most_kept)
+            .map_err(|error| arguments.cannot_open(&error))
+    });
+    let in_ticks = in_ticks.transpose()?.flatten();
     let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.cannot_open(&error))?;
     // Only a line that the user mapped has to be one.
     let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
     if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
         return Err(arguments.wrong(advice::line(line)));
     }
-    // A pipe can be read only once.
-    let against = arguments.against.as_deref().map(scenarios::judged).transpose()?;
     let plan = arguments.against.as_deref().zip(against.as_ref());
     let beside = plan.map(|(path, plan)| Beside::of(arguments, &recording, path, plan)).transpose()?;
-    let base = against.as_ref().map(|(scenario, _)| &**scenario);
-    let scenario = Scenario { clock_hz: recording.clock_hz, ..base.cloned().unwrap_or_default() };
+    let unit = in_ticks.as_ref().map_or(TimeUnit::of_cycles(recording.clock_hz), |(_, base)| {
+        TimeUnit::of_ticks(*base, recording.clock_hz)
+    });
     // Pulses made from positions have no width.
-    let mut check = arguments
-        .timing
-        .check_times(&arguments.file, &scenario, recording.is_rounded)?
-        .filter(|_| recording.has_levels());
-    if let Some(check) = &mut check {
+    let rules = rules.filter(|_| recording.has_levels());
+    let check = in_ticks.map(|(check, _)| check).or_else(|| {
+        let new = if recording.is_rounded { TimingCheck::of_rounded } else { TimingCheck::new };
+        let mut check = new(rules.as_ref()?, recording.clock_hz, most_kept);
         recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         recording.records.iter().for_each(|record| check.record(*record));
-    }
+        Some(check)
+    });
     let driven = driven(arguments, &recording, base);
     files::write(arguments, &mut outputs, &recording, beside.as_ref(), base)?;
     if let (Some(path), Some(check)) = (&arguments.timing.violations, &check) {
-        let written = timing::write_violations(outputs.create(path)?, check, recording.clock_hz);
+        let written = timing::write_violations(outputs.create(path)?, check, unit);
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
     outputs.commit()?;
@@ -79,7 +90,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         let mut tables =
             text::tables(Tables::of("capture"), &recording, arguments.map.is_none(), beside.as_ref());
         if let Some(check) = &check {
-            tables = timing::tables(tables, check, recording.clock_hz);
+            tables = timing::tables(tables, check, unit);
         }
         if !driven.is_empty() {
             let shortages = torque::tables::shortages(&driven);
@@ -93,7 +104,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
                 .map_err(Failure::output)?;
         }
         if let Some(check) = &check {
-            arguments.timing.report(check, recording.clock_hz)?;
+            arguments.timing.report(check, unit)?;
         }
     }
     if let Some(error) = error {

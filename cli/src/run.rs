@@ -9,7 +9,8 @@ use crate::{
     panel,
     progress::Progress,
     quantity::whole,
-    scenarios, status, terminal, timing,
+    scenarios, status, terminal,
+    timing::{self, TimeUnit},
 };
 use clap::Args;
 use serde_json::json;
@@ -157,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
     if let (Some(path), Some(out), Some(timing)) = (&arguments.timing.violations, violations, &timing) {
-        let written = timing::write_violations(out, timing, scenario.clock_hz);
+        let written = timing::write_violations(out, timing, TimeUnit::of_cycles(scenario.clock_hz));
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
     outputs.commit()?;
@@ -171,7 +172,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json {
         let mut tables = status::tables(Tables::of("run"), &summary, chosen);
         if let Some(timing) = &timing {
-            tables = timing::tables(tables, timing, scenario.clock_hz);
+            tables = timing::tables(tables, timing, TimeUnit::of_cycles(scenario.clock_hz));
         }
         if let Some(link) = link {
             tables = tables.with("links", [json!({ "link": format!("#{link}") })]);
@@ -187,7 +188,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             status::print(&summary).map_err(Failure::output)?;
         }
         if let Some(timing) = &timing {
-            arguments.timing.report(timing, scenario.clock_hz)?;
+            arguments.timing.report(timing, TimeUnit::of_cycles(scenario.clock_hz))?;
         }
     }
     timing.map_or(Ok(()), |timing| arguments.timing.verdict(&timing))

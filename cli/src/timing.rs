@@ -8,6 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
+    capture::timebase::Timebase,
     inspect::{
         drivers::{self, DRIVERS, DataSheet},
         timing::{Rule, RuleResult, TimingCheck},
@@ -114,18 +115,8 @@ impl Options {
         self.timing || self.driver.is_some() || self.violations.is_some() || self.strict
     }
 
-    /// The timing check, if one is requested.
-    pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
-        self.check_times(path, scenario, false)
-    }
-
-    /// The same of times that were rounded to cycles, or not.
-    pub(crate) fn check_times(
-        &self,
-        path: &Path,
-        scenario: &Scenario,
-        rounded: bool,
-    ) -> Result<Option<TimingCheck>, Failure> {
+    /// The limits to check against, if a check was requested.
+    pub(crate) fn rules(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingRules>, Failure> {
         if !self.asked() {
             return Ok(None);
         }
@@ -133,17 +124,25 @@ impl Options {
         let wrong = |given: &Path, why| Failure::Option(format!("--driver {}: {why}", given.display()));
         let named = self.driver.as_deref().map(|given| driver(given).map_err(|why| wrong(given, why)));
         let rules = named.transpose()?.or_else(own);
-        let rules = rules.ok_or_else(|| Failure::NoDriver(path.to_owned()))?;
-        let kept = if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN };
-        let new = if rounded { TimingCheck::of_rounded } else { TimingCheck::new };
-        Ok(Some(new(&rules, scenario.clock_hz, kept)))
+        rules.map(Some).ok_or_else(|| Failure::NoDriver(path.to_owned()))
+    }
+
+    /// Violations that are listed.
+    pub(crate) const fn most_kept(&self) -> usize {
+        if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN }
+    }
+
+    /// The check of a run, if one was requested.
+    pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
+        let rules = self.rules(path, scenario)?;
+        Ok(rules.map(|rules| TimingCheck::new(&rules, scenario.clock_hz, self.most_kept())))
     }
 
     /// Prints what the check found.
-    pub(crate) fn report(&self, check: &TimingCheck, clock_hz: u32) -> Result<(), Failure> {
+    pub(crate) fn report(&self, check: &TimingCheck, unit: TimeUnit) -> Result<(), Failure> {
         // A table on standard output must not be mixed with text.
         if self.violations.is_none() || self.timing {
-            print(check, clock_hz).map_err(Failure::output)?;
+            print(check, unit).map_err(Failure::output)?;
         }
         Ok(())
     }
@@ -160,28 +159,28 @@ impl Options {
 }
 
 /// What the check found as tables.
-pub(crate) fn tables(tables: Tables, check: &TimingCheck, clock_hz: u32) -> Tables {
+pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tables {
     let rule = |result: &RuleResult| {
         let least = result.least.as_ref();
         let asked = (result.nanos > 0).then_some(result.nanos);
-        let spare = asked.and_then(|asked| Some(Picoseconds::over(least?.measured, asked, clock_hz).nanos()));
+        let spare = asked.and_then(|asked| Some(unit.over(least?.measured, asked).nanos()));
         json!({
             "rule": result.rule.name(),
             "required_ns": asked,
-            "least_ns": least.map(|least| Picoseconds::over(least.measured, 0, clock_hz).nanos()),
+            "least_ns": least.map(|least| unit.over(least.measured, 0).nanos()),
             "spare_ns": spare,
-            "at_cycle": least.map(|least| least.at.0),
+            "at_cycle": least.map(|least| unit.cycle(least.at)),
             "channel": least.map(|least| least.channel),
             "violations": result.total(),
         })
     };
     let violations = check.violations().iter().map(|found| -> Value {
         json!({
-            "cycle": found.at.0,
+            "cycle": unit.cycle(found.at),
             "channel": found.channel,
             "rule": found.rule.name(),
-            "measured_cycles": found.measured.0,
-            "required_cycles": found.required.0,
+            "measured_cycles": unit.cycles(found.measured),
+            "required_cycles": unit.cycles_up(found.required),
         })
     });
     tables.with("timing", check.results().iter().map(rule)).with("violations", violations)
@@ -225,31 +224,32 @@ fn figures(rules: &TimingRules) -> String {
 }
 
 /// The violations as a file.
-pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
+pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     writeln!(out, "cycle,time_s,channel,rule,measured_cycles,required_cycles,measured_ns,required_ns")?;
     for found in check.violations() {
-        let Instant(cycle) = found.at;
-        let (time, channel, rule) = (found.at.seconds(clock_hz), found.channel, found.rule.name());
-        let (measured, required) = (found.measured.0, found.required.0);
+        let cycle = unit.cycle(found.at);
+        let time = Instant(cycle).seconds(unit.clock_hz);
+        let (channel, rule) = (found.channel, found.rule.name());
+        let (measured, required) = (unit.cycles(found.measured), unit.cycles_up(found.required));
         let asked = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
-        let nanos = Picoseconds::over(found.measured, 0, clock_hz);
+        let nanos = unit.over(found.measured, 0);
         writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{asked}")?;
     }
     out.flush()
 }
 
-fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
+fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     let mut out = terminal::out();
     writeln!(out, "rule         required_ns     least_ns     spare_ns        at_cycle  channel  violations")?;
     for result in check.results() {
-        let (required, least, spare, at, channel) = columns(result, clock_hz);
+        let (required, least, spare, at, channel) = columns(result, unit);
         let (name, total) = (result.rule.name(), result.total());
         writeln!(out, "{name:12} {required:>11} {least:>12} {spare:>12} {at:>15} {channel:>8} {total:>11}")?;
     }
     writeln!(out, "violations {}", check.total())?;
     for found in check.violations().iter().take(MAX_SHOWN) {
-        let (cycle, channel, rule) = (found.at.0, found.channel, found.rule.name());
-        let (measured, required) = (found.measured.0, found.required.0);
+        let (cycle, channel, rule) = (unit.cycle(found.at), found.channel, found.rule.name());
+        let (measured, required) = (unit.cycles(found.measured), unit.cycles_up(found.required));
         writeln!(
             out,
             "cycle {cycle} channel {channel} {rule}: {measured} cycles, at least {required} required"
@@ -262,17 +262,17 @@ fn print(check: &TimingCheck, clock_hz: u32) -> io::Result<()> {
 }
 
 /// A rule's columns; `-` without a limit or a measurement.
-fn columns(result: &RuleResult, clock_hz: u32) -> (String, String, String, String, String) {
+fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, String, String) {
     let none = || "-".to_owned();
     let asked = result.nanos > 0;
     let required = if asked { result.nanos.to_string() } else { none() };
     let Some(least) = result.least else { return (required, none(), none(), none(), none()) };
-    let spare = Picoseconds::over(least.measured, result.nanos, clock_hz);
+    let spare = unit.over(least.measured, result.nanos);
     (
         required,
-        Picoseconds::over(least.measured, 0, clock_hz).to_string(),
+        unit.over(least.measured, 0).to_string(),
         if asked { spare.to_string() } else { none() },
-        least.at.0.to_string(),
+        unit.cycle(least.at).to_string(),
         least.channel.to_string(),
     )
 }
@@ -281,13 +281,55 @@ fn columns(result: &RuleResult, clock_hz: u32) -> (String, String, String, Strin
 /// that what is below zero stays below.
 struct Picoseconds(i128);
 
-impl Picoseconds {
-    /// What `measured` has over `nanos`.
-    fn over(measured: Cycles, nanos: u32, clock_hz: u32) -> Self {
-        let measured = i128::from(measured.0) * 1_000_000_000_000 / i128::from(clock_hz.max(1));
-        Self(measured - i128::from(nanos) * 1000)
+/// The unit of a check's times: a cycle, or a tick of a recording that no clock has whole cycles for.
+#[derive(Clone, Copy)]
+pub(crate) struct TimeUnit {
+    base: Timebase,
+    clock_hz: u32,
+}
+
+impl TimeUnit {
+    pub(crate) fn of_cycles(clock_hz: u32) -> Self {
+        Self { base: Timebase::new(1, clock_hz.into()).unwrap_or(Timebase::SECOND), clock_hz }
     }
 
+    pub(crate) const fn of_ticks(base: Timebase, clock_hz: u32) -> Self {
+        Self { base, clock_hz }
+    }
+
+    /// What `measured` has over `nanos`.
+    fn over(self, measured: Cycles, nanos: u32) -> Picoseconds {
+        let (numerator, denominator) = self.base.parts();
+        let scale = u128::from(numerator).saturating_mul(1_000_000_000_000);
+        let whole = u128::from(measured.0).saturating_mul(scale) / u128::from(denominator);
+        Picoseconds(i128::try_from(whole).unwrap_or(i128::MAX).saturating_sub(i128::from(nanos) * 1000))
+    }
+
+    /// The cycle of an edge.
+    fn cycle(self, at: Instant) -> u64 {
+        self.base.cycle(at.0, self.clock_hz).unwrap_or(u64::MAX)
+    }
+
+    /// Whole cycles of a measured time.
+    fn cycles(self, time: Cycles) -> u64 {
+        let (scaled, denominator) = self.scaled(time);
+        u64::try_from(scaled / denominator).unwrap_or(u64::MAX)
+    }
+
+    /// Cycles of a required time, rounded up: a violation is shorter in cycles, too.
+    fn cycles_up(self, time: Cycles) -> u64 {
+        let (scaled, denominator) = self.scaled(time);
+        u64::try_from(scaled.div_ceil(denominator)).unwrap_or(u64::MAX)
+    }
+
+    fn scaled(self, time: Cycles) -> (u128, u128) {
+        let (numerator, denominator) = self.base.parts();
+        let scale = u128::from(numerator) * u128::from(self.clock_hz);
+        (u128::from(time.0).saturating_mul(scale), denominator.into())
+    }
+}
+
+impl Picoseconds {
     /// In ns.
     fn nanos(&self) -> f64 {
         self.0 as f64 / 1000.0

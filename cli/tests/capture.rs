@@ -394,6 +394,34 @@ fn a_time_scale_that_is_no_whole_frequency_is_exact() {
 }
 
 #[test]
+fn limits_are_compared_in_the_files_own_ticks() {
+    let limit = "custom:step_high_ns=1000,step_low_ns=9000";
+    // 100 ps have no whole clock up to 1 GHz: 999.9 ns would become 1000 cycles.
+    for (interval, width, rule, least_ns) in [
+        (100_001, 10_000, None, 1000.0),
+        (100_001, 9999, Some("step_high"), 999.9),
+        (99_999, 10_000, Some("step_low"), 8999.9),
+    ] {
+        let dump = dump_of("100 ps", interval, width);
+        let line = ["capture", "-", "--driver", limit, "--strict", "--json"];
+        let (code, out, err) = stepscope(&line, &dump);
+        assert_eq!(code, Some(if rule.is_some() { 3 } else { 0 }), "{err}");
+        let all: Value = serde_json::from_str(&out).expect("JSON");
+        let timing = all["tables"]["timing"].as_array().expect("rules");
+        let of = |name: &str| timing.iter().find(|row| row["rule"] == name).expect(name);
+        assert_eq!(of(rule.unwrap_or("step_high"))["least_ns"], least_ns);
+        let first = &all["tables"]["violations"][0];
+        assert_eq!(first["rule"].as_str(), rule);
+        if rule.is_some() {
+            assert!(first["measured_cycles"].as_u64() < first["required_cycles"].as_u64(), "{first}");
+        }
+        // A slower clock changes nothing.
+        let slow = [&line[..], &["--clock", "16000000"]].concat();
+        assert_eq!(stepscope(&slow, &dump).0, code);
+    }
+}
+
+#[test]
 fn rounding_to_a_slower_clock_is_counted_and_makes_no_violation() {
     // 1900 ns, as a DRV8825 needs, are 30.4 cycles of 16 MHz: some pulses become 30 cycles.
     let dump = dump_of("100 ns", 1003, 19);

@@ -6,6 +6,7 @@
 mod capture;
 mod capture_maps;
 mod command;
+mod compared;
 mod controller;
 mod exit_codes;
 mod exports;

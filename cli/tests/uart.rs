@@ -133,4 +133,11 @@ fn a_line_is_proposed_as_rx_whatever_its_polarity_and_never_as_step() {
     let inverted = table("A", &text, 17_361, 10, true);
     let (code, _, err) = stepscope(&["capture", "-", "--map", "RX=A"], &inverted);
     assert!(code == Some(2) && err.contains("the line looks inverted: map it with !"), "{err}");
+    // A map that inverts a line which is not inverted.
+    let upright = table("A", &text, 17_361, 10, false);
+    let (code, _, err) = stepscope(&["capture", "-", "--map", "RX=!A"], &upright);
+    assert!(
+        code == Some(2) && err.contains("the line looks inverted: map it without !, such as RX=CH1"),
+        "{err}"
+    );
 }

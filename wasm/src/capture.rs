@@ -168,7 +168,7 @@ fn in_fields(remedy: &Remedy) -> String {
             let check = if *inverted { "check" } else { "clear" };
             format!("; if the driver steps where it begins, {check} “Inverted” of STEP{motor}")
         }
-        Remedy::InvertLine(line) => format!(": change “Inverted” of {line}"),
+        Remedy::InvertLine { line, .. } => format!(": change “Inverted” of {line}"),
         Remedy::ChooseLine => "; choose the channel of RX".to_owned(),
         Remedy::Format(format) => format!(": try the serial format {format}"),
         Remedy::Baud => "; enter one as the bit rate".to_owned(),

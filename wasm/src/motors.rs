@@ -13,7 +13,7 @@ use stepscope_core::{
         plant::settling_with,
         plant_log::{PlantLog, Stretch},
         plant_report::PlantReport,
-        recorded_run::{MAX_RECORDS, TooLong},
+        recorded_run::{RECORDS_PER_CHECK, check_records},
         torque::{Machine, TorqueCurve},
     },
     peripheral::{trace::Recording, units::Instant},
@@ -26,9 +26,6 @@ use stepscope_core::{
     scenario::{Scenario, to_json},
 };
 use wasm_bindgen::prelude::*;
-
-/// Records between two looks at how many there are.
-const SLICE: u64 = 1 << 16;
 
 /// A motor or a driver, without its figures.
 #[derive(Serialize)]
@@ -183,11 +180,8 @@ impl Judged {
             logs.push(PlantLog::new(plant));
         }
         let mut recordings: Vec<Recording> = logs.iter().map(|_| Recording::default()).collect();
-        while !run.advance_observed((Instant::NEVER, SLICE), &mut recordings, &mut logs) {
-            let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
-            if records > MAX_RECORDS {
-                return Err(JsError::new(&TooLong::Edges.to_string()));
-            }
+        while !run.advance_observed((Instant::NEVER, RECORDS_PER_CHECK), &mut recordings, &mut logs) {
+            check_records(&recordings).map_err(|error| JsError::new(&error.to_string()))?;
         }
         let (Some(log), Some(report), Some(recording)) =
             (logs.get(controller), PlantReport::of(experiment, &run, controller), recordings.get(controller))

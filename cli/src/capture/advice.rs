@@ -15,7 +15,8 @@ pub(super) fn option(remedy: &Remedy) -> String {
             let mark = if *inverted { "!" } else { "" };
             format!("; if the driver steps where it begins, use STEP{motor}={mark}{channel} in the map")
         }
-        Remedy::InvertLine(line) => format!(": map it with !, such as {line}=!CH1"),
+        Remedy::InvertLine { line, inverted: true } => format!(": map it with !, such as {line}=!CH1"),
+        Remedy::InvertLine { line, inverted: false } => format!(": map it without !, such as {line}=CH1"),
         Remedy::ChooseLine => "; choose one by a map, such as RX=#0".to_owned(),
         Remedy::Format(format) => format!(": try --uart {format}"),
         Remedy::Baud => "; give one with --baud".to_owned(),

@@ -854,6 +854,16 @@ fn pulses_within_one_time_of_the_file_are_counted() {
         lost(dump),
         ["1 pulse starts and ends at one time of the file, lost (STEP); record times more finely"]
     );
+    // A map names other channels.
+    for (wanted, channel) in [("glitch", "glitch"), ("#1", "glitch"), ("step", "STEP")] {
+        let wanted = Wanted { channels: vec![wanted.to_owned()], ..Wanted::default() };
+        let input = std::io::Cursor::new(dump);
+        let capture = read_wanted(input, &Limits::default(), &wanted, &mut |_| true).capture;
+        let expected = format!(
+            "1 pulse starts and ends at one time of the file, lost ({channel}); record times more finely"
+        );
+        assert_eq!(capture.left_out, [expected], "{channel}");
+    }
 }
 
 #[test]

@@ -17,8 +17,8 @@ use stepscope_sim::{Experiment, Run};
 
 /// Maximum records of a run that is kept: of all its controllers that are, at 16 bytes each. A step takes two.
 pub const MAX_RECORDS: u64 = 48_000_000;
-/// Records between two looks at how many there are.
-const SLICE: u64 = 1 << 16;
+/// Records after which [`check_records`] is due again.
+pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
 /// A run makes more records than are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,13 +61,25 @@ fn record_within(
     }
     let mut recordings: Vec<Recording> = (0..controllers).map(|_| Recording::default()).collect();
     let mut run = experiment.start();
-    while !run.advance_each(SLICE, &mut recordings) {
-        let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
-        if segments.is_none() && records > most {
-            return Err(TooLong::Edges);
+    while !run.advance_each(RECORDS_PER_CHECK, &mut recordings) {
+        if segments.is_none() {
+            check_within(&recordings, most)?;
         }
     }
     Ok((run, recordings))
+}
+
+/// Checks the number of records while a run goes on.
+///
+/// # Errors
+/// [`TooLong`] for more than [`MAX_RECORDS`].
+pub fn check_records(recordings: &[Recording]) -> Result<(), TooLong> {
+    check_within(recordings, MAX_RECORDS)
+}
+
+fn check_within(recordings: &[Recording], most: u64) -> Result<(), TooLong> {
+    let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
+    if records > most { Err(TooLong::Edges) } else { Ok(()) }
 }
 
 #[cfg(test)]

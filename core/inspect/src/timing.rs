@@ -221,6 +221,19 @@ impl TimingCheck {
         check
     }
 
+    /// A check of records whose cycles are ticks of `numerator / denominator` seconds: exact where no clock has whole cycles
+    /// for the ticks.
+    #[must_use]
+    pub fn in_ticks(rules: &TimingRules, (numerator, denominator): (u64, u64), most_kept: usize) -> Self {
+        let mut check = Self::new(rules, 1, most_kept);
+        for result in &mut check.results {
+            let ticks = (u128::from(result.nanos) * u128::from(denominator))
+                .div_ceil(1_000_000_000 * u128::from(numerator.max(1)));
+            result.required = Cycles(u64::try_from(ticks).unwrap_or(u64::MAX));
+        }
+        check
+    }
+
     /// What the run came to under each rule, in the order of [`Rule::ALL`].
     #[must_use]
     pub const fn results(&self) -> &[RuleResult] {

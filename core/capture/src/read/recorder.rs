@@ -132,10 +132,31 @@ impl Recorder {
             Meaning::Unknown => !is_dump,
             Meaning::Other => false,
         };
-        let lost = self.capture.channels.iter().zip(&self.lost);
+        // With a map, the channels that it names count, whatever their names mean.
+        let is_wanted = |index: usize, name: &str| {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            let number = format!("#{index}");
+            let is_named = |wanted: &String| {
+                *wanted == number || wanted.eq_ignore_ascii_case(name) || wanted.eq_ignore_ascii_case(last)
+            };
+            self.wanted.iter().any(is_named)
+        };
+        let is_level = |name: &str| {
+            matches!(Meaning::of(name, false),
+                Meaning::Signal(named) if matches!(named.kind, Kind::Dir | Kind::En | Kind::De))
+        };
+        let lost = self.capture.channels.iter().zip(&self.lost).enumerate();
         let sentences: Vec<String> = lost
-            .filter(|(channel, lost)| **lost > 0 && counts(&channel.name))
-            .map(|(channel, lost)| {
+            .filter(|(index, (channel, lost))| {
+                let name = &channel.name;
+                let is_of_interest = if self.wanted.is_empty() {
+                    counts(name)
+                } else {
+                    is_wanted(*index, name) && !is_level(name)
+                };
+                **lost > 0 && is_of_interest
+            })
+            .map(|(_, (channel, lost))| {
                 let pulses = if *lost == 1 { "pulse starts and ends" } else { "pulses start and end" };
                 format!(
                     "{} {pulses} at one time of the file, lost ({}); record times more finely",

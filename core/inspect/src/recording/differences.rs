@@ -224,4 +224,6 @@ fn time(seconds: f64) -> String {
 }
 
 #[cfg(test)]
+mod edits;
+#[cfg(test)]
 mod tests;

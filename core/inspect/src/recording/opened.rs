@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     curves::{Actual, Window},
-    timing::Rule,
+    timing::{Rule, TimingCheck},
 };
 use alloc::{
     borrow::ToOwned,
@@ -42,12 +42,12 @@ use stepscope_capture::{
 };
 use stepscope_peripheral::{
     config::limits::CLOCK_HZ,
-    signal::{Levels, Record},
+    signal::{Levels, Record, Sink},
     trace::{self, Step},
     units::Instant,
     wire::BitTimes,
 };
-use stepscope_scenario::{Scenario, SegmentLists, Source};
+use stepscope_scenario::{Scenario, SegmentLists, Source, TimingRules};
 
 /// Clock of bytes without times, and of steps that only rows of positions tell.
 const USUAL_CLOCK_HZ: u32 = 16_000_000;
@@ -380,6 +380,27 @@ impl Opened {
         Ok(())
     }
 
+    /// The timing check in the file's own ticks, which the second result is; `None` where the clock has whole cycles for them,
+    /// or pulses are made.
+    ///
+    /// # Errors
+    /// [`OpenError`].
+    pub fn timing_in_ticks(
+        capture: &Capture,
+        ask: &Ask,
+        rules: &TimingRules,
+        most_kept: usize,
+    ) -> Result<Option<(TimingCheck, Timebase)>, OpenError> {
+        let (opened, map, base) = Self::before(capture, ask)?;
+        let are_made = opened.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
+        let is_rounded = |base: &Timebase| !capture.changes.is_empty() && !base.is_exact(opened.clock_hz);
+        let Some(base) = base.filter(|base| is_rounded(base) && !are_made) else { return Ok(None) };
+        let mut check = TimingCheck::in_ticks(rules, base.parts(), most_kept);
+        opened.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
+        Records::in_ticks(capture, &map).for_each(|record| check.record(record));
+        Ok(Some((check, base)))
+    }
+
     /// All of a channel at a glance, in so many columns; `None` where no levels were recorded.
     ///
     /// # Errors
@@ -625,6 +646,12 @@ impl Opened {
     /// [`OpenError::NoRate`] where a line cannot be decoded and nothing else is there.
     fn told(&mut self, report: Report, map: &ChannelMap) -> Result<(), OpenError> {
         self.report = report;
+        for remedy in self.report.lines.iter_mut().flat_map(|line| &mut line.remedies) {
+            if let Remedy::InvertLine { line, inverted } = remedy {
+                let bit = if *line == "RX" { Levels::RX } else { Levels::TX }.trailing_zeros();
+                *inverted = !map.entries().iter().any(|entry| entry.bit == bit && entry.inverted);
+            }
+        }
         let is_something =
             !self.report.channels.is_empty() || self.report.lines.iter().any(|line| line.problem.is_none());
         if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_something) {

@@ -28,8 +28,13 @@ pub enum Remedy {
         /// Whether the channel is to be inverted; else it is no longer to be.
         inverted: bool,
     },
-    /// Invert a line: RX or TX.
-    InvertLine(&'static str),
+    /// Change the polarity of a line.
+    InvertLine {
+        /// RX or TX.
+        line: &'static str,
+        /// Whether the channel is to be inverted; else it is no longer to be.
+        inverted: bool,
+    },
     /// Choose the channel whose bytes are those of RX.
     ChooseLine,
     /// Decode with another format, such as `8E1`.

@@ -193,7 +193,9 @@ fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
             };
             Some((what.into(), Remedy::Format(text)))
         }
-        NoRate::Inverted => Some(("the line looks inverted".into(), Remedy::InvertLine(line))),
+        NoRate::Inverted => {
+            Some(("the line looks inverted".into(), Remedy::InvertLine { line, inverted: true }))
+        }
         _ => None,
     }
 }

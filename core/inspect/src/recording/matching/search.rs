@@ -1,0 +1,418 @@
+//! The beam search for the cheapest match.
+
+use super::{
+    clock::Clock,
+    costs::{AGAIN, BYTES, CLEAN, Costs, LATE, STEPS, gap},
+};
+use crate::recording::side::Side;
+use alloc::{rc::Rc, vec, vec::Vec};
+
+/// A planned and a recorded step.
+pub(super) type Pair = (usize, usize);
+
+/// Hypotheses that live at a time.
+const WIDTH: usize = 16;
+/// A hypothesis that costs so much more than the best one is dropped.
+const MARGIN: f64 = 2.5;
+/// Only what costs at most so much more than the best one makes further hypotheses of gaps.
+const SPAWNING: f64 = 1.5;
+/// Steps that are tried as missing, or extra, whatever the clock says.
+const NEAR: usize = 3;
+/// The same before the first match, where no clock is known.
+const NEAR_START: usize = 8;
+/// Intervals that a start far from the first steps is found by.
+const SIGNATURE: usize = 32;
+/// A gap so few steps after another of its kind is cheaper.
+const AGAIN_WITHIN: usize = 1;
+/// Steps of both lists after which all hypotheses wait for each other.
+const BLOCK: usize = 64;
+/// Blocks within which another start must become cheaper than those before it.
+const TRIAL: usize = 512;
+/// What a pair of steps costs that is matched by no run: more than a step that is on time.
+const UNMATCHED: f64 = 0.3;
+
+/// Where a run begins, linked to the run before it. Hypotheses share their common runs.
+#[derive(Debug)]
+struct Start {
+    model: usize,
+    recorded: usize,
+    before: Option<Rc<Start>>,
+}
+
+impl Drop for Start {
+    fn drop(&mut self) {
+        // One by one: a long list would need as many frames of the stack.
+        let mut next = self.before.take();
+        while let Some(mut start) = next.and_then(Rc::into_inner) {
+            next = start.before.take();
+        }
+    }
+}
+
+/// A gap on one side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Gap {
+    Missing(usize),
+    Extra(usize),
+}
+
+/// A hypothesis: all steps before these are matched, missing or extra.
+#[derive(Clone, Debug)]
+struct Hypothesis {
+    model: usize,
+    recorded: usize,
+    matched: usize,
+    cost: f64,
+    /// With the minimum cost of the rest.
+    estimate: f64,
+    clock: Option<Clock>,
+    /// What the row of late steps that ends here has cost; 0 if the last one was on time.
+    late: f64,
+    /// What the row of steps in the wrong direction, or other bytes, that ends here has cost; 0 if the last one was right.
+    differing: f64,
+    /// Where the last gap was, and whether steps were missing.
+    last_gap: Option<(usize, bool)>,
+    start: Rc<Start>,
+}
+
+impl Hypothesis {
+    const fn block(&self) -> usize {
+        (self.model + self.recorded) / BLOCK
+    }
+}
+
+pub(super) struct Search<'a> {
+    recorded: Side<'a>,
+    model: Side<'a>,
+    costs: Costs,
+    /// No interval counts for less, in s: two cycles of the slower clock.
+    least_s: f64,
+    living: Vec<Hypothesis>,
+    /// The cheapest that has come to an end.
+    best: Option<Hypothesis>,
+    /// Minimum estimate of all starts in each block of the trial.
+    trial: Vec<f64>,
+    /// The same where the trial ends.
+    trial_end: f64,
+    /// The block that all hypotheses have reached.
+    block: usize,
+    /// Gaps that may be tried: it bounds the time on recordings that are unlike the plan.
+    max_gaps: usize,
+    pub(super) tried_gaps: usize,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(recorded: Side<'a>, model: Side<'a>) -> Self {
+        let slower = recorded.clock_hz.min(model.clock_hz).max(1);
+        let steps = recorded.steps.len().saturating_add(model.steps.len());
+        Self {
+            recorded,
+            model,
+            costs: if model.values.is_empty() { STEPS } else { BYTES },
+            least_s: 2.0 / f64::from(slower),
+            living: Vec::with_capacity(WIDTH),
+            best: None,
+            trial: vec![f64::INFINITY; TRIAL],
+            trial_end: f64::INFINITY,
+            block: 0,
+            max_gaps: steps.saturating_mul(16).saturating_add(1 << 20),
+            tried_gaps: 0,
+        }
+    }
+
+    /// The end of the cheapest hypothesis, and where its runs begin.
+    pub(super) fn run(&mut self) -> Option<(Pair, Vec<Pair>)> {
+        // One start after the other: together they would push each other's hypotheses out of the beam.
+        for (model, recorded) in self.starts() {
+            self.begin(model, recorded);
+            while let Some(next) = self.next() {
+                self.go_on(next);
+            }
+        }
+        let best = self.best.as_ref()?;
+        let mut starts = vec![(best.start.model, best.start.recorded)];
+        let mut before = best.start.before.as_deref();
+        while let Some(start) = before {
+            starts.push((start.model, start.recorded));
+            before = start.before.as_deref();
+        }
+        starts.reverse();
+        Some(((best.model, best.recorded), starts))
+    }
+
+    /// The pairs of steps that may be the first that both have.
+    fn starts(&self) -> Vec<Pair> {
+        let mut starts = vec![(0, 0)];
+        if self.unlike(self.recorded, 0, self.model, 0) > 0.02 * SIGNATURE as f64 {
+            let far = |hay: Side<'a>, needle: Side<'a>| self.find(hay, needle).filter(|at| *at > NEAR_START);
+            starts.extend(far(self.model, self.recorded).map(|at| (at, 0)));
+            starts.extend(far(self.recorded, self.model).map(|at| (0, at)));
+        }
+        starts.extend((1..=NEAR_START).flat_map(|count| [(count, 0), (0, count)]));
+        let (planned, came) = (self.model.steps.len(), self.recorded.steps.len());
+        starts.retain(|(model, recorded)| *model < planned && *recorded < came);
+        starts
+    }
+
+    fn begin(&mut self, model: usize, recorded: usize) {
+        self.block = 0;
+        let start = Hypothesis {
+            model,
+            recorded,
+            matched: 0,
+            cost: gap(model.max(recorded)),
+            estimate: 0.0,
+            clock: None,
+            late: 0.0,
+            differing: 0.0,
+            last_gap: None,
+            start: Rc::new(Start { model, recorded, before: None }),
+        };
+        self.step(&start, None);
+    }
+
+    /// How unlike the intervals from two steps on are, each as a part of the second's.
+    fn unlike(&self, one: Side<'a>, from: usize, other: Side<'a>, other_from: usize) -> f64 {
+        let interval = |side: &Side<'a>, index: usize| Some(side.at_s(index + 1)? - side.at_s(index)?);
+        let mut sum = 0.0;
+        for index in 0..SIGNATURE {
+            let found = interval(&one, from + index).zip(interval(&other, other_from + index));
+            let Some((own, due)) = found else { return if index == 0 { f64::INFINITY } else { sum } };
+            sum += libm::fabs(own - due) / libm::fmax(due, self.least_s);
+            if sum > SIGNATURE as f64 {
+                break;
+            }
+        }
+        sum
+    }
+
+    /// Where the intervals that the needle begins with are found, if they are anywhere.
+    fn find(&self, hay: Side<'a>, needle: Side<'a>) -> Option<usize> {
+        if needle.steps.len() <= SIGNATURE {
+            return None;
+        }
+        let (mut least, mut found) = (0.1 * SIGNATURE as f64, None);
+        for at in 0..=hay.steps.len().checked_sub(SIGNATURE + 1)? {
+            let unlike = self.unlike(hay, at, needle, 0);
+            // Where all are alike the first is taken.
+            if unlike < 0.9 * least {
+                (least, found) = (unlike, Some(at));
+            }
+        }
+        found
+    }
+
+    /// Takes the hypothesis with the fewest steps out, and drops those that cost too much.
+    fn next(&mut self) -> Option<Hypothesis> {
+        let block = self.living.iter().map(Hypothesis::block).min()?;
+        let least = self.living.iter().fold(f64::INFINITY, |least, of| libm::fmin(least, of.estimate));
+        let mut most = libm::fmin(least + MARGIN, self.best_estimate());
+        if block > self.block {
+            // All are past the end of a block: other starts were here, too.
+            if let Some(others) = self.trial.get_mut(block) {
+                most = libm::fmin(most, *others + 2.0 * MARGIN);
+                *others = libm::fmin(*others, least);
+            } else if self.block < TRIAL {
+                most = libm::fmin(most, self.trial_end);
+                self.trial_end = libm::fmin(self.trial_end, least);
+            }
+            self.block = block;
+        }
+        self.living.retain(|living| living.estimate < most);
+        let far = |living: &Hypothesis| living.model + living.recorded;
+        let (first, _) = self.living.iter().enumerate().min_by_key(|(_, living)| far(living))?;
+        Some(self.living.swap_remove(first))
+    }
+
+    fn best_estimate(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |best| best.estimate)
+    }
+
+    fn least_estimate(&self) -> f64 {
+        self.living.iter().fold(self.best_estimate(), |least, living| libm::fmin(least, living.estimate))
+    }
+
+    /// What a hypothesis can become by its next steps.
+    fn go_on(&mut self, mut hypothesis: Hypothesis) {
+        // While it is on time it needs no others.
+        let block = hypothesis.block();
+        while self.follow(&mut hypothesis) {
+            if hypothesis.block() > block {
+                return self.push(hypothesis);
+            }
+        }
+        if self.is_ended(&hypothesis) {
+            let pairs = self.model.steps.len().min(self.recorded.steps.len());
+            hypothesis.estimate += UNMATCHED * pairs.saturating_sub(hypothesis.matched) as f64;
+            if hypothesis.estimate < self.best_estimate() {
+                self.best = Some(hypothesis);
+            }
+            return;
+        }
+        let is_clean = self.step(&hypothesis, None);
+        let most = self.least_estimate() + SPAWNING;
+        if is_clean || hypothesis.estimate > most || self.tried_gaps >= self.max_gaps {
+            return;
+        }
+        let mut gaps = Vec::with_capacity(2 * NEAR + 4);
+        for count in 1..=NEAR {
+            gaps.extend([Gap::Missing(count), Gap::Extra(count)]);
+        }
+        self.due_gaps(&hypothesis, &mut gaps);
+        for gap in gaps {
+            self.tried_gaps += 1;
+            self.step(&hypothesis, Some(gap));
+        }
+    }
+
+    /// Gaps behind which the next step comes when it is due.
+    fn due_gaps(&self, hypothesis: &Hypothesis, gaps: &mut Vec<Gap>) {
+        let Hypothesis { model, recorded, .. } = *hypothesis;
+        let (Some(clock), Some(due), Some(came)) =
+            (hypothesis.clock, self.model.at_s(model), self.recorded.at_s(recorded))
+        else {
+            return;
+        };
+        let near = |side: Side<'a>, from: usize, at_s: f64| {
+            let rest = side.steps.get(from..).unwrap_or_default();
+            let after = rest.partition_point(|step| side.seconds(step) < at_s);
+            [after.saturating_sub(1), after].into_iter().filter(|count| *count > NEAR)
+        };
+        gaps.extend(near(self.model, model, clock.planned_at(came)).map(Gap::Missing));
+        gaps.extend(near(self.recorded, recorded, due + clock.late_at(due)).map(Gap::Extra));
+    }
+
+    fn is_ended(&self, hypothesis: &Hypothesis) -> bool {
+        hypothesis.model >= self.model.steps.len() || hypothesis.recorded >= self.recorded.steps.len()
+    }
+
+    /// The shorter interval next to a planned step, in s.
+    fn interval_s(&self, model: usize) -> f64 {
+        let at = |index: Option<usize>| index.and_then(|index| self.model.at_s(index));
+        let here = at(Some(model)).unwrap_or(0.0);
+        let before = at(model.checked_sub(1)).map_or(f64::INFINITY, |before| here - before);
+        let after = at(model.checked_add(1)).map_or(f64::INFINITY, |after| after - here);
+        libm::fmax(libm::fmin(before, after), self.least_s)
+    }
+
+    /// Goes on by one step if it is on time beyond doubt, in its direction and with its value.
+    fn follow(&self, hypothesis: &mut Hypothesis) -> bool {
+        let Hypothesis { model, recorded, .. } = *hypothesis;
+        let (Some(clock), Some(due), Some(came)) =
+            (hypothesis.clock, self.model.at_s(model), self.recorded.at_s(recorded))
+        else {
+            return false;
+        };
+        let off = libm::fabs(came - due - clock.late_at(due)) / self.interval_s(model);
+        if off > CLEAN || hypothesis.differing > 0.0 || self.differs(model, recorded) {
+            return false;
+        }
+        hypothesis.clock = Some(clock.follow(due, came - due));
+        hypothesis.late = 0.0;
+        hypothesis.matched += 1;
+        (hypothesis.model, hypothesis.recorded) = (model + 1, recorded + 1);
+        hypothesis.cost += self.costs.off(off);
+        hypothesis.estimate = hypothesis.cost + self.rest(hypothesis);
+        true
+    }
+
+    /// Whether the direction, or the value, is another.
+    fn differs(&self, model: usize, recorded: usize) -> bool {
+        self.model.direction(model) != self.recorded.direction(recorded)
+            || self.model.values.get(model) != self.recorded.values.get(recorded)
+    }
+
+    /// Minimum cost of the rest: a gap, where one side has more left.
+    fn rest(&self, hypothesis: &Hypothesis) -> f64 {
+        let model = self.model.steps.len().saturating_sub(hypothesis.model);
+        gap(model.abs_diff(self.recorded.steps.len().saturating_sub(hypothesis.recorded)))
+    }
+
+    /// Matches the next steps behind a gap, if there is one: on time or late, or with all that follow. Returns whether the
+    /// step was on time beyond doubt.
+    fn step(&mut self, from: &Hypothesis, behind: Option<Gap>) -> bool {
+        let (mut model, mut recorded, mut cost) = (from.model, from.recorded, from.cost);
+        let (mut last_gap, mut start) = (from.last_gap, None);
+        if let Some(found) = behind {
+            let (count, is_missing) = match found {
+                Gap::Missing(count) => (count, true),
+                Gap::Extra(count) => (count, false),
+            };
+            let is_again = last_gap.is_some_and(|(at, was_missing)| {
+                was_missing == is_missing && model.saturating_sub(at) <= AGAIN_WITHIN
+            });
+            cost += gap(count) - if is_again { AGAIN } else { 0.0 };
+            if is_missing {
+                model += count;
+            } else {
+                recorded += count;
+            }
+            last_gap = Some((model, is_missing));
+            start = Some(Rc::new(Start { model, recorded, before: Some(Rc::clone(&from.start)) }));
+        }
+        let (Some(due), Some(came)) = (self.model.at_s(model), self.recorded.at_s(recorded)) else {
+            return false;
+        };
+        let late_s = came - due;
+        let off =
+            from.clock.map_or(0.0, |clock| libm::fabs(late_s - clock.late_at(due)) / self.interval_s(model));
+        let differs = self.differs(model, recorded);
+        let mut differing = 0.0;
+        if differs {
+            differing = self.costs.differing_row(from.differing);
+            cost += differing - from.differing;
+        }
+        let row = self.costs.late_row(off);
+        let late = if row > 0.0 { libm::fmax(from.late, row) } else { 0.0 };
+        let clock = from.clock.unwrap_or(Clock::new(due, late_s));
+        let start = start.unwrap_or_else(|| Rc::clone(&from.start));
+        let mut next = Hypothesis {
+            model: model + 1,
+            recorded: recorded + 1,
+            matched: from.matched + 1,
+            cost: cost + self.costs.off(off) + libm::fmax(late - from.late, 0.0),
+            estimate: 0.0,
+            clock: Some(if off > LATE { clock } else { clock.follow(due, late_s) }),
+            late,
+            differing,
+            last_gap,
+            start,
+        };
+        next.estimate = next.cost + self.rest(&next);
+        if late > 0.0 {
+            let mut shifted = Hypothesis {
+                cost: cost + self.costs.shift,
+                clock: Some(clock.shifted(due, late_s)),
+                late: 0.0,
+                ..next.clone()
+            };
+            shifted.estimate = shifted.cost + self.rest(&shifted);
+            self.push(shifted);
+        }
+        self.push(next);
+        off <= CLEAN && differs == (from.differing > 0.0)
+    }
+
+    /// Adds a hypothesis in place of one at the same steps with the same clock, or of the one that costs most.
+    fn push(&mut self, next: Hypothesis) {
+        let late = |of: &Hypothesis| of.clock.map_or(0.0, |clock| clock.late_s());
+        let near_s = self.interval_s(next.model.saturating_sub(1)) / 4.0;
+        let is_same = |of: &&mut Hypothesis| {
+            of.model == next.model
+                && of.recorded == next.recorded
+                && libm::fabs(late(of) - late(&next)) <= near_s
+        };
+        if let Some(same) = self.living.iter_mut().find(is_same) {
+            if next.cost < same.cost {
+                *same = next;
+            }
+        } else if self.living.len() < WIDTH {
+            self.living.push(next);
+        } else if let Some(worst) =
+            self.living.iter_mut().max_by(|one, other| one.estimate.total_cmp(&other.estimate))
+            && next.estimate < worst.estimate
+        {
+            *worst = next;
+        }
+    }
+}
