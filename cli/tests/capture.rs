@@ -201,7 +201,7 @@ $scope module b $end $var wire 1 % D $end $upscope $end $enddefinitions $end
 
 #[test]
 fn what_a_file_does_not_tell_is_asked_for() {
-    let rate = "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz";
+    let rate = "the file does not say how long a sample lasts; give the sample rate, in Hz";
     asks(&[
         (LEVELS, &[], 2, rate),
         (LEVELS, &["--sample-rate", "1000"], 0, ""),
