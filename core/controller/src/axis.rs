@@ -2,15 +2,12 @@
 
 use crate::{input::Signal, parameters::Axis};
 
-/// The axis of a controller.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
     axis: Axis,
-    /// m, in steps.
     place: i64,
     /// m - position when zero was set last, before that when memory was first read; 0 before both.
     zero: i64,
-    /// Whether memory was read or zero was set.
     has_zero: bool,
 }
 
@@ -24,7 +21,7 @@ impl Place {
         self.place
     }
 
-    /// Moves by `steps`, as far as the ends let it: who stands beyond one may come back, but goes no further.
+    /// Moves by `steps`, as far as the ends let it: who stands beyond one may come back, but goes no additional.
     pub(crate) fn shift(&mut self, steps: i64) {
         let target = self.place.saturating_add(steps);
         self.place = if steps > 0 {

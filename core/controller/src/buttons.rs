@@ -9,7 +9,6 @@ use crate::{
 };
 use stepscope_peripheral::units::Instant;
 
-/// An entry's last six digits count.
 const ENTRY: u32 = 1_000_000;
 
 impl Controller {
@@ -30,7 +29,6 @@ impl Controller {
         }
     }
 
-    /// Whether this button's jog runs.
     fn jogs(&self, button: Signal) -> bool {
         let right = match button {
             Signal::JogPlus => true,
@@ -40,7 +38,6 @@ impl Controller {
         self.state == State::Jog && self.motion.as_ref().is_some_and(|motion| motion.right == right)
     }
 
-    /// A press: whether it did something.
     fn press(&mut self, now: u64, button: Signal) -> bool {
         if self.state == State::Edit {
             return self.press_in_edit(button);

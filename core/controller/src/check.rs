@@ -18,10 +18,8 @@ use core::ops::RangeInclusive;
 use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
 
 impl Setup {
-    /// Judges it, and makes what a [`StandAlone`](crate::StandAlone) takes.
-    ///
-    /// # Errors
-    /// Everything that is refused, in the order of the fields.
+    /// Validates it, and makes what a [`StandAlone`](crate::StandAlone) takes.
+    /// Errors: everything that is refused, in the order of the fields.
     pub fn check(self) -> Result<Checked, Vec<Refused>> {
         let mut judge = Judgement { refused: Vec::new(), controller: None };
         judge.bus(&self);
@@ -70,7 +68,7 @@ impl Setup {
 }
 
 impl Parameters {
-    /// Whether a move by a length never comes to its speed, and goes at the start-stop rate all the way (G3).
+    /// Whether a move by a length never comes to its speed, and goes at the start-stop rate all the way.
     fn short_move_of(&self, length: u32, given_hz: u32, level: u32) -> Option<Warning> {
         let steps = Numbers::new(self).steps(length.into());
         let (start_speed_hz, acceleration_hz_s) =
@@ -81,7 +79,6 @@ impl Parameters {
     }
 }
 
-/// Collects what is refused.
 struct Judgement {
     refused: Vec<Refused>,
     controller: Option<usize>,
@@ -312,7 +309,6 @@ impl Judgement {
     }
 }
 
-/// Why this change is nothing for this controller.
 pub(crate) fn forbidden_change(
     parameters: &Parameters,
     controller: usize,

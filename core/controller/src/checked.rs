@@ -18,14 +18,13 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// Takes what was judged.
     pub(crate) fn new(setup: Setup, warned: Vec<Warned>) -> Self {
         let Setup { clock_hz, channels, pulse, controllers } = setup;
         let controllers = controllers.into_iter().map(Rc::new).collect();
         Self { clock_hz, channels, pulse, controllers, warned: warned.into() }
     }
 
-    /// What they were made of, to be changed and judged again.
+    /// What they were made of, to be changed and validated again.
     #[must_use]
     pub fn setup(&self) -> Setup {
         let Self { clock_hz, channels, pulse, .. } = *self;

@@ -6,12 +6,7 @@
 //! changes. It may call it more often.
 //!
 //! ```
-//! use stepscope_controller::{
-//!     Runner, State,
-//!     chip::{Chip, Face, RawLevels},
-//!     input::Signal,
-//!     parameters::Setup,
-//! };
+//! use stepscope_controller::{Runner, State, chip::{Chip, Face, RawLevels}, input::Signal, parameters::Setup};
 //! use stepscope_peripheral::{signal::Levels, units::Instant};
 //!
 //! /// A chip without pins, whose EEPROM takes no time, and somebody who presses start at tick 3 000 000.
@@ -100,7 +95,6 @@ impl RawLevels {
         self.0 >> signal as u32 & 1 != 0
     }
 
-    /// Those that differ.
     pub(crate) fn changed(self, before: Self) -> impl Iterator<Item = Signal> {
         Signal::ALL.into_iter().filter(move |&signal| self.level(signal) != before.level(signal))
     }
@@ -108,8 +102,8 @@ impl RawLevels {
 
 /// What stands on the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Face {
-    /// Since this tick.
     pub at: Instant,
     /// State, alarm, trust, outputs, group and loop.
     pub word: Word,
@@ -117,7 +111,6 @@ pub struct Face {
     pub position: i64,
     /// What the display shows, in its digits.
     pub display: i64,
-    /// d, decimal places of lengths.
     pub decimals: u8,
 }
 

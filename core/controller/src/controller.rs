@@ -29,44 +29,33 @@ pub(crate) const NEVER: u64 = u64::MAX;
 /// Groups that a window of the groups begun last takes up.
 const WINDOW: u64 = 1024;
 
-/// A program that runs (G5).
 #[derive(Clone, Debug)]
 pub(crate) struct Program {
-    /// From 1: the group that runs or is next.
     pub(crate) group: u32,
-    /// From 1.
     pub(crate) loop_: u32,
-    /// b in steps.
     pub(crate) base: i128,
-    /// T in digits of the display.
     pub(crate) sum: i64,
-    /// How often each `repeat` was reached.
     pub(crate) reached: Vec<u32>,
 }
 
-/// What goes on after a pause.
 #[derive(Clone, Debug)]
 pub(crate) enum Paused {
-    /// The rest of a move.
     Move(Motion),
     /// A state without a move, and what was left of its time.
     Time(State, Option<u64>),
 }
 
-/// The panel while numbers are changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Edit {
     pub(crate) number: usize,
-    /// Nothing is entered where there is none.
     pub(crate) entry: Option<u32>,
 }
 
 /// A press that did nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Press {
-    /// The cycle of the press.
     pub cycle: Instant,
-    /// The button.
     pub button: Signal,
     /// The state in which it means nothing, or did not do what it means.
     pub state: State,
@@ -78,7 +67,7 @@ pub(crate) struct Begun {
     pub(crate) count: u64,
     /// `count` when a step rose or a group waited last.
     pub(crate) progress: u64,
-    /// Least and greatest number of the groups of the window before, and of this one.
+    /// Minimum and maximum number of the groups of the window before, and of this one.
     before: Option<(u32, u32)>,
     window: Option<(u32, u32)>,
 }
@@ -93,7 +82,7 @@ impl Begun {
         self.window = Some((first.min(number), last.max(number)));
     }
 
-    /// Least and greatest number of the groups that began last.
+    /// Minimum and maximum number of the groups that began last.
     pub(crate) fn range(&self) -> (u32, u32) {
         let (first, last) = self.window.or(self.before).unwrap_or((0, 0));
         let (before_first, before_last) = self.before.unwrap_or((first, last));
@@ -106,7 +95,6 @@ impl Begun {
     }
 }
 
-/// One controller of a scenario.
 #[derive(Clone, Debug)]
 pub(crate) struct Controller {
     pub(crate) parameters: Rc<Parameters>,
@@ -114,16 +102,13 @@ pub(crate) struct Controller {
     pub(crate) pulse: PulseTimes,
     pub(crate) state: State,
     pub(crate) alarm: Alarm,
-    /// 0 LOST, 1 HELD, 2 SURE.
     pub(crate) trust: u8,
     pub(crate) position: i32,
     pub(crate) outputs: u8,
     pub(crate) pins: Pins,
-    /// Rises of STEP, as DESIGN A3 counts them.
     pub(crate) steps: i32,
     pub(crate) motion: Option<Motion>,
     pub(crate) program: Option<Program>,
-    /// When a group begins or a wait ends.
     pub(crate) timer: u64,
     pub(crate) paused: Option<Paused>,
     pub(crate) edit: Edit,
@@ -134,36 +119,29 @@ pub(crate) struct Controller {
     pub(crate) script: Script,
     pub(crate) axis: Place,
     pub(crate) eeprom: Eeprom,
-    /// The newest complete record of the journal.
     pub(crate) newest: Option<Valid>,
-    /// Whether the journal is being written.
     pub(crate) writes_journal: bool,
     /// Whether the opening record after a read is wanted, or complete.
     pub(crate) wants_opening: bool,
     pub(crate) is_opened: bool,
     pub(crate) wants_save: bool,
-    /// Whether the newest record stays the newest whatever is written: its number is the greatest that there is.
+    /// Whether the newest record stays the newest whatever is written: its number is the maximum that there is.
     pub(crate) is_stuck: bool,
     /// Whether memory held no valid record when it was read.
     pub(crate) is_unknown: bool,
     /// Whether memory has been read since power-up.
     pub(crate) is_read: bool,
-    /// When memory is read.
     pub(crate) reads: u64,
-    /// When it dies.
     pub(crate) dies: u64,
-    /// Whether the E-stop was pressed during this self-test.
     pub(crate) is_stopped: bool,
     pub(crate) begun: Begun,
     pub(crate) ignored: Vec<Press>,
     pub(crate) panel: Vec<PanelRecord>,
     shown: Option<(Word, i64)>,
-    /// When the panel changes.
     shows: u64,
 }
 
 impl Controller {
-    /// A controller before cycle 0.
     pub(crate) fn new(checked: &Checked, parameters: &Rc<Parameters>, script: Script) -> Self {
         let memory = &parameters.memory;
         let len = parameters.memory_len();
@@ -218,7 +196,6 @@ impl Controller {
         controller
     }
 
-    /// One cycle.
     pub(crate) fn cycle(&mut self, now: u64) {
         self.eeprom.settle(now);
         self.pins.take_orders(now);
@@ -260,7 +237,6 @@ impl Controller {
         self.panel.push(PanelRecord { cycle, word, position: self.position.into(), display });
     }
 
-    /// What makes a record where it changes.
     fn face(&self) -> (Word, i64) {
         (self.word(), if self.state == State::Edit { self.display() } else { 0 })
     }

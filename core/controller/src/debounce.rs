@@ -11,12 +11,9 @@ use crate::input::{SIGNALS, Signal};
 const NEVER: u64 = u64::MAX;
 const _: () = assert!(SIGNALS <= 32);
 
-/// N of each kind of input.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times {
-    /// Of buttons, and of the fall of the E-stop.
     pub(crate) buttons: u64,
-    /// Of limits, the home switch and `in_0` to `in_3`.
     pub(crate) sensors: u64,
 }
 
@@ -31,7 +28,6 @@ impl Times {
     }
 }
 
-/// All inputs of a controller, a bit each.
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs {
     times: Times,
@@ -39,11 +35,8 @@ pub(crate) struct Inputs {
     debounced: u32,
     /// When each debounced level takes the raw one; [`NEVER`] where they agree.
     due: [u64; SIGNALS],
-    /// The first of these.
     first_due: u64,
-    /// Debounced levels that rose in this cycle.
     pressed: u32,
-    /// Debounced levels that fell in this cycle.
     released: u32,
 }
 
@@ -106,7 +99,6 @@ impl Inputs {
         (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
     }
 
-    /// All raw levels, a bit each.
     pub(crate) const fn all_raw(&self) -> u32 {
         self.raw
     }
@@ -127,12 +119,10 @@ impl Inputs {
         self.released & bit(signal) != 0
     }
 
-    /// Whether something was pressed or released in this cycle.
     pub(crate) const fn has_edges(&self) -> bool {
         self.pressed | self.released != 0
     }
 
-    /// When the next debounced level changes.
     pub(crate) const fn due(&self) -> u64 {
         self.first_due
     }

@@ -9,32 +9,24 @@
 use crate::parameters::Initial;
 use alloc::{vec, vec::Vec};
 
-/// An erased byte.
 const ERASED: u8 = 0xff;
 /// What of a byte that was cut late is still erased.
 const CUT_LATE: u8 = 0x0f;
 
-/// The memory of a controller.
 #[derive(Clone, Debug)]
 pub(crate) struct Eeprom {
     bytes: Vec<u8>,
-    /// Writes of each byte's cell.
     writes: Vec<u32>,
-    /// w.
     byte_write_cycles: u64,
     writing: Option<Writing>,
 }
 
-/// A record that is being written.
 #[derive(Clone, Debug)]
 struct Writing {
     /// Address of its next byte, the one that is under way.
     address: usize,
-    /// That byte and those after it.
     left: vec::IntoIter<u8>,
-    /// That byte.
     byte: u8,
-    /// The cycle in which it was begun.
     begun: u64,
     /// It is not there before this cycle, however long it takes by w.
     not_before: u64,
@@ -74,7 +66,6 @@ impl Eeprom {
         self.writing.as_ref().map(|writing| writing.begun)
     }
 
-    /// When the byte under way is there.
     pub(crate) fn due(&self) -> u64 {
         let due = |writing: &Writing| match writing {
             Writing { repeats: true, .. } => u64::MAX,
@@ -161,7 +152,6 @@ impl Eeprom {
         }
     }
 
-    /// The power is gone in cycle `now`.
     pub(crate) fn die(&mut self, now: u64) {
         let Some(writing) = self.writing.take() else { return };
         let after = now.saturating_sub(writing.begun);

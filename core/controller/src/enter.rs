@@ -13,17 +13,14 @@ use stepscope_peripheral::units::Instant;
 
 /// Why an input cannot be entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum NotEntered {
-    /// There is no such controller.
     NoController,
     /// Its cycle has been run, or is none that an input may have.
     Past {
-        /// The cycle that was given.
         cycle: Instant,
-        /// The first that is allowed.
         least: Instant,
     },
-    /// As in a script.
     Refused(Refusal),
 }
 
@@ -52,9 +49,7 @@ impl StandAlone {
     }
 
     /// An input of a cycle that has not been run, such as a person's at a page.
-    ///
-    /// # Errors
-    /// What a script would be refused for, too.
+    /// Errors: what a script would be refused for, too.
     pub fn enter(&mut self, at: Instant, controller: usize, change: Change) -> Result<(), NotEntered> {
         let input = Input { cycle: at, change };
         let parameters = self.checked.controllers().get(controller).ok_or(NotEntered::NoController)?;

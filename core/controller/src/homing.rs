@@ -14,7 +14,6 @@ use crate::{
 };
 
 impl Controller {
-    /// Homing begins; where there is no `home` nothing does.
     pub(crate) fn home(&mut self, now: u64) {
         let Some(home) = &self.parameters.home else { return };
         let leg = if self.inputs.level(home.switch) { Leg::Off } else { Leg::Seek };

@@ -9,32 +9,23 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use crc::{CRC_32_ISCSI, Crc};
 
-/// Bytes of a record of the journal.
 pub(crate) const RECORD: usize = 16;
-/// Bytes of a sequence number, and of a check.
 const WORD: usize = 4;
-/// Bits of the flags for trust.
 const TRUST: u8 = 3;
-/// Bit of the flags for an open record.
 const OPEN: u8 = 4;
 
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 
-/// What a record of the journal says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) position: i32,
-    /// 0 LOST, 1 HELD, 2 SURE.
     pub(crate) trust: u8,
     /// Whether the position is not known while it is the newest.
     pub(crate) is_open: bool,
-    /// Group, 0 without program.
     pub(crate) group: u8,
-    /// Loop, 0 without program.
     pub(crate) loop_: u16,
 }
 
-/// A valid record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Valid {
     slot: usize,
@@ -42,14 +33,12 @@ pub(crate) struct Valid {
     pub(crate) entry: Entry,
 }
 
-/// `seq` and `content` with their check.
 fn checked(seq: u32, content: impl IntoIterator<Item = u8>) -> Vec<u8> {
     let mut bytes: Vec<u8> = seq.to_le_bytes().into_iter().chain(content).collect();
     bytes.extend(CHECK.checksum(&bytes).to_le_bytes());
     bytes
 }
 
-/// Sequence number and content, if the check holds.
 fn opened(bytes: &[u8]) -> Option<(u32, &[u8])> {
     let (content, check) = bytes.split_last_chunk::<WORD>()?;
     let (seq, rest) = content.split_first_chunk::<WORD>()?;
@@ -75,7 +64,7 @@ impl Entry {
     }
 }
 
-/// The newest record of a journal of `slots`: valid, of the greatest sequence number, of equals the last.
+/// The newest record of a journal of `slots`: valid, of the maximum sequence number, of equals the last.
 pub(crate) fn newest(memory: &[u8], slots: usize) -> Option<Valid> {
     let records = memory.chunks_exact(RECORD).take(slots).enumerate();
     let valid = records.filter_map(|(slot, bytes)| {
@@ -115,7 +104,6 @@ fn newest_bank(memory: &[u8], slots: usize, numbers: usize) -> Option<(usize, u3
     Some((index, seq, words.collect()))
 }
 
-/// The numbers of the newest valid bank.
 pub(crate) fn saved(memory: &[u8], slots: usize, numbers: usize) -> Option<Vec<i32>> {
     Some(newest_bank(memory, slots, numbers)?.2)
 }

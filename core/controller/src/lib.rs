@@ -11,11 +11,7 @@
 //! ```
 //!
 //! ```
-//! use stepscope_controller::{
-//!     StandAlone, State,
-//!     input::{Change, Signal},
-//!     parameters::{Parameters, Setup},
-//! };
+//! use stepscope_controller::{StandAlone, State, input::{Change, Signal}, parameters::{Parameters, Setup}};
 //! use stepscope_peripheral::{signal::Record, units::Instant};
 //!
 //! let controller = Parameters { self_test_cycles: 100, debounce_cycles: 0, ..Parameters::default() };

@@ -19,11 +19,8 @@ use stepscope_peripheral::{
 /// The controllers: controller i drives channel i, and the bus shows the AND of their EN.
 ///
 /// ```
-/// use stepscope_controller::{
-///     StandAlone, State,
-///     input::{Change, Input, Signal},
-///     parameters::{Group, Move, Parameters, Setup},
-/// };
+/// use stepscope_controller::{StandAlone, State, input::{Change, Input, Signal}, parameters::{Group, Move,
+///     Parameters, Setup}};
 /// use stepscope_peripheral::{signal::Record, units::Instant};
 ///
 /// // One unit of 100 steps to the right, as soon as memory is read and start is held for 10 ms.
@@ -40,14 +37,10 @@ use stepscope_peripheral::{
 pub struct StandAlone {
     pub(crate) checked: Checked,
     pub(crate) controllers: Vec<Controller>,
-    /// When something can change in each of them.
     pub(crate) due: Vec<u64>,
-    /// The cycle that the next call of `clock` is.
     pub(crate) now: u64,
-    /// The last cycle in which something could change.
     acted: u64,
     levels: Levels,
-    /// Groups that have begun, of all controllers.
     pub(crate) begun: u64,
     work: Option<Work>,
 }
@@ -119,7 +112,6 @@ impl StandAlone {
         }
     }
 
-    /// Too many groups have begun: nothing follows.
     fn stop(&mut self) {
         let most = self.controllers.iter().enumerate().max_by_key(|(_, controller)| controller.begun.count);
         let Some((controller, begun)) = most.map(|(index, controller)| (index, controller.begun)) else {
@@ -129,7 +121,6 @@ impl StandAlone {
         self.work = Some(Work { controller, first_group, last_group, is_endless: begun.is_endless() });
     }
 
-    /// Levels of the bus.
     fn shown(&self) -> Levels {
         let mut bits = Levels::RESET.0;
         for (channel, controller) in self.controllers.iter().enumerate() {
@@ -225,7 +216,7 @@ impl StandAlone {
     }
 }
 
-/// Tells what changed in cycle `now` beside the bus: raw levels that were `heard`, and a panel with so many records before.
+/// Tells what changed in cycle `now` next to the bus: raw levels that were `heard`, and a panel with so many records before.
 fn tell(index: u8, controller: &Controller, (now, heard, shown): (u64, u32, usize), sink: &mut impl Sink) {
     let raw = controller.inputs.all_raw();
     let changed = |signal: &Signal| (raw ^ heard) >> *signal as u32 & 1 != 0;

@@ -14,7 +14,6 @@ use crate::{
 };
 use stepscope_peripheral::segment::FRACTION_BITS;
 
-/// Steps without end.
 pub(crate) const ENDLESS: u64 = u64::MAX;
 
 /// I(r) = floor(65536*f/r) in 1/65536 cycle.
@@ -22,29 +21,22 @@ pub(crate) const fn interval(clock_hz: u32, rate_hz: u64) -> u64 {
     ((clock_hz as u64) << FRACTION_BITS) / if rate_hz == 0 { 1 } else { rate_hz }
 }
 
-/// A leg of homing (G6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Leg {
-    /// Towards the switch, coarse.
     Seek,
-    /// Away from it, coarse.
     Off,
-    /// Towards it again, fine.
     Fine,
 }
 
-/// What a move is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// A group of a program.
     Group,
-    /// The return to zero.
     Return,
     /// A jog; the state to which it goes back.
     Jog(State),
     /// A leg of homing.
     Leg(Leg),
-    /// The return at the end of homing.
     HomeReturn,
 }
 
@@ -52,37 +44,27 @@ pub(crate) enum Purpose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Climb {
     pub(crate) table: Table,
-    /// Ramp steps.
     pub(crate) top: u64,
-    /// Rate of the plateau in Hz.
     pub(crate) plateau_hz: u32,
 }
 
-/// A move under way.
 #[derive(Clone, Debug)]
 pub(crate) struct Motion {
     pub(crate) purpose: Purpose,
     pub(crate) right: bool,
-    /// Steps not made, the one that is due included.
     pub(crate) rem: u64,
-    /// u: ramp steps climbed.
     height: u64,
     climb: Climb,
     clock_hz: u32,
-    /// The row that was looked up last.
     row: Option<(Row, u64)>,
     /// What the first step waits, if not its rate's interval.
     pub(crate) first_interval: Option<u64>,
-    /// The group that gives the intervals of a `profile`.
     pub(crate) profile: Option<u32>,
     /// Time of the step that is due, in 1/65536 cycle.
     next: u128,
-    /// Whether a step is due.
     pub(crate) is_due: bool,
-    /// Whether it waits for an open record.
     pub(crate) waits: bool,
     pub(crate) brakes: bool,
-    /// Whether a limit switch stopped it.
     pub(crate) is_limited: bool,
     /// The level at which it ends early, and whether that has come.
     pub(crate) until: Option<(Signal, bool)>,
@@ -140,7 +122,6 @@ impl Motion {
         (is_first, made)
     }
 
-    /// Decides the next step, if there is one.
     fn decide(&mut self, profile: &[u64]) {
         self.is_due = self.rem > 0 && !(self.brakes && self.height == 0);
         if !self.is_due {

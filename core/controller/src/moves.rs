@@ -12,13 +12,11 @@ use crate::{
 use stepscope_peripheral::segment::FRACTION_BITS;
 
 impl Controller {
-    /// The table of a level.
     pub(crate) fn table(&self, level: u32) -> Table {
         let acceleration_hz_s = self.parameters.level_hz_s.saturating_mul(level);
         Table { start_speed_hz: self.parameters.start_speed_hz, acceleration_hz_s }
     }
 
-    /// How a move of `steps` at `speed_hz` climbs (G3).
     fn climb(&self, steps: u64, speed_hz: u32, level: u32) -> Climb {
         let table = self.table(level);
         let top = table.climb(speed_hz);
@@ -79,7 +77,6 @@ impl Controller {
         self.motion = Some(motion);
     }
 
-    /// A waiting move whose record is there begins.
     pub(crate) fn waiting(&mut self, now: u64) {
         if self.is_memory_open()
             && let Some(motion) = self.motion.take_if(|motion| motion.waits)
@@ -124,7 +121,6 @@ impl Controller {
         self.begin_move(now, motion);
     }
 
-    /// Speed and level that were asked for.
     fn asked(&self, purpose: Purpose) -> (u32, u32) {
         match purpose {
             Purpose::Group => self.asked_of_group(),
@@ -147,7 +143,6 @@ impl Controller {
         }
     }
 
-    /// A jog begins (G6).
     pub(crate) fn jog(&mut self, now: u64, right: bool) {
         let (jog, back) = (&self.parameters.jog, self.state);
         let speed_hz =
@@ -170,7 +165,6 @@ impl Controller {
         self.begin_move(now, motion);
     }
 
-    /// The jog ends, at once or braking.
     pub(crate) fn end_jog(&mut self) {
         let Some(motion) = &mut self.motion else { return };
         match self.parameters.jog.release {
@@ -180,7 +174,7 @@ impl Controller {
         self.keep_dir_of_stopped();
     }
 
-    /// The return to zero begins (G6): as the return, or as the end of homing.
+    /// The return to zero begins: as the return, or as the end of homing.
     pub(crate) fn return_to_zero(&mut self, now: u64, purpose: Purpose) {
         let steps = -i128::from(self.position);
         if self.is_outside(steps) {

@@ -12,16 +12,12 @@ use crate::{
 use alloc::vec::Vec;
 use core::ops::RangeInclusive;
 
-/// Numbers before those of the moves.
 const COMMON: usize = 8;
-/// Numbers of a move.
 const OF_MOVE: usize = 5;
 
-/// The numbers that rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Numbers(Vec<i32>);
 
-/// The numbers of one `move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MoveNumbers {
     pub(crate) length: i32,
@@ -38,7 +34,6 @@ fn moves(parameters: &Parameters) -> impl Iterator<Item = &Move> {
     })
 }
 
-/// The range of number `index`.
 fn range(parameters: &Parameters, index: usize) -> RangeInclusive<i128> {
     let fastest = 10..=i128::from(parameters.max_speed_hz);
     match index {
@@ -59,7 +54,6 @@ fn range(parameters: &Parameters, index: usize) -> RangeInclusive<i128> {
 }
 
 impl Numbers {
-    /// Those of the scenario.
     pub(crate) fn new(parameters: &Parameters) -> Self {
         let common = [
             parameters.pulses_per_unit,
@@ -78,7 +72,6 @@ impl Numbers {
         Self(common.into_iter().chain(of_moves).map(|number| number as i32).collect())
     }
 
-    /// These, if all are in range.
     pub(crate) fn in_range(parameters: &Parameters, numbers: Vec<i32>) -> Option<Self> {
         let is_in_range = |(index, &number): (usize, &i32)| range(parameters, index).contains(&number.into());
         let all = numbers.len() == parameters.numbers() && numbers.iter().enumerate().all(is_in_range);
@@ -99,12 +92,10 @@ impl Numbers {
         &self.0
     }
 
-    /// Number `index`, 0 where there is none.
     pub(crate) fn get(&self, index: usize) -> i32 {
         self.0.get(index).copied().unwrap_or(0)
     }
 
-    /// N, at least 1.
     pub(crate) fn pulses_per_unit(&self) -> i64 {
         self.get(0).max(1).into()
     }

@@ -18,10 +18,10 @@ use twox_hash::XxHash64;
 
 /// The panel from a cycle on, as things are at the end of the cycle before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct PanelRecord {
     /// Cycle 0, or one in which the word, or in EDIT the display, changed.
     pub cycle: Instant,
-    /// State and what goes with it.
     pub word: Word,
     /// Position in steps.
     pub position: i64,

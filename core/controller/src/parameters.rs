@@ -35,7 +35,7 @@ macro_rules! parameters {
     )*};
 }
 
-/// What a move does that is too short for its speed (G3).
+/// What a move does that is too short for its speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortMove {
     /// All of it at the start speed, as the document does.
@@ -45,7 +45,7 @@ pub enum ShortMove {
     TurnRound,
 }
 
-/// How a jog ends (G6).
+/// How a jog ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Release {
     /// At once, and it has no ramp either: the document's.
@@ -55,7 +55,7 @@ pub enum Release {
     Ramp,
 }
 
-/// How the position is kept through power cuts (G7).
+/// How the position is kept through power cuts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
     /// It is written while the supply holds up without power.
@@ -65,7 +65,7 @@ pub enum Policy {
     WriteAhead,
 }
 
-/// What the EEPROM holds at reset (G7).
+/// What the EEPROM holds at reset.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Initial {
     /// All 0xFF.
@@ -77,7 +77,7 @@ pub enum Initial {
     Bytes(Vec<u8>),
 }
 
-/// A group of a program (G5).
+/// A group of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Group {
     /// A move by a length.
@@ -125,7 +125,7 @@ parameters! {
         pub decimals: u8 = 1,
         /// f_1, the start-stop range in Hz, 10 to `max_speed_hz`.
         pub start_speed_hz: u32 = 1000,
-        /// The fastest that may be asked for in Hz, 10 to 10^7 and not too fast for a pulse.
+        /// The fastest that may be requested in Hz, 10 to 10^7 and not too fast for a pulse.
         pub max_speed_hz: u32 = 20_000,
         /// Acceleration of level 1 in Hz/s, 1 to 10^6; level n has n times as much.
         pub level_hz_s: u32 = 1000,
@@ -153,7 +153,7 @@ parameters! {
         pub inputs: Vec<Input> = Vec::new(),
     }
 
-    /// Jogging (G6).
+    /// Jogging.
     pub struct Jog {
         /// Speed from READY in Hz, 10 to `max_speed_hz`.
         pub speed_hz: u32 = 1000,
@@ -165,7 +165,7 @@ parameters! {
         pub release: Release = Release::AtOnce,
     }
 
-    /// Return to zero (G6).
+    /// Return to zero.
     pub struct Return {
         /// Speed in Hz, 10 to `max_speed_hz`.
         pub speed_hz: u32 = 1000,
@@ -173,7 +173,7 @@ parameters! {
         pub level: u8 = 3,
     }
 
-    /// Homing (G6).
+    /// Homing.
     pub struct Home {
         /// What it looks for: the home switch or a limit.
         pub switch: Signal = Signal::HomeSwitch,
@@ -191,15 +191,15 @@ parameters! {
         pub position_steps: i64 = 0,
     }
 
-    /// Bounds of ordered positions (G4), each +-2^31.
+    /// Bounds of ordered positions, each +-2^31.
     pub struct SoftLimits {
-        /// The least, no more than the greatest.
+        /// The least, no more than the maximum.
         pub min_steps: i64 = 0,
-        /// The greatest.
+        /// The maximum.
         pub max_steps: i64 = 0,
     }
 
-    /// A virtual axis (G6); places are +-2^31 steps.
+    /// A virtual axis; places are +-2^31 steps.
     pub struct Axis {
         /// Its place at first.
         pub start_steps: i64 = 0,
@@ -211,13 +211,13 @@ parameters! {
         pub home_from: Option<i64> = None,
         /// … to here. Both or neither.
         pub home_to: Option<i64> = None,
-        /// The axis goes no further to the left; `None` where it does, as in the next one.
+        /// The axis goes no additional to the left; `None` where it does, as in the next one.
         pub hard_min: Option<i64> = None,
-        /// The axis goes no further to the right.
+        /// The axis goes no additional to the right.
         pub hard_max: Option<i64> = None,
     }
 
-    /// The EEPROM (G7).
+    /// The EEPROM.
     pub struct Memory {
         /// How the position is kept.
         pub policy: Policy = Policy::PowerLoss,
@@ -231,7 +231,7 @@ parameters! {
         pub initial: Initial = Initial::Factory,
     }
 
-    /// A `move` (G5).
+    /// A `move`.
     pub struct Move {
         /// Length in display digits, 0 to 999999.
         pub length: u32 = 1000,
@@ -247,7 +247,7 @@ parameters! {
         pub until: Option<Until> = None,
     }
 
-    /// Level of a sensor at which a [`Move`] brakes and its rest is given up (G5).
+    /// Level of a sensor at which a [`Move`] brakes and its rest is given up.
     pub struct Until {
         /// `in_0` to `in_3` or `home_switch`.
         pub input: Signal = Signal::In0,
@@ -255,7 +255,7 @@ parameters! {
         pub level: bool = true,
     }
 
-    /// A `move_to` (G5).
+    /// A `move_to`.
     pub struct MoveTo {
         /// Place in display digits, -999999 to 999999.
         pub length: i32 = 0,
@@ -267,7 +267,7 @@ parameters! {
         pub delay_ms: u32 = 0,
     }
 
-    /// A `profile` (G5). The steps of a motion (B) are intervals, too: their sum from (c + 1) << 16 gives the rises.
+    /// A `profile`. The steps of a motion (B) are intervals, too: their sum from (c + 1) << 16 gives the rises.
     pub struct Profile {
         /// Time before each step in 1/65536 cycle, Lm to 2^64 - 1; 1 to 1 000 000 of them.
         pub intervals: Vec<u64> = Vec::new(),
@@ -277,7 +277,7 @@ parameters! {
         pub delay_ms: u32 = 0,
     }
 
-    /// A `wait` (G5).
+    /// A `wait`.
     pub struct Wait {
         /// `in_0` to `in_3` or a switch.
         pub input: Signal = Signal::In0,
@@ -289,7 +289,7 @@ parameters! {
         pub then: Option<u32> = None,
     }
 
-    /// A `set` (G5).
+    /// A `set`.
     pub struct Set {
         /// Output, 0 to 3.
         pub output: u8 = 0,
@@ -297,7 +297,7 @@ parameters! {
         pub level: bool = true,
     }
 
-    /// A `repeat` (G5).
+    /// A `repeat`.
     pub struct Repeat {
         /// Number (from 1) of a group before this one.
         pub first: u32 = 1,
@@ -305,7 +305,7 @@ parameters! {
         pub times: u32 = 2,
     }
 
-    /// A `jump` (G5).
+    /// A `jump`.
     pub struct Jump {
         /// Number (from 1) of the group that is next.
         pub to: u32 = 1,
@@ -334,13 +334,13 @@ impl Parameters {
         Signal::ALL.into_iter().filter(|&signal| scripted(signal) || driven(signal)).collect()
     }
 
-    /// How many numbers the panel can change (G8): 8, and 5 of each `move`.
+    /// How many numbers the panel can change: 8, and 5 of each `move`.
     #[must_use]
     pub fn numbers(&self) -> usize {
         8 + 5 * self.groups.iter().filter(|group| matches!(group, Group::Move(_))).count()
     }
 
-    /// Bytes of the EEPROM (G7): the journal and two banks of numbers.
+    /// Bytes of the EEPROM: the journal and two banks of numbers.
     #[must_use]
     pub fn memory_len(&self) -> usize {
         16 * self.memory.slots as usize + 2 * (8 + 4 * self.numbers())

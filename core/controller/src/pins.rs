@@ -8,30 +8,21 @@
 
 const NEVER: u64 = u64::MAX;
 
-/// The pins of a channel.
 #[derive(Clone, Debug)]
 pub(crate) struct Pins {
     pub(crate) step: bool,
     pub(crate) dir: bool,
     pub(crate) en: bool,
-    /// Fall of the pulse that is high.
     fall: u64,
-    /// Fall of the last pulse, however it came.
     last_fall: Option<u64>,
-    /// Change of DIR that is to come.
     turn: u64,
-    /// EN from the next cycle on.
     next_en: bool,
-    /// Whether a pulse is cut in the next cycle.
     is_cut: bool,
-    /// Whether DIR falls in the next cycle.
     clears_dir: bool,
-    /// That cycle, where something is ordered for it.
     ordered: u64,
 }
 
 impl Pins {
-    /// At reset the driver is powered.
     pub(crate) const fn new() -> Self {
         Self {
             step: false,
@@ -52,7 +43,6 @@ impl Pins {
         (self.en, self.next_en) = (false, false);
     }
 
-    /// What the cycle before ordered.
     pub(crate) fn take_orders(&mut self, now: u64) {
         if self.ordered > now {
             return;
@@ -79,7 +69,6 @@ impl Pins {
         }
     }
 
-    /// STEP rises, for `width` cycles.
     pub(crate) const fn rise(&mut self, now: u64, width: u64) {
         self.step = true;
         self.fall = now.saturating_add(width);
@@ -107,12 +96,10 @@ impl Pins {
         self.order_en(now, false);
     }
 
-    /// From the next cycle on EN is 1.
     pub(crate) const fn power_on(&mut self, now: u64) {
         self.order_en(now, true);
     }
 
-    /// From the next cycle on DIR is 0.
     pub(crate) const fn clear_dir(&mut self, now: u64) {
         self.clears_dir = true;
         self.order(now);

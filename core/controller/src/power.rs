@@ -67,7 +67,6 @@ impl Controller {
         self.newest = self.find_newest();
     }
 
-    /// The emergency stop, while it is pressed.
     pub(crate) fn estop(&mut self, now: u64) {
         if !self.inputs.raw(Signal::Estop) || matches!(self.state, State::Off | State::PowerLoss) {
             return;
@@ -91,7 +90,6 @@ impl Controller {
         self.drop_program();
     }
 
-    /// Memory is read, and the self-test ends.
     pub(crate) fn self_test(&mut self, now: u64) {
         if self.state != State::SelfTest {
             return;

@@ -53,7 +53,6 @@ impl StandAlone {
         Some((Instant(begun), address, byte))
     }
 
-    /// That byte is not complete before `cycle`.
     pub(crate) fn postpone_byte(&mut self, cycle: u64) {
         if let (Some(controller), Some(due)) = (self.controllers.first_mut(), self.due.first_mut()) {
             controller.eeprom.postpone(cycle);

@@ -10,7 +10,6 @@ use crate::{
 use alloc::{rc::Rc, vec};
 
 impl Controller {
-    /// The program begins with group 1 of loop 1.
     pub(crate) fn begin_program(&mut self, now: u64) {
         let reached = vec![0; self.parameters.groups.len()];
         let base = self.position.into();
@@ -18,7 +17,6 @@ impl Controller {
         self.begin_group(now);
     }
 
-    /// The program's group begins.
     pub(crate) fn begin_group(&mut self, now: u64) {
         let Some(number) = self.program.as_ref().map(|program| program.group) else { return };
         self.begun.group(number);
@@ -99,7 +97,6 @@ impl Controller {
         self.end_group(now, 0, None);
     }
 
-    /// A `repeat` is reached: whether it goes back.
     fn reach(&mut self, number: u32, times: u32) -> bool {
         let reached = self.program.as_mut().and_then(|program| program.reached.get_mut(number as usize - 1));
         let Some(reached) = reached else { return false };
@@ -115,7 +112,6 @@ impl Controller {
         group.input.is_none_or(|input| self.inputs.level(input) == group.level)
     }
 
-    /// Speed and level that the program's group asks for.
     pub(crate) fn asked_of_group(&self) -> (u32, u32) {
         let number = self.program.as_ref().map_or(1, |program| program.group);
         match self.parameters.groups.get(number as usize - 1) {
@@ -178,7 +174,6 @@ impl Controller {
         }
     }
 
-    /// The `wait` that is the program's group.
     fn wait(&self) -> Option<&Wait> {
         let number = self.program.as_ref()?.group;
         match self.parameters.groups.get(number as usize - 1) {
@@ -192,7 +187,6 @@ impl Controller {
         self.wait().is_some_and(|group| self.inputs.level(group.input) == group.level)
     }
 
-    /// The time of a `wait` is over.
     pub(crate) fn time_out(&mut self, now: u64) {
         match self.wait().and_then(|group| group.then) {
             Some(then) => self.end_group(now, 0, Some(then)),

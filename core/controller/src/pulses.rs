@@ -17,7 +17,6 @@ pub(crate) fn profile(parameters: &Parameters, group: Option<u32>) -> &[u64] {
 }
 
 impl Controller {
-    /// STEP falls, DIR changes, STEP rises.
     pub(crate) fn engine(&mut self, now: u64) {
         self.pins.fall_and_turn(now);
         let Some(motion) = &mut self.motion else { return };
@@ -54,7 +53,6 @@ impl Controller {
         self.inputs.debounce(now);
     }
 
-    /// The switches that the axis drives by its place.
     pub(crate) fn switches(&mut self, now: u64) {
         let debounces = self.state != State::Off;
         for (signal, level) in self.axis.switches() {
@@ -64,7 +62,6 @@ impl Controller {
         }
     }
 
-    /// Whether the limit switch in this direction is active.
     pub(crate) const fn limit(&self, right: bool) -> bool {
         self.inputs.level(if right { Signal::LimitMax } else { Signal::LimitMin })
     }

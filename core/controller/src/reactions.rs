@@ -6,7 +6,6 @@ use crate::{
 };
 
 impl Controller {
-    /// Each reaction on what those before it left.
     pub(crate) fn react(&mut self, now: u64) {
         if !self.heeds_power(now) {
             return;
@@ -23,7 +22,7 @@ impl Controller {
         self.self_test(now);
     }
 
-    /// Limits, while a step is due or the move waits (G4).
+    /// Limits, while a step is due or the move waits.
     fn limits(&mut self) {
         let Some(motion) = &self.motion else { return };
         if !motion.is_heeding() || !self.is_limited(motion) {
@@ -36,7 +35,7 @@ impl Controller {
         }
     }
 
-    /// `until`, while a step is due or the move waits, and it does not brake yet (G5).
+    /// `until`, while a step is due or the move waits, and it does not brake yet.
     fn until(&mut self) {
         let inputs = &self.inputs;
         let Some(motion) = &mut self.motion else { return };
@@ -72,21 +71,18 @@ impl Controller {
         }
     }
 
-    /// An alarm drops the program; EN stays (G2).
     pub(crate) fn raise(&mut self, alarm: Alarm) {
         self.state = State::Alarm;
         self.alarm = alarm;
         self.drop_program();
     }
 
-    /// Program, timer and what was paused are gone.
     pub(crate) fn drop_program(&mut self) {
         self.program = None;
         self.paused = None;
         self.timer = NEVER;
     }
 
-    /// PAUSED goes on.
     pub(crate) fn go_on(&mut self, now: u64) {
         match self.paused.take() {
             Some(Paused::Move(motion)) => {

@@ -7,14 +7,12 @@ use stepscope_peripheral::units::{Cycles, Instant};
 
 /// Why a [`Setup`](crate::parameters::Setup) makes no machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
     /// A number, or how many there are of something, is out of its range.
     Range {
-        /// What was given.
         given: i128,
-        /// The least.
         least: i128,
-        /// The greatest.
         greatest: i128,
     },
     /// Steps at this speed would come sooner than a pulse allows.
@@ -28,7 +26,7 @@ pub enum Refusal {
         /// The fastest that is allowed in Hz.
         max_hz: u64,
     },
-    /// A speed is above the fastest that may be asked for, or below 10 Hz.
+    /// A speed is above the fastest that may be requested, or below 10 Hz.
     Speed {
         /// The speed in Hz.
         given_hz: u32,
@@ -51,69 +49,57 @@ pub enum Refusal {
     },
     /// The first group of a `repeat` is not before it.
     NotBefore {
-        /// The number that was given.
         given: u32,
         /// Number of the `repeat`.
         group: u32,
     },
-    /// There is no such group.
     NoSuchGroup {
-        /// The number that was given.
         given: u32,
-        /// How many groups there are.
         groups: u32,
     },
     /// A group `home` without [`Parameters::home`](crate::parameters::Parameters::home).
     NoHome,
     /// This signal cannot stand here.
     WrongSignal {
-        /// The signal.
         given: Signal,
-        /// What can, in words.
         allowed: &'static str,
     },
     /// One end of the home switch without the other.
     HalfSwitch {
-        /// The field that is missing.
         missing: &'static str,
     },
     /// The script has a switch that the axis drives.
     Driven {
-        /// The switch.
         signal: Signal,
         /// The field of the axis that drives it.
         by: &'static str,
     },
     /// Power, E-stop and clear are the first controller's, for all.
     FirstControllers {
-        /// The signal.
         signal: Signal,
     },
     /// An input has two entries in a cycle.
     Twice {
         /// Its name: a signal's, or `push_steps`.
         name: &'static str,
-        /// The cycle.
         cycle: Instant,
     },
     /// More bytes than the memory has.
     LongMemory {
-        /// How many were given.
         given: usize,
-        /// How many it has.
         bytes: usize,
     },
 }
 
 /// A refusal and where it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
     /// Which controller; `None` where it is about the bus or all of them.
     pub controller: Option<usize>,
     /// The field, as a scenario names it: within the controller, such as `groups[2].repeat.first`, or `clock_hz`,
     /// `bus.channels` and their like.
     pub path: String,
-    /// Why.
     pub refusal: Refusal,
 }
 
@@ -195,6 +181,7 @@ impl core::error::Error for Refused {}
 
 /// What holds, but may not be meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Warning {
     /// With `power_loss` a cut can leave the position unknown.
     ShortHoldUp {
@@ -214,7 +201,6 @@ pub enum Warning {
     },
     /// A move of the program is too short for its speed, and goes at the start-stop rate all the way.
     ShortMove {
-        /// Of the move.
         steps: i128,
         /// Up to its speed and down again.
         needed: u64,
@@ -227,12 +213,11 @@ pub enum Warning {
 
 /// A warning and where it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Warned {
-    /// Which controller.
     pub controller: usize,
     /// The field within it, as a scenario names it.
     pub path: String,
-    /// What it is.
     pub warning: Warning,
 }
 

@@ -18,7 +18,7 @@ impl StandAlone {
         &self.checked
     }
 
-    /// Position counters of the bus (A3): rising STEP edges since cycle 0, +1 where DIR is 1, -1 where it is 0. What a
+    /// Position counters of the bus: rising STEP edges since cycle 0, +1 where DIR is 1, -1 where it is 0. What a
     /// controller believes is [`Self::position`].
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
@@ -118,7 +118,7 @@ impl StandAlone {
         Some(self.controllers.get(i)?.pins.en)
     }
 
-    /// The numbers that rule (G8): the eight common ones, then five of each `move`.
+    /// The numbers that rule: the eight common ones, then five of each `move`.
     #[must_use]
     pub fn numbers(&self, i: usize) -> &[i32] {
         self.controllers.get(i).map_or(&[], |controller| controller.numbers.all())
@@ -177,7 +177,7 @@ impl StandAlone {
             .unwrap_or_default()
     }
 
-    /// Digest of the panels that are kept, controller after controller (G8): of the whole run if none was taken.
+    /// Digest of the panels that are kept, controller after controller: of the whole run if none was taken.
     #[must_use]
     pub fn panel_digest(&self) -> u64 {
         panel::digest(self.controllers.iter().map(|controller| controller.panel.as_slice()))

@@ -56,8 +56,8 @@ impl core::error::Error for NotRunnable {}
 
 /// How late the chip woke for cycles in which something was to happen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Lateness {
-    /// The last time.
     pub last: Cycles,
     /// The worst time since power-up.
     pub worst: Cycles,
@@ -73,7 +73,6 @@ pub struct Runner {
     /// The tick of the machine's cycle 0, later by all lateness since.
     origin: u64,
     lateness: Lateness,
-    /// Levels that the machine knows of.
     heard: RawLevels,
     /// The cycle in which the byte was begun that the chip got last.
     begun: Option<Instant>,
@@ -82,9 +81,7 @@ pub struct Runner {
 impl Runner {
     /// Power comes up: cycle 0 of the machine, which is s of G2, is tick `now`. Memory is what the chip's EEPROM holds, an
     /// input that is held is no press, and neither the script nor `memory.initial` counts. Nothing is written yet.
-    ///
-    /// # Errors
-    /// More than one controller, or a virtual axis.
+    /// Errors: more than one controller, or a virtual axis.
     pub fn power_up(now: Instant, checked: &Checked, chip: &mut impl Chip) -> Result<Self, NotRunnable> {
         let [parameters] = checked.controllers() else {
             return Err(NotRunnable::Controllers(checked.controllers().len()));
@@ -95,7 +92,6 @@ impl Runner {
         Ok(Self::new(now, checked, chip))
     }
 
-    /// After [`Self::power_up`] has looked at them.
     fn new(now: Instant, checked: &Checked, chip: &mut impl Chip) -> Self {
         let heard = chip.inputs();
         let len = checked.controllers().first().map_or(0, |parameters| parameters.memory_len());
@@ -178,7 +174,6 @@ impl Runner {
         }
     }
 
-    /// Runs `cycle`, if it has not been run.
     fn run(&mut self, cycle: u64, chip: &mut impl Chip) {
         let decimals = self.decimals();
         let origin = self.origin;
@@ -203,13 +198,11 @@ impl Runner {
         next
     }
 
-    /// The machine's next cycle in which something can change.
     fn deadline(&self) -> u64 {
         let now = self.machine.now().0;
         self.machine.cycles_until_event().map_or(NEVER, |cycles| now.saturating_add(cycles.0))
     }
 
-    /// The tick of that cycle.
     fn wake(&self) -> Option<Instant> {
         let deadline = self.deadline();
         (deadline != NEVER).then(|| Instant(self.origin.saturating_add(deadline)))

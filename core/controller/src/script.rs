@@ -10,12 +10,10 @@ struct Queue {
     taken: usize,
 }
 
-/// The script of a controller.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Script {
     /// Its own, and what it shares with all others: power, E-stop and clear of the first one.
     queues: [Queue; 2],
-    /// Entered while it ran.
     live: VecDeque<Input>,
 }
 
@@ -24,12 +22,10 @@ pub(crate) const fn is_shared(change: Change) -> bool {
     matches!(change, Change::Level(Signal::Power | Signal::Estop | Signal::Clear, _))
 }
 
-/// Whether two entries are of the same input.
 fn is_same(one: Change, other: Change) -> bool {
     one.name() == other.name()
 }
 
-/// `entries` in the order of their cycles.
 pub(crate) fn sorted(entries: impl Iterator<Item = Input>) -> Rc<[Input]> {
     let mut entries: Vec<Input> = entries.collect();
     entries.sort_by_key(|input| input.cycle);
@@ -54,13 +50,11 @@ impl Script {
         Self { queues: [queue(own), queue(shared)], live: VecDeque::new() }
     }
 
-    /// The next entry's cycle; `u64::MAX` without one.
     pub(crate) fn due(&self) -> u64 {
         let queued = self.queues.iter().filter_map(Queue::first).map(|input| input.cycle.0);
         queued.chain(self.live.front().map(|input| input.cycle.0)).min().unwrap_or(u64::MAX)
     }
 
-    /// Takes an entry of cycle `now`.
     pub(crate) fn take(&mut self, now: u64) -> Option<Change> {
         for queue in &mut self.queues {
             if let Some(input) = queue.first().filter(|input| input.cycle.0 <= now) {
@@ -71,13 +65,11 @@ impl Script {
         self.live.pop_front_if(|input| input.cycle.0 <= now).map(|input| input.change)
     }
 
-    /// Whether the input has an entry in its cycle.
     pub(crate) fn has(&self, input: Input) -> bool {
         let is_twin = |other: &Input| other.cycle == input.cycle && is_same(other.change, input.change);
         self.queues.iter().any(|queue| queue.has(input)) || self.live.iter().any(is_twin)
     }
 
-    /// Leaves out all that is still to come.
     pub(crate) fn clear(&mut self) {
         *self = Self::default();
     }

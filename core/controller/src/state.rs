@@ -83,7 +83,7 @@ numbered! {
     }
 }
 
-/// Name of a degree of trust (G2): 0 LOST, 1 HELD, 2 SURE; empty for any other.
+/// Name of a degree of trust: 0 LOST, 1 HELD, 2 SURE; empty for any other.
 #[must_use]
 pub const fn trust_name(trust: u8) -> &'static str {
     match trust {
@@ -95,7 +95,6 @@ pub const fn trust_name(trust: u8) -> &'static str {
 }
 
 impl State {
-    /// Whether a controller with `write_ahead` closes its journal here (G7).
     pub(crate) const fn rests(self) -> bool {
         matches!(self, Self::Ready | Self::Debug | Self::Edit | Self::Paused | Self::Alarm)
     }

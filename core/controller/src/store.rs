@@ -9,17 +9,14 @@ use crate::{
 };
 
 impl Controller {
-    /// Records of the journal.
     fn slots(&self) -> usize {
         self.parameters.memory.slots as usize
     }
 
-    /// The newest complete record that memory holds.
     pub(crate) fn find_newest(&self) -> Option<Valid> {
         journal::newest(self.eeprom.bytes(), self.slots())
     }
 
-    /// Whether steps may rise.
     pub(crate) fn is_memory_open(&self) -> bool {
         !self.writes_journal && self.newest.is_some_and(|newest| newest.entry.is_open)
     }
@@ -43,7 +40,6 @@ impl Controller {
         Some((entry.position, if entry.is_open { 0 } else { entry.trust.min(1) }))
     }
 
-    /// Position, trust and numbers are read.
     pub(crate) fn read(&mut self) {
         self.newest = self.find_newest();
         let believed = self.believed();
@@ -57,7 +53,6 @@ impl Controller {
         self.is_changed = false;
     }
 
-    /// Whether the record that POWER_LOSS writes is wanted.
     pub(crate) fn wants_closing(&self) -> bool {
         let differs = |newest: Valid| {
             let entry = newest.entry;

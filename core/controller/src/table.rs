@@ -11,50 +11,39 @@
 
 /// Steps of the first row, and what is added to them.
 const FIRST_STEPS: u64 = 30;
-/// Rows of as many steps each.
 const EQUAL_ROWS: u64 = 5;
 /// Half the steps of a block, for each of its number.
 const HALF_BLOCK: u64 = FIRST_STEPS * EQUAL_ROWS / 2;
 /// Binary digits of the row at which every table has passed every speed: 10^7 Hz from 10 Hz with 1 Hz/s.
 const ROW_BITS: u32 = 24;
 
-/// A staircase of rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Table {
-    /// f_1 in Hz.
     pub(crate) start_speed_hz: u32,
-    /// a in Hz/s.
     pub(crate) acceleration_hz_s: u32,
 }
 
-/// A row of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Row {
-    /// Its first ramp step.
     pub(crate) first: u64,
-    /// Its last ramp step.
     pub(crate) last: u64,
-    /// Its rate in Hz.
     pub(crate) rate_hz: u64,
 }
 
-/// Steps of the rows 1 to `n` together.
 const fn steps_after(n: u64) -> u64 {
     let (blocks, rest) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
     HALF_BLOCK * blocks * (blocks + 1) + FIRST_STEPS * rest * (blocks + 1)
 }
 
-/// The row of ramp step `step` (from 1).
 fn row_of(step: u64) -> u64 {
     let before = step.saturating_sub(1);
-    // The greatest b with 75*b*(b + 1) <= before.
+    // The maximum b with 75*b*(b + 1) <= before.
     let block = ((1 + 4 * u128::from(before / HALF_BLOCK)).isqrt() as u64 - 1) / 2;
     let rest = before - HALF_BLOCK * block * (block + 1);
     EQUAL_ROWS * block + rest / (FIRST_STEPS * (block + 1)) + 1
 }
 
 impl Table {
-    /// Rate of row `n` (from 1) in Hz.
     fn rate_hz(self, n: u64) -> u64 {
         let start = u128::from(self.start_speed_hz);
         let climbed = 2 * u128::from(self.acceleration_hz_s) * u128::from(steps_after(n.saturating_sub(1)));
@@ -64,7 +53,6 @@ impl Table {
         (root + u128::from(square > root * root + root)) as u64
     }
 
-    /// The row of ramp step `step` (from 1).
     pub(crate) fn row(self, step: u64) -> Row {
         let n = row_of(step);
         Row { first: steps_after(n - 1) + 1, last: steps_after(n), rate_hz: self.rate_hz(n) }

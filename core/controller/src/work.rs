@@ -5,12 +5,12 @@ use core::fmt;
 
 /// The run ended because too many groups began (G, "Refused").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Work {
     /// The controller whose group was one too many.
     pub controller: usize,
-    /// Least number of the groups that began last.
+    /// Minimum number of the groups that began last.
     pub first_group: u32,
-    /// Greatest number of them.
     pub last_group: u32,
     /// Whether they went round without a step, a wait or a delay.
     pub is_endless: bool,

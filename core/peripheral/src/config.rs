@@ -22,41 +22,34 @@ use crate::{
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 
-/// Least cycles of a receiver's bit (A4).
+/// Minimum cycles of a receiver's bit.
 const MIN_BIT_CYCLES: u64 = 11;
 
-/// The range of each number that [`Config::new`] holds by itself; other rules join several.
+/// The range of each number that has one; other rules of [`Config::new`] join several.
+#[allow(missing_docs, reason = "the names say it")]
 pub mod limits {
     use crate::signal::MAX_CHANNELS;
     use core::ops::RangeInclusive;
 
-    /// Greatest length in cycles that a time of the bus may have.
     const MAX_CYCLES: u64 = 1_000_000_000;
 
-    /// Clock in Hz; the slowest is one that hears 1 baud.
+    /// The slowest clock can hear 1 baud.
     pub const CLOCK_HZ: RangeInclusive<u64> = super::MIN_BIT_CYCLES..=1_000_000_000;
-    /// [`Bus::channels`](super::Bus::channels).
     pub const CHANNELS: RangeInclusive<u64> = 1..=MAX_CHANNELS as u64;
-    /// M.
     pub const SLOTS: RangeInclusive<u64> = 1..=127;
-    /// Ts.
     pub const STEP_PERIOD_CYCLES: RangeInclusive<u64> = 2..=MAX_CYCLES;
-    /// W.
     pub const PULSE_WIDTH_CYCLES: RangeInclusive<u64> = 1..=MAX_CYCLES;
-    /// D.
     pub const DIR_SETUP_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
-    /// H.
     pub const DIR_HOLD_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
-    /// dp.
     pub const SETTLE_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
-    /// Ticks of the queue.
     pub const QUEUE_DEPTH: RangeInclusive<u64> = 1..=255;
-    /// A controller's own address; 255 is for all.
+    /// 255 addresses all.
     pub const ADDRESS: RangeInclusive<u64> = 0..=254;
 }
 
-/// The tick sequencer and its driver bus (DESIGN A7).
+/// The tick sequencer and its driver bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Bus {
     /// Channels in use, 1 to 16; a packet has one byte for each.
     pub channels: u8,
@@ -70,18 +63,15 @@ pub struct Bus {
     pub dir_setup_cycles: u32,
     /// H, how long DIR is held after STEP has fallen, in cycles.
     pub dir_hold_cycles: u32,
-    /// Where in a tick the steps go.
     pub distribution: Distribution,
-    /// How many DIR lines the controller has.
     pub dir_line: DirLine,
-    /// When the pulses of one slot come.
     pub pulse_phasing: PulsePhasing,
     /// dp, settling time of the drivers' supply current after a step, in cycles (the patent's delta t_p): staggered
     /// pulses are at most so far apart.
     pub settle_cycles: u32,
-    /// Ticks that the queue holds, 1 to 255.
+    /// 1 to 255 ticks.
     pub queue_depth: u8,
-    /// Self-test after reset in cycles. Packets that end within it are dropped, framed ticks answered with BUSY.
+    /// Self-test after reset in cycles. Packets that end within it are dropped; framed ticks get BUSY.
     pub boot_cycles: u32,
 }
 
@@ -104,46 +94,46 @@ impl Default for Bus {
     }
 }
 
-/// Where in a tick a channel's steps go (DESIGN A7).
+/// Where in a tick a channel's steps go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Distribution {
     /// The first `count` slots of the tick, as in RU 2704486.
     Burst,
-    /// Evenly over the tick.
     #[default]
     Spread,
 }
 
-/// How many DIR lines the controller has (DESIGN A7).
+/// How many DIR lines the controller has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirLine {
-    /// One a channel; they change when a tick starts.
+    /// One per channel; they change when a tick starts.
     #[default]
     PerChannel,
     /// One for all channels; it changes within each slot that has a step.
     Common,
 }
 
-/// When the pulses of one slot come (DESIGN A7).
+/// When the pulses of one slot rise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum PulsePhasing {
-    /// All at once.
     #[default]
     Simultaneous,
     /// One after another, so that the drivers' current peaks do not meet.
     Staggered,
 }
 
-/// What a controller has to know of the serial line (DESIGN A4 to A6).
+/// The serial line as a controller sees it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct SerialLine {
     /// Bit rate of the host in baud.
     pub baud: u32,
-    /// Bit rate of the receiver in baud where its clock differs from the host's.
+    /// Bit rate of the receiver where its clock differs from the host's.
     pub receiver_baud: Option<u32>,
-    /// The controller's address, 0 to 254, if packets begin with one; on a framed line 0 if none is given.
+    /// 0 to 254, if packets begin with an address; on a framed line 0 by default.
     pub address: Option<u8>,
-    /// What stands around the orders.
     pub protocol: Protocol,
 }
 
@@ -153,24 +143,21 @@ impl Default for SerialLine {
     }
 }
 
-/// What stands around the orders on the line.
+/// The protocol on the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Protocol {
-    /// Nothing: bytes, and pauses between packets, as in RU 2704486 (DESIGN A5).
+    /// Bytes, and pauses between packets, as in RU 2704486.
     #[default]
     Raw,
-    /// Frames with a check, sequence numbers and replies (DESIGN A6).
+    /// Frames with a check, sequence numbers and replies.
     Framed,
 }
 
-/// Which number of a configuration has to change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Field {
-    /// The clock of the peripheral.
     ClockHz,
-    /// A field of [`Bus`], by its name.
     Bus(&'static str),
-    /// A field of [`SerialLine`], by its name.
     Line(&'static str),
 }
 
@@ -184,12 +171,11 @@ impl fmt::Display for Field {
     }
 }
 
-/// One number of a configuration that breaks a rule.
+/// A field that breaks a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct ConfigProblem {
-    /// The field that has to change.
     pub field: Field,
-    /// The rule that it breaks.
     pub error: ConfigError,
 }
 
@@ -201,62 +187,35 @@ impl fmt::Display for ConfigProblem {
 
 impl core::error::Error for ConfigProblem {}
 
-/// A rule that a configuration breaks (DESIGN A4, A7), with its numbers.
+/// A broken rule, with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum ConfigError {
     /// A number out of its range.
     Range {
-        /// The number.
         given: u64,
-        /// Least allowed.
         least: u64,
-        /// Greatest allowed.
         most: u64,
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// The receiver's bit time is too short (A4).
-    BitTooShort {
-        /// Cycles a bit.
-        bit_cycles: u64,
-        /// Receiver's rate.
-        baud: u32,
-        /// Clock of the peripheral.
-        clock_hz: u32,
-        /// Highest rate that this clock can hear.
-        max_baud: u32,
-    },
-    /// The pulses of a slot do not fit in it (A7).
+    /// The receiver's bit time is too short.
+    BitTooShort { bit_cycles: u64, baud: u32, clock_hz: u32, max_baud: u32 },
+    /// The pulses of a slot do not fit in it.
     PulseTooLong {
-        /// W.
         width: u64,
-        /// D.
         setup: u64,
-        /// H.
-        hold: u64,
-        /// L = W + max(D + H, 1), of one pulse.
-        needed: u64,
-        /// Pulses that have to follow each other in a slot.
-        pulses: u64,
-        /// Which these are.
-        of: &'static str,
-        /// Ts.
-        period: u64,
-    },
-    /// Staggered pulses with a common DIR line are closer than one lasts (A7).
-    SettleTooShort {
-        /// dp.
-        settle: u64,
-        /// W.
-        width: u64,
-        /// D.
-        setup: u64,
-        /// H.
         hold: u64,
         /// L = W + max(D + H, 1).
         needed: u64,
+        /// Pulses in a row in a slot.
+        pulses: u64,
+        of: &'static str,
+        period: u64,
     },
+    /// Staggered pulses with a common DIR line are closer than one lasts.
+    SettleTooShort { settle: u64, width: u64, setup: u64, hold: u64, needed: u64 },
 }
 
 impl fmt::Display for ConfigError {
@@ -287,42 +246,27 @@ impl fmt::Display for ConfigError {
     }
 }
 
-/// The peripheral's configuration, checked: every rule of A4 and A7 holds.
+/// A valid configuration: every rule of A4 and A7 holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
-    pub(crate) clock_hz: u32,
-    pub(crate) channels: u8,
-    pub(crate) slots: u8,
-    pub(crate) step_period: u64,
-    pub(crate) pulse_width: u64,
-    pub(crate) dir_setup: u64,
-    pub(crate) dir_hold: u64,
-    pub(crate) settle: u64,
-    pub(crate) dir_line: DirLine,
-    pub(crate) pulse_phasing: PulsePhasing,
-    pub(crate) distribution: Distribution,
-    pub(crate) queue_depth: u8,
-    pub(crate) boot: Instant,
-    pub(crate) bit_cycles: u64,
-    pub(crate) reply_baud: u32,
-    pub(crate) protocol: Protocol,
-    pub(crate) address: Option<u8>,
+    clock_hz: u32,
+    bus: Bus,
+    /// The receiver's rate.
+    baud: u32,
+    protocol: Protocol,
+    address: Option<u8>,
 }
 
 impl Config {
-    /// Checks what is asked for.
-    ///
-    /// # Errors
-    /// Every rule that is broken, each with the field that has to change.
+    /// Checks what is requested.
+    /// Errors: every rule that is broken, each with the field that has to change.
     pub fn new(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
         Self::judged(clock_hz, bus, line, true)
     }
 
-    /// Checks what is asked of a bus that segments drive (A8): there are no slots for
+    /// Checks what is asked of a bus that segments drive: there are no slots for
     /// the pulses to fit in, and nothing is received.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
+    /// Errors: as [`Self::new`].
     pub fn of_segments(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
         Self::judged(clock_hz, bus, line, false)
     }
@@ -357,7 +301,6 @@ impl Config {
         let field = Field::Line(if line.receiver_baud.is_some() { "receiver_baud" } else { "baud" });
         let (bit_cycles, max_baud) = (bit_cycles(clock_hz, baud.max(1)), max_baud(clock_hz));
         if !has_ticks {
-            // No bit is heard.
         } else if baud == 0 {
             rules.range(field, baud, 1..=max_baud.max(1).into(), "baud");
         } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= *limits::CLOCK_HZ.start() {
@@ -365,20 +308,8 @@ impl Config {
         }
         rules.end(Self {
             clock_hz,
-            channels: bus.channels,
-            slots: bus.slots,
-            step_period: u64::from(bus.step_period_cycles),
-            pulse_width: u64::from(bus.pulse_width_cycles),
-            dir_setup: u64::from(bus.dir_setup_cycles),
-            dir_hold: u64::from(bus.dir_hold_cycles),
-            settle: u64::from(bus.settle_cycles),
-            dir_line: bus.dir_line,
-            pulse_phasing: bus.pulse_phasing,
-            distribution: bus.distribution,
-            queue_depth: bus.queue_depth,
-            boot: Instant(u64::from(bus.boot_cycles)),
-            bit_cycles,
-            reply_baud: baud,
+            bus: bus.clone(),
+            baud,
             protocol: line.protocol,
             address: match line.protocol {
                 Protocol::Raw => line.address,
@@ -387,32 +318,27 @@ impl Config {
         })
     }
 
-    /// The bus that it was made of.
-    pub(crate) const fn bus(&self) -> Bus {
-        // Each of these came from 32 bits.
-        Bus {
-            channels: self.channels,
-            slots: self.slots,
-            step_period_cycles: self.step_period as u32,
-            pulse_width_cycles: self.pulse_width as u32,
-            dir_setup_cycles: self.dir_setup as u32,
-            dir_hold_cycles: self.dir_hold as u32,
-            distribution: self.distribution,
-            dir_line: self.dir_line,
-            pulse_phasing: self.pulse_phasing,
-            settle_cycles: self.settle as u32,
-            queue_depth: self.queue_depth,
-            boot_cycles: self.boot.0 as u32,
-        }
+    pub(crate) const fn bus(&self) -> &Bus {
+        &self.bus
+    }
+
+    pub(crate) const fn step_period(&self) -> u64 {
+        self.bus.step_period_cycles as u64
+    }
+
+    pub(crate) const fn settle(&self) -> u64 {
+        self.bus.settle_cycles as u64
+    }
+
+    pub(crate) const fn distribution(&self) -> Distribution {
+        self.bus.distribution
     }
 
     /// The same controller with another bus: checked as [`Self::new`] does.
-    ///
-    /// # Errors
-    /// Every rule that is broken.
+    /// Errors: every rule that is broken.
     pub(crate) fn with_bus(&self, bus: &Bus) -> Result<Self, Vec<ConfigProblem>> {
         let line = SerialLine {
-            baud: self.reply_baud,
+            baud: self.baud,
             address: self.address,
             protocol: self.protocol,
             ..SerialLine::default()
@@ -429,16 +355,16 @@ impl Config {
     /// Channels in use, 1 to 16.
     #[must_use]
     pub const fn channels(&self) -> u8 {
-        self.channels
+        self.bus.channels
     }
 
-    /// What stands around the orders on the line.
+    /// The protocol on the line.
     #[must_use]
     pub const fn protocol(&self) -> Protocol {
         self.protocol
     }
 
-    /// The controller's address, where packets begin with one; always on a framed line.
+    /// The controller's address, if packets begin with one; always on a framed line.
     #[must_use]
     pub const fn address(&self) -> Option<u8> {
         self.address
@@ -447,65 +373,64 @@ impl Config {
     /// Slots in a tick, 1 to 127.
     #[must_use]
     pub const fn slots(&self) -> u8 {
-        self.slots
+        self.bus.slots
     }
 
     /// Length of a tick, M*Ts.
     #[must_use]
     pub const fn tick(&self) -> Cycles {
-        Cycles(self.slots as u64 * self.step_period)
+        Cycles(self.bus.slots as u64 * self.step_period())
     }
 
-    /// First cycle after the self-test (A7's `boot`).
+    /// First cycle after the self-test.
     #[must_use]
     pub const fn boot(&self) -> Instant {
-        self.boot
+        Instant(self.bus.boot_cycles as u64)
     }
 
     /// Ticks that the queue holds, 1 to 255.
     #[must_use]
     pub const fn queue_depth(&self) -> u8 {
-        self.queue_depth
+        self.bus.queue_depth
     }
 
-    /// How many DIR lines the controller has.
+    /// One DIR line per channel, or one for all.
     #[must_use]
     pub const fn dir_line(&self) -> DirLine {
-        self.dir_line
+        self.bus.dir_line
     }
 
-    /// When the pulses of one slot come.
+    /// When the pulses of one slot rise.
     #[must_use]
     pub const fn pulse_phasing(&self) -> PulsePhasing {
-        self.pulse_phasing
+        self.bus.pulse_phasing
     }
 
-    /// The rate at which the controller replies, in baud (A6).
+    /// The rate of replies in baud.
     #[must_use]
     pub const fn reply_baud(&self) -> u32 {
-        self.reply_baud
+        self.baud
     }
 
-    /// The receiver's bit time B (A4).
+    /// The receiver's bit time B.
     #[must_use]
     pub const fn bit(&self) -> Cycles {
-        Cycles(self.bit_cycles)
+        Cycles(bit_cycles(self.clock_hz, if self.baud == 0 { 1 } else { self.baud }))
     }
 
-    /// The bit time of a receiver of `baud` (A4). A rate of 0 counts as 1 baud.
+    /// The bit time of a receiver of `baud`. A rate of 0 counts as 1 baud.
     #[must_use]
     pub fn bit_of(clock_hz: u32, baud: u32) -> Cycles {
         Cycles(bit_cycles(clock_hz, baud.max(1)))
     }
 
-    /// Bytes of a packet: one a channel, and the address on an addressed raw line. A frame has its
-    /// address itself.
+    /// Bytes of a packet: one per channel, and the address on an addressed raw line.
     #[must_use]
     pub const fn packet_len(&self) -> usize {
-        self.channels as usize + self.packet_address().is_some() as usize
+        self.bus.channels as usize + self.packet_address().is_some() as usize
     }
 
-    /// The address that packets begin with, if they do.
+    /// The address that packets begin with.
     #[must_use]
     pub const fn packet_address(&self) -> Option<u8> {
         match self.protocol {
@@ -515,7 +440,6 @@ impl Config {
     }
 }
 
-/// The rules that are broken so far.
 #[derive(Default)]
 struct Rules {
     broken: Vec<ConfigProblem>,
@@ -569,12 +493,12 @@ fn pulses_fit(bus: &Bus, rules: &mut Rules) {
     }
 }
 
-/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to the nearest cycle (A4).
+/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to the nearest cycle.
 const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
     (2 * clock_hz as u64 + baud as u64) / (2 * baud as u64)
 }
 
-/// The highest rate whose bit time is at least 11 cycles (A4).
+/// The highest rate whose bit time is at least 11 cycles.
 #[must_use]
 pub const fn max_baud(clock_hz: u32) -> u32 {
     (2 * clock_hz as u64 / (2 * MIN_BIT_CYCLES - 1)) as u32
@@ -582,11 +506,7 @@ pub const fn max_baud(clock_hz: u32) -> u32 {
 
 impl From<&Config> for PulseTimes {
     fn from(config: &Config) -> Self {
-        Self {
-            width: Cycles(config.pulse_width),
-            setup: Cycles(config.dir_setup),
-            hold: Cycles(config.dir_hold),
-        }
+        Self::from(config.bus())
     }
 }
 

@@ -11,20 +11,13 @@
 //! sinks that keep it, and the digest by which two runs are compared.
 //!
 //! ```
-//! use stepscope_peripheral::{
-//!     config::{Bus, Config, SerialLine},
-//!     device::Device,
-//!     signal::Record,
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, signal::Record, units::Instant};
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
 //! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
 //! device.run(true, Instant(1000), &mut trace);
 //! assert_eq!(trace.len(), 1); // nothing but reset: nobody sends
 //! ```
-// `#[inline(always)]` stands where the kernels of `cargo xtask bench` lose more than a twentieth without it: in the loop of
-// a run and in the sinks that it feeds. Elsewhere the compiler, which sees all crates at once, needs no telling.
 #![cfg_attr(not(test), no_std)]
 
 extern crate alloc;

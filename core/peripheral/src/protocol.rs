@@ -12,10 +12,10 @@
 
 use core::fmt;
 
-/// Most ticks in one TICKS frame.
+/// Maximum ticks in one TICKS frame.
 pub const MAX_TICKS: u8 = 32;
 
-/// Declares what one byte of the protocol can mean: each meaning with its byte and its name in DESIGN A6.
+/// Declares the meanings of one byte, each with its value and its name in A6.
 macro_rules! meanings {
     ($($(#[$meta:meta])* pub enum $name:ident {
         $($(#[$variant_meta:meta])* $variant:ident = $byte:literal $word:literal,)*
@@ -28,10 +28,10 @@ macro_rules! meanings {
         }
 
         impl $name {
-            /// All of them, in the order of their bytes.
+            /// All, in the order of their bytes.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// What a byte means, if it means something.
+            /// The meaning of a byte, if it has one.
             #[must_use]
             pub const fn parse(byte: u8) -> Option<Self> {
                 match byte {
@@ -40,7 +40,7 @@ macro_rules! meanings {
                 }
             }
 
-            /// Its name in DESIGN A6.
+            /// Its name in A6.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -52,7 +52,7 @@ macro_rules! meanings {
 }
 
 meanings! {
-    /// What a frame orders (DESIGN A6).
+    /// The command of a frame.
     pub enum Kind {
         /// Ticks for the queue.
         Ticks = 1 "TICKS",
@@ -60,23 +60,24 @@ meanings! {
         Enable = 2 "ENABLE",
         /// Drivers off, if nothing moves.
         Disable = 3 "DISABLE",
-        /// A reply, and nothing else.
+        /// Only a reply.
         Status = 4 "STATUS",
         /// Emergency stop.
         Stop = 5 "STOP",
         /// Expected sequence number 0, fault flags cleared.
         Resync = 6 "RESYNC",
-        /// A reply that tells the position counters, too, and nothing else.
+        /// A reply with the position counters.
         Positions = 7 "POSITIONS",
     }
 
-    /// Why a frame was refused (DESIGN A6).
+    /// Why a frame was refused.
+    #[allow(missing_docs, reason = "the names say it")]
     pub enum Reason {
         /// Neither the expected sequence number nor a repeat of the one before it.
         BadSeq = 1 "BAD_SEQ",
         /// Fewer free places in the queue than ticks.
         QueueFull = 2 "QUEUE_FULL",
-        /// A byte orders more steps than a tick has slots.
+        /// A byte has more steps than a tick has slots.
         TooManySteps = 3 "TOO_MANY_STEPS",
         /// In the self-test; or, for DISABLE, a tick runs or waits.
         Busy = 4 "BUSY",
@@ -84,15 +85,14 @@ meanings! {
         Stopped = 5 "STOPPED",
         /// The body's length or count is wrong.
         BadBody = 6 "BAD_BODY",
-        /// No such kind.
         UnknownKind = 7 "UNKNOWN_KIND",
     }
 
-    /// What a controller does (DESIGN A6).
+    /// The state of a controller.
+    #[allow(missing_docs, reason = "the names say it")]
     pub enum State {
         /// In the self-test after reset.
         Busy = 0 "BUSY",
-        /// Waits for ticks.
         Ready = 1 "READY",
         /// A tick runs or waits.
         Moving = 2 "MOVING",
@@ -101,61 +101,55 @@ meanings! {
     }
 }
 
-/// What every reply tells of its controller (DESIGN A6).
+/// The status in every reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Status {
-    /// What it does.
     pub state: State,
     /// Free places in the queue.
     pub free: u8,
     /// Sequence number that the next TICKS must have.
     pub expected_seq: u8,
-    /// Fault flags.
     pub faults: u16,
     /// Ticks that have ended, wrapping.
     pub ticks_done: u32,
 }
 
-/// A controller's answer to one frame; the counters that the ACK of POSITIONS tells beside it are
-/// [`Positions`](crate::signal::Positions).
+/// A reply; the counters of POSITIONS are [`Positions`](crate::signal::Positions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Reply {
-    /// The controller's own address.
     pub address: u8,
-    /// The kind that was taken, or why the frame was refused.
+    /// The kind that was executed, or the reason of the refusal.
     pub answer: Result<Kind, Reason>,
-    /// The controller after it.
+    /// The status after it.
     pub status: Status,
 }
 
-/// What the controller did with a frame (DESIGN A6).
+/// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum FrameOutcome {
-    /// So many ticks are in the queue.
+    /// Ticks that were queued.
     Queued(u8),
-    /// TICKS that were taken before: acknowledged, and not queued again.
+    /// Acknowledged again, not queued again.
     Repeated,
-    /// Done.
     Taken(Kind),
     /// Refused; nothing but fault flags changed.
     Refused(Reason),
-    /// It was for another address.
     OtherAddress,
-    /// Not COBS, or too short for a frame.
+    /// Not COBS, or too short.
     Short,
-    /// Its CRC is wrong.
     BadCrc {
-        /// The CRC that came.
         found: u32,
-        /// The CRC of what came before it.
         expected: u32,
     },
-    /// A byte too many; the rest is dropped to the next delimiter.
+    /// Too long; the rest is dropped up to the next delimiter.
     Overlong,
 }
 
 impl FrameOutcome {
-    /// What is answered to it, if anything is.
+    /// The reply to it, if it gets one.
     #[must_use]
     pub const fn answer(self) -> Option<Result<Kind, Reason>> {
         match self {
@@ -168,7 +162,6 @@ impl FrameOutcome {
 }
 
 impl fmt::Display for FrameOutcome {
-    /// What became of the frame, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Queued(1) => f.write_str("1 tick queued"),
@@ -187,7 +180,6 @@ impl fmt::Display for FrameOutcome {
 }
 
 impl fmt::Display for Reply {
-    /// The reply, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.answer {
             Ok(kind) => write!(f, "ACK {}", kind.name())?,

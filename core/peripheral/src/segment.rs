@@ -13,10 +13,8 @@
 //! as quickly as one of one.
 //!
 //! ```
-//! use stepscope_peripheral::{
-//!     segment::{CheckedSegments, PulseTimes, Refusal, Segment, SegmentList},
-//!     units::{Cycles, Instant},
-//! };
+//! use stepscope_peripheral::{segment::{CheckedSegments, PulseTimes, Refusal, Segment, SegmentList}, units::{Cycles,
+//!     Instant}};
 //!
 //! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
 //! // A ramp: 100 steps, the first after 2000 cycles, each next 10 cycles sooner.
@@ -39,37 +37,37 @@ use alloc::vec::Vec;
 
 /// Bits of an interval's fraction: all times of a segment are in 1/65536 cycle.
 pub const FRACTION_BITS: u32 = 16;
-/// The last cycle that 48.16 fixed point holds.
+/// The last cycle of 48.16 fixed point.
 pub const LAST_CYCLE: Instant = Instant(u64::MAX >> FRACTION_BITS);
 
 /// One segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Segment {
     /// Steps at intervals that grow by a constant.
     Steps {
-        /// How many, at least one.
         count: u32,
-        /// Time before the first step, in 1/65536 cycle.
+        /// In 1/65536 cycle, before the first step.
         interval: u64,
-        /// What each next interval is longer, in 1/65536 cycle.
+        /// In 1/65536 cycle, added after each step.
         add: i64,
         /// Level of DIR: right is 1.
         right: bool,
     },
-    /// Standing still, in 1/65536 cycle; 0 is allowed.
+    /// In 1/65536 cycle; 0 is allowed.
     Dwell(u64),
 }
 
 /// The segments of one channel, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct SegmentList {
-    /// Where its time begins; cycle 1 or later.
+    /// Cycle 1 or later.
     pub start: Instant,
-    /// The segments in order.
     pub segments: Vec<Segment>,
 }
 
-/// Times of a pulse and of DIR around it (DESIGN A7's W, D and H).
+/// Times of a pulse and of DIR around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
     /// W: how long STEP is high.
@@ -81,7 +79,7 @@ pub struct PulseTimes {
 }
 
 impl PulseTimes {
-    /// W + max(H + D, 1): the least time from step to step.
+    /// W + max(H + D, 1): the minimum interval.
     #[must_use]
     pub const fn min_interval(self) -> Cycles {
         let around = self.hold.0.saturating_add(self.setup.0);
@@ -89,44 +87,40 @@ impl PulseTimes {
     }
 }
 
-/// Why a list is refused (DESIGN A8).
+/// Why a list is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
-    /// There is no such channel.
     NoChannel,
-    /// Nothing starts before cycle 1, and 48.16 fixed point ends with [`LAST_CYCLE`].
+    /// Before cycle 1, or after [`LAST_CYCLE`].
     Start,
-    /// A segment of no steps.
     NoSteps,
-    /// An interval that a step uses is shorter than a pulse allows, or longer than 64 bits hold.
+    /// An interval is too short for a pulse or leaves 64 bits.
     Interval {
         /// The first such step, from 0.
         step: u32,
-        /// Its interval in 1/65536 cycle.
+        /// In 1/65536 cycle.
         interval: i128,
     },
-    /// Its last step, or the end of its dwell, leaves 64 bits.
+    /// The last step or the end of a dwell leaves 64 bits.
     End {
-        /// `next` after it, in 1/65536 cycle.
+        /// In 1/65536 cycle.
         next: i128,
     },
 }
 
-/// A refusal and where it stands.
+/// A refusal and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
-    /// Channel of the list.
     pub channel: usize,
-    /// Index of the segment; `None` where the list itself is refused.
+    /// `None` where the list itself is refused.
     pub segment: Option<usize>,
-    /// Why.
     pub refusal: Refusal,
 }
 
-/// The lists of all channels, channel i's at i.
-///
-/// Invariant: every rule of DESIGN A8 holds for pulses of `pulse`, so no time in them leaves u64 and
-/// no two pulses of a channel meet.
+/// Valid lists, one per channel.
+/// Invariant: no time in them leaves u64, and no two pulses of a channel meet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckedSegments {
     pulse: PulseTimes,
@@ -137,11 +131,9 @@ pub struct CheckedSegments {
 }
 
 impl CheckedSegments {
-    /// Judges the lists of channels 0, 1, ….
-    ///
-    /// # Errors
-    /// What is refused, at most `most` of it. Of a list whose time leaves 64 bits nothing after that
-    /// is judged; the time of a segment with a bad interval counts as none.
+    /// Validates the lists of channels 0, 1, ….
+    /// Errors: the first `most` refusals. After a time that leaves 64 bits the rest of the list is skipped; a segment
+    /// with a bad interval takes no time.
     pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, most: usize) -> Result<Self, Vec<Refused>> {
         let mut refused = Vec::new();
         let mut all = Self { pulse, lists: Vec::new(), steps: 0, turns: 0, end: Instant::RESET };
@@ -164,7 +156,6 @@ impl CheckedSegments {
         if refused.is_empty() { Ok(all) } else { Err(refused) }
     }
 
-    /// Judges one list, and counts what it makes.
     fn judge(&mut self, list: &SegmentList, refuse: &mut dyn FnMut(Option<usize>, Refusal)) {
         if list.start == Instant::RESET || list.start > LAST_CYCLE {
             return refuse(None, Refusal::Start);
@@ -197,7 +188,7 @@ impl CheckedSegments {
         }
     }
 
-    /// The first step whose interval is too short or leaves u64, and the interval.
+    /// The first step whose interval is invalid, and the interval.
     fn first_bad(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
         let least = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
         let most = i128::from(u64::MAX);
@@ -209,7 +200,6 @@ impl CheckedSegments {
         } else if !is_bad(last) {
             return None;
         } else if add < 0 {
-            // The first k with first + k*add < least.
             ((first - least) / -i128::from(add) + 1) as u32
         } else {
             ((most - first) / i128::from(add) + 1) as u32
@@ -245,20 +235,20 @@ impl CheckedSegments {
         self.steps
     }
 
-    /// Records of a trace of all of it, at most: the first, two edges a step, and the changes of DIR.
+    /// Maximum records: the first, two per step, and the changes of DIR.
     #[must_use]
     pub const fn max_records(&self) -> u64 {
         self.steps.saturating_mul(2).saturating_add(self.turns).saturating_add(1)
     }
 
-    /// Fall of the last pulse: the last cycle in which a signal changes, 0 where there is none.
+    /// The last cycle in which a signal changes, 0 where there is none.
     #[must_use]
     pub const fn end(&self) -> Instant {
         self.end
     }
 }
 
-/// Time of `count` steps: the sum of interval + k*add, k from 0.
+/// The sum of interval + k*add, k from 0 to count - 1.
 fn length(count: u32, interval: u64, add: i64) -> i128 {
     let count = i128::from(count);
     count * i128::from(interval) + i128::from(add) * (count * (count - 1) / 2)

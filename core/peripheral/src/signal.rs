@@ -2,10 +2,7 @@
 //! (DESIGN A3).
 //!
 //! ```
-//! use stepscope_peripheral::{
-//!     signal::{Levels, Record, Sink},
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{signal::{Levels, Record, Sink}, units::Instant};
 //!
 //! /// Counts how often EN falls.
 //! #[derive(Default)]
@@ -31,7 +28,7 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Most channels that one controller drives.
+/// Maximum channels of a controller.
 pub const MAX_CHANNELS: usize = 16;
 
 /// Levels of all signals in one cycle, as the bits of DESIGN A3.
@@ -60,7 +57,6 @@ impl Levels {
     pub const DE: u64 = 1 << 35;
     /// At reset the drivers are powered and the line is idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
-    /// Bits that stand for a signal.
     const SIGNALS: u32 = 2 * MAX_CHANNELS as u32 + 4;
 
     /// STEP levels, channel 0 in bit 0.
@@ -82,12 +78,12 @@ impl Levels {
     }
 }
 
-// STEP, DIR and the four others stand side by side, without a gap and without meeting.
+// The signals fill the low bits without a gap.
 const _: () = assert!(MAX_CHANNELS == u16::BITS as usize && Levels::DIR_SHIFT == u16::BITS);
 const _: () = assert!(Levels::EN | Levels::RX | Levels::TX | Levels::DE == 0xf << (2 * MAX_CHANNELS));
 const _: () = assert!(Levels::DE == 1 << (Levels::SIGNALS - 1));
 
-/// Name of the signal that stands at `bit` of the levels, as the page, VCD and CSV print it.
+/// The name of the signal at a bit of the levels.
 #[must_use]
 pub fn name(bit: u32) -> Option<alloc::string::String> {
     match bit {
@@ -101,36 +97,26 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
     }
 }
 
-/// The levels of all signals from a cycle on, until the next record.
+/// The levels from a cycle on, until the next record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Record {
-    /// Cycle in which at least one signal changed.
     pub cycle: Instant,
-    /// All signals in that cycle.
     pub levels: Levels,
 }
 
-/// Position counters of a controller's channels (DESIGN A3): rising STEP edges, +1 where DIR is 1, -1 where it is 0,
-/// wrapping.
-///
-/// ```
-/// use stepscope_peripheral::signal::Positions;
-///
-/// let positions = Positions::new(&[3, -1200]).expect("two channels");
-/// assert_eq!(positions.as_slice(), [3, -1200]);
-/// assert!(Positions::new(&[]).is_none() && Positions::new(&[0; 17]).is_none());
-/// ```
+/// Position counters of a controller's channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Positions {
-    /// Invariant: those of channels that are not there are 0.
+    /// Invariant: unused channels have 0.
     counters: [i32; MAX_CHANNELS],
     /// Invariant: 1..=16.
     channels: u8,
 }
 
 impl Positions {
-    /// Those of 1 to 16 channels, channel 0 first; `None` of none or of more.
+    /// `None` unless there are 1 to 16.
     #[must_use]
     pub fn new(counters: &[i32]) -> Option<Self> {
         let mut all = [0; MAX_CHANNELS];
@@ -139,132 +125,106 @@ impl Positions {
         Some(Self { counters: all, channels: counters.len() as u8 })
     }
 
-    /// A counter a channel, channel 0 first.
+    /// One counter per channel.
     #[must_use]
     pub fn as_slice(&self) -> &[i32] {
         self.counters.get(..usize::from(self.channels)).unwrap_or_default()
     }
 }
 
-/// Something that happened in a cycle beside the signals.
+/// An event besides the signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Event {
-    /// A byte was delivered; its start bit was seen at `seen`.
+    /// A byte was delivered.
     Byte {
-        /// Where its start bit was seen.
+        /// Cycle of its start bit.
         seen: Instant,
-        /// The byte.
         byte: u8,
     },
-    /// A byte's stop bit was low; its start bit was seen at `seen`.
+    /// The stop bit of a byte was low.
     FramingError {
-        /// Where its start bit was seen.
+        /// Cycle of its start bit.
         seen: Instant,
-        /// Whether it drops a packet and what follows to the next gap, as on a raw line.
+        /// Whether bytes are dropped up to the next gap, as on a raw line.
         drops: bool,
     },
-    /// A gap cut a packet short, or ended the ignoring of bytes.
+    /// A gap cut a packet short, or ended the dropping of bytes.
     Gap {
-        /// Whether a packet was cut.
         short: bool,
     },
-    /// The byte just delivered completed a packet.
+    /// The byte completed a packet.
     Packet(PacketOutcome),
-    /// The byte just delivered completed a frame, or was one too many.
+    /// The byte completed a frame, or was one too many.
     Frame(FrameOutcome),
-    /// The frame of this cycle is answered.
+    /// A reply was scheduled.
     Reply {
         /// Where the first start bit falls.
         start: Instant,
-        /// Where DE falls.
         end: Instant,
-        /// What is answered.
         reply: Reply,
-        /// What the ACK of POSITIONS tells beside it; with any other reply `None`.
+        /// In the ACK of POSITIONS only.
         positions: Option<Positions>,
     },
     /// This controller drives the line while the host or another controller does.
     Collision,
-    /// A tick with steps ended and none was there to follow (fault UNDERRUN).
+    /// A tick with steps ended and none followed.
     Underrun,
-    /// Firmware queued a tick.
     Pushed,
-    /// Firmware, or an overload, stopped the controller: the ticks that waited are gone.
+    /// Firmware or an overload stopped the controller and emptied the queue.
     Stopped,
-    /// A tick began.
     TickStart {
-        /// What it orders, a byte a channel (A5).
+        /// One byte per channel.
         orders: [u8; MAX_CHANNELS],
     },
-    /// A tick ended.
     TickEnd,
-    /// What the panel of a stand-alone controller shows from this cycle on (CONTROLLER.md G8).
+    /// The panel of a stand-alone controller changed.
     Panel {
-        /// Which, 0 the first.
         controller: u8,
-        /// Its word.
         word: u64,
         /// Its position in steps.
         position: i64,
-        /// What the display shows, in its digits.
+        /// In its digits.
         display: i64,
     },
-    /// An input of a stand-alone controller took a level, which is not debounced yet.
+    /// The raw level of a stand-alone controller's input changed.
     Input {
-        /// Which controller, 0 the first.
         controller: u8,
-        /// The number of the input, as the controller's room counts them.
+        /// Its number in the controller crate.
         input: u8,
-        /// The level.
         level: bool,
     },
 }
 
-/// What the controller did with a packet (DESIGN A5).
+/// What became of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum PacketOutcome {
-    /// Its tick is in the queue.
     Queued,
-    /// It was for another address.
     OtherAddress,
-    /// It came during the self-test.
     Booting,
     /// Firmware had stopped the controller.
     Stopped,
-    /// A byte ordered more steps than the tick has slots.
     TooManySteps,
-    /// The queue was full.
     QueueFull,
 }
 
-/// Takes the records of a run, in order, and what happened between.
+/// Takes the records of a run, in order, and the events between them.
 pub trait Sink {
-    /// A record; cycles rise strictly.
+    /// Takes a record; cycles rise strictly.
     fn record(&mut self, record: Record);
 
-    /// Several records: the same as [`Self::record`] of one after another, for sinks that have a faster way.
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone)
-    where
-        Self: Sized,
-    {
-        for record in records {
-            self.record(record);
-        }
-    }
-
-    /// Something happened in a cycle. Sinks that only want the signals leave this out.
+    /// Takes an event.
     fn event(&mut self, _at: Instant, _event: Event) {}
 
-    /// Whether the run should pause here.
+    /// Whether the run should pause.
     fn paused(&self) -> bool {
         false
     }
 }
 
-/// A stored trace.
 impl Sink for Vec<Record> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         debug_assert!(
             self.last().is_none_or(|last| last.cycle < record.cycle && last.levels != record.levels),
@@ -273,27 +233,12 @@ impl Sink for Vec<Record> {
         );
         self.push(record);
     }
-
-    #[inline(always)]
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        if cfg!(debug_assertions) {
-            records.for_each(|record| self.record(record));
-        } else {
-            self.extend(records);
-        }
-    }
 }
 
-/// Two sinks at once.
 impl<A: Sink, B: Sink> Sink for (A, B) {
     fn record(&mut self, record: Record) {
         self.0.record(record);
         self.1.record(record);
-    }
-
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        self.0.record_all(records.clone());
-        self.1.record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -306,17 +251,10 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     }
 }
 
-/// A sink that may be missing.
 impl<S: Sink> Sink for Option<S> {
     fn record(&mut self, record: Record) {
         if let Some(sink) = self {
             sink.record(record);
-        }
-    }
-
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        if let Some(sink) = self {
-            sink.record_all(records);
         }
     }
 
@@ -331,13 +269,14 @@ impl<S: Sink> Sink for Option<S> {
     }
 }
 
+/// Ignores everything.
+impl Sink for () {
+    fn record(&mut self, _: Record) {}
+}
+
 impl<S: Sink> Sink for &mut S {
     fn record(&mut self, record: Record) {
         (**self).record(record);
-    }
-
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        (**self).record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -349,18 +288,12 @@ impl<S: Sink> Sink for &mut S {
     }
 }
 
-/// A sink whose wish for a pause is not heard: for runs that go on to their end.
+/// A sink that never pauses.
 pub struct Unpaused<'a, S>(pub &'a mut S);
 
 impl<S: Sink> Sink for Unpaused<'_, S> {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.0.record(record);
-    }
-
-    #[inline(always)]
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        self.0.record_all(records);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
@@ -429,7 +362,7 @@ mod tests {
 
     fn give(sink: &mut impl Sink) -> bool {
         sink.record(Record { cycle: Instant(3), levels: Levels::RESET });
-        sink.record_all(MORE.into_iter());
+        MORE.into_iter().for_each(|record| sink.record(record));
         sink.event(Instant(4), Event::TickEnd);
         sink.paused()
     }

@@ -26,7 +26,7 @@ pub struct Instant(pub u64);
 impl Instant {
     /// Reset, cycle 0. Nothing starts before cycle 1.
     pub const RESET: Self = Self(0);
-    /// A point that no run reaches; the deadline of something that waits for nothing.
+    /// The deadline of something that never happens.
     pub const NEVER: Self = Self(u64::MAX);
 
     /// The next cycle.

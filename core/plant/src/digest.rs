@@ -3,10 +3,8 @@
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
-/// Points from one that counts to the next.
 const EVERY: u32 = 20;
 
-/// The digest so far.
 #[derive(Clone)]
 pub(crate) struct Digest {
     hasher: XxHash64,
@@ -26,7 +24,6 @@ impl core::fmt::Debug for Digest {
 }
 
 impl Digest {
-    /// Another point; whether it counts.
     #[inline(always)]
     pub(crate) fn is_due(&mut self) -> bool {
         self.wait -= 1;

@@ -9,7 +9,6 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(crate) struct Applied {
     pub(crate) v: f64,
-    /// No current can flow.
     pub(crate) is_open: bool,
     /// The current has decayed through the diodes at the step's end.
     pub(crate) ends: bool,
@@ -29,20 +28,16 @@ pub(crate) struct Ask {
     pub(crate) i: f64,
     pub(crate) r: f64,
     pub(crate) ra: f64,
-    /// Voltage of the bus.
     pub(crate) bus: f64,
 }
 
-/// One phase: its target and how it is held.
 #[derive(Clone, Debug)]
 pub(crate) struct Phase {
     pub(crate) target: f64,
-    /// The share of the decay that is fast.
     pub(crate) share: f64,
     chopper: Chopper,
 }
 
-/// State of a chopper with a fixed off-time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Chopper {
     is_off: bool,
@@ -53,7 +48,6 @@ struct Chopper {
     part: f64,
 }
 
-/// The times of a chopper in grid steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChopperTimes {
     off: u32,
@@ -73,7 +67,6 @@ fn round_half_up(x: f64) -> u32 {
     whole.saturating_add(u32::from(x - f64::from(whole) >= 0.5))
 }
 
-/// 1, -1, or 0 for 0.
 #[inline(always)]
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
@@ -91,7 +84,6 @@ impl Phase {
         Self { target, share, chopper }
     }
 
-    /// `averaged`.
     #[inline(always)]
     fn averaged(&self, ask: &Ask) -> Applied {
         let t = self.target;
@@ -121,7 +113,6 @@ impl Phase {
         Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(ask.i) * ask.bus) })
     }
 
-    /// What the chopper decides at a grid point.
     #[inline]
     fn decide(&mut self, times: ChopperTimes, i: f64) {
         let along = self.direction(i) * i;
@@ -169,10 +160,8 @@ impl Phase {
     }
 }
 
-/// The driver: translator and regulator of both phases.
 #[derive(Clone, Debug)]
 pub(crate) struct Driver {
-    /// The commanded position in microsteps, u.
     pub(crate) commanded: i64,
     microsteps: i64,
     peak: f64,
@@ -180,7 +169,6 @@ pub(crate) struct Driver {
     decay: Decay,
     regulator: Regulator,
     times: ChopperTimes,
-    /// Both diodes on the current's way, in V.
     pub(crate) diodes: f64,
     pub(crate) phases: [Phase; 2],
 }
@@ -206,13 +194,11 @@ impl Driver {
         driver
     }
 
-    /// The commanded position in full steps.
     #[inline(always)]
     pub(crate) fn command(&self) -> f64 {
         self.commanded as f64 / self.microsteps as f64
     }
 
-    /// The translator's currents of both phases.
     fn targets(&self) -> [f64; 2] {
         let place = self.commanded.rem_euclid(4 * self.microsteps);
         let (mut s, mut c) = sincos(place as f64 / self.microsteps as f64 + 0.5);
@@ -223,7 +209,6 @@ impl Driver {
         [self.peak * c, self.peak * s]
     }
 
-    /// STEP rises.
     pub(crate) fn step(&mut self, right: bool) {
         self.commanded += if right { 1 } else { -1 };
         let targets = self.targets();
@@ -235,7 +220,6 @@ impl Driver {
         }
     }
 
-    /// EN rises.
     pub(crate) fn power_up(&mut self) {
         for phase in &mut self.phases {
             phase.chopper = Chopper { part: 1.0, ..Chopper::default() };
@@ -251,7 +235,6 @@ impl Driver {
         }
     }
 
-    /// The voltage of one phase in a (sub-)step.
     #[inline(always)]
     pub(crate) fn voltage(&self, phase: usize, ask: &Ask, powered: bool) -> Applied {
         let Some(held) = self.phases.get(phase) else { return Applied::voltage(0.0) };

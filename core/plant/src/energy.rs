@@ -16,15 +16,14 @@ pub(crate) struct EnergyAccount {
     pub(crate) viscous: f64,
     pub(crate) diodes: f64,
     pub(crate) load: f64,
-    /// What was stored at the start.
     start: f64,
 }
 
-/// The energy of a motor since the start of the run, each part in J (F8):
+/// The energy of a motor since the start of the run, each part in J:
 /// bus = copper + friction + viscous + diodes + load + stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct EnergyBalance {
-    /// Taken from the bus.
     pub bus: f64,
     /// Lost in the resistances of windings and bridge.
     pub copper: f64,
@@ -32,7 +31,6 @@ pub struct EnergyBalance {
     pub friction: f64,
     /// Lost to viscous friction and in the coupling's damper.
     pub viscous: f64,
-    /// Lost in the diodes.
     pub diodes: f64,
     /// Work against gravity and the torque that goes round with the load.
     pub load: f64,

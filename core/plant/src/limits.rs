@@ -46,7 +46,7 @@ pub const POLES: RangeInclusive<u64> = 1..=3;
 pub const PERIOD_STEPS: RangeInclusive<u64> = 1..=1_000_000;
 /// Step of a converter.
 pub const LSB: RangeInclusive<f64> = 1e-6..=1000.0;
-/// Greatest code of a converter.
+/// Maximum code of a converter.
 pub const ADC_MAX: RangeInclusive<u64> = 1..=8_388_607;
 /// Offset of an encoder in codes.
 pub const OFFSET_LSB: RangeInclusive<f64> = -1e6..=1e6;
@@ -58,5 +58,5 @@ pub const SEED: RangeInclusive<u64> = 0..=9_007_199_254_740_991;
 pub const THRESHOLD_A: RangeInclusive<f64> = 0.001..=1e4;
 /// Conversions in a row that are one.
 pub const SAMPLES: RangeInclusive<u64> = 1..=1_000_000;
-/// Most that each of the numbers of [`stability`](crate::stability) may be (F3).
+/// Most that each of the numbers of [`stability`](crate::stability) may be.
 pub const STABLE: f64 = 0.25;

@@ -4,17 +4,15 @@ use crate::sincos::nearest;
 
 /// A slip of four full steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Slip {
-    /// The grid point's cycle.
     pub cycle: u64,
     /// Whether the rotor fell behind to the left of its command (it lost steps to the right).
     pub is_behind: bool,
 }
 
-/// What a motor has lost so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LostSteps {
-    /// In four full steps.
     pub(crate) lost: i64,
     lost_steps: f64,
 }
@@ -34,7 +32,6 @@ impl LostSteps {
         Some(Slip { cycle, is_behind })
     }
 
-    /// EN rises.
     pub(crate) fn power_up(&mut self, error: f64) {
         self.lost_steps = 4.0 * nearest(error / 4.0);
         self.lost = nearest(error / 4.0) as i64;

@@ -6,15 +6,12 @@ use crate::{
 };
 use core::f64::consts::{SQRT_2, TAU};
 
-/// A degree in rad.
 pub(crate) const DEGREE: f64 = 0.017_453_292_519_943_295;
 /// 2*pi, 6.283185307179586.
 pub(crate) const TURN: f64 = TAU;
 
-/// The constants of the equations.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
-    /// rad in a full step.
     pub(crate) g: f64,
     pub(crate) k: f64,
     pub(crate) r: f64,
@@ -29,7 +26,6 @@ pub(crate) struct Machine {
     pub(crate) coupling: Option<Coupling>,
 }
 
-/// The forces that depend on where the load is.
 #[derive(Clone, Debug)]
 pub(crate) struct Load {
     gravity: f64,
@@ -39,7 +35,6 @@ pub(crate) struct Load {
 }
 
 impl Load {
-    /// The force at `y`.
     #[inline(always)]
     pub(crate) fn at(&self, y: f64) -> f64 {
         let mut force = 0.0;
@@ -53,7 +48,6 @@ impl Load {
     }
 }
 
-/// A second mass on a spring.
 #[derive(Clone, Debug)]
 pub(crate) struct Coupling {
     pub(crate) stiffness: f64,
@@ -105,7 +99,6 @@ impl Machine {
         }
     }
 
-    /// The detent's share of the force.
     #[inline(always)]
     pub(crate) fn detent(&self, sn: f64, cs: f64) -> f64 {
         self.detent * (2.0 * (2.0 * sn * cs) * (1.0 - 2.0 * sn * sn))
@@ -121,7 +114,6 @@ impl Machine {
         force + self.load.at(x)
     }
 
-    /// Where the rotor rests at the start (F4).
     pub(crate) fn rest(&self, i_a: f64, i_b: f64) -> f64 {
         let force = |x| self.force_at_rest(x, i_a, i_b);
         if force(0.0) == 0.0 || !(force(-1.0) > 0.0 && 0.0 > force(1.0)) {
@@ -140,7 +132,6 @@ impl Machine {
     }
 }
 
-/// The constants of a step of so many cycles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     pub(crate) h: f64,

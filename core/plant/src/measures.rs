@@ -30,12 +30,11 @@ pub const MAX_SLIPS: usize = 10_000;
 /// How far from its place a rotor is still moving, in full steps.
 pub const SETTLED: f64 = 0.05;
 
-/// Least, greatest and mean square of something at points.
+/// Minimum, maximum and mean square of something at points.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Extremes {
-    /// The least.
     pub least: f64,
-    /// The greatest.
     pub greatest: f64,
     squares: f64,
     points: u64,
@@ -66,7 +65,7 @@ impl Extremes {
         if self.points == 0 { 0.0 } else { square_root(self.squares / self.points as f64) }
     }
 
-    /// The greatest amount; 0 before the first point.
+    /// The maximum amount; 0 before the first point.
     #[must_use]
     pub fn peak(&self) -> f64 {
         if self.points == 0 { 0.0 } else { self.greatest.max(-self.least) }
@@ -76,9 +75,7 @@ impl Extremes {
 /// The positions of a rotor since its last STEP, as far as the end may ask for them.
 #[derive(Clone, Debug, Default)]
 struct Tail {
-    /// Falling values, each above all that came later.
     above: Vec<(u64, f64)>,
-    /// Rising values, each below all that came later.
     below: Vec<(u64, f64)>,
 }
 
@@ -108,7 +105,6 @@ impl Tail {
     }
 }
 
-/// The last step and what came after it.
 #[derive(Clone, Debug)]
 struct AfterStep {
     cycle: u64,
@@ -117,7 +113,6 @@ struct AfterStep {
     greatest: f64,
 }
 
-/// The measures of one motor so far.
 #[derive(Clone, Debug, Default)]
 struct Motor {
     worst: (f64, u64),
@@ -146,14 +141,14 @@ pub struct Measures {
     sensor: Extremes,
 }
 
-/// Steps of the first motor before the supply current's deviation counts, and steps of each that there must be (F8).
+/// Steps of the first motor before the supply current's deviation counts, and steps of each that there must be.
 const FIRST_STEPS: u64 = 5;
 const LEAST_STEPS: u64 = 8;
 
 /// What one motor did.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct MotorResult {
-    /// Where it is at the end.
     pub state: State,
     /// Where it is told to be, in full steps.
     pub command: f64,
@@ -161,37 +156,33 @@ pub struct MotorResult {
     pub lost: i64,
     /// Each slip of four full steps, the first [`MAX_SLIPS`] of them.
     pub slips: Vec<Slip>,
-    /// All slips.
     pub slip_count: u64,
     /// How many STEPs had come by the first slip.
     pub first_slip_step: Option<u64>,
-    /// The greatest amount by which it was off its command, in full steps, with its sign (positive: behind to the left), and
+    /// The maximum amount by which it was off its command, in full steps, with its sign (positive: behind to the left), and
     /// the point's cycle.
     pub following_error: (f64, u64),
-    /// The rotor's greatest speed in full steps/s, without sign, and the point's cycle.
+    /// The rotor's maximum speed in full steps/s, without sign, and the point's cycle.
     pub fastest: (f64, u64),
-    /// The load's greatest speed; the rotor's where no coupling is between them.
+    /// The load's maximum speed; the rotor's where no coupling is between them.
     pub fastest_load: f64,
     /// Its last STEP, and by how much it went past its last command, in full steps in that direction; `None` without a step.
     pub overshoot: Option<f64>,
     /// Cycles from the last STEP until it stays within 0.05 full steps of where it ends; `None` without a step.
     pub settling: Option<u64>,
-    /// Cycle of the last STEP.
     pub last_step: Option<u64>,
     /// Peak of the greater phase current in A.
     pub phase_peak_a: f64,
     /// Root of the mean square of both phase currents in A.
     pub phase_rms_a: f64,
-    /// Where the energy went.
     pub energy: EnergyBalance,
 }
 
 /// What a plant did.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct PlantResult {
-    /// The last point's cycle.
     pub cycle: u64,
-    /// The plant's digest.
     pub digest: u64,
     /// The motor of channel 0, 1, ….
     pub motors: Vec<MotorResult>,

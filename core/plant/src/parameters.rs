@@ -33,7 +33,7 @@ macro_rules! parameters {
     )*};
 }
 
-/// How the driver holds the phase currents (F4).
+/// How the driver holds the phase currents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Regulator {
     /// The mean of an ideal chopper.
@@ -43,7 +43,7 @@ pub enum Regulator {
     Chopper,
 }
 
-/// How fast a current decays while its phase is off (F4).
+/// How fast a current decays while its phase is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Decay {
     /// The phase is short-circuited.
@@ -70,7 +70,7 @@ impl Decay {
 }
 
 parameters! {
-    /// The driver of one motor (F4).
+    /// The driver of one motor.
     pub struct Drive {
         /// How it holds the currents.
         pub regulator: Regulator = Regulator::Averaged,
@@ -78,7 +78,7 @@ parameters! {
         pub decay: Decay = Decay::Fast,
         /// Off-time of a chopper in us.
         pub off_us: f64 = 20.0,
-        /// Least on-time of a chopper in us.
+        /// Minimum on-time of a chopper in us.
         pub blank_us: f64 = 1.0,
         /// Steps of the digital-to-analogue converter from 0 to the peak current; without it they are as fine as f64.
         pub dac_levels: Option<u16> = None,
@@ -134,7 +134,7 @@ parameters! {
         pub drive: Drive = Drive::default(),
     }
 
-    /// The supply of all motors of a plant (F5).
+    /// The supply of all motors of a plant.
     pub struct Supply {
         /// Voltage of the source in V.
         pub supply_v: f64 = 24.0,
@@ -148,7 +148,7 @@ parameters! {
         pub idle_ma: f64 = 0.0,
     }
 
-    /// Low passes and a converter behind a sensor (F6).
+    /// Low passes and a converter behind a sensor.
     pub struct SensorChain {
         /// Bandwidth of each low pass in Hz.
         pub bandwidth_hz: f64 = 3000.0,
@@ -158,17 +158,17 @@ parameters! {
         pub adc_steps: u32 = 1,
         /// What one step of the converter stands for.
         pub lsb: f64 = 0.024_414_062_5,
-        /// Its greatest code; the least is its negative.
+        /// Its maximum code; the least is its negative.
         pub adc_max: u32 = 2047,
     }
 
-    /// The encoder on each rotor: 4096 codes a turn, as the AS5600 (F6).
+    /// The encoder on each rotor: 4096 codes a turn, as the AS5600.
     pub struct Encoder {
         /// Grid steps from code to code.
         pub period_steps: u32 = 1000,
         /// Added to the angle, in codes.
         pub offset_lsb: f64 = 0.0,
-        /// Greatest noise in codes.
+        /// Maximum noise in codes.
         pub noise_lsb: f64 = 0.0,
         /// Half of the play in codes.
         pub hysteresis_lsb: f64 = 0.0,
@@ -176,7 +176,7 @@ parameters! {
         pub seed: u64 = 0,
     }
 
-    /// When the current sensor reports an overload (F7).
+    /// When the current sensor reports an overload.
     pub struct Protection {
         /// From this current on, in A.
         pub threshold_a: f64 = 2.0,
@@ -206,7 +206,7 @@ parameters! {
 }
 
 impl Setup {
-    /// Cycles of a grid step (F1): `step_cycles`, or 5 us, where a driver chops 1 us, at least one.
+    /// Cycles of a grid step: `step_cycles`, or 5 us, where a driver chops 1 us, at least one.
     #[must_use]
     pub fn grid_cycles(&self) -> u32 {
         let chops = self.motors.iter().any(|motor| motor.drive.regulator == Regulator::Chopper);

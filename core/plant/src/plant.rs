@@ -45,14 +45,12 @@ pub struct Plant {
     events: PointEvents,
 }
 
-/// What happened at a point beside what can be asked of the [`Plant`].
+/// What happened at a point next to what can be asked of the [`Plant`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct PointEvents {
-    /// The current sensor converted.
     pub converted: bool,
-    /// The encoders were read.
     pub encoded: bool,
-    /// The protection reports an overload (F7).
     pub overload: bool,
 }
 
@@ -61,10 +59,10 @@ pub trait Observer {
     /// A grid point has been reached; [`Plant::cycle`] tells its cycle.
     fn point(&mut self, plant: &Plant);
 
-    /// A motor lost four full steps.
+    /// A motor has slipped by four full steps.
     fn slip(&mut self, _channel: usize, _slip: Slip) {}
 
-    /// STEP of these channels rises in a cycle.
+    /// STEP rises on some channels, with their DIR.
     fn steps(&mut self, _cycle: u64, _rises: u16, _right: u16) {}
 }
 
@@ -128,7 +126,6 @@ impl<O: Observer> Observer for Option<O> {
     }
 }
 
-/// The count of conversions at or above the threshold.
 #[derive(Clone, Copy, Debug)]
 struct Overload {
     threshold_a: f64,
@@ -139,14 +136,13 @@ struct Overload {
 }
 
 impl Overload {
-    /// A conversion.
     fn convert(&mut self, cycle: u64, is_over: bool) {
         self.in_a_row = if is_over { self.in_a_row.saturating_add(1) } else { 0 };
         self.latest = [self.latest[1], (cycle, is_over)];
     }
 
     /// ENABLE in the cycle before `rise`, in which EN is high again: a conversion in that very cycle, which is looked at
-    /// last, counts already (F7).
+    /// last, counts already.
     fn begin_anew(&mut self, rise: u64) {
         let counts = |(cycle, is_over): &&(u64, bool)| *is_over && cycle + 1 >= rise;
         self.in_a_row = self.latest.iter().rev().take_while(counts).count() as u32;
@@ -160,10 +156,8 @@ struct Accelerometer {
 }
 
 impl Plant {
-    /// A plant at point 0: currents at their targets, rotors at rest (F4).
-    ///
-    /// # Errors
-    /// Every number that is out of its range; where all are in it, every one of F3's limits, or a supply that is too weak.
+    /// A plant at point 0: currents at their targets, rotors at rest.
+    /// Errors: every number that is out of its range; where all are in it, every one of F3's limits, or a supply that is too weak.
     pub fn new(setup: &Setup) -> Result<Self, Vec<Refused>> {
         let refused = judge(setup);
         if !refused.is_empty() {
@@ -412,7 +406,7 @@ impl Plant {
         self.motors.get(channel).map(|motor| motor.energy.balance(&motor.machine, &motor.state))
     }
 
-    /// The digest so far (F8).
+    /// The digest so far.
     #[must_use]
     pub fn digest(&self) -> u64 {
         self.digest.value()

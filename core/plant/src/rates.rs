@@ -38,13 +38,10 @@ pub const RAMP_STEPS_S2: f64 = 200_000.0;
 /// Time of a rate of the resonance map, in s.
 pub const MAP_S: f64 = 0.6;
 
-/// The rate to start with, in steps/s.
 const FIRST_RATE: f64 = 4000.0;
 /// It must work at this one.
 const LEAST_RATE: f64 = 500.0;
-/// No rate is looked at above this one.
 const GREATEST_RATE: f64 = 5e6;
-/// How near two rates are that are one.
 const NEAR: f64 = 1.002;
 
 /// A search for the highest rate that holds: doubled while it does, then halved geometrically.
@@ -94,9 +91,7 @@ impl Search {
 }
 
 /// The highest rate that holds, in steps/s; `None` where not even 500 does.
-///
-/// # Errors
-/// The first of a trial.
+/// Errors: the first of a trial.
 pub fn search<E>(mut holds: impl FnMut(f64) -> Result<bool, E>) -> Result<Option<f64>, E> {
     let mut search = Search::default();
     while let Some(rate) = search.rate() {
@@ -153,9 +148,7 @@ fn span(setup: &Setup, seconds: f64) -> u64 {
 }
 
 /// Whether the motor of channel 0 makes `steps` at an even rate from rest and stops at its place.
-///
-/// # Errors
-/// Those of the plant.
+/// Errors: those of the plant.
 pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
     let after = span(setup, REST_S);
@@ -165,9 +158,7 @@ pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>
 }
 
 /// Whether a ramp of `a` steps/s^2 brings the motor of channel 0 to a rate and keeps it there.
-///
-/// # Errors
-/// Those of the plant.
+/// Errors: those of the plant.
 pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
     trial(setup, ramp(setup.clock_hz, rate, a, HOLD_S), 0, &mut slipped)?;
@@ -184,9 +175,7 @@ pub struct Resonance {
 }
 
 /// The motor of channel 0 at an even rate in steps/s, for 0.6 s.
-///
-/// # Errors
-/// Those of the plant.
+/// Errors: those of the plant.
 pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
     let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
     // Steps go on to the end of the time, so that the last part of it is no standing still.

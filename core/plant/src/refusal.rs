@@ -11,25 +11,15 @@ use stepscope_peripheral::signal::MAX_CHANNELS;
 
 /// Why a [`Setup`] makes no plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
     /// A number is out of its range.
-    Range {
-        /// The field, as a scenario names it.
-        field: &'static str,
-        /// What was given.
-        given: f64,
-        /// The least.
-        least: f64,
-        /// The greatest.
-        greatest: f64,
-    },
+    Range { field: &'static str, given: f64, least: f64, greatest: f64 },
     /// One of F3's numbers is above 0.25: the grid is too coarse for this motor.
     Unstable {
-        /// Which.
         measure: Measure,
         /// Its value at a whole grid step.
         value: f64,
-        /// Cycles of the grid step.
         step_cycles: u32,
     },
     /// The source cannot give what the motors draw at rest (F5: no number).
@@ -43,10 +33,9 @@ pub enum Refusal {
 
 /// A refusal and the motor that it is about; `None` where it is about the whole plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
-    /// Channel of the motor.
     pub channel: Option<usize>,
-    /// Why.
     pub refusal: Refusal,
 }
 
@@ -83,7 +72,6 @@ impl fmt::Display for Refused {
 
 impl core::error::Error for Refused {}
 
-/// Collects what is out of range.
 struct Ranges<'a>(&'a mut Vec<Refused>, Option<usize>);
 
 impl Ranges<'_> {

@@ -29,7 +29,6 @@ pub(crate) fn square_root(x: f64) -> f64 {
     rounded * power_of_two(half_exponent - 1)
 }
 
-/// The whole part of the square root.
 fn whole_root(m: u128) -> u64 {
     let (mut rest, mut root, mut bit) = (m, 0_u128, 1_u128 << 126);
     while bit > m {

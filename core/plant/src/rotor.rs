@@ -14,18 +14,15 @@ use crate::{
     state::State,
 };
 
-/// A motor with its load and driver.
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor {
     pub(crate) machine: Machine,
     pub(crate) driver: Driver,
     pub(crate) state: State,
     pub(crate) energy: EnergyAccount,
-    /// The constants of a whole grid step.
     whole: Span,
     step_cycles: u64,
     clock_hz: f64,
-    /// Cycles of the grid step that have passed.
     passed: u64,
     /// Energy that it took from the bus in this grid step, in J.
     from_bus: f64,
@@ -62,7 +59,6 @@ impl Rotor {
         self.machine.r * (i_a * i_a + i_b * i_b)
     }
 
-    /// Goes on to `to` cycles after the grid point.
     pub(crate) fn advance(&mut self, to: u64, bus: f64, powered: bool) {
         if to > self.passed {
             let span = Span::new(&self.machine, to - self.passed, self.clock_hz);

@@ -36,7 +36,6 @@ impl Chain {
         new
     }
 
-    /// The next point; true where the converter converts.
     #[inline]
     pub(crate) fn advance(&mut self, input: f64) -> bool {
         let mut input = input;
@@ -76,7 +75,6 @@ impl Chain {
     }
 }
 
-/// The encoder on one rotor.
 #[derive(Clone, Debug)]
 pub(crate) struct Encoder {
     codes_a_step: f64,
@@ -114,13 +112,11 @@ impl Encoder {
     }
 }
 
-/// The greatest whole number that is not above `x`.
 fn floor(x: f64) -> i64 {
     let whole = x as i64;
     whole - i64::from(whole as f64 > x)
 }
 
-/// SplitMix64 as its author published it.
 #[derive(Clone, Debug)]
 struct SplitMix64(u64);
 

@@ -20,8 +20,8 @@ pub const REST_STEPS: u64 = 10;
 
 /// A reading of the current sensor at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Sample {
-    /// The point's cycle.
     pub cycle: u64,
     /// The current in A, or in whole codes of the converter: what is made of samples has the same unit.
     pub current: f64,
@@ -29,14 +29,12 @@ pub struct Sample {
 
 /// The supply current around one step of a motor that rested.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct StepResponse {
-    /// Its mean before, i_q.
     pub rest_a: f64,
-    /// The least after the step.
     pub least_a: f64,
-    /// The greatest.
     pub greatest_a: f64,
-    /// Cycles from STEP's rise to the first sample, from the greatest on, that is at most a share above i_q: the patent's
+    /// Cycles from STEP's rise to the first sample, from the maximum on, that is at most a share above i_q: the patent's
     /// word, the default. `None` if not within T_step, and where no sample differs from i_q.
     pub reached: Option<u64>,
     /// Cycles to the last sample that is off by more than that share. `None` if it is the last one there is, and where no
@@ -86,9 +84,9 @@ pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
 pub struct Deviation {
     /// Its mean at rest, i_q, in A.
     pub rest_a: f64,
-    /// The greatest above it, at least 0.
+    /// The maximum above it, at least 0.
     pub above_a: f64,
-    /// The greatest below it, at least 0.
+    /// The maximum below it, at least 0.
     pub below_a: f64,
 }
 
@@ -111,8 +109,8 @@ impl Deviation {
 
 /// Keeps what the current sensor says at each point.
 #[derive(Clone, Debug, Default)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct SensorLog {
-    /// The readings, rising in time.
     pub samples: Vec<Sample>,
     /// Rises of STEP of channel 0.
     pub steps: Vec<u64>,

@@ -59,7 +59,6 @@ pub fn sincos(q: f64) -> (f64, f64) {
     )
 }
 
-/// A whole number mod 4, however great.
 #[cold]
 fn far_quarter(n: f64) -> u64 {
     // The remainder of two numbers is exact.
@@ -76,7 +75,7 @@ pub(crate) fn phi(z: f64) -> (f64, f64) {
     (1.0 - z * phi2, phi2)
 }
 
-/// 1 - e^-z for z >= 0, by halving z to at most 0.25 and squaring back (F6).
+/// 1 - e^-z for z >= 0, by halving z to at most 0.25 and squaring back.
 pub(crate) fn one_minus_exp(z: f64) -> f64 {
     let (mut z, mut halvings) = (z, 0);
     while z > 0.25 && halvings < 2000 {

@@ -2,10 +2,8 @@
 
 use crate::{parameters, root::square_root};
 
-/// The supply in time.
 #[derive(Clone, Debug)]
 pub(crate) struct Supply {
-    /// Voltage of the bus at the point, in V.
     pub(crate) v: f64,
     /// Current of the drivers in the grid step before the point, in A.
     pub(crate) i_load: f64,
@@ -16,7 +14,6 @@ pub(crate) struct Supply {
     source_sinks: bool,
     /// hc = h/Cb and gg.
     buffer: Option<(f64, f64)>,
-    /// Whether the bus is at its floor.
     pub(crate) has_collapsed: bool,
 }
 

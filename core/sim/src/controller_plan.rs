@@ -2,9 +2,8 @@
 //! packets, a schedule of them on a raw line, a job each for the host of a framed line.
 
 use crate::{
-    bus_load::carries,
-    framed_host::{FramedHost, Job},
-    noise::Noise,
+    hosts::framed_host::{FramedHost, Job},
+    line::{bus_load::carries, noise::Noise},
 };
 use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
 use stepscope_motion::{
@@ -27,19 +26,18 @@ use stepscope_scenario::{
     Checked, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
 };
 
-/// Bytes of all controllers' ticks together.
+/// Maximum bytes of all controllers' ticks together.
 const MAX_BYTES: usize = 8_000_000;
-/// Bit times of an exchange beside its bytes: from a frame to its reply, and from that to the next.
+/// Bit times of an exchange without its bytes: the turnaround of the reply, and the pause after it.
 const EXCHANGE_BITS: u128 = 11 + 10;
-/// Parts of a bit time that loads are counted in.
+/// Loads are counted in thousandths of a bit time.
 const PART_OF_BIT: u128 = 1000;
 
-/// What one controller is to do.
 #[derive(Clone, Debug)]
 pub(super) struct ControllerPlan {
     config: Config,
     plans: Vec<AxisPlan>,
-    /// A byte a channel, tick after tick.
+    /// One byte per channel, tick after tick.
     ticks: Rc<[u8]>,
 }
 
@@ -64,7 +62,6 @@ impl ControllerPlan {
         !self.ticks.is_empty()
     }
 
-    /// The ticks one by one.
     pub(super) fn each_tick(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         self.ticks.chunks(usize::from(self.config.channels()))
     }
@@ -72,8 +69,6 @@ impl ControllerPlan {
 
 /// The plan of each axis of each controller; empty where the source is no motion.
 pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
-    #[cfg(test)]
-    crate::counts::PLANNED.set(crate::counts::PLANNED.get() + 1);
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
@@ -83,7 +78,6 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
         .map_err(of_motion)
 }
 
-/// The ticks of each controller.
 pub(super) fn controller_plans(
     checked: &Checked,
     plans: Vec<Vec<AxisPlan>>,
@@ -117,7 +111,6 @@ pub(super) fn controller_plans(
     if problems.is_empty() { Ok(controllers) } else { Err(problems) }
 }
 
-/// Path of the axes of an additional controller; `None` for the scenario's own.
 fn additional_path(index: usize) -> Option<String> {
     index.checked_sub(1).map(|index| format!("controllers[{index}].axes"))
 }
@@ -148,7 +141,6 @@ fn ticks_of(
     })
 }
 
-/// What the segment engine runs, where segments run the scenario.
 pub(super) fn segments(
     checked: &Checked,
     controllers: &[ControllerPlan],
@@ -163,7 +155,7 @@ pub(super) fn segments(
     }
 }
 
-/// A framed job's last tick has no steps: that is how the host says that it was the last (A7).
+/// A framed job ends with a tick without steps, so that its end is no underrun.
 fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
     let last = ticks.chunks(usize::from(channels)).last();
     if let Some(last) = last.filter(|last| last.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)) {
@@ -186,7 +178,6 @@ pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Sc
     }
 }
 
-/// First cycle after the self-tests of all controllers, in which the host begins.
 fn start(checked: &Checked) -> Instant {
     checked.configs.iter().map(|config| config.boot()).max().unwrap_or(Instant::RESET).next()
 }
@@ -209,10 +200,8 @@ fn paced(checked: &Checked, controllers: &[ControllerPlan]) -> Schedule {
     Schedule::paced(start(checked), first.tick(), joined)
 }
 
-/// The packets of one controller as they go over a raw line.
 struct Packets<'a> {
     plan: &'a ControllerPlan,
-    /// Where they are given as they are.
     given: Option<&'a [Hex]>,
 }
 
@@ -232,7 +221,6 @@ impl<'a> Packets<'a> {
         self.given.map_or_else(|| self.plan.each_tick().len(), <[Hex]>::len)
     }
 
-    /// Adds the bytes of packet `index`, if there is one.
     fn put(&self, index: usize, bytes: &mut Vec<u8>) {
         if let Some(given) = self.given {
             bytes.extend_from_slice(given.get(index).map_or(&[], |packet| &packet.0));
@@ -246,13 +234,11 @@ impl<'a> Packets<'a> {
     }
 }
 
-/// What the host of a framed line has to do: a job for each controller that has ticks.
 pub(super) fn jobs(controllers: &[ControllerPlan]) -> Vec<Job> {
     let busy = controllers.iter().filter(|plan| plan.has_ticks());
     busy.map(|plan| job(&plan.config, &plan.ticks)).collect()
 }
 
-/// The host of a framed line.
 pub(super) fn framed_host(checked: &Checked, controllers: &[ControllerPlan]) -> FramedHost {
     let (clock_hz, baud) = (controllers.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
     let noise = Noise::new(&checked.noise, clock_hz, baud);
@@ -276,11 +262,8 @@ pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
     }
 }
 
-/// The part of the line's time that is taken while all controllers move; `None` where no ticks are
-/// sent.
-///
-/// # Errors
-/// Where it is more than 1, with the rate that would do.
+/// The part of the line's time that is taken while all controllers move; `None` where no ticks are sent.
+/// Errors: above 1, with the rate that is needed.
 pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem> {
     let Some(first) = checked.configs.first() else { return Ok(None) };
     if !checked.source.is_ticks() {
@@ -293,7 +276,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
     };
     let configs = checked.configs.iter().enumerate().filter_map(busy);
     let (cycles, bits) = if checked.waits_for_replies() {
-        // Of the first controller's tick, so that ticks may have different lengths.
+        // In ticks of the first controller, because ticks may differ in length.
         let bits: u128 = configs
             .map(|config| frame_bits(checked, config) * u128::from(tick) / u128::from(config.tick().0))
             .sum();
@@ -307,8 +290,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
     Ok(Some(cycles as f64 / tick as f64))
 }
 
-/// Bit times, in parts, that one tick of a controller takes on a framed line with its share of the
-/// frame around it and of the reply.
+/// Bit times, in thousandths, of one tick with its share of the frame around it and of the reply.
 fn frame_bits(checked: &Checked, config: &Config) -> u128 {
     let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
@@ -316,7 +298,6 @@ fn frame_bits(checked: &Checked, config: &Config) -> u128 {
     PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)
 }
 
-/// Steps of all channels in one tick, from its bytes.
 pub(super) fn pulses(tick: &[u8]) -> u64 {
     let mut sum = 0;
     for byte in tick.get(..Tick::default().len()).unwrap_or(tick) {

@@ -1,84 +1,130 @@
-//! The controllers of a run: those of a line with all that is on it, or those that run by themselves.
+//! What a run runs: controllers on a serial line, lists of segments, or controllers without a line.
 
-use crate::{alone::Alone, bus::Bus, ignored::Ignored};
+use crate::line::bus::Bus;
+use alloc::boxed::Box;
+#[cfg(feature = "controller")]
+use stepscope_controller::StandAlone;
 #[cfg(feature = "plant")]
 use stepscope_peripheral::units::Cycles;
-use stepscope_peripheral::{signal::Sink, units::Instant};
+use stepscope_peripheral::{
+    device::{Faults, SegmentEngine},
+    signal::{MAX_CHANNELS, Sink},
+    units::Instant,
+};
 
-/// Controllers under way.
+#[derive(Clone, Debug)]
+pub(crate) enum Generator {
+    Bus,
+    Segments(Box<SegmentEngine>),
+    #[cfg(feature = "controller")]
+    StandAlone(StandAlone),
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Controllers {
+    /// Stays before cycle 0 where something else generates the edges.
     pub(crate) bus: Bus,
-    /// Runs in place of the net, which then stays before cycle 0.
-    pub(crate) alone: Option<Alone>,
+    pub(crate) generator: Generator,
     /// First cycle that is not run; without it the run ends when nothing can change any more.
     pub(crate) end: Option<Instant>,
 }
 
 impl Controllers {
-    /// The first cycle that nobody has run.
     pub(crate) fn reached(&self) -> Instant {
-        self.alone.as_ref().map_or_else(|| self.bus.now(), Alone::now)
+        match &self.generator {
+            Generator::Bus => self.bus.now(),
+            Generator::Segments(engine) => engine.now(),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => machine.now(),
+        }
     }
 
-    /// Whether all that was to be run is run.
-    #[inline]
     pub(crate) fn are_done(&self) -> bool {
-        match (&self.alone, self.end) {
-            (Some(alone), Some(end)) => alone.now() >= end,
-            (Some(alone), None) => alone.at_rest(),
-            (None, Some(end)) => self.bus.has_reached(end),
-            (None, None) => self.bus.is_over(),
+        match (self.end, &self.generator) {
+            (None, _) => self.at_rest(),
+            (Some(end), Generator::Bus) => self.bus.has_reached(end),
+            (Some(end), _) => self.reached() >= end,
         }
     }
 
-    /// Goes on to cycle `end`, with a sink for each, until a sink asks for a pause; with [`Instant::NEVER`] until nothing
-    /// can change any more.
+    pub(crate) fn at_rest(&self) -> bool {
+        match &self.generator {
+            Generator::Bus => self.bus.is_over(),
+            Generator::Segments(engine) => engine.at_rest(),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => machine.at_rest(),
+        }
+    }
+
+    /// Goes on to cycle `end`, with a sink per controller, until a sink pauses; with [`Instant::NEVER`] until nothing can
+    /// change any more.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        match (&mut self.alone, sinks.first_mut()) {
-            (Some(alone), Some(sink)) => alone.run(end, sink),
-            (Some(alone), None) => alone.run(end, &mut Ignored),
-            (None, _) => self.bus.run(end, sinks),
+        match &mut self.generator {
+            Generator::Bus => self.bus.run(end, sinks),
+            Generator::Segments(engine) => engine.run(end, &mut sinks.first_mut()),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => machine.run(end, &mut sinks.first_mut()),
         }
     }
 
-    /// One cycle, with a sink for each.
     pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
-        match (&mut self.alone, sinks.first_mut()) {
-            (Some(alone), Some(sink)) => {
-                alone.clock(sink);
-            }
-            (Some(alone), None) => {
-                alone.clock(&mut Ignored);
-            }
-            (None, _) => self.bus.clock(sinks),
+        match &mut self.generator {
+            Generator::Bus => self.bus.clock(sinks),
+            Generator::Segments(engine) => drop(engine.clock(&mut sinks.first_mut())),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => drop(machine.clock(&mut sinks.first_mut())),
+        }
+    }
+
+    /// Position counters of the first controller, or of what generates the edges in its place.
+    pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
+        match &self.generator {
+            Generator::Bus => self.bus.first().positions(),
+            Generator::Segments(engine) => engine.positions(),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => machine.positions(),
+        }
+    }
+
+    pub(crate) fn faults(&self) -> Faults {
+        match &self.generator {
+            Generator::Bus => self.bus.first().faults(),
+            Generator::Segments(engine) => engine.faults(),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(_) => Faults::default(),
         }
     }
 }
 
 #[cfg(feature = "plant")]
 impl Controllers {
-    /// Where nothing can change any more, the cycle after the last change; the last edge was in `last`.
+    /// At rest, the cycle after the last change; the last edge was in `last`.
     pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
-        match &self.alone {
-            Some(alone) => alone.at_rest().then(|| alone.rests_from(last)),
-            None => self.bus.is_over().then(|| self.bus.rests_from()),
-        }
+        self.at_rest().then(|| match &self.generator {
+            Generator::Bus => self.bus.rests_from(),
+            Generator::Segments(_) => last.next(),
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(machine) => machine.rests_from(),
+        })
     }
 
-    /// The plant of a controller reports an overload, last in the cycle that was run last. Returns whether it reacts.
+    /// Reports an overload, last in the cycle that was run last. Returns whether the controller reacts: stand-alone
+    /// ones do not.
     pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
-        match (&mut self.alone, self.bus.device_mut(controller)) {
-            (Some(alone), _) => alone.overload(),
-            (None, Some(device)) => {
-                device.overload(sink);
+        match &mut self.generator {
+            Generator::Bus => {
+                let device = self.bus.device_mut(controller);
+                device.map(|device| device.overload(sink)).is_some()
+            }
+            Generator::Segments(engine) => {
+                engine.overload();
                 true
             }
-            (None, None) => false,
+            #[cfg(feature = "controller")]
+            Generator::StandAlone(_) => false,
         }
     }
 
-    /// What a controller's self-test found.
     pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
         if let Some(device) = self.bus.device_mut(controller) {
             device.settles_in(found);

@@ -20,7 +20,7 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::{Checked, Noise, Source};
 
-/// Edges of the line that a byte has at most, and how many of them fall.
+/// Maximum edges of a byte on the line, and how many of them fall.
 const MAX_EDGES_A_BYTE: u64 = 10;
 const MAX_FALLS_A_BYTE: u64 = 5;
 /// Where the last of them can be: the start of data bit 7.
@@ -29,32 +29,29 @@ const LAST_FALL_BIT: u64 = 8;
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
 const LONGEST_REST_BITS: u64 = 60;
 
-/// Bytes of a frame beside its ticks: address, kind, count, sequence number, CRC, COBS and delimiter.
 const FRAME_OVERHEAD: u64 = 13;
 
-/// What a run costs, known before it starts. Where a host waits for replies the numbers are estimates.
+/// Maximum cost of a run, known before it starts. Where a host waits for replies it is an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Cost {
-    /// Records of the trace, at most.
     pub records: u64,
-    /// Sends of the host.
     pub sends: u64,
-    /// Bytes that the host sends.
     pub bytes: u64,
     /// Cycle by which nothing can change any more, or the run's given end.
     pub end_cycle: u64,
-    /// Steps of the grids of all plants, each times its motors (PLANT F1); 0 without a plant.
+    /// Steps of the grids of all plants, each times its motors; 0 without a plant.
     pub motor_steps: u64,
 }
 
-/// Motor-steps up to which a plant runs without asking.
+/// A plant runs up to this many motor-steps without a confirmation.
 pub const BUDGET_MOTOR_STEPS: u64 = 40_000_000;
 
-/// Records up to which a scenario runs without asking.
+/// A scenario runs up to this many records without a confirmation.
 pub const BUDGET_RECORDS: u64 = 4_000_000;
 
 impl Cost {
-    /// Whether it is more than runs without asking.
+    /// Whether it needs a confirmation.
     #[must_use]
     pub const fn is_over_budget(&self) -> bool {
         self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
@@ -80,12 +77,10 @@ impl Cost {
         }
     }
 
-    /// The same with the plants behind the controllers.
     #[cfg(feature = "plant")]
     pub(super) fn with_plants(self, checked: &Checked) -> Self {
         let Some(plants) = &checked.plants else { return self };
         let tail = if checked.run.is_some() { 0 } else { plants.tail.0 };
-        // A boot that measures is waited for, too.
         let boot = if plants.self_test && checked.run.is_none() {
             checked.configs.iter().map(|config| config.boot().0).max().unwrap_or(0)
         } else {
@@ -96,10 +91,10 @@ impl Cost {
             (end_cycle / u64::from(setup.grid_cycles())).saturating_mul(setup.motors.len() as u64)
         });
         let motor_steps = steps.fold(0, u64::saturating_add);
-        // EN and STEP fall at an overload, which ends all but what a host enables again.
+        // EN and STEP fall at an overload; a host may enable the drivers again.
         let overloads: u64 =
             plants.setups.iter().map(|setup| u64::from(setup.protection.is_some()) * (1 + self.sends)).sum();
-        // A step there and back, with DIR, on each channel.
+        // Two steps with DIR per channel.
         let tests = if plants.self_test {
             6 * plants.setups.iter().map(|s| s.motors.len() as u64).sum::<u64>()
         } else {
@@ -110,19 +105,17 @@ impl Cost {
 }
 
 impl Cost {
-    /// What a run of segments costs: nothing is sent.
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
         Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle, motor_steps: 0 }
     }
 }
 
-/// What goes over the line.
 struct Sends {
     count: u64,
     bytes: u64,
     reply_bytes: u64,
-    /// When it is over, where that is not told by a schedule.
+    /// When it is over, unless a schedule says so.
     end_cycle: u64,
 }
 
@@ -136,8 +129,8 @@ impl Sends {
         Self { count: schedule.len() as u64, bytes, reply_bytes: replies * longest, end_cycle: 0 }
     }
 
-    /// Frames of a host that waits for replies: ticks, and STATUS and POSITIONS before and after them. On a line that goes wrong each may be sent as often as
-    /// the host tries, and a host that crashes asks every controller again: no bound, but a fair warning.
+    /// Ticks, and STATUS and POSITIONS before and after them. On a noisy line each frame may be repeated, and a host
+    /// that crashes opens every controller again: an estimate, not a bound.
     fn framed(checked: &Checked, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
         let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
@@ -155,20 +148,18 @@ impl Sends {
         }
         let bytes = (sends.bytes + sends.reply_bytes) / repeats;
         let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
-        // The line and the ticks go side by side, but for the first and the last exchange. How long a line
-        // that goes wrong takes is not known; most such jobs still end with their ticks.
+        // Line and ticks overlap, except for the first and the last exchange. How long a noisy line takes is unknown;
+        // most such jobs still end with their ticks.
         sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
             + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
         sends
     }
 }
 
-/// Bytes of the longest reply to a frame: that to POSITIONS.
 const fn longest_reply(config: &Config) -> u64 {
     reply_len(Kind::Positions, config.channels()) as u64
 }
 
-/// Records of all ticks of one controller at most.
 fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -> u64 {
     let config = plan.config();
     if checked.waits_for_replies() || comes_as_ordered(checked, config) {
@@ -176,7 +167,7 @@ fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -
             && config.protocol() == Protocol::Raw
             && checked.configs.len() > 1
         {
-            // A list of packets may speak to any controller.
+            // Any packet may address any controller.
             let most = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
             return records_of(config, most) + schedule.total_bytes() as u64;
         }
@@ -186,7 +177,6 @@ fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -
     most_ticks(checked, config, schedule) * records_of(config, most)
 }
 
-/// Whether each packet comes with its tick and is heard as it was sent.
 fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
     checked.source.is_ticks() && is_faithful(checked, config)
 }
@@ -195,7 +185,6 @@ fn is_faithful(checked: &Checked, config: &Config) -> bool {
     checked.forced.is_empty() && checked.noise == Noise::default() && hears(config, checked.baud)
 }
 
-/// Ticks for this controller that can be heard.
 fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
     let heard = if is_faithful(checked, config) {
         schedule.total_bytes() as u64
@@ -206,13 +195,13 @@ fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
     heard / config.packet_len() as u64
 }
 
-/// Whether the receiver takes each sample in the bit that it is of, and is armed for the next byte.
+/// Whether each sample lies in its own bit, and the receiver is armed before the next byte.
 fn hears(config: &Config, baud: u32) -> bool {
     let (bit, sent) = (config.bit().0, BitTimes::new(config.clock_hz(), baud));
     (0..BYTE_BITS).all(|k| (sent.bit(k)..sent.bit(k + 1)).contains(&Cycles(bit / 2 + k * bit)))
 }
 
-/// Bytes that can be heard of so many that are sent back to back.
+/// Maximum bytes heard when so many are sent back to back.
 fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
     let (bytes, bit) = (bytes as u64, config.bit().0);
     let Some(before) = bytes.checked_sub(1) else { return 0 };
@@ -221,8 +210,7 @@ fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
     (MAX_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
 }
 
-/// Records that a tick of `pulses` pulses makes at most: two edges a pulse, or a slot where they
-/// come together, and the changes of DIR.
+/// Two records per pulse, or per slot where pulses coincide, and the changes of DIR.
 fn records_of(config: &Config, pulses: u64) -> u64 {
     let slots = pulses.min(u64::from(config.slots()));
     match (config.pulse_phasing(), config.dir_line()) {
@@ -233,9 +221,8 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
     }
 }
 
-/// A cycle by which everything has been sent and what can follow it has passed: a byte that is heard
-/// late (by a slow receiver, or begun by a forced level), the tick that runs and those that wait, or
-/// a reply and the gap.
+/// A cycle by which everything has been sent, and a late byte, the ticks that run and wait, or a reply and the gap
+/// have passed.
 fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerPlan]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
     let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
@@ -262,12 +249,12 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerP
     controllers.iter().map(end).max().unwrap_or(sent) + 1
 }
 
-/// The end of a controller's last tick where each packet is heard as it was sent. A tick waits for the one before: one
-/// whose packet came late, behind many others', makes all that follow late, also when theirs have the line for themselves.
+/// The end of a controller's last tick if each packet is heard as it was sent. A late packet delays all ticks after
+/// it.
 fn ordered_end(schedule: &Schedule, checked: &Checked, controllers: usize, plan: &ControllerPlan) -> u64 {
     let config = plan.config();
     let tick = config.tick().0;
-    // A list of packets may speak to any controller, and more than once in a turn.
+    // Any packet may address any controller, more than once per turn.
     let (turns, each) = match &checked.source {
         Source::Packets(_) if controllers > 1 => (schedule.len(), controllers as u64),
         _ => (plan.each_tick().len(), 1),

@@ -1,63 +1,58 @@
 //! From a scenario to its trace: the whole line in one call.
 
 #[cfg(feature = "plant")]
-use crate::plants::{Behind, PlantsBehind};
+use crate::plant::behind::PlantsBehind;
 use crate::{
-    Cost,
-    alone::Alone,
-    bus::Bus,
     controller_plan::{self, ControllerPlan},
-    controllers::Controllers,
-    framed_host::{Conversation, FramedHost, Progress},
+    controllers::{Controllers, Generator},
+    cost::Cost,
+    hosts::framed_host::{Conversation, FramedHost, Progress},
+    line::bus::Bus,
+    run::Run,
 };
 use alloc::{boxed::Box, rc::Rc, vec::Vec};
 use core::slice;
+#[cfg(feature = "controller")]
+use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::{
     config::Config,
-    device::{Device, Faults, SegmentEngine},
+    device::{Device, SegmentEngine},
     segment::CheckedSegments,
-    signal::{Event, MAX_CHANNELS, Record, Sink, Unpaused},
-    units::{Cycles, Instant},
-    wire::{ForcedLevel, Line, Schedule},
+    signal::{Sink, Unpaused},
+    units::Instant,
+    wire::{Line, Schedule},
 };
-#[cfg(feature = "plant")]
-use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
 
-/// Most bytes that a host may have to send: as many as the most ticks of 16 channels take on an addressed
-/// raw line.
+/// Maximum bytes that a host may have to send: the most ticks of 16 channels on an addressed raw line.
 const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 
-/// Most steps of the grid, of all motors together, that a run may take (PLANT F1).
+/// Maximum grid steps of a run, of all motors together.
 const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 
-/// A scenario that has been judged in every respect, with its motions planned and its packets made.
+/// A validated scenario with its motions planned and its packets encoded.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     checked: Checked,
-    /// What each controller is to do.
-    ///
     /// Invariant: one at least, the scenario's own first.
     controllers: Vec<ControllerPlan>,
-    /// What the host sends without waiting for replies.
+    /// Sent without waiting for replies.
     schedule: Rc<Schedule>,
-    /// What the segment engine runs, where segments run the scenario; then nothing is sent.
+    /// Only where segments run the scenario; then nothing is sent.
     segments: Option<Rc<CheckedSegments>>,
     line_load: Option<f64>,
     cost: Cost,
 }
 
 impl Experiment {
-    /// Judges a scenario and prepares its run.
-    ///
-    /// # Errors
-    /// Every problem of the scenario, each with its path.
+    /// Validates a scenario and prepares its run.
+    /// Errors: every problem, each with its path.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
         let plans = controller_plan::plans(scenario);
-        // A motor's number that no plant can have was told by the plant already.
+        // The plant has reported these already.
         let is_new = |problem: &Problem| problems.iter().all(|told: &Problem| told.path != problem.path);
         let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
         let plans = plans.map_err(|found| problems.extend(found)).ok();
@@ -105,21 +100,16 @@ impl Experiment {
         Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
-    /// Reads, judges and prepares a scenario.
-    ///
-    /// # Errors
-    /// Every problem, those of types and those of numbers together.
+    /// Reads, validates and prepares a scenario.
+    /// Errors: every problem of types and numbers.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
         let (scenario, unread) = Scenario::from_json_lenient(text);
         Self::of_lenient(&scenario, unread)
     }
 
-    /// Judges a scenario of which some fields could not be read, `unread`: these stand at their
-    /// defaults while the rest is judged, and what follows from several fields together waits until
-    /// all can be read.
-    ///
-    /// # Errors
-    /// `unread` and what else is wrong.
+    /// Validates a scenario some of whose fields could not be read: they have their defaults, and rules that join
+    /// several fields wait.
+    /// Errors: `unread` and what else is wrong.
     pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
         let judged = Self::new(scenario);
         if unread.is_empty() {
@@ -132,24 +122,24 @@ impl Experiment {
         Err(problems)
     }
 
-    /// How many controllers are on the line, 1 to 32.
+    /// Number of controllers on the line, 1 to 32.
     #[must_use]
     pub fn controllers(&self) -> usize {
         self.controllers.len()
     }
 
-    /// The configuration of the first controller: that of `bus` and `line.address`.
+    /// The configuration of the first controller.
     #[must_use]
     pub fn config(&self) -> &Config {
         self.first().config()
     }
 
-    /// The configuration of each controller, in the order of the scenario.
+    /// The configurations in the order of the scenario.
     pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
         self.controllers.iter().map(ControllerPlan::config)
     }
 
-    /// The host's rate on the line.
+    /// The host's rate.
     #[must_use]
     pub const fn baud(&self) -> u32 {
         self.checked.baud
@@ -167,28 +157,26 @@ impl Experiment {
         self.controllers.get(index).map_or(&[], ControllerPlan::plans)
     }
 
-    /// The ticks that controller `index` is ordered, a byte a channel (A5), tick after tick; empty
-    /// where the source is a line script.
+    /// The ticks of controller `index`, one byte per channel, tick after tick; empty for a line script.
     #[must_use]
     pub fn ticks_of(&self, index: usize) -> &[u8] {
         self.controllers.get(index).map_or(&[], ControllerPlan::ticks)
     }
 
-    /// How far the host of a framed line has come in `run` with controller `index`; `None` where nobody
-    /// waits for replies, or that controller has nothing to do.
+    /// How far the host has come with controller `index`; `None` where nobody waits for replies or it has no ticks.
     #[must_use]
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
         run.host()?.progress().nth(self.job(index)?)
     }
 
-    /// Ticks that controller `index` has acknowledged in `run`; `None` as [`Self::host_progress`].
+    /// Ticks that controller `index` has acknowledged; `None` as [`Self::host_progress`].
     #[must_use]
     pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
         run.host()?.acknowledged().nth(self.job(index)?)
     }
 
-    /// What a host says on a real line to have the ticks done (LIVE H3), from cycle `start` of its own clock on, an opening
-    /// tick without steps first; `None` where nobody waits for replies.
+    /// The host's conversation for a real line, from cycle `start` of its own clock on, with an opening tick; `None`
+    /// where nobody waits for replies.
     #[must_use]
     pub fn conversation(&self, start: Instant) -> Option<Conversation> {
         let bit = Config::bit_of(self.config().clock_hz(), self.baud());
@@ -197,7 +185,7 @@ impl Experiment {
         waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start).with_opening_tick())
     }
 
-    /// Which of the host's jobs controller `index` is: it has one for each that has ticks.
+    /// The index of controller `index` among those that have ticks.
     #[must_use]
     pub fn job(&self, index: usize) -> Option<usize> {
         self.controllers.get(index).filter(|plan| plan.has_ticks())?;
@@ -205,25 +193,22 @@ impl Experiment {
     }
 
     fn first(&self) -> &ControllerPlan {
-        // There is always a first one.
         &self.controllers[0]
     }
 
-    /// What the host sends without waiting for replies; empty for the host of a framed line, whose
-    /// sends a run tells ([`Run::schedule`]).
+    /// What the host sends without waiting for replies; for a framed host see [`Run::schedule`].
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
-    /// What the segment engine runs; `None` where ticks run the scenario.
+    /// The segment lists; `None` where ticks run the scenario.
     #[must_use]
     pub fn segments(&self) -> Option<&CheckedSegments> {
         self.segments.as_deref()
     }
 
-    /// Whether a run has no end because a jog button of a stand-alone controller stays pressed: no limit is ahead, and the
-    /// scenario has no `run_cycles`.
+    /// Whether a run never ends because a jog button of a stand-alone controller stays pressed.
     #[cfg(feature = "controller")]
     #[must_use]
     pub fn jogs_without_end(&self) -> bool {
@@ -231,30 +216,32 @@ impl Experiment {
         !has_end && self.stand_alone().is_some_and(crate::stand_alone::jogs_without_end)
     }
 
-    /// The stand-alone controllers; `None` where a line or segments run the scenario.
+    /// The stand-alone controllers.
     #[cfg(feature = "controller")]
     #[must_use]
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::Checked> {
         self.checked.stand_alone.as_ref()
     }
 
-    /// What runs it by itself.
-    fn alone(&self) -> Option<Alone> {
-        let segments =
-            self.segments.clone().map(|lists| Alone::Segments(Box::new(SegmentEngine::new(lists))));
+    fn generator(&self) -> Generator {
         #[cfg(feature = "controller")]
-        let segments = segments.or_else(|| Some(Alone::panels(self.checked.stand_alone.as_ref()?)));
-        segments
+        if let Some(checked) = &self.checked.stand_alone {
+            return Generator::StandAlone(StandAlone::new(checked));
+        }
+        match &self.segments {
+            Some(lists) => Generator::Segments(Box::new(SegmentEngine::new(Rc::clone(lists)))),
+            None => Generator::Bus,
+        }
     }
 
-    /// What the run will cost.
+    /// The maximum cost of a run.
     #[must_use]
     pub const fn cost(&self) -> Cost {
         self.cost
     }
 
-    /// The part of the line's time that packets, frames and replies take while all controllers move,
-    /// 0..=1; `None` where nothing paced is sent.
+    /// The part of the line's time that is taken while all controllers move, 0..=1; `None` where nothing paced is
+    /// sent.
     #[must_use]
     pub const fn line_load(&self) -> Option<f64> {
         self.line_load
@@ -270,7 +257,7 @@ impl Experiment {
         Run {
             controllers: Controllers {
                 bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
-                alone: self.alone(),
+                generator: self.generator(),
                 end: run.map(|cycles| Instant(cycles.0)),
             },
             #[cfg(feature = "plant")]
@@ -289,27 +276,25 @@ impl Experiment {
         if tests { Device::with_self_test(config) } else { Device::new(config) }
     }
 
-    /// The plants behind the controllers, where the scenario has them.
+    /// The plants behind the controllers.
     #[cfg(feature = "plant")]
     #[must_use]
     pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
         self.checked.plants.as_ref()
     }
 
-    /// The host of a framed line, where it has ticks to send.
     fn host(&self) -> Option<FramedHost> {
         self.checked
             .waits_for_replies()
             .then(|| controller_plan::framed_host(&self.checked, &self.controllers))
     }
 
-    /// The whole run, at the fast speed; `sink` takes what the first controller does.
+    /// Runs everything at the fast speed; `sink` takes the trace of the first controller.
     pub fn run(&self, sink: &mut impl Sink) -> Run {
         self.run_each(slice::from_mut(sink))
     }
 
-    /// The whole run, at the fast speed, with a sink for each controller; those without one run all
-    /// the same.
+    /// As [`Self::run`], with a sink per controller; those without one run too.
     pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
         let mut sinks: Vec<_> = sinks.iter_mut().map(Unpaused).collect();
@@ -319,7 +304,7 @@ impl Experiment {
         run
     }
 
-    /// The whole run clock by clock: slow, and the measure of the fast speed.
+    /// Runs everything clock by clock: slow, the reference of the fast speed.
     pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
         self.run_each_clock_by_clock(slice::from_mut(sink))
     }
@@ -334,239 +319,11 @@ impl Experiment {
     }
 }
 
-/// A run under way.
-#[derive(Clone, Debug)]
-pub struct Run {
-    controllers: Controllers,
-    /// What the edges drive.
-    #[cfg(feature = "plant")]
-    plants: Option<Box<PlantsBehind>>,
-}
-
-impl Run {
-    /// The first controller as it is now; where segments run the scenario, one before cycle 0.
-    #[must_use]
-    pub fn device(&self) -> &Device {
-        self.controllers.bus.first()
-    }
-
-    /// All controllers as they are now, in the order of the scenario.
-    pub fn devices(&self) -> impl Iterator<Item = &Device> {
-        self.controllers.bus.devices()
-    }
-
-    /// The host of a framed line as it is now; `None` where nobody waits for replies.
-    #[must_use]
-    pub const fn host(&self) -> Option<&FramedHost> {
-        self.controllers.bus.host()
-    }
-
-    /// What the host has sent, and what it will send as far as that is known. Another run can take it
-    /// as its source (A9).
-    #[must_use]
-    pub fn schedule(&self) -> &Schedule {
-        self.controllers.bus.line().schedule()
-    }
-
-    /// The levels that have been forced on the line and will be as far as that is known, those of noise
-    /// among them, rising in time. Together with [`Self::schedule`] they are all that is done to the line.
-    #[must_use]
-    pub fn forced(&self) -> &[ForcedLevel] {
-        self.controllers.bus.line().forced()
-    }
-
-    /// Position counters of the first controller, or of the segment engine (DESIGN A3).
-    #[must_use]
-    pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.controllers.alone.as_ref().map_or_else(|| self.device().positions(), Alone::positions)
-    }
-
-    /// The stand-alone controllers as they are now; `None` where a line or segments run the scenario.
-    #[cfg(feature = "controller")]
-    #[must_use]
-    pub fn stand_alone(&self) -> Option<&stepscope_controller::StandAlone> {
-        self.controllers.alone.as_ref()?.stand_alone()
-    }
-
-    /// The same, to be pressed.
-    #[cfg(feature = "controller")]
-    pub(crate) fn stand_alone_mut(&mut self) -> Option<&mut stepscope_controller::StandAlone> {
-        self.controllers.alone.as_mut()?.stand_alone_mut()
-    }
-
-    /// Faults of the first controller so far, or of the segment engine.
-    #[must_use]
-    pub fn faults(&self) -> Faults {
-        self.controllers.alone.as_ref().map_or_else(|| self.device().faults(), Alone::faults)
-    }
-
-    /// Ticks of the first controller that have ended; segments have none.
-    #[must_use]
-    pub fn ticks_done(&self) -> u32 {
-        self.device().ticks_done()
-    }
-
-    /// Cycles that have been run.
-    #[must_use]
-    pub fn cycles(&self) -> Cycles {
-        #[cfg(feature = "plant")]
-        if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
-            return Cycles(ended.0);
-        }
-        Cycles(self.controllers.reached().0)
-    }
-
-    /// Whether the run is over.
-    #[must_use]
-    #[inline]
-    pub fn is_done(&self) -> bool {
-        #[cfg(feature = "plant")]
-        if let Some(plants) = &self.plants {
-            return plants.ended.is_some();
-        }
-        self.controllers.are_done()
-    }
-
-    /// Goes on until the first controller has made `records` more (a few more may come) or to the
-    /// end; true at the end.
-    pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
-        self.advance_each(records, slice::from_mut(sink))
-    }
-
-    /// Goes on until one controller has made `records` more, with a sink for each; true at the end.
-    pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
-        #[cfg(feature = "plant")]
-        if self.plants.is_some() {
-            return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
-        }
-        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
-        let end = self.controllers.end.unwrap_or(Instant::NEVER);
-        self.controllers.run_to(end, &mut slices);
-        self.is_done()
-    }
-
-    /// Leaves the end open: it goes on as far as it is asked to, also where nothing can change any more.
-    pub(crate) const fn without_end(&mut self) {
-        self.controllers.end = Some(Instant(END_OF_TIME));
-    }
-
-    /// Goes on to cycle `end`, the first that is not run, with a sink for each controller.
-    pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        #[cfg(feature = "plant")]
-        if self.plants.is_some() {
-            self.advance_observed::<_, ()>((end, u64::MAX), sinks, &mut []);
-            return;
-        }
-        self.controllers.run_to(end, sinks);
-    }
-
-    /// All controllers of the line, and what is done to it.
-    pub(crate) const fn bus_mut(&mut self) -> &mut Bus {
-        &mut self.controllers.bus
-    }
-
-    /// Whether nothing changes any more unless something is sent or pressed.
-    pub(crate) fn is_at_rest(&self) -> bool {
-        self.controllers.alone.as_ref().map_or_else(|| self.controllers.bus.is_over(), Alone::at_rest)
-    }
-
-    /// Goes on to a cycle, or until a controller has made so many records more, with a sink and an observer of its plant for
-    /// each; true at the end. A run without plants stands still.
-    #[cfg(feature = "plant")]
-    pub fn advance_observed<S: Sink, O: Observer>(
-        &mut self,
-        until: (Instant, u64),
-        sinks: &mut [S],
-        observers: &mut [O],
-    ) -> bool {
-        let Self { controllers, plants } = self;
-        plants.as_mut().is_none_or(|plants| plants.advance(controllers, until, sinks, observers))
-    }
-
-    /// One cycle, with a sink and an observer for each controller.
-    #[cfg(feature = "plant")]
-    pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
-        if let Some(plants) = &mut self.plants {
-            plants.clock(&mut self.controllers, sinks, observers);
-        }
-    }
-
-    #[cfg(feature = "plant")]
-    fn behind(&self, controller: usize) -> Option<&Behind> {
-        self.plants.as_ref()?.behind.get(controller)
-    }
-
-    /// The plant behind a controller.
-    #[cfg(feature = "plant")]
-    #[must_use]
-    pub fn plant(&self, controller: usize) -> Option<&Plant> {
-        self.behind(controller).map(|behind| &behind.plant)
-    }
-
-    /// What the self-test found on each channel of a controller, in cycles; empty before the end of its boot.
-    #[cfg(feature = "plant")]
-    #[must_use]
-    pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
-        self.behind(controller).map_or(&[], |behind| &behind.found)
-    }
-
-    /// Cycle of the last overload of a controller.
-    #[cfg(feature = "plant")]
-    #[must_use]
-    pub fn overload(&self, controller: usize) -> Option<u64> {
-        self.behind(controller)?.overload_at
-    }
-
-    /// What each plant has done so far.
-    #[cfg(feature = "plant")]
-    #[must_use]
-    pub fn results(&self) -> Vec<PlantResult> {
-        let all = (0..).map_while(|index| self.behind(index));
-        all.map(|behind| behind.measures.result(&behind.plant)).collect()
-    }
-
-    /// One cycle, with a sink for each controller.
-    pub fn clock(&mut self, sinks: &mut [impl Sink]) {
-        #[cfg(feature = "plant")]
-        if self.plants.is_some() {
-            return self.clock_observed::<_, ()>(sinks, &mut []);
-        }
-        self.controllers.clock(sinks);
-    }
-}
-
-/// A sink that asks for a pause after so many records.
-struct Slice<'a, S> {
-    sink: &'a mut S,
-    left: u64,
-}
-
-impl<S: Sink> Sink for Slice<'_, S> {
-    #[inline(always)]
-    fn record(&mut self, record: Record) {
-        self.left = self.left.saturating_sub(1);
-        self.sink.record(record);
-    }
-
-    #[inline(always)]
-    fn record_all(&mut self, records: impl ExactSizeIterator<Item = Record> + Clone) {
-        self.left = self.left.saturating_sub(records.len() as u64);
-        self.sink.record_all(records);
-    }
-
-    fn event(&mut self, at: Instant, event: Event) {
-        self.sink.event(at, event);
-    }
-
-    fn paused(&self) -> bool {
-        self.left == 0
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use alloc::string::String;
+    use stepscope_peripheral::signal::Record;
 
     fn paths(json: &str) -> Vec<String> {
         Experiment::from_json(json)

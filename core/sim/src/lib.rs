@@ -19,69 +19,37 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod alone;
-
-mod bus_load;
-
-#[cfg(test)]
-mod counts;
-
-pub mod noise;
-
-pub mod framed_host;
-
-mod ignored;
-
-mod raw_receiver;
-
-mod framed_line;
-
-mod bus;
-
 mod controller_plan;
-
 mod controllers;
-
 mod cost;
-
 mod experiment;
-
-mod judged;
-
+mod faults;
+mod hosts;
+mod line;
+mod live;
 #[cfg(feature = "plant")]
-mod plants;
-
-#[cfg(feature = "plant")]
-pub mod plant_run;
-
-#[cfg(feature = "controller")]
-pub mod power_cut;
-
-mod script;
-
+mod plant;
+mod run;
 #[cfg(feature = "controller")]
 mod stand_alone;
-
 mod summary;
-
-pub mod fault_sweep;
-
-pub mod lateness;
-
-pub mod live_trace;
-
-pub mod raw_host;
-
-pub mod session;
-
-pub mod session_times;
-
-pub mod twin;
+mod validated;
 
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
-pub use experiment::{Experiment, Run};
-pub use judged::{Judged, SelectedAxis, axes_of};
-pub use script::{replayed, scripted};
+pub use experiment::Experiment;
+pub use faults::fault_sweep;
+#[cfg(feature = "controller")]
+pub use faults::power_cut;
+pub use hosts::{
+    framed_host, raw_host,
+    script::{replayed, scripted},
+};
+pub use line::noise;
+pub use live::{lateness, live_trace, session, session_times, twin};
+#[cfg(feature = "plant")]
+pub use plant::plant_run;
+pub use run::Run;
 #[cfg(feature = "controller")]
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
+pub use validated::{Judged, SelectedAxis, axes_of};

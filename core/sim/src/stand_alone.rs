@@ -11,10 +11,8 @@ use stepscope_peripheral::{
 use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 
 impl Cost {
-    /// What a run costs: tried, as far as what runs without asking goes. Beyond that it is more.
-    ///
-    /// # Errors
-    /// Where too many groups begin (CONTROLLER.md G5).
+    /// Tries the run up to the budget: it has no closed form.
+    /// Errors: too many groups begin.
     pub(crate) fn of_stand_alone(controllers: &Checked, run: Option<Cycles>) -> Result<Self, Vec<Problem>> {
         let mut tried = StandAlone::new(controllers);
         let mut counted = Counted(0);
@@ -24,11 +22,10 @@ impl Cost {
             let path = format!("source.standalone[{}].groups", work.controller);
             return Err(vec![Problem::new(path, Cause::Work(work))]);
         }
-        // Where the trial was given up it is not known when the run ends, if it does.
+        // A trial that was given up does not show the end.
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
         let end_cycle = match run {
             Some(Cycles(run)) => run,
-            // The last entry of a script may stand in the last cycle of all.
             None if is_short => tried.now().0.min(END_OF_TIME),
             None => END_OF_TIME,
         };
@@ -36,17 +33,16 @@ impl Cost {
     }
 }
 
-/// Whether a run of these controllers comes to a jog that has no end.
+/// Whether the run comes to a jog without end.
 pub(crate) fn jogs_without_end(controllers: &Checked) -> bool {
     let mut tried = StandAlone::new(controllers);
     tried.run_events(Instant::NEVER, MAX_TRIED_EVENTS, &mut Counted(0));
     tried.jogs_without_end()
 }
 
-/// Cycles in which something can change that a trial goes through.
+/// Maximum events of a trial.
 const MAX_TRIED_EVENTS: u64 = 10_000_000;
 
-/// Counts records, and pauses where there are more than run without asking.
 struct Counted(u64);
 
 impl Sink for Counted {
@@ -61,36 +57,31 @@ impl Sink for Counted {
 
 /// All stand-alone controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct StandAloneSummary {
-    /// Each of them.
     pub panels: Vec<PanelSummary>,
-    /// Digest of their panels' records (CONTROLLER.md G8).
     pub digest: u64,
-    /// Why they came to no end.
     pub work: Option<Work>,
 }
 
-/// Presses without meaning that are told one by one.
+/// Ignored presses listed one by one.
 const MAX_TOLD: usize = 20;
 
 /// A stand-alone controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct PanelSummary {
-    /// What it is doing.
     pub state: State,
-    /// Its alarm.
     pub alarm: Alarm,
     /// Trust: 0 LOST, 1 HELD, 2 SURE.
     pub trust: u8,
     /// Where it believes to be, in steps.
     pub position: i32,
-    /// By how many steps its axis is elsewhere.
+    /// Distance of the axis from that position, in steps.
     pub axis_error: i64,
-    /// Records of its panel.
     pub records: usize,
     /// Writes of the most worn cell of its memory.
     pub most_writes: u32,
-    /// Presses that did nothing, in order.
     pub ignored: Vec<Press>,
 }
 

@@ -32,60 +32,50 @@ use stepscope_peripheral::{
 
 /// A run so far.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Summary {
     /// Whether the line speaks the framed protocol.
     pub framed: bool,
-    /// Cycles that have been run.
     pub cycles: Cycles,
-    /// Cycles a second.
     pub clock_hz: u32,
-    /// The part of the line's time that is taken while all controllers move; `None` where nothing paced is sent.
+    /// The part of the line's time that is taken while all controllers move.
     pub line_load: Option<f64>,
-    /// What the host of a framed line counted; `None` where nobody waits for replies.
+    /// Counts of a host that waits for replies.
     pub host: Option<Counts>,
-    /// In the order of the scenario.
     pub controllers: Vec<ControllerSummary>,
-    /// The stand-alone controllers; `None` where a line or segments run the scenario.
+    /// Where a line or segments run the scenario, `None`.
     #[cfg(feature = "controller")]
     pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
 /// One controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct ControllerSummary {
-    /// Its address, where it has one.
     pub address: Option<u8>,
-    /// Channels in use.
     pub channels: u8,
-    /// The digest of its trace (DESIGN A3).
     pub digest: u64,
-    /// Records of its trace.
     pub records: u64,
-    /// Ticks that have ended.
     pub ticks_done: u32,
     /// Position counters of the channels in use.
     pub positions: Vec<i32>,
-    /// Faults so far.
     pub faults: Faults,
-    /// What it would tell; `None` on a raw line.
+    /// `None` on a raw line.
     pub status: Option<Status>,
-    /// What the host of a framed line has to do with it.
     pub job: Option<JobSummary>,
 }
 
-/// What the host has to do with one controller.
+/// The host's job with one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct JobSummary {
-    /// Ticks to do.
     pub ticks: usize,
-    /// Ticks that the controller has acknowledged.
     pub acknowledged: u32,
-    /// How far the host has come.
     pub progress: Progress,
 }
 
 impl Summary {
-    /// Of a run, with the digest of each controller's trace in the order of the scenario.
+    /// From a run and the digest of each trace, in the order of the scenario.
     #[must_use]
     pub fn new<'a>(
         experiment: &Experiment,
@@ -109,7 +99,7 @@ impl Summary {
         }
     }
 
-    /// The same of one controller alone; of none where there is no such controller.
+    /// The summary of one controller, if there is such a one.
     #[must_use]
     pub fn only(mut self, controller: usize) -> Self {
         self.controllers = self.controllers.into_iter().skip(controller).take(1).collect();
@@ -124,7 +114,7 @@ impl ControllerSummary {
         config: &Config,
         digest: &Digest,
     ) -> Self {
-        // Where segments run the scenario there is one controller, and no device moves.
+        // Where segments run, no device moves.
         let positions = if index == 0 { run.positions() } else { device.positions() };
         let channels = usize::from(config.channels());
         let job = experiment.host_progress(run, index).map(|progress| JobSummary {
@@ -147,7 +137,6 @@ impl ControllerSummary {
 }
 
 impl fmt::Display for Summary {
-    /// All but the digests.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "cycles {}", self.cycles.0)?;
         for (index, controller) in self.controllers.iter().enumerate() {

@@ -2,7 +2,6 @@
 
 use stepscope_registers::faults;
 
-/// Bits of all flags that there are.
 const KNOWN: u16 = {
     let (mut bits, mut flags) = (0, faults::REGISTER.fields);
     while let [flag, rest @ ..] = flags {
@@ -12,14 +11,14 @@ const KNOWN: u16 = {
     bits
 };
 
-/// Faults that a peripheral has seen; they stay until RESYNC or firmware clears them.
+/// Faults seen so far; they stay until RESYNC or firmware clears them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults(u16);
 
 impl Faults {
     /// A stop bit was low.
     pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
-    /// A gap cut a packet short, or a frame was no COBS or decoded to fewer than 6 bytes.
+    /// A gap cut a packet short, or a frame was not COBS or decoded to fewer than 6 bytes.
     pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
     /// A frame's check failed.
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
@@ -27,15 +26,15 @@ impl Faults {
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
     /// A packet found the queue full, or a frame was refused with QUEUE_FULL.
     pub const QUEUE_OVERFLOW: Self = Self(faults::QUEUE_OVERFLOW.mask() as u16);
-    /// A packet or a framed tick ordered more steps than a tick has slots.
+    /// A byte commanded more steps than a tick has slots.
     pub const TOO_MANY_STEPS: Self = Self(faults::TOO_MANY_STEPS.mask() as u16);
     /// TICKS had neither the expected sequence number nor, as a repeat, the one before it.
     pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
-    /// A tick with steps ended and none was there to follow (framed protocol).
+    /// A tick with steps ended and none followed (framed protocol).
     pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);
-    /// The supply current was too great for too long (PLANT F7).
+    /// The supply current was too high for too long.
     pub const OVERLOAD: Self = Self(faults::OVERLOAD.mask() as u16);
-    /// The self-test found no settling time on some channel (PLANT F7).
+    /// The self-test found no settling time on some channel.
     pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
     /// All of them.
@@ -49,7 +48,7 @@ impl Faults {
         self.0 &= !which.0;
     }
 
-    /// The faults whose bits, as A6 numbers them, are set; bits of no fault are left out.
+    /// From the bits of A6; unknown bits are ignored.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits & KNOWN)
@@ -61,7 +60,7 @@ impl Faults {
         Self(self.0 | other.0)
     }
 
-    /// The flags as A6 numbers their bits.
+    /// The bits of A6.
     #[must_use]
     pub const fn bits(self) -> u16 {
         self.0
@@ -73,7 +72,7 @@ impl Faults {
         self.0 & other.0 == other.0
     }
 
-    /// Names of the faults, in the order of their bits.
+    /// Names in the order of the bits.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         let flags = faults::REGISTER.fields.iter();
         flags.filter(move |flag| u32::from(self.0) & flag.mask() != 0).map(|flag| flag.name)

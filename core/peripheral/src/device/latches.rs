@@ -8,17 +8,14 @@ use crate::{
 };
 use stepscope_registers as map;
 
-/// What only the registers hold.
 #[derive(Clone, Debug)]
 pub(super) struct Latches {
-    /// The timing in force, and what else the peripheral was built with.
     pub(super) config: Config,
     pub(super) timing: Timing,
     pub(super) orders: Tick,
     pub(super) result: u32,
 }
 
-/// The timing registers as they were written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Timing {
     pub(super) slots: u32,
@@ -31,7 +28,6 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// The registers of a configuration.
     pub(super) fn of(config: &Config) -> Self {
         let bus = config.bus();
         let distribution = match bus.distribution {
@@ -53,7 +49,7 @@ impl Timing {
         }
     }
 
-    /// `config` with this timing, if each code of MODE has a meaning and A7's rules hold.
+    /// `config` with this timing, if MODE is valid and A7's rules hold.
     pub(super) fn apply(self, config: &Config) -> Option<Config> {
         let bus = Bus {
             slots: u8::try_from(self.slots).ok()?,
@@ -72,12 +68,11 @@ impl Timing {
                 _ => return None,
             },
             settle_cycles: self.settle,
-            ..config.bus()
+            ..config.bus().clone()
         };
         config.with_bus(&bus).ok()
     }
 
-    /// The register at `offset`, if it is one of these.
     pub(super) const fn place(&mut self, offset: u32) -> Option<&mut u32> {
         match offset {
             map::slots::OFFSET => Some(&mut self.slots),
@@ -97,13 +92,13 @@ impl Latches {
         Self { config: config.clone(), timing: Timing::of(config), orders: [0; MAX_CHANNELS], result: 0 }
     }
 
-    /// Four channels' orders, the first in the lowest byte.
+    /// The commands of four channels, the first in the lowest byte.
     pub(super) fn orders(&self, index: usize) -> u32 {
         self.orders.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
     }
 
     pub(super) fn set_orders(&mut self, index: usize, value: u32) {
-        let used = usize::from(self.config.channels);
+        let used = usize::from(self.config.channels());
         if let Some(four) = self.orders.as_chunks_mut::<4>().0.get_mut(index) {
             *four = value.to_le_bytes();
         }

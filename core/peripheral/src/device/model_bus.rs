@@ -14,12 +14,7 @@ use stepscope_registers::RegisterBus;
 /// in the last of them. What happens meanwhile goes to `sink`.
 ///
 /// ```
-/// use stepscope_peripheral::{
-///     config::{Bus, Config, SerialLine},
-///     device::ModelBus,
-///     signal::Record,
-///     units::Cycles,
-/// };
+/// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::ModelBus, signal::Record, units::Cycles};
 /// use stepscope_registers::{RegisterBus, control, status};
 ///
 /// let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
@@ -36,7 +31,7 @@ pub struct ModelBus<S> {
 }
 
 impl<S: Sink> ModelBus<S> {
-    /// A peripheral before cycle 0, on a bus whose accesses take `access` cycles, 1 at least.
+    /// A peripheral before cycle 0; accesses take `access` cycles, at least 1.
     #[must_use]
     pub fn new(config: &Config, access: Cycles, sink: S) -> Self {
         Self { device: Device::new(config), access: access.max(Cycles(1)), sink }
@@ -48,16 +43,15 @@ impl<S: Sink> ModelBus<S> {
         &self.device
     }
 
-    /// What took the trace.
+    /// The sink of the trace.
     #[must_use]
     pub const fn sink(&self) -> &S {
         &self.sink
     }
 
-    /// Time passes: the processor does something else for so many cycles.
+    /// Lets time pass without an access.
     pub fn wait(&mut self, cycles: Cycles) {
         let until = Instant(self.device.now().0.saturating_add(cycles.0));
-        // Whatever is done with the trace.
         self.device.run(true, until, &mut Unpaused(&mut self.sink));
     }
 }

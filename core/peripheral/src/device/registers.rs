@@ -14,10 +14,9 @@ use crate::{
 };
 use stepscope_registers as map;
 
-// One register a channel, and a byte of a register a channel.
 const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);
 const _: () = assert!(map::orders::REGISTER.count as usize * 4 == MAX_CHANNELS);
-// A refusal has the code of its result, a state that of the register.
+// Codes of results and states are the protocol's own.
 const _: () = {
     use map::result;
     assert!(Reason::QueueFull as u32 == result::CODE_QUEUE_FULL);
@@ -29,15 +28,13 @@ const _: () = {
     assert!(State::Stopped as u32 == map::status::STATE_STOPPED);
 };
 
-/// Which of several registers stands at `offset`, if one does.
 fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
     let within = register.offset <= offset && offset < register.end() && offset.is_multiple_of(4);
     within.then_some((offset.wrapping_sub(register.offset) / 4) as usize)
 }
 
 impl Device {
-    /// Reads the register at `offset`, in bytes, as firmware on the chip would in the last cycle that
-    /// was run. Where no register is it reads 0; before cycle 0, what they are at reset.
+    /// Reads the register at the byte offset in the last cycle that was run; 0 where there is none.
     #[must_use]
     pub fn read(&self, offset: u32) -> u32 {
         let (latches, config) = (&self.latches, &self.latches.config);
@@ -50,8 +47,8 @@ impl Device {
         match offset {
             map::id::OFFSET => map::id::MAGIC_STEP,
             map::capabilities::OFFSET => capabilities(config),
-            map::clock_hz::OFFSET => config.clock_hz,
-            map::boot::OFFSET => config.boot.0 as u32,
+            map::clock_hz::OFFSET => config.clock_hz(),
+            map::boot::OFFSET => config.boot().0 as u32,
             map::result::OFFSET => latches.result,
             map::status::OFFSET => self.status_register(),
             map::faults::OFFSET => self.faults().bits().into(),
@@ -63,21 +60,21 @@ impl Device {
         }
     }
 
-    /// Writes the register at `offset`, in bytes, as firmware on the chip would in the last cycle that
-    /// was run, after everything else in it; what it does shows from the next cycle on. Where no
-    /// register is, in one that is only read, and before cycle 0 it does nothing.
+    /// Writes the register at the byte offset in the last cycle that was run, after everything else in it; it acts
+    /// from the next cycle on. Ignored before cycle 0 and where no register can be written.
     pub fn write(&mut self, offset: u32, value: u32, sink: &mut impl Sink) {
         if self.now == Instant::RESET {
             return;
         }
-        self.acts();
+        // `finish` must not go back behind an access.
+        self.last = self.before();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_orders(index, value);
         }
         match offset {
             map::control::OFFSET => self.command(value, sink),
             map::push::OFFSET => self.push(sink),
-            map::faults::OFFSET => self.machine.clear_faults(Faults::from_bits(value as u16)),
+            map::faults::OFFSET => self.executor.clear_faults(Faults::from_bits(value as u16)),
             map::mode::OFFSET => {
                 self.latches.timing.mode =
                     value & (map::mode::DISTRIBUTION.mask() | map::mode::PULSES.mask());
@@ -90,29 +87,16 @@ impl Device {
         }
     }
 
-    /// Something acts in the last cycle that was run: time is not settled to before it, and the next cycle is looked at.
-    pub(super) fn acts(&mut self) {
-        self.last = self.present();
-        self.now = self.last.next();
-        self.other = self.now;
-    }
-
-    /// The last cycle that was run. A run to the end of all change leaves `now` behind it.
-    fn present(&self) -> Instant {
-        self.before().max(self.last_active())
-    }
-
-    /// The highest command whose bit is set.
     fn command(&mut self, value: u32, sink: &mut impl Sink) {
-        let now = self.last;
+        let now = self.before();
         self.latches.result = if map::control::STOP.is_set(value) {
-            self.machine.stop(now);
+            self.executor.stop(now);
             sink.event(now, Event::Stopped);
             map::result::CODE_DONE
         } else if map::control::DISABLE.is_set(value) {
-            if self.machine.disable(now) { map::result::CODE_DONE } else { Reason::Busy as u32 }
+            if self.executor.disable(now) { map::result::CODE_DONE } else { Reason::Busy as u32 }
         } else if map::control::ENABLE.is_set(value) {
-            self.machine.enable(now);
+            self.executor.enable(now);
             map::result::CODE_DONE
         } else if map::control::COMMIT.is_set(value) {
             self.retime()
@@ -121,24 +105,23 @@ impl Device {
         };
     }
 
-    /// Puts the timing registers in force: what the command results in.
     fn retime(&mut self) -> u32 {
-        if self.machine.sequencer.is_moving() {
+        if self.executor.sequencer.is_moving() {
             return Reason::Busy as u32;
         }
         let Some(config) = self.latches.timing.apply(&self.latches.config) else {
             return map::result::CODE_BAD_TIMING;
         };
-        self.machine.retime(&config);
+        self.executor.retime(&config);
         self.latches.config = config;
         map::result::CODE_DONE
     }
 
     fn push(&mut self, sink: &mut impl Sink) {
-        let (now, orders) = (self.last, self.latches.orders);
-        self.latches.result = match self.machine.admit(now, &orders, 1) {
+        let (now, orders) = (self.before(), self.latches.orders);
+        self.latches.result = match self.executor.admit(now, &orders, 1) {
             Ok(()) => {
-                self.machine.sequencer.push(now, orders);
+                self.executor.sequencer.push(now, orders);
                 sink.event(now, Event::Pushed);
                 map::result::CODE_DONE
             }
@@ -152,31 +135,30 @@ impl Device {
             Framing::Framed(controller) => controller.expected_seq(),
             Framing::Raw(_) => 0,
         };
-        let status = self.machine.status(self.present(), expected_seq);
+        let status = self.executor.status(self.before(), expected_seq);
         let pending = self.latches.timing != Timing::of(&self.latches.config);
         STATE.with(status.state as u32)
             | FREE.with(status.free.into())
             | EXPECTED_SEQ.with(expected_seq.into())
-            | MOVING.with(self.machine.sequencer.is_moving().into())
-            // As recorded: the transceiver may have entered the next cycle ([`Device::driven`]).
-            | EN.with((self.now == Instant::RESET || self.levels.has(Levels::EN)).into())
+            | MOVING.with(self.executor.sequencer.is_moving().into())
+            | EN.with((self.executor.transceiver.levels() & Levels::EN != 0).into())
             | PENDING.with(pending.into())
     }
 }
 
 fn capabilities(config: &Config) -> u32 {
     use map::capabilities::{CHANNELS, DIR_LINE, PROTOCOL, QUEUE_DEPTH, VERSION};
-    let dir_line = match config.dir_line {
+    let dir_line = match config.dir_line() {
         DirLine::PerChannel => map::capabilities::DIR_LINE_PER_CHANNEL,
         DirLine::Common => map::capabilities::DIR_LINE_COMMON,
     };
-    let protocol = match config.protocol {
+    let protocol = match config.protocol() {
         Protocol::Raw => map::capabilities::PROTOCOL_RAW,
         Protocol::Framed => map::capabilities::PROTOCOL_FRAMED,
     };
     VERSION.with(map::capabilities::VERSION_1)
-        | CHANNELS.with(config.channels.into())
-        | QUEUE_DEPTH.with(config.queue_depth.into())
+        | CHANNELS.with(config.channels().into())
+        | QUEUE_DEPTH.with(config.queue_depth().into())
         | DIR_LINE.with(dir_line)
         | PROTOCOL.with(protocol)
 }

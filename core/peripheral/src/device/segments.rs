@@ -1,46 +1,27 @@
-//! The segment engine: a generator that runs a move by itself (DESIGN A8).
-//!
-//! It stands in the place of the tick path: the same ways through a run, all with the same trace,
-//! but no line, so EN = RX = TX = 1 and DE = 0 throughout, but for an overload.
+//! The segment engine: a generator that runs a move without a line (DESIGN A8).
 //!
 //! ```text
 //!          segment begins                  DIR  at max(next >> 16, last fall + H)
 //! next   ──┬───────────┬─────────┬─────    STEP at next >> 16, W long
 //! DIR    __│__╱────────│─────────│─────
-//! STEP   ──┐_______┌───┐_____┌───┐_____    of one channel each event comes after the one before:
+//! STEP   ──┐_______┌───┐_____┌───┐_____    per channel the events are in order:
 //!           H ╎  D ╎ W ╎                   fall <= DIR <= rise < fall
 //! ```
-//!
-//! A channel waits for one thing at a time, its next change of DIR or its next rise; the earliest of
-//! all channels is the root of a tree. All pulses have the same width, so the falls come in the
-//! order of the rises and only queue.
-
-mod earliest;
-mod falls;
 
 use crate::{
     device::Faults,
-    segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, Segment},
+    segment::{CheckedSegments, FRACTION_BITS, Segment, SegmentList},
     signal::{Levels, MAX_CHANNELS, Record, Sink},
     units::{Cycles, Instant},
 };
-use alloc::rc::Rc;
-use earliest::Earliest;
-use falls::FallingEdges;
+use alloc::{rc::Rc, vec::Vec};
 
-// What a list can order is due in a cycle that the tree can hold.
-const _: () = assert!(LAST_CYCLE.0 < Earliest::NONE.0);
-
-/// The engine. It has room for all channels, whatever the lists: 1.6 kB beside them.
+/// The engine.
 ///
 /// ```
 /// use std::rc::Rc;
-/// use stepscope_peripheral::{
-///     device::SegmentEngine,
-///     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
-///     signal::Record,
-///     units::{Cycles, Instant},
-/// };
+/// use stepscope_peripheral::{device::SegmentEngine, segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
+///     signal::Record, units::{Cycles, Instant}};
 ///
 /// let pulse = PulseTimes { width: Cycles(4), setup: Cycles(2), hold: Cycles(0) };
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };
@@ -55,112 +36,79 @@ const _: () = assert!(LAST_CYCLE.0 < Earliest::NONE.0);
 #[derive(Clone, Debug)]
 pub struct SegmentEngine {
     lists: Rc<CheckedSegments>,
-    /// The cycle that the next call of `clock` is.
     now: Instant,
     levels: Levels,
-    channels: [Channel; MAX_CHANNELS],
-    /// When each channel's DIR changes or its STEP rises next.
-    due: Earliest,
-    /// When the pulses that are high fall; after an overload, EN with them.
-    falls: FallingEdges,
+    channels: Vec<Channel>,
+    /// Next cycle in which a signal changes; [`Instant::NEVER`] at the end.
+    deadline: Instant,
     overloaded: bool,
-    /// From the rise of a pulse to its fall, and to where DIR may change again.
-    width: Cycles,
-    held_for: Cycles,
 }
 
-/// One channel's place in its list.
-///
-/// Of 64 bytes on every machine, so that it is found by a shift: 8 % for 16 channels that step at once in a browser.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
 struct Channel {
-    /// Segments that have begun.
     begun: usize,
-    /// Steps of this segment that are to come; while DIR is to change before them, they are `turning`.
-    ///
-    /// Invariant: one of the two is 0.
     left: u32,
-    turning: u32,
     interval: u64,
     add: i64,
     /// A8's `next`: while a step is to come, its time.
     next: u64,
-    /// Position counter at the end of this segment.
-    target: i32,
-    /// What a step adds to it: 1 where the list has ordered DIR = 1 last, else -1.
-    sign: i32,
-    /// Its bit of STEP.
-    step: u32,
-    /// Last fall + H, 0 before the first pulse: DIR is held until then.
+    position: i32,
+    right: bool,
+    /// When DIR takes that direction; [`Instant::NEVER`] if it has.
+    turn: Instant,
+    /// When STEP rises next; [`Instant::NEVER`] at the list's end.
+    rise: Instant,
+    /// When STEP falls; [`Instant::NEVER`] while it is low.
+    fall: Instant,
+    /// Last fall + H: DIR keeps its level until then.
     held: Instant,
 }
 
-const _: () = assert!(size_of::<Channel>() == 64);
-
 impl Channel {
-    /// A channel before its list, which starts in cycle `start`.
-    const fn new(index: usize, start: Instant) -> Self {
-        Self {
+    fn new(list: &SegmentList) -> Self {
+        let mut channel = Self {
             begun: 0,
             left: 0,
-            turning: 0,
             interval: 0,
             add: 0,
-            next: start.0 << FRACTION_BITS,
-            target: 0,
-            sign: -1,
-            step: 1 << index,
+            next: list.start.0 << FRACTION_BITS,
+            position: 0,
+            right: false,
+            turn: Instant::NEVER,
+            rise: Instant::NEVER,
+            fall: Instant::NEVER,
             held: Instant::RESET,
-        }
+        };
+        channel.schedule_step(&list.segments);
+        channel
     }
 
-    /// Position counter: what is to come is taken from what it will be, so that a step has nothing to count.
-    const fn position(&self) -> i32 {
-        self.target.wrapping_sub(self.sign.wrapping_mul((self.left + self.turning) as i32))
+    fn due(&self) -> Instant {
+        self.fall.min(self.turn).min(self.rise)
     }
 
-    /// The next step of this segment: its cycle.
-    fn go_on(&mut self) -> Instant {
-        debug_assert!(self.next.checked_add(self.interval).is_some(), "a step leaves 48.16 fixed point");
-        self.next = self.next.wrapping_add(self.interval);
-        self.interval = self.interval.wrapping_add_signed(self.add);
-        self.rise()
-    }
-
-    /// Cycle of the step that comes next.
-    const fn rise(&self) -> Instant {
-        Instant(self.next >> FRACTION_BITS)
-    }
-
-    /// DIR changes: the cycle of the step after it.
-    const fn turn(&mut self) -> Instant {
-        (self.left, self.turning) = (self.turning, 0);
-        self.rise()
-    }
-
-    /// Goes on to the next segment with steps: the cycle of its change of DIR, where there is one,
-    /// or of its first step; [`Instant::NEVER`] at the list's end.
-    fn begin(&mut self, segments: &[Segment]) -> Instant {
-        while let Some(segment) = segments.get(self.begun) {
+    /// Schedules the next step of the list, with the change of DIR before it.
+    fn schedule_step(&mut self, segments: &[Segment]) {
+        self.rise = Instant::NEVER;
+        while self.left == 0 {
+            let Some(segment) = segments.get(self.begun) else { return };
             self.begun += 1;
             match *segment {
-                Segment::Dwell(dwell) => self.next = self.next.wrapping_add(dwell),
+                Segment::Dwell(dwell) => self.next += dwell,
                 Segment::Steps { count, interval, add, right } => {
-                    let turn = self.rise().max(self.held);
-                    let sign = if right { 1 } else { -1 };
-                    let turns = sign != self.sign;
-                    (self.left, self.turning) = if turns { (0, count) } else { (count, 0) };
-                    (self.interval, self.add, self.sign) = (interval, add, sign);
-                    self.target = self.target.wrapping_add(sign.wrapping_mul(count as i32));
-                    let rise = self.go_on();
-                    debug_assert!(turn <= rise, "DIR changes in {turn:?}, after the rise in {rise:?}");
-                    return if turns { turn } else { rise };
+                    (self.left, self.interval, self.add) = (count, interval, add);
+                    if right != self.right {
+                        self.right = right;
+                        self.turn = Instant(self.next >> FRACTION_BITS).max(self.held);
+                    }
                 }
             }
         }
-        self.left = 0;
-        Instant::NEVER
+        self.left -= 1;
+        self.next += self.interval;
+        self.interval = self.interval.wrapping_add_signed(self.add);
+        self.rise = Instant(self.next >> FRACTION_BITS);
+        debug_assert!(self.turn == Instant::NEVER || self.turn <= self.rise, "DIR changes after the rise");
     }
 }
 
@@ -168,27 +116,17 @@ impl SegmentEngine {
     /// An engine before cycle 0.
     #[must_use]
     pub fn new(lists: Rc<CheckedSegments>) -> Self {
-        let pulse = lists.pulse();
-        let mut due = Earliest::new();
-        let mut channels = core::array::from_fn(|index| Channel::new(index, Instant::RESET));
-        for (index, (list, channel)) in lists.lists().iter().zip(&mut channels).enumerate() {
-            *channel = Channel::new(index, list.start);
-            due.set(index, channel.begin(&list.segments));
-        }
         Self {
+            channels: lists.lists().iter().map(Channel::new).collect(),
             lists,
             now: Instant::RESET,
             levels: Levels::RESET,
-            channels,
-            due,
-            falls: FallingEdges::default(),
+            deadline: Instant::RESET,
             overloaded: false,
-            width: pulse.width,
-            held_for: Cycles(pulse.width.0.saturating_add(pulse.hold.0)),
         }
     }
 
-    /// The cycle that the next call of [`Self::clock`] is; as many have passed.
+    /// The cycle that the next call of [`Self::clock`] runs.
     #[must_use]
     pub const fn now(&self) -> Instant {
         self.now
@@ -197,130 +135,105 @@ impl SegmentEngine {
     /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.channels.map(|channel| channel.position())
+        let mut positions = [0; MAX_CHANNELS];
+        positions.iter_mut().zip(&self.channels).for_each(|(place, channel)| *place = channel.position);
+        positions
     }
 
-    /// Advances one cycle and gives the levels of all signals in it.
+    /// Advances one cycle and returns the levels of all signals in it.
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         let now = self.now;
-        if now == self.deadline() {
-            if now != Instant::RESET {
-                self.act(now);
-            }
+        debug_assert!(now <= self.deadline, "{:?} was skipped", self.deadline);
+        if now == self.deadline {
+            self.act(now);
             sink.record(Record { cycle: now, levels: self.levels });
         }
         self.now = now.next();
         self.levels
     }
 
-    /// Next cycle in which a signal changes, cycle 0 for the first; [`Instant::NEVER`] at the end.
-    fn deadline(&self) -> Instant {
-        match self.next() {
-            _ if self.now == Instant::RESET => self.now,
-            Earliest::NONE => Instant::NEVER,
-            next => next,
+    /// All that falls due in cycle `now`: at least one signal changes, but at reset.
+    fn act(&mut self, now: Instant) {
+        let pulse = self.lists.pulse();
+        self.deadline = Instant::NEVER;
+        if self.overloaded && self.levels.has(Levels::EN) {
+            self.levels.0 &= !(Levels::EN | u64::from(u16::MAX));
+        }
+        for (index, (channel, list)) in self.channels.iter_mut().zip(self.lists.lists()).enumerate() {
+            if channel.due() == now {
+                let step = 1_u64 << index;
+                if channel.fall == now {
+                    channel.fall = Instant::NEVER;
+                    self.levels.0 &= !step;
+                }
+                if channel.turn == now {
+                    channel.turn = Instant::NEVER;
+                    self.levels.0 ^= step << Levels::DIR_SHIFT;
+                }
+                if channel.rise == now {
+                    self.levels.0 |= step;
+                    channel.position = channel.position.wrapping_add(if channel.right { 1 } else { -1 });
+                    channel.fall = now + pulse.width;
+                    channel.held = channel.fall + pulse.hold;
+                    channel.schedule_step(&list.segments);
+                }
+            }
+            self.deadline = self.deadline.min(channel.due());
         }
     }
 
-    /// The same after cycle 0; [`Earliest::NONE`] at the end.
-    #[inline(always)]
-    fn next(&self) -> Instant {
-        self.due.cycle().min(self.falls.cycle())
-    }
-
-    /// The supply current was too great for too long (PLANT F7): in the cycle after the one that was run last EN and STEP
-    /// fall, DIR stays, and no step of any list follows. Before cycle 0 nothing, nor from cycle 2^60 - 1 on, long after the
-    /// end of every list.
+    /// The supply current was too high for too long: in the next cycle EN and STEP fall, DIR keeps its level, and
+    /// no step follows. Does nothing before cycle 0.
     pub fn overload(&mut self) {
-        let runs = self.now != Instant::RESET && self.now < Earliest::NONE;
-        if !runs || !self.levels.has(Levels::EN) {
+        if self.now == Instant::RESET || self.overloaded {
             return;
         }
-        self.due = Earliest::new();
-        self.falls = FallingEdges::default();
-        self.falls.push(self.now, Levels::EN | u64::from(u16::MAX));
         self.overloaded = true;
+        for channel in &mut self.channels {
+            (channel.turn, channel.rise, channel.fall) = (Instant::NEVER, Instant::NEVER, Instant::NEVER);
+        }
+        self.deadline = self.now;
     }
 
-    /// Faults so far: none but OVERLOAD.
+    /// Faults so far: OVERLOAD or none.
     #[must_use]
     pub const fn faults(&self) -> Faults {
         if self.overloaded { Faults::OVERLOAD } else { Faults::from_bits(0) }
     }
 
-    /// All that falls due in cycle `now`; at least one signal changes.
-    #[inline(always)]
-    fn act(&mut self, now: Instant) {
-        let before = self.levels;
-        if self.falls.cycle() == now {
-            self.levels.0 &= !self.falls.pop();
-        }
-        let mut rising = 0;
-        while self.due.cycle() == now {
-            let index = self.due.channel();
-            let channel = &mut self.channels[index];
-            let next = if channel.left > 1 {
-                channel.left -= 1;
-                rising |= u64::from(channel.step);
-                channel.go_on()
-            } else if channel.turning > 0 {
-                self.levels.0 ^= u64::from(channel.step) << Levels::DIR_SHIFT;
-                channel.turn()
-            } else {
-                rising |= u64::from(channel.step);
-                channel.held = now + self.held_for;
-                channel.begin(self.lists.lists().get(index).map_or(&[], |list| &list.segments))
-            };
-            self.due.set(index, next);
-        }
-        if rising != 0 {
-            self.levels.0 |= rising;
-            self.falls.push(now + self.width, rising);
-        }
-        debug_assert!(self.levels != before, "no signal changes in {now:?}");
-    }
-
-    /// For how many cycles nothing can change; `None` if it is for ever.
+    /// For how many cycles nothing can change; `None` if nothing ever does.
     #[must_use]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
-        match self.deadline() {
+        match self.deadline {
             Instant::NEVER => None,
             deadline => Some(deadline - self.now),
         }
     }
 
-    /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
-    /// is not skipped.
+    /// Skips cycles in which nothing changes, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
-        self.now = target.min(self.deadline());
+        self.now = target.min(self.deadline);
     }
 
-    /// Runs until cycle `until` is the next, as fast as the edges allow; with [`Instant::NEVER`],
-    /// until nothing can change any more: then the last cycle run is the last in which something
-    /// did. Stops early where the sink asks for a pause.
+    /// Runs until cycle `until` is the next; with [`Instant::NEVER`], until nothing can change any more. Then the last
+    /// cycle run is that of the last change. Stops early when the sink pauses.
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
-        if self.now == Instant::RESET && self.now < until {
+        while self.now < until && !sink.paused() {
+            if self.deadline >= until {
+                if until != Instant::NEVER {
+                    self.now = until;
+                }
+                return;
+            }
+            self.now = self.deadline;
             self.clock(sink);
         }
-        let end = until.min(Earliest::NONE);
-        let mut now = self.now;
-        while !sink.paused() {
-            let cycle = self.next();
-            if cycle >= end {
-                now = if until == Instant::NEVER { now } else { now.max(until) };
-                break;
-            }
-            self.act(cycle);
-            now = cycle.next();
-            sink.record(Record { cycle, levels: self.levels });
-        }
-        self.now = now;
     }
 
     /// Whether nothing can change any more.
     #[must_use]
-    pub fn at_rest(&self) -> bool {
-        self.deadline() == Instant::NEVER
+    pub const fn at_rest(&self) -> bool {
+        self.deadline.0 == Instant::NEVER.0
     }
 }

@@ -14,14 +14,13 @@ use crate::{
         Device, Faults,
         plan::{Change, Lines},
     },
+    segment::PulseTimes,
     signal::{Event, Levels, Sink},
     units::{Cycles, Instant},
 };
 use alloc::vec::Vec;
 
-/// T_step of one channel's part of a self-test.
 const STEPS_A_CHANNEL: u64 = 24;
-/// T_step before its first step.
 const REST_STEPS: u64 = 10;
 
 /// One channel's part of a self-test.
@@ -31,7 +30,7 @@ pub struct SelfTest {
     pub start: Instant,
     /// r: STEP rises.
     pub rise: Instant,
-    /// Ts: how long the current is looked at from then on.
+    /// Ts: how long the current is sampled from then on.
     pub step: Cycles,
 }
 
@@ -39,27 +38,27 @@ impl SelfTest {
     /// The part of `channel`.
     #[must_use]
     pub const fn of(config: &Config, channel: u8) -> Self {
-        let step = config.step_period;
+        let step = config.step_period();
         let start = 1 + channel as u64 * STEPS_A_CHANNEL * step;
         Self { start: Instant(start), rise: Instant(start + REST_STEPS * step), step: Cycles(step) }
     }
 
-    /// Cycles that a boot needs for all of it.
+    /// Minimum boot of a controller that runs all parts.
     #[must_use]
     pub const fn boot(config: &Config) -> Cycles {
-        Cycles(1 + config.channels as u64 * STEPS_A_CHANNEL * config.step_period)
+        Cycles(1 + config.channels() as u64 * STEPS_A_CHANNEL * config.step_period())
     }
 }
 
-/// The changes of all channels' parts.
 fn changes(config: &Config) -> Vec<Change> {
     let (mut changes, mut lines): (Vec<Change>, Lines) = (Vec::new(), 0);
-    let before = config.dir_setup.max(1);
-    for channel in 0..config.channels {
+    let pulse = PulseTimes::from(config);
+    let before = pulse.setup.0.max(1);
+    for channel in 0..config.channels() {
         let SelfTest { rise: Instant(rise), step: Cycles(step), .. } = SelfTest::of(config, channel);
-        let own = match config.dir_line {
+        let own = match config.dir_line() {
             DirLine::PerChannel => 1 << channel,
-            DirLine::Common => !(!0 << config.channels),
+            DirLine::Common => !(!0 << config.channels()),
         };
         for (rise, dir) in [(rise, own << Levels::DIR_SHIFT), (rise + 2 * step, 0)] {
             let mut at = |offset, with| {
@@ -68,29 +67,29 @@ fn changes(config: &Config) -> Vec<Change> {
             };
             at(rise - before, dir);
             at(rise, dir | 1 << channel);
-            at(rise + config.pulse_width, dir);
+            at(rise + pulse.width.0, dir);
         }
     }
     changes
 }
 
 impl Device {
-    /// A peripheral before cycle 0 that makes a self-test in its boot, which must be [`SelfTest::boot`] long; who reads the
-    /// sensor tells it what came out of it ([`Self::settles_in`]).
+    /// A peripheral before cycle 0 with a self-test in its boot, which must last [`SelfTest::boot`]. The caller
+    /// measures and reports the result ([`Self::settles_in`]).
     #[must_use]
     pub fn with_self_test(config: &Config) -> Self {
         let mut device = Self::new(config);
-        device.machine.sequencer.test(changes(config));
+        device.executor.sequencer.test(changes(config));
         device
     }
 
-    /// What a self-test found, last in the cycle that was run last: from now on it is the settling time dp. Where a channel
-    /// has none, T_step and fault SELF_TEST. On a common DIR line dp is at least a pulse with DIR around it.
+    /// The result of a self-test, last in the cycle that was run last: the settling time dp. If a channel has none,
+    /// dp is T_step and fault SELF_TEST is set. On a common DIR line dp is at least a pulse with DIR around it.
     pub fn settles_in(&mut self, found: Option<Cycles>) {
         let config = &self.latches.config;
-        let bus = config.bus();
+        let bus = config.bus().clone();
         let around = bus.dir_setup_cycles.saturating_add(bus.dir_hold_cycles).max(1);
-        let least = match config.dir_line {
+        let least = match config.dir_line() {
             DirLine::PerChannel => 0,
             DirLine::Common => bus.pulse_width_cycles.saturating_add(around),
         };
@@ -98,25 +97,24 @@ impl Device {
             found.map_or(bus.step_period_cycles, |Cycles(cycles)| u32::try_from(cycles).unwrap_or(u32::MAX));
         let settle_cycles = found_cycles.max(least);
         if let Ok(config) = config.with_bus(&Bus { settle_cycles, ..bus }) {
-            self.machine.retime(&config);
+            self.executor.retime(&config);
             self.latches.timing.settle = settle_cycles;
             self.latches.config = config;
         }
         if found.is_none() {
-            self.machine.fault(Faults::SELF_TEST);
+            self.executor.fault(Faults::SELF_TEST);
         }
     }
 
-    /// The supply current was too great for too long: in the cycle that was run last, after everything else in it, it acts
-    /// as STOP does, and sets fault OVERLOAD. Before cycle 0 nothing.
+    /// The supply current was too high for too long: STOP and fault OVERLOAD, last in the cycle that was run last.
     pub fn overload(&mut self, sink: &mut impl Sink) {
         if self.now == Instant::RESET {
             return;
         }
-        self.acts();
-        self.machine.stop(self.last);
-        self.machine.fault(Faults::OVERLOAD);
-        sink.event(self.last, Event::Stopped);
+        let now = self.before();
+        self.executor.stop(now);
+        self.executor.fault(Faults::OVERLOAD);
+        sink.event(now, Event::Stopped);
     }
 }
 

@@ -16,17 +16,14 @@ use alloc::rc::Rc;
 /// Bit times from the end of a frame to the rise of DE.
 const TURNAROUND_BITS: u64 = 10;
 
-/// EN, TX and DE of one controller.
 #[derive(Clone, Debug)]
 pub(super) struct Transceiver {
     clock_hz: u32,
-    /// The rate of replies: the controller's own.
     baud: u32,
     bit: Cycles,
     levels: u64,
-    /// What EN becomes, and when.
     enable: Option<(Instant, bool)>,
-    /// Invariant: one at most, since while it is sent the receiver is deaf and before it no frame ends.
+    /// One at most: while it is sent the receiver is deaf, and before it no frame can end.
     reply: Option<Reply>,
     next: Instant,
 }
@@ -41,8 +38,8 @@ struct Reply {
 impl Transceiver {
     pub(super) const fn new(config: &Config) -> Self {
         Self {
-            clock_hz: config.clock_hz,
-            baud: config.reply_baud,
+            clock_hz: config.clock_hz(),
+            baud: config.reply_baud(),
             bit: config.bit(),
             levels: Levels::EN | Levels::TX,
             enable: None,
@@ -51,26 +48,33 @@ impl Transceiver {
         }
     }
 
-    /// EN, TX and DE now.
     pub(super) const fn levels(&self) -> u64 {
         self.levels
     }
 
-    /// Next cycle in which a signal changes; [`Instant::NEVER`] if none does.
+    pub(super) const fn drives(&self) -> bool {
+        self.levels & Levels::DE != 0
+    }
+
     pub(super) const fn deadline(&self) -> Instant {
         self.next
     }
 
-    /// Cycle `now`; again in the same one, nothing.
-    #[inline(always)]
-    pub(super) fn clock(&mut self, now: Instant) {
-        debug_assert!(now <= self.next, "{:?} was left out", self.next);
-        if self.next == now {
-            self.act(now);
+    /// EN, TX and DE in cycle `now`, which is the next one, and when they change after it.
+    pub(super) fn in_cycle(&self, now: Instant) -> (Levels, Instant) {
+        if now != self.next {
+            return (Levels(self.levels), self.next);
         }
+        let mut ahead = self.clone();
+        ahead.clock(now);
+        (Levels(ahead.levels), ahead.next)
     }
 
-    fn act(&mut self, now: Instant) {
+    pub(super) fn clock(&mut self, now: Instant) {
+        debug_assert!(now <= self.next, "{:?} was skipped", self.next);
+        if self.next != now {
+            return;
+        }
         if let Some((_, high)) = self.enable.take_if(|(at, _)| *at == now) {
             self.set(Levels::EN, high);
         }
@@ -95,7 +99,6 @@ impl Transceiver {
         self.levels = if high { self.levels | mask } else { self.levels & !mask };
     }
 
-    /// Finds the next change after `now`.
     fn look_ahead(&mut self, now: Instant) {
         let enable = self.enable.map_or(Instant::NEVER, |(at, _)| at);
         let reply = self.reply.as_ref().map_or(Instant::NEVER, |reply| {
@@ -109,14 +112,13 @@ impl Transceiver {
         Cycles(TURNAROUND_BITS * self.bit.0)
     }
 
-    /// EN from the cycle after `now` on.
     pub(super) fn enable(&mut self, now: Instant, high: bool) {
         debug_assert!(self.enable.is_none_or(|(at, _)| at == now.next()), "EN was due before {now:?}");
         self.enable = Some((now.next(), high));
         self.look_ahead(now);
     }
 
-    /// Answers a frame that ended in cycle `now`. Gives the first start bit and the fall of DE.
+    /// Answers a frame that ended in cycle `now`. Returns the first start bit and the fall of DE.
     pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
         debug_assert!(self.reply.is_none(), "a second reply before the first has been sent");
         debug_assert!(!bytes.is_empty() && bytes.len() <= REPLY_LEN, "a reply of {} bytes", bytes.len());

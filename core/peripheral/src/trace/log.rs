@@ -56,12 +56,12 @@ impl fmt::Display for RowOutcome {
 
 /// One row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct LoggedPacket {
     /// Where the start bit of its first byte was seen.
     pub start: Instant,
     /// Where it was complete or given up.
     pub end: Instant,
-    /// What became of it.
     pub outcome: RowOutcome,
     /// First cycle of its tick, of a frame's its first tick, if that has begun.
     pub tick_start: Option<Instant>,
@@ -89,10 +89,10 @@ pub struct RecordedReply<'a> {
 
 /// A tick that has begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct LoggedTick {
-    /// Its first cycle.
     pub start: Instant,
-    /// What it orders, a byte a channel (A5).
+    /// What it orders, one byte per channel.
     pub orders: Tick,
     /// The row that brought it; `None` for one that firmware pushed.
     pub row: Option<usize>,

@@ -2,11 +2,8 @@
 //! (DESIGN A3). The records themselves are in [`crate::signal`].
 //!
 //! ```
-//! use stepscope_peripheral::{
-//!     signal::{Levels, Record},
-//!     trace::{Digest, parse_line, steps, write_record},
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{signal::{Levels, Record}, trace::{Digest, parse_line, steps, write_record},
+//!     units::Instant};
 //!
 //! let (right, step) = (1 << Levels::DIR_SHIFT, 1);
 //! let trace = [(0, 0), (40, right), (80, right | step), (120, right)]
@@ -31,7 +28,7 @@ pub use recording::{Recording, levels_at};
 pub use steps::{Step, steps, steps_in};
 pub use text::{ParseError, parse_line, write_record};
 
-/// Bits of the signals that exports show: STEP and DIR of the channels in use, then EN, RX, TX, DE.
+/// The signals that exports show: STEP and DIR of the used channels, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
     let channels = 0..u32::from(channels);
     channels.flat_map(|channel| [channel, 16 + channel]).chain(32..36)

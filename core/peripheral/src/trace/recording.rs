@@ -7,19 +7,16 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// A run as it is kept for the views.
+/// A run for the views.
 #[derive(Clone, Default)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Recording {
-    /// The records.
     pub trace: Vec<Record>,
-    /// Their digest.
     pub digest: Digest,
-    /// The packets, and what became of them.
     pub packets: PacketLog,
 }
 
 impl Sink for Recording {
-    #[inline(always)]
     fn record(&mut self, record: Record) {
         self.trace.push(record);
         self.digest.record(record);
@@ -31,14 +28,14 @@ impl Sink for Recording {
 }
 
 impl Recording {
-    /// Start of the first tick: where a motion's time 0 is on the device's clock.
+    /// Start of the first tick: time 0 of a motion.
     #[must_use]
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }
 }
 
-/// The levels in a cycle of a run with these records; those of reset where there are none.
+/// The levels in a cycle.
 #[must_use]
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     let after = trace.partition_point(|record| record.cycle <= at);

@@ -5,10 +5,10 @@ use alloc::vec::Vec;
 
 /// One rising STEP edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Step {
-    /// Cycle of the edge.
     pub cycle: u64,
-    /// Position after it, in steps from the start of the run.
+    /// In steps from the start of the run.
     pub position: i32,
 }
 
@@ -21,16 +21,16 @@ impl Step {
     }
 }
 
-/// All steps of `channel` in a trace (DESIGN A3's position counter, edge by edge).
+/// All steps of a channel in a trace.
 #[must_use]
 pub fn steps(trace: &[Record], channel: u8) -> Vec<Step> {
     steps_in(trace, channel).collect()
 }
 
-/// The same, one after the other.
+/// As [`steps`], one by one.
 pub fn steps_in(trace: &[Record], channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
-    // A level that is there from the first record on has not risen.
+    // A trace may begin within a pulse.
     let (mut before, mut position) = (trace.first().map_or(0, |record| record.levels.step()), 0_i32);
     trace.iter().filter_map(move |record| {
         let step = record.levels.step();

@@ -18,11 +18,10 @@ use crate::units::Cycles;
 /// Bits of a byte on the line: start, eight data bits, stop.
 pub const BYTE_BITS: u64 = 10;
 
-/// The beginnings of bits and bytes at one rate.
+/// Bit and byte times at one rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTimes {
     clock_hz: u64,
-    /// At least 1.
     baud: u64,
 }
 
@@ -39,20 +38,13 @@ impl BitTimes {
         Cycles(index * self.clock_hz / self.baud)
     }
 
-    /// From the first byte's start to the start of byte `index` of bytes sent back to back.
+    /// From the first byte's start to the start of byte `index` of bytes in a row.
     #[must_use]
     pub const fn byte(self, index: u64) -> Cycles {
         self.bit(BYTE_BITS * index)
     }
 
-    /// When bytes sent back to back begin after the first one, one after another.
-    #[must_use]
-    pub(super) const fn byte_starts(self) -> ByteStarts {
-        let bits = BYTE_BITS * self.clock_hz;
-        ByteStarts { baud: self.baud, each: (bits / self.baud, bits % self.baud), next: (0, 0) }
-    }
-
-    /// How long so many bytes sent back to back hold the line, to the end of the last stop bit.
+    /// How long `count` bytes in a row hold the line, to the end of the last stop bit.
     #[must_use]
     pub const fn bytes(self, count: u64) -> Cycles {
         match count {
@@ -61,35 +53,12 @@ impl BitTimes {
         }
     }
 
-    /// The byte of bytes sent back to back that begins nearest to `after` the first one's start.
+    /// Of bytes in a row, the one that begins nearest to `after` the first one's start.
     #[must_use]
     pub const fn nearest_byte(self, after: Cycles) -> u64 {
         let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
         let bits = self.baud as u128 * after.0 as u128 / clock_hz;
         ((bits + BYTE_BITS as u128 / 2) / BYTE_BITS as u128) as u64
-    }
-}
-
-/// [`BitTimes::byte`] of one byte after another, without a division for each.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ByteStarts {
-    baud: u64,
-    /// Whole cycles of a byte, and the rest in parts of `baud`; those up to the next byte.
-    ///
-    /// Invariant: both rests are below `baud`.
-    each: (u64, u64),
-    next: (u64, u64),
-}
-
-impl ByteStarts {
-    /// The next one.
-    #[inline(always)]
-    pub(super) fn next(&mut self) -> Cycles {
-        let (start, rest) = self.next;
-        let rest = rest + self.each.1;
-        let carry = u64::from(rest >= self.baud);
-        self.next = (start + self.each.0 + carry, rest - carry * self.baud);
-        Cycles(start)
     }
 }
 
@@ -103,8 +72,6 @@ mod tests {
         let times = BitTimes::new(1000, 90);
         assert_eq!([0, 1, 9, 10].map(|bit| times.bit(bit).0), [0, 11, 100, 111]);
         assert_eq!([0, 1, 9, 10].map(|byte| times.byte(byte).0), [0, 111, 1000, 1111]);
-        let mut starts = times.byte_starts();
-        (0..1000).for_each(|byte| assert_eq!(starts.next(), times.byte(byte), "byte {byte}"));
         assert_eq!([0, 1, 10].map(|count| times.bytes(count).0), [0, 111, 1111]);
         assert_eq!(
             [0, 55, 56, 111, 160, 170].map(|after| times.nearest_byte(Cycles(after))),

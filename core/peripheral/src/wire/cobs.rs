@@ -17,25 +17,25 @@
 
 use cobs::{DecodeResult, DecoderState};
 
-/// What one byte is.
+/// The role of one byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum CobsByte {
-    /// The first code of a frame: what came before it is over.
+    /// The first code of a frame.
     First,
-    /// A byte that carries no content: a code that owes no zero, or the zero of an empty run.
+    /// A code without a zero, or the zero of an empty run.
     Overhead,
-    /// Itself a byte of the content.
     Content,
-    /// A code where the content has a zero.
+    /// A code in place of a zero of the content.
     Zero,
     /// The delimiter of a whole frame.
     End,
-    /// A delimiter where more was to come: the bytes before it are not COBS.
+    /// A delimiter too early: the bytes before it are not COBS.
     Broken,
 }
 
 impl CobsByte {
-    /// What `byte`, which is this, carries.
+    /// The content of `byte`, which has this role.
     #[must_use]
     pub const fn content(self, byte: u8) -> Option<u8> {
         match self {
@@ -46,7 +46,7 @@ impl CobsByte {
     }
 }
 
-/// A reader between two bytes.
+/// Reads byte by byte.
 #[derive(Debug)]
 pub struct CobsDecoder(DecoderState);
 
@@ -68,7 +68,7 @@ impl Default for CobsDecoder {
 }
 
 impl CobsDecoder {
-    /// Takes the next byte.
+    /// Takes the next byte; returns its role.
     pub fn byte(&mut self, byte: u8) -> CobsByte {
         match self.0.feed(byte) {
             Ok(DecodeResult::DataStart) => CobsByte::First,
@@ -80,7 +80,7 @@ impl CobsDecoder {
         }
     }
 
-    /// Whether bytes since the last delimiter wait for theirs.
+    /// Whether bytes wait for their delimiter.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         !matches!(self.0, DecoderState::Idle)

@@ -9,10 +9,7 @@
 //! host the other way round.
 //!
 //! ```
-//! use stepscope_peripheral::{
-//!     protocol::Kind,
-//!     wire::frame::{Deframed, Deframer, Ticks, emit},
-//! };
+//! use stepscope_peripheral::{protocol::Kind, wire::frame::{Deframed, Deframer, Ticks, emit}};
 //!
 //! // Two ticks of one channel for controller 7: 5 steps right, 3 left.
 //! let wire = emit(7, Kind::Ticks as u8, &Ticks::emit(0, 1, &[0x85, 0x03]));
@@ -33,7 +30,7 @@ use crate::wire::{
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 
-/// The CRC of a frame.
+/// CRC-32/ISCSI.
 pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 /// The delimiter: the end of a frame.
 pub const DELIMITER: u8 = 0;
@@ -50,34 +47,33 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
 
 /// Bytes of the CRC.
 pub const CRC_LEN: usize = 4;
-/// Fewest decoded bytes of a frame: address, kind and CRC.
+/// Minimum decoded bytes of a frame: address, kind and CRC.
 pub const MIN_DECODED: usize = 2 + CRC_LEN;
-/// Most decoded bytes of a frame.
+/// Maximum decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
 /// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
 /// Bytes of a position counter.
 pub const POSITION_LEN: usize = 4;
-/// Bytes of an ACK on the wire, in COBS with its delimiter; that of POSITIONS has its counters beside.
+/// Bytes of an ACK on the wire, in COBS with its delimiter; POSITIONS has its counters in addition.
 pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
 /// Bytes of a NAK on the wire: an ACK's, and the reason.
 pub const NAK_LEN: usize = ACK_LEN + 1;
-/// Most bytes of a reply on the wire: the ACK of POSITIONS with all channels.
+/// Maximum bytes of a reply on the wire: POSITIONS with all channels.
 pub const REPLY_LEN: usize = reply_len(Kind::Positions, MAX_CHANNELS as u8);
-/// Most bytes that COBS puts one code before.
+/// COBS needs one code per so many bytes.
 const COBS_RUN: usize = 254;
 /// Set in the kind of a reply that acknowledges.
 pub const ACK: u8 = 0x80;
 /// Kind of a reply that refuses.
 pub const NAK: u8 = 0xff;
 
-// Every TICKS frame is taken: sequence number, count, and the most ticks of all channels.
+// The longest TICKS frame fits.
 const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);
-// A6's lengths.
 const _: () = assert!(ACK_LEN == 17 && NAK_LEN == 18 && REPLY_LEN == 81);
-// Of the two bytes that a reply has beside what is decoded, COBS needs one and the delimiter is the other.
+// COBS needs one byte; the delimiter is the other.
 const _: () = assert!(REPLY_LEN - 2 <= COBS_RUN);
-// A kind and its acknowledgement are told apart, and neither is a refusal.
+// Kinds, their acknowledgements and NAK are distinct.
 const _: () = {
     let mut index = 0;
     while index < Kind::ALL.len() {
@@ -86,7 +82,7 @@ const _: () = {
     }
 };
 
-/// Most bytes on the wire of a controller's reply to a frame of this kind, whether it takes or refuses it.
+/// Maximum bytes on the wire of a reply to a frame of this kind.
 #[must_use]
 pub const fn reply_len(kind: Kind, channels: u8) -> usize {
     let positions = if matches!(kind, Kind::Positions) { POSITION_LEN * channels as usize } else { 0 };
@@ -111,8 +107,7 @@ fn parse_status(bytes: &[u8]) -> Option<Status> {
 }
 
 impl Reply {
-    /// The reply as it goes over the line. `positions` are those that the ACK of POSITIONS tells, and that no other
-    /// reply has.
+    /// The reply in bytes. `positions` are those of the ACK of POSITIONS.
     #[must_use]
     pub fn emit(&self, positions: Option<&Positions>) -> Vec<u8> {
         debug_assert_eq!(positions.is_some(), self.answer == Ok(Kind::Positions), "{self:?}");
@@ -127,14 +122,13 @@ impl Reply {
         emit(self.address, kind, &body)
     }
 
-    /// The reply that a frame is, if it is one; the counters that it may tell are [`Frame::positions`].
+    /// The reply in a frame; its position counters are [`Frame::positions`].
     #[must_use]
     pub fn parse(frame: Frame<'_>) -> Option<Self> {
         parse_reply(frame).map(|(reply, _)| reply)
     }
 }
 
-/// A reply, and what the ACK of POSITIONS tells beside it.
 fn parse_reply(frame: Frame<'_>) -> Option<(Reply, Option<Positions>)> {
     let (answer, told) = if frame.kind == NAK {
         let (&reason, told) = frame.body.split_first()?;
@@ -161,24 +155,23 @@ fn parse_positions(bytes: &[u8]) -> Option<Positions> {
 
 /// A frame whose CRC is right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Frame<'a> {
-    /// To or from which controller; 255 is for all.
+    /// 255 addresses all.
     pub address: u8,
-    /// What it is ([`Kind`] on the way to a controller).
     pub kind: u8,
-    /// The rest.
     pub body: &'a [u8],
 }
 
 impl Frame<'_> {
-    /// The position counters that it tells, if it is the ACK of POSITIONS.
+    /// The position counters in an ACK of POSITIONS.
     #[must_use]
     pub fn positions(&self) -> Option<Positions> {
         parse_reply(*self)?.1
     }
 }
 
-/// A frame as it goes over the line: with its CRC, in COBS, with its delimiter.
+/// A frame in bytes, with CRC and delimiter.
 #[must_use]
 pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
@@ -188,15 +181,15 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
 
 /// The body of a TICKS frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Ticks<'a> {
-    /// Its sequence number.
     pub seq: u8,
     channels: usize,
     orders: &'a [u8],
 }
 
 impl<'a> Ticks<'a> {
-    /// The ticks that a body means, on a controller of so many channels; `None` is BAD_BODY.
+    /// Reads a body for a controller with `channels` channels; `None` is BAD_BODY.
     #[must_use]
     pub fn parse(body: &'a [u8], channels: u8) -> Option<Self> {
         let (&[seq, count], orders) = body.split_first_chunk()?;
@@ -205,7 +198,7 @@ impl<'a> Ticks<'a> {
         fits.then_some(Self { seq, channels, orders })
     }
 
-    /// The body of ticks of `channels` bytes each.
+    /// The body of ticks, `channels` bytes each.
     #[must_use]
     pub fn emit(seq: u8, channels: u8, orders: &[u8]) -> Vec<u8> {
         let count = orders.len() / usize::from(channels.max(1));
@@ -221,7 +214,7 @@ impl<'a> Ticks<'a> {
         self.orders.len() / self.channels
     }
 
-    /// The orders, a byte a channel, tick after tick.
+    /// One byte per channel, tick after tick.
     #[must_use]
     pub const fn orders(&self) -> &'a [u8] {
         self.orders
@@ -237,31 +230,21 @@ impl<'a> Ticks<'a> {
     }
 }
 
-/// What a delimiter, or a byte too many, made of the bytes before it.
+/// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Deframed<'a> {
     /// A frame whose CRC is right.
     Frame(Frame<'a>),
     /// Not COBS, or too short for a frame.
     Short,
-    /// The CRC is wrong: what stood there, and what would have been right.
+    /// The CRC is wrong.
     BadCrc {
-        /// The CRC that came.
         found: u32,
         /// The CRC of what came before it.
         expected: u32,
     },
-    /// A byte too many; the rest is dropped to the next delimiter.
-    Overlong,
-}
-
-/// Whether a byte completes something, without what that is: most complete nothing, and this fits a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Completed {
-    Nothing,
-    /// Bytes up to their delimiter: a frame if they are enough and the CRC is right.
-    Content,
-    Short,
+    /// Too long; the rest is dropped up to the next delimiter.
     Overlong,
 }
 
@@ -269,11 +252,9 @@ pub(crate) enum Completed {
 #[derive(Clone, Debug)]
 pub struct Deframer {
     cobs: CobsDecoder,
-    /// Decoded bytes of the frame.
-    ///
     /// Invariant: at most [`MAX_DECODED`].
     content: Vec<u8>,
-    /// After a byte too many, to the next delimiter.
+    /// Drops bytes up to the next delimiter.
     dropping: bool,
 }
 
@@ -284,57 +265,40 @@ impl Default for Deframer {
 }
 
 impl Deframer {
-    /// A byte; what it completes.
+    /// Takes a byte; returns what it completes.
     pub fn byte(&mut self, byte: u8) -> Option<Deframed<'_>> {
-        let completed = self.take(byte);
-        self.deframed(completed)
-    }
-
-    /// What [`Self::take`] told of right before.
-    pub(crate) fn deframed(&self, completed: Completed) -> Option<Deframed<'_>> {
-        match completed {
-            Completed::Nothing => None,
-            Completed::Content => Some(judge(&self.content)),
-            Completed::Short => Some(Deframed::Short),
-            Completed::Overlong => Some(Deframed::Overlong),
-        }
-    }
-
-    /// A byte; whether it completes anything.
-    pub(crate) fn take(&mut self, byte: u8) -> Completed {
         if self.dropping {
             self.dropping = byte != DELIMITER;
-            return Completed::Nothing;
+            return None;
         }
         let content = match self.cobs.byte(byte) {
             CobsByte::Content => byte,
             CobsByte::Zero => 0,
-            CobsByte::Overhead => return Completed::Nothing,
+            CobsByte::Overhead => return None,
             CobsByte::First => {
                 self.content.clear();
-                return Completed::Nothing;
+                return None;
             }
-            CobsByte::End => return Completed::Content,
-            CobsByte::Broken => return Completed::Short,
+            CobsByte::End => return Some(check(&self.content)),
+            CobsByte::Broken => return Some(Deframed::Short),
         };
         if self.content.len() == MAX_DECODED {
             self.cobs = CobsDecoder::default();
             self.dropping = true;
-            return Completed::Overlong;
+            return Some(Deframed::Overlong);
         }
         self.content.push(content);
-        Completed::Nothing
+        None
     }
 
-    /// Whether bytes since the last delimiter wait for theirs.
+    /// Whether bytes wait for their delimiter.
     #[must_use]
     pub const fn is_open(&self) -> bool {
         self.dropping || self.cobs.is_open()
     }
 }
 
-/// The frame that decoded bytes are, if their CRC is right.
-fn judge(content: &[u8]) -> Deframed<'_> {
+fn check(content: &[u8]) -> Deframed<'_> {
     match content.split_last_chunk::<CRC_LEN>() {
         Some((frame, crc)) if content.len() >= MIN_DECODED => {
             let (found, expected) = (u32::from_le_bytes(*crc), CHECK.checksum(frame));

@@ -7,13 +7,8 @@
 //!
 //! ```
 //! use std::rc::Rc;
-//! use stepscope_peripheral::{
-//!     config::{Bus, Config, SerialLine},
-//!     device::{Device, Faults},
-//!     signal::Record,
-//!     units::{Cycles, Instant},
-//!     wire::{ForcedLevel, Line, Schedule},
-//! };
+//! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::{Device, Faults}, signal::Record,
+//!     units::{Cycles, Instant}, wire::{ForcedLevel, Line, Schedule}};
 //!
 //! // A packet of one channel, and a break that is held over its stop bit.
 //! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
@@ -34,48 +29,40 @@
 //! ```
 
 use crate::units::Instant;
-use crate::wire::{
-    ByteAhead, Schedule,
-    bit_times::BYTE_BITS,
-    sender::{BitStarts, Sender},
-};
+use crate::wire::{Schedule, sender::Sender};
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
-/// A level forced on the line (A4).
+/// A level forced on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct ForcedLevel {
-    /// First forced cycle.
     pub start: Instant,
-    /// First cycle after it.
     pub end: Instant,
-    /// The level.
     pub level: bool,
 }
 
 impl ForcedLevel {
-    /// Whether it is over in a cycle.
     fn ends_by(self, cycle: Instant) -> bool {
         self.end <= cycle
     }
 }
 
-/// The line, from one change to the next.
+/// The line, from change to change.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
     /// Invariant: disjoint and rising; those before `passed` are over.
     forced: Rc<Vec<ForcedLevel>>,
     passed: usize,
-    /// The level that is forced now.
     force: Option<bool>,
     next: Instant,
-    /// Next cycle in which what one hears while no controller sends changes; followed while something is
-    /// left to be forced, because what is forced to the level that the line has is no change. Else [`Instant::RESET`].
+    /// Next change of the level that is heard while no controller sends, tracked while levels remain to be forced: a
+    /// forced level may equal the line's own. Else [`Instant::RESET`].
     next_heard: Instant,
 }
 
 impl Line {
-    /// The line before cycle 1: idle. A rate of 0 counts as 1 baud.
+    /// The line before cycle 1, idle. A rate of 0 counts as 1 baud.
     #[must_use]
     pub fn new(schedule: Rc<Schedule>, forced: &[ForcedLevel], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
@@ -98,26 +85,26 @@ impl Line {
         self.sender.schedule()
     }
 
-    /// Adds a send, after all that were added before.
+    /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
         self.look_ahead();
         self.find_heard();
     }
 
-    /// Adds bytes to the last send, back to back with its own. The first of them must not begin before the next cycle.
+    /// Adds bytes to the last send. The first must not begin before the next cycle.
     pub fn extend(&mut self, bytes: &[u8]) {
         self.sender.extend(bytes);
         self.look_ahead();
         self.find_heard();
     }
 
-    /// Forgets what has been sent, so that a line without an end does not grow.
+    /// Forgets what has been sent, to bound the memory of an endless line.
     pub fn forget_sent(&mut self) {
         self.sender.forget_sent();
     }
 
-    /// Forces a level in cycles that are still to come; where another one is forced too, this one wins.
+    /// Forces a level in future cycles; it wins over earlier ones.
     pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.ends_by(new.start));
@@ -137,19 +124,19 @@ impl Line {
         self.find_heard();
     }
 
-    /// What has been forced and will be, as far as it is known: rising in time and not overlapping.
+    /// Forced levels, past and future, rising in time and disjoint.
     #[must_use]
     pub fn forced(&self) -> &[ForcedLevel] {
         &self.forced
     }
 
-    /// Level in the current cycle as one hears it while all others together send `others`.
+    /// The level in the current cycle while all others together send `others`.
     #[must_use]
     pub fn heard(&self, others: bool) -> bool {
         self.force.unwrap_or(self.sender.level() && others)
     }
 
-    /// Level in the current cycle as the host hears it: what controllers send, or what is forced.
+    /// The level as the host hears it, while controllers send `others`.
     #[must_use]
     pub fn replied(&self, others: bool) -> bool {
         self.force.unwrap_or(others)
@@ -161,26 +148,18 @@ impl Line {
         !self.sender.level()
     }
 
-    /// Next cycle in which what the host sends or what is forced changes; [`Instant::NEVER`] if
-    /// neither does.
+    /// Next cycle in which the host's level or a forced level changes; [`Instant::NEVER`] if neither does.
     #[must_use]
     pub const fn next_change(&self) -> Instant {
         self.next
     }
 
-    /// [`Self::next_change`] while one is left that anyone hears while no controller sends; else [`Instant::NEVER`].
-    #[must_use]
-    pub fn heard_until(&self) -> Instant {
-        if self.is_over() { Instant::NEVER } else { self.next }
-    }
-
-    /// Whether no change is left that anyone hears while no controller sends.
+    /// Whether no audible change is left while no controller sends.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.next == Instant::NEVER || self.next_heard == Instant::NEVER
     }
 
-    /// Looks for the next change that is heard.
     fn find_heard(&mut self) {
         if self.passed == self.forced.len() {
             self.next_heard = Instant::RESET;
@@ -201,45 +180,6 @@ impl Line {
 
     /// Enters the cycle of [`Self::next_change`].
     pub fn change(&mut self) {
-        if self.passed < self.forced.len() {
-            return self.change_forced();
-        }
-        self.sender.pass();
-        self.next = self.sender.next_edge();
-    }
-
-    /// When the bits of a byte begin that the host sends, from its start bit's on.
-    #[must_use]
-    pub const fn bit_starts(&self) -> &BitStarts {
-        self.sender.bit_starts()
-    }
-
-    /// The byte that begins next, where nothing is forced up to its end.
-    #[must_use]
-    #[inline(always)]
-    pub fn byte_ahead(&self) -> Option<ByteAhead<'_>> {
-        let byte = self.sender.byte_ahead()?;
-        let is_whole = self.forced.get(self.passed).is_none_or(|forced| {
-            self.force.is_none() && forced.start.0 >= byte.start.0 + byte.bit_starts[BYTE_BITS as usize]
-        });
-        is_whole.then_some(byte)
-    }
-
-    /// Passes all edges of [`Self::byte_ahead`].
-    #[inline(always)]
-    pub fn pass_byte(&mut self) {
-        debug_assert!(self.byte_ahead().is_some(), "no whole byte is ahead");
-        self.sender.pass_byte();
-        if self.passed < self.forced.len() {
-            self.look_ahead();
-            self.find_heard();
-        } else {
-            self.next = self.sender.next_edge();
-        }
-    }
-
-    /// [`Self::change`] while something is left to be forced.
-    fn change_forced(&mut self) {
         let now = self.next;
         self.enter(now);
         if now == self.next_heard {
@@ -247,7 +187,6 @@ impl Line {
         }
     }
 
-    /// Enters cycle `now`, the next one in which something changes.
     fn enter(&mut self, now: Instant) {
         debug_assert!(now == self.next && now != Instant::NEVER, "nothing changes in {now:?}");
         if self.sender.next_edge() == now {
@@ -279,7 +218,7 @@ impl Line {
     }
 }
 
-/// Makes disjoint, rising spans of forced levels that overlap: the later entry wins.
+/// Makes overlapping levels disjoint and rising: the later entry wins.
 fn flatten(forced: &[ForcedLevel]) -> Vec<ForcedLevel> {
     let mut bounds: Vec<(Instant, usize)> =
         forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();
@@ -306,7 +245,6 @@ fn flatten(forced: &[ForcedLevel]) -> Vec<ForcedLevel> {
     flat
 }
 
-/// Whether spans are disjoint and rising.
 fn is_flat(forced: &[ForcedLevel]) -> bool {
     forced.iter().all(|one| one.start < one.end) && forced.is_sorted_by(|one, next| one.ends_by(next.start))
 }
@@ -409,29 +347,6 @@ mod tests {
                 }
             }
             assert_eq!(changes, due, "{before:?} {new:?}");
-        }
-    }
-
-    #[test]
-    fn a_byte_is_whole_where_nothing_is_forced_up_to_its_end() {
-        // The byte lasts from 100 to 200: two edges.
-        let rows = [(50, 10, false), (50, 60, false), (199, 1, false), (200, 5, true), (900, 5, true)];
-        for (start, length, is_whole) in rows {
-            let end = Instant(start + length);
-            let forced = ForcedLevel { start: Instant(start), end, level: false };
-            let mut schedule = Schedule::default();
-            schedule.push(Instant(100), &[0xff]);
-            let mut line = Line::new(Rc::new(schedule), &[forced], 100, 10);
-            assert_eq!(line.byte_ahead().is_some(), is_whole, "forced from {start} for {length}");
-            if is_whole {
-                line.pass_byte();
-                assert_eq!((line.next_change(), line.heard_until()), (forced.start, forced.start));
-                assert!(line.byte_ahead().is_none());
-            }
-            while line.next_change() <= end {
-                line.change();
-            }
-            assert_eq!(line.byte_ahead().is_some(), start + length < 100, "after it");
         }
     }
 

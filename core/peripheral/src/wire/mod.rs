@@ -4,10 +4,7 @@
 //!
 //! ```
 //! use std::rc::Rc;
-//! use stepscope_peripheral::{
-//!     units::{Cycles, Instant},
-//!     wire::{Line, Schedule},
-//! };
+//! use stepscope_peripheral::{units::{Cycles, Instant}, wire::{Line, Schedule}};
 //!
 //! // Two packets for one channel, a tick of 32000 cycles apart: 5 steps right, then 3 left.
 //! let host = Schedule::paced(Instant(1601), Cycles(32_000), [[0x85], [0x03]].iter());
@@ -27,4 +24,4 @@ pub mod uart;
 pub use bit_times::BitTimes;
 pub use line::{ForcedLevel, Line};
 pub use schedule::{Schedule, Sent};
-pub use sender::{ByteAhead, Sender};
+pub use sender::Sender;

@@ -18,32 +18,31 @@ use crate::{
     units::{Cycles, Instant},
 };
 
-/// Bit of a command's byte that is the direction.
 const RIGHT: u8 = 1 << 7;
-/// Most steps that a command has, in the bits below it.
+/// Maximum steps of a command, in the bits below the direction.
 pub const MAX_STEPS: u8 = RIGHT - 1;
-/// The address that means every controller.
+/// The address of all controllers.
 pub const ALL: u8 = 255;
 /// Bit times after the last byte that still continue a packet.
 pub const GAP_BITS: u64 = 45;
 
-/// What one channel is to do in one tick.
+/// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct ChannelCommand {
-    /// Right (DIR high) or left.
     pub right: bool,
     /// Steps, 0..=127.
     pub steps: u8,
 }
 
 impl ChannelCommand {
-    /// The command that a byte means.
+    /// Reads a byte.
     #[must_use]
     pub const fn parse(byte: u8) -> Self {
         Self { right: byte & RIGHT != 0, steps: byte & MAX_STEPS }
     }
 
-    /// The byte that means the command; `None` if it has more than [`MAX_STEPS`].
+    /// The byte; `None` above [`MAX_STEPS`].
     #[must_use]
     pub const fn emit(self) -> Option<u8> {
         let direction = if self.right { RIGHT } else { 0 };
@@ -51,7 +50,7 @@ impl ChannelCommand {
     }
 }
 
-/// One tick's commands as they came, a byte a channel; bytes past the channels in use are 0.
+/// One tick's commands, one byte per channel; unused channels have 0.
 pub type Tick = [u8; MAX_CHANNELS];
 
 /// What a byte completed.
@@ -69,22 +68,20 @@ pub struct Unpacker {
     channels: u8,
     address: Option<u8>,
     gap: Cycles,
-    /// Commands so far, and how many bytes of the packet have come (with the address).
-    ///
-    /// Invariant: fewer bytes than a packet has: the last one completes it.
+    /// Commands so far, and bytes of the packet so far, with the address.
+    /// Invariant: fewer bytes than a packet.
     commands: Tick,
     received: u8,
     other_address: bool,
     /// After a framing error, until a gap.
     ignoring: bool,
-    /// When a gap ends what is open.
-    ///
+    /// When the gap ends the packet.
     /// Invariant: [`Instant::NEVER`] exactly where no packet is open and nothing is ignored.
     deadline: Instant,
 }
 
 impl Unpacker {
-    /// For `channels` channels; with an address, packets begin with one. `bit` is B.
+    /// For `channels` channels; `bit` is B.
     #[must_use]
     pub const fn new(channels: u8, address: Option<u8>, bit: Cycles) -> Self {
         Self {
@@ -99,13 +96,13 @@ impl Unpacker {
         }
     }
 
-    /// When a gap ends what is open; [`Instant::NEVER`] if nothing is.
+    /// When the gap falls due; [`Instant::NEVER`] if no packet is open.
     #[must_use]
     pub const fn deadline(&self) -> Instant {
         self.deadline
     }
 
-    /// The gap has come: true if it cut a packet short.
+    /// The gap falls due: true if it cuts a packet short.
     pub const fn gap(&mut self) -> bool {
         debug_assert!(self.received > 0 || self.ignoring, "nothing is open that a gap could end");
         let short = self.received > 0;
@@ -115,15 +112,14 @@ impl Unpacker {
         short
     }
 
-    /// A framing error in cycle `now`: what has come is dropped, and bytes until a gap.
+    /// A framing error in cycle `now` drops the packet, and bytes until a gap.
     pub fn framing_error(&mut self, now: Instant) {
         self.deadline = now + self.gap;
         self.received = 0;
         self.ignoring = true;
     }
 
-    /// A byte in cycle `now`; the packet that it completes.
-    #[inline(always)]
+    /// Takes a byte in cycle `now`; returns the packet it completes.
     pub fn byte(&mut self, now: Instant, byte: u8) -> Option<Unpacked> {
         self.deadline = now + self.gap;
         if self.ignoring {

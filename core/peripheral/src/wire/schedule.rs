@@ -18,28 +18,27 @@ use crate::wire::BitTimes;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Bytes that are sent back to back from a cycle on.
+/// Bytes sent back to back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub struct Sent<'a> {
     /// Cycle in which the first start bit falls.
     pub start: Instant,
-    /// The bytes.
     pub bytes: &'a [u8],
 }
 
-/// Everything that the host sends, rising in time and not overlapping.
+/// The host's sends, rising in time and disjoint.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Schedule {
     /// Start of each send, and the end of its bytes in `bytes`.
-    ///
     /// Invariant: both rising; the last end is that of `bytes`.
     sends: Vec<(Instant, usize)>,
     bytes: Vec<u8>,
 }
 
 impl Schedule {
-    /// Packets, one a tick of `tick` cycles, as the paced raw host sends them from `start` on.
-    /// Whether the line can carry them is the caller's to judge ([`line_time`]).
+    /// One packet per tick of `tick` cycles, from `start` on. The caller checks that the line can carry them
+    /// ([`line_time`]).
     #[must_use]
     pub fn paced(start: Instant, tick: Cycles, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
         let mut schedule = Self::default();
@@ -51,7 +50,7 @@ impl Schedule {
         schedule
     }
 
-    /// Adds a send, after all others.
+    /// Adds a send after all others.
     pub fn push(&mut self, start: Instant, bytes: &[u8]) {
         debug_assert!(
             self.sends.last().is_none_or(|(before, _)| *before <= start),
@@ -62,7 +61,7 @@ impl Schedule {
         self.sends.push((start, self.bytes.len()));
     }
 
-    /// Adds bytes to the last send, back to back with its own; a schedule without sends stays as it is.
+    /// Adds bytes to the last send; without sends nothing.
     pub fn extend(&mut self, bytes: &[u8]) {
         debug_assert!(!self.sends.is_empty(), "there is no send to extend");
         if let Some((_, end)) = self.sends.last_mut() {
@@ -71,7 +70,7 @@ impl Schedule {
         }
     }
 
-    /// How many sends there are.
+    /// Number of sends.
     #[must_use]
     pub fn len(&self) -> usize {
         self.sends.len()
@@ -96,15 +95,13 @@ impl Schedule {
         self.bytes.get(places).map(|bytes| Sent { start, bytes })
     }
 
-    /// When send `index` begins, and the places of its bytes among those of all sends.
+    /// Start of a send, and the places of its bytes.
     pub(super) fn places(&self, index: usize) -> Option<(Instant, Range<usize>)> {
         let &(start, end) = self.sends.get(index)?;
         let first = index.checked_sub(1).and_then(|before| self.sends.get(before)).map_or(0, |s| s.1);
         Some((start, first..end))
     }
 
-    /// The byte at a place among those of all sends.
-    #[inline(always)]
     pub(super) fn byte(&self, place: usize) -> Option<u8> {
         self.bytes.get(place).copied()
     }
@@ -122,8 +119,7 @@ impl Schedule {
     }
 }
 
-/// Cycles that `bytes` bytes sent back to back hold the line, to the end of the last stop bit (A4);
-/// a rate of 0 counts as 1 baud.
+/// Cycles that `bytes` bytes in a row hold the line, to the end of the last stop bit; a rate of 0 counts as 1 baud.
 #[must_use]
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
     BitTimes::new(clock_hz, baud).bytes(bytes).0

@@ -1,0 +1,179 @@
+//! Faults of the line, drawn from seeds: what becomes of the same orders over and over again.
+//!
+//! ```text
+//! seed -> a scenario: the base's orders, drawn noise and receiver rates -> a run -> a tally
+//! ```
+//!
+//! A seed's scenario stands for itself: whoever runs it sees the same faults, and the same ends.
+//! The sum of tallies does not depend on the order in which seeds are run.
+//!
+//! ```
+//! use stepscope_peripheral::config::Protocol;
+//! use stepscope_sim::fault_sweep::FaultSweep;
+//!
+//! let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it orders ticks");
+//! assert_eq!(sweep.run(3), sweep.run(3)); // a seed is a run
+//! ```
+
+mod align;
+mod tally;
+mod watch;
+
+pub use tally::Tally;
+
+use crate::{Experiment, Run};
+use crate::{framed_host::Progress, noise::Random};
+use align::Alignment;
+use alloc::{format, vec, vec::Vec};
+use stepscope_motion::{
+    mechanics::Distance,
+    moves::{Axis, Cosine, Move},
+};
+use stepscope_peripheral::config::{Bus, Protocol};
+use stepscope_scenario::{Line, Motion, Noise, Problem, Scenario, Source, ValueError};
+use watch::Watch;
+
+/// Maximum noise rates, in the order of the fields. At these a frame of 30 bytes and its reply still pass once in ten
+/// tries.
+const MAX_PPM: [u64; KINDS] = [5_000, 20_000, 20_000, 20_000, 500_000, 200_000];
+const KINDS: usize = 6;
+/// Rates go down from the maximum by so many powers of two.
+const OCTAVES: u64 = 6;
+
+/// Within so many thousandths of the host's rate, receivers hear bytes.
+pub const IN_REACH: u64 = 40;
+/// From 52 on no frame gets through.
+const OUT_OF_REACH: u64 = 60;
+
+/// Runs of the same commands under faults drawn from a seed.
+#[derive(Clone, Debug)]
+pub struct FaultSweep {
+    base: Scenario,
+}
+
+impl FaultSweep {
+    /// Takes the scenario; a seed replaces its noise and its receiver rates.
+    /// Errors: every problem of the scenario, and a source without ticks.
+    pub fn new(base: Scenario) -> Result<Self, Vec<Problem>> {
+        let experiment = Experiment::new(&base)?;
+        if (0..experiment.controllers()).all(|index| experiment.ticks_of(index).is_empty()) {
+            let detail = "faults need ticks to go wrong; give a source of kind motion or packets";
+            return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+        }
+        Ok(Self { base })
+    }
+
+    /// A small scenario: two motors turn in opposite directions for 40 ticks.
+    #[must_use]
+    pub fn small(protocol: Protocol) -> Scenario {
+        let axis = |steps, ramp_s| {
+            let cosine =
+                Cosine { distance: Distance::Steps(steps), duration_s: 0.08, ramp_s, ..Cosine::default() };
+            Axis { moves: vec![Move::Cosine(cosine)], ..Axis::default() }
+        };
+        let mut line = Line { protocol, ..Line::default() };
+        line.host.attempts = u8::MAX;
+        Scenario {
+            bus: Bus { channels: 2, ..Bus::default() },
+            line,
+            source: Source::Motion(Motion {
+                axes: vec![axis(400.0, 0.04), axis(-300.0, 0.02)],
+                ..Motion::default()
+            }),
+            ..Scenario::default()
+        }
+    }
+
+    /// The scenario of a seed.
+    #[must_use]
+    pub fn scenario(&self, seed: u32) -> Scenario {
+        // Noise uses the numbers below 2^32 itself.
+        let mut random = Random::new(1 << 32 | u64::from(seed));
+        let draw = random.below(10) as usize;
+        let is_mixture = draw > KINDS;
+        let mut rate = |kind: usize, most: u64| {
+            let chosen = if is_mixture { random.below(2) == 0 } else { draw == kind };
+            let most = if is_mixture { most / 2 } else { most };
+            if chosen { most.max(1) >> random.below(OCTAVES) } else { 0 }
+        };
+        let rates: Vec<u32> =
+            MAX_PPM.iter().enumerate().map(|(kind, &most)| rate(kind, most) as u32).collect();
+        let rate = |kind: usize| rates.get(kind).copied().unwrap_or(0);
+        let mut scenario = self.base.clone();
+        scenario.title = format!("{} seed {seed}", scenario.title).trim_start().chars().take(120).collect();
+        scenario.line.noise = Noise {
+            seed,
+            flipped_bits_ppm: rate(0),
+            lost_bytes_ppm: rate(1),
+            duplicated_bytes_ppm: rate(2),
+            glitches_ppm: rate(3),
+            lost_replies_ppm: rate(4),
+            host_crashes_ppm: rate(5),
+        };
+        let clocks_differ = draw == KINDS || is_mixture && random.below(2) == 0;
+        if clocks_differ {
+            let baud = scenario.line.baud;
+            scenario.line.receiver_baud = Some(off(baud, &mut random));
+            for controller in &mut scenario.controllers {
+                controller.receiver_baud = Some(off(baud, &mut random));
+            }
+        }
+        scenario
+    }
+
+    /// Runs a seed's scenario.
+    /// Errors: a receiver rate whose bits are too short.
+    pub fn run(&self, seed: u32) -> Result<Tally, Vec<Problem>> {
+        let scenario = self.scenario(seed);
+        let experiment = Experiment::new(&scenario)?;
+        let mut watches = vec![Watch::default(); experiment.controllers()];
+        let run = experiment.run_each(&mut watches);
+        Ok(tally(&scenario, &experiment, &run, &watches))
+    }
+}
+
+fn off(baud: u32, random: &mut Random) -> u32 {
+    let most = if random.below(8) == 0 { OUT_OF_REACH } else { IN_REACH };
+    let thousandths = 1000 - most + random.below(2 * most + 1);
+    (u64::from(baud) * thousandths / 1000) as u32
+}
+
+fn in_reach(scenario: &Scenario) -> bool {
+    let baud = u64::from(scenario.line.baud);
+    let additional = scenario.controllers.iter().map(|controller| controller.receiver_baud);
+    let mut rates = additional.chain([scenario.line.receiver_baud]).flatten();
+    rates.all(|rate| u64::from(rate).abs_diff(baud) * 1000 <= IN_REACH * baud)
+}
+
+fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Watch]) -> Tally {
+    let mut tally = Tally { seeds: 1, ..Tally::default() };
+    for (index, (watch, config)) in watches.iter().zip(experiment.configs()).enumerate() {
+        let channels = usize::from(config.channels());
+        let ordered = experiment.ticks_of(index);
+        let executed = watch.executed(channels);
+        watch.count(&mut tally);
+        tally.ordered += (ordered.len() / channels) as u64;
+        tally.executed += (executed.len() / channels) as u64;
+        // A framed host has a job per controller; on a raw line everything is sent.
+        let reached = experiment.host_progress(run, index);
+        let due = match reached {
+            None | Some(Progress::Done) => ordered,
+            Some(_) => ordered.get(..executed.len()).unwrap_or(ordered),
+        };
+        tally.unreached += ((ordered.len() - due.len()) / channels) as u64;
+        match reached {
+            Some(Progress::GivenUp(reason)) => tally.give_up(reason, in_reach(scenario)),
+            Some(Progress::Done) | None => {}
+            Some(_) => tally.cut += 1,
+        }
+        tally.add_alignment(&Alignment::of(due, &executed, channels));
+        let positions = run.devices().nth(index).map(|device| device.positions()).unwrap_or_default();
+        tally.position_error += align::distance(due, channels, &positions);
+    }
+    match run.host() {
+        Some(host) => tally.add_host(host.counts()),
+        None => tally.frames += run.schedule().len() as u64,
+    }
+    tally.wrong_seeds = u64::from(tally.is_wrong());
+    tally
+}

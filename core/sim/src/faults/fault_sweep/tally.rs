@@ -1,0 +1,109 @@
+//! What the runs of a fault sweep came to, in numbers that add up.
+
+use crate::faults::fault_sweep::align::Alignment;
+use crate::hosts::framed_host::{Counts, GivenUp};
+use core::ops::AddAssign;
+
+macro_rules! tally {
+    ($($(#[doc = $doc:literal])+ $field:ident,)+) => {
+        /// Counts over the runs of some seeds.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct Tally {
+            $($(#[doc = $doc])+ pub $field: u64,)+
+        }
+
+        impl AddAssign for Tally {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)+
+            }
+        }
+    };
+}
+
+tally! {
+    /// Seeds that were run.
+    seeds,
+    /// Seeds that executed a tick that was not commanded, or lost one that the host holds for done.
+    wrong_seeds,
+    /// Controllers that did not answer.
+    given_up,
+    /// Those whose receivers all have rates at which bytes are heard.
+    given_up_in_reach,
+    /// Controllers given up for another reason.
+    stuck,
+    /// Controllers whose job was not over at the end of the run.
+    cut,
+    /// Frames sent, with repetitions; on a raw line the sends.
+    frames,
+    /// Frames that the host sent again.
+    repeated,
+    /// How often the host of a framed line died.
+    crashes,
+    /// Frames whose check failed (CRC).
+    bad_check,
+    /// SHORT_PACKET of frames and packets.
+    short,
+    /// Frames with a byte too many (OVERLONG).
+    overlong,
+    /// Bytes without a stop bit (FRAMING).
+    framing,
+    /// Frames and packets that were whole and refused.
+    refused,
+    /// Repeated frames that were acknowledged again.
+    acknowledged_again,
+    /// Replies that the controllers sent.
+    replies,
+    /// Replies that the host did not get whole.
+    replies_lost,
+    /// Ticks ordered.
+    ordered,
+    /// Ticks executed.
+    executed,
+    /// Ticks that the host did not send, because it gave up or the run ended.
+    unreached,
+    /// Ticks executed with other steps than ordered.
+    wrong,
+    /// Ticks executed twice, or never commanded.
+    duplicated,
+    /// Ticks lost, of those that the host holds for done; on a raw line, of all.
+    missing,
+    /// Steps by which wrong ticks differ, and those of duplicated ticks.
+    wrong_steps,
+    /// Steps of missing ticks.
+    missing_steps,
+    /// Distance of the positions from the sums of the ticks, in steps of all channels.
+    position_error,
+}
+
+impl Tally {
+    /// Whether a wrong tick was executed, or one was lost that the host holds for done.
+    #[must_use]
+    pub const fn is_wrong(&self) -> bool {
+        self.wrong + self.duplicated + self.missing + self.position_error > 0
+    }
+
+    pub(super) fn give_up(&mut self, reason: GivenUp, in_reach: bool) {
+        match reason {
+            GivenUp::NoReply => {
+                self.given_up += 1;
+                self.given_up_in_reach += u64::from(in_reach);
+            }
+            _ => self.stuck += 1,
+        }
+    }
+
+    pub(super) fn add_alignment(&mut self, alignment: &Alignment) {
+        self.wrong += alignment.wrong;
+        self.duplicated += alignment.extra;
+        self.missing += alignment.missing;
+        self.wrong_steps += alignment.wrong_steps;
+        self.missing_steps += alignment.missing_steps;
+    }
+
+    pub(super) fn add_host(&mut self, counts: Counts) {
+        self.frames += counts.frames;
+        self.repeated += counts.repeated;
+        self.crashes += counts.crashes;
+        self.replies_lost += self.replies.saturating_sub(counts.replies + counts.refused);
+    }
+}

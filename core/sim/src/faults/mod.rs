@@ -1,0 +1,5 @@
+//! Runs in which something goes wrong: line faults and power cuts.
+
+pub mod fault_sweep;
+#[cfg(feature = "controller")]
+pub mod power_cut;

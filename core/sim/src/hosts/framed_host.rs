@@ -1,0 +1,208 @@
+//! The host of a framed line (DESIGN A6, A9): one frame, its reply, the next.
+//!
+//! ```text
+//! each controller   opening: STATUS, POSITIONS ── filling: TICKS, TICKS, …
+//!                     ── confirming: STATUS ── verifying: POSITIONS ── done
+//! each exchange     send ── reply ── ten bit times ── the next
+//!                     └── no reply in time: the same frame again, after a delimiter
+//! ```
+//!
+//! - Opening, the host asks for the expected sequence number and for how many ticks are done. So one
+//!   that comes back after it crashed goes on where it was: it waits until the controller rests, and
+//!   takes up the ticks that are not done.
+//! - Filling, it sends as soon as a whole frame's ticks find a place. Places are counted from the
+//!   last reply on, one a tick. Of several controllers the one whose queue runs dry first comes first.
+//! - A frame is repeated with the sequence number that it had, so it never runs twice. A repetition
+//!   begins with a delimiter: what was left of a broken frame cannot join it.
+//! - The last tick of a job has no steps, so that its end is no underrun.
+//! - Confirming, it sees that every tick was done; verifying, that the positions are the sums of the ticks. A
+//!   controller that does not know POSITIONS is counted only. It gives up on a controller that does not answer
+//!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
+//!   makes no progress (a host that crashes again and again), after `attempts` frames for each place of its
+//!   queue.
+//!
+//! The policy is in [`Conversation`], which knows bytes and cycles alone: a host of a real line is the same one. What is
+//! here puts it on the simulated line, with its noise.
+//!
+//! ```
+//! use stepscope_peripheral::signal::Record;
+//! use stepscope_sim::{Experiment, framed_host::Progress};
+//!
+//! // The default motion over the framed protocol: opened, filled, confirmed.
+//! let framed = r#"{ "line": { "protocol": "framed" } }"#;
+//! let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
+//! let host = run.host().expect("a framed line has one");
+//! assert!(host.progress().all(|progress| progress == Progress::Done));
+//! ```
+
+mod conversation;
+mod peer;
+mod report;
+#[cfg(test)]
+mod tests;
+mod tick_sums;
+
+pub use conversation::{Conversation, Counts};
+pub use peer::{GivenUp, Job, Known, Progress};
+pub use report::{Report, ReportRow, Standing, for_real_line};
+
+use crate::line::noise::Noise;
+use alloc::{vec, vec::Vec};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{
+    Line,
+    schedule::line_time,
+    uart::{Receiver, RxEvent},
+};
+use stepscope_scenario::Host as Settings;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sending {
+    end: Instant,
+    crashes: bool,
+}
+
+/// The host.
+#[derive(Clone, Debug)]
+pub struct FramedHost {
+    clock_hz: u32,
+    baud: u32,
+    bit: Cycles,
+    conversation: Conversation,
+    sending: Option<Sending>,
+    receiver: Receiver,
+    heard: bool,
+    noise: Option<Noise>,
+    last: Instant,
+}
+
+impl FramedHost {
+    /// A host that begins in cycle `start`. `bit` is the bit time of its receiver.
+    #[must_use]
+    pub fn new(
+        jobs: Vec<Job>,
+        settings: &Settings,
+        (clock_hz, baud, bit): (u32, u32, Cycles),
+        start: Instant,
+        noise: Option<Noise>,
+    ) -> Self {
+        Self {
+            clock_hz,
+            baud,
+            bit,
+            conversation: Conversation::new(jobs, settings, bit, start),
+            sending: None,
+            receiver: Receiver::new(bit),
+            heard: true,
+            noise,
+            last: Instant::RESET,
+        }
+    }
+
+    /// Its side of the protocol.
+    #[must_use]
+    pub const fn conversation(&self) -> &Conversation {
+        &self.conversation
+    }
+
+    /// Progress per controller.
+    pub fn progress(&self) -> impl Iterator<Item = Progress> {
+        self.conversation.progress()
+    }
+
+    /// Ticks that each controller has acknowledged.
+    pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
+        self.conversation.acknowledged()
+    }
+
+    /// What it has counted.
+    #[must_use]
+    pub const fn counts(&self) -> Counts {
+        self.conversation.counts()
+    }
+
+    /// Whether it has finished.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.conversation.is_over()
+    }
+
+    /// The last cycle in which it did something.
+    #[must_use]
+    pub const fn last_active(&self) -> Instant {
+        self.last
+    }
+
+    /// Whether it is sending in cycle `now`: then it hears nothing.
+    #[must_use]
+    pub fn is_sending(&self, now: Instant) -> bool {
+        self.sending.is_some_and(|sending| now < sending.end)
+    }
+
+    /// Next cycle after `now` in which it acts while it hears the same level; [`Instant::NEVER`] when it has
+    /// finished.
+    #[must_use]
+    pub fn deadline(&self, now: Instant) -> Instant {
+        match self.sending {
+            Some(Sending { end, .. }) => end,
+            None if self.conversation.is_waiting() => {
+                self.conversation.deadline().min(self.receiver.deadline(now, self.heard))
+            }
+            None => self.conversation.deadline(),
+        }
+    }
+
+    /// Cycle `now`, in which it hears `level`.
+    pub fn clock(&mut self, now: Instant, level: bool, line: &mut Line) {
+        self.heard = level;
+        if self.conversation.is_waiting()
+            && let Some(RxEvent::Byte(byte)) = self.receiver.clock(now, level)
+        {
+            self.last = now;
+            self.hear(byte, now);
+        }
+        if let Some(Sending { end, crashes }) = self.sending {
+            if end <= now {
+                (self.last, self.sending) = (now, None);
+                self.sent(now, crashes);
+            }
+        } else if self.conversation.deadline() <= now {
+            self.last = now;
+            if let Some(bytes) = self.conversation.poll(now) {
+                self.send(now, bytes, line);
+            }
+        }
+    }
+
+    fn send(&mut self, now: Instant, mut bytes: Vec<u8>, line: &mut Line) {
+        let start = now.next();
+        let mut crashes = false;
+        if let Some(noise) = &mut self.noise {
+            let spoiled = noise.send(start, &bytes);
+            (bytes, crashes) = (spoiled.bytes, spoiled.crashes);
+            if let Some(forced) = spoiled.forced {
+                line.force(forced);
+            }
+        }
+        let end = start + Cycles(line_time(bytes.len() as u64, self.clock_hz, self.baud));
+        line.send(start, &bytes);
+        self.sending = Some(Sending { end, crashes });
+    }
+
+    fn sent(&mut self, now: Instant, crashes: bool) {
+        if crashes {
+            self.conversation.crash(now);
+        } else {
+            self.receiver = Receiver::new(self.bit);
+            self.conversation.sent(now);
+        }
+    }
+
+    fn hear(&mut self, byte: u8, now: Instant) {
+        let Self { conversation, noise, .. } = self;
+        let heard = noise.as_mut().map_or_else(|| vec![byte], |noise| noise.hear(byte));
+        for byte in heard {
+            conversation.hear_unless(byte, now, || noise.as_mut().is_some_and(Noise::misses));
+        }
+    }
+}

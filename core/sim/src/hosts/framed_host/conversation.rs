@@ -1,0 +1,329 @@
+//! What the host of a framed line says and when, in bytes and cycles (DESIGN A6, A9; the policy is in docs/decisions.md).
+//!
+//! ```text
+//! poll ── a frame ── sent ── hear, byte by byte ── a reply ── ten bit times ── poll
+//!                      └── its time is over ── ten bit times ── poll: the same frame, after a delimiter
+//! ```
+//!
+//! No line, no port and no clock: who has one asks for the [`deadline`](Conversation::deadline), polls in that cycle, sends
+//! what it gets, and says when the last stop bit has left and what is heard. So the host of a simulated line, of a real port
+//! and of the page are one.
+//!
+//! ```
+//! use stepscope_peripheral::{protocol::{Kind, Reply, State, Status}, signal::Positions, units::{Cycles, Instant}};
+//! use stepscope_scenario::Host;
+//! use stepscope_sim::framed_host::{Conversation, Job, Progress};
+//!
+//! // One tick without steps, for a controller that answers at once.
+//! let job = Job { address: 0, channels: 1, tick: Cycles(100), queue_depth: 16, commands: [0x80].into() };
+//! let mut host = Conversation::new(vec![job], &Host::default(), Cycles(16), Instant(1));
+//! let (mut seq, mut asked) = (0, Vec::new());
+//! while !host.is_over() {
+//!     let now = host.deadline();
+//!     let Some(frame) = host.poll(now) else { continue };
+//!     host.sent(now + Cycles(160 * frame.len() as u64));
+//!     let kind = [Kind::Status, Kind::Positions, Kind::Ticks, Kind::Status, Kind::Positions][asked.len()];
+//!     seq += u8::from(kind == Kind::Ticks);
+//!     let status =
+//!         Status { state: State::Ready, free: 16, expected_seq: seq, faults: 0, ticks_done: seq.into() };
+//!     let positions = (kind == Kind::Positions).then(|| Positions::new(&[7]).expect("one channel"));
+//!     for byte in (Reply { address: 0, answer: Ok(kind), status }).emit(positions.as_ref()) {
+//!         host.hear(byte, now + Cycles(9000));
+//!     }
+//!     asked.push(kind);
+//! }
+//! assert_eq!(host.progress().next(), Some(Progress::Done));
+//! ```
+
+use super::peer::{GivenUp, Job, Known, Peer, Progress};
+use alloc::vec::Vec;
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{
+    bit_times::BYTE_BITS,
+    frame::{self, Deframed, Deframer, Kind, NAK_LEN, Reply, Ticks, reply_len},
+};
+use stepscope_scenario::{END_OF_TIME, Host as Settings};
+
+/// Bit times from the end of an exchange to the next frame: DE has fallen by then, whatever the controller's clock.
+const PAUSE_BITS: u64 = 10;
+/// Default time-out in bit times, for a reply of [`NAK_LEN`] bytes, which takes 191; a longer one has ten more per
+/// additional byte.
+const TIMEOUT_BITS: u64 = 256;
+// The first start bit comes 11 bit times after the frame, and each byte has ten.
+const _: () = assert!(TIMEOUT_BITS > 11 + BYTE_BITS * NAK_LEN as u64);
+
+/// No exchange begins later, so that the longest wait ends before [`END_OF_TIME`].
+const LAST_BEGIN: u64 = END_OF_TIME - (1 << 46);
+
+/// What the host counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Counts {
+    pub frames: u64,
+    pub repeated: u64,
+    pub replies: u64,
+    /// Received frames that were no reply to the pending frame.
+    pub rejected: u64,
+    pub refused: u64,
+    pub crashes: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Exchange {
+    peer: usize,
+    kind: Kind,
+    ticks: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Pausing { until: Instant },
+    Sending(Exchange),
+    Waiting { exchange: Exchange, until: Instant },
+    Over,
+}
+
+/// The host's side of the protocol with all controllers of a line.
+#[derive(Clone, Debug)]
+pub struct Conversation {
+    bit: Cycles,
+    timeout: Cycles,
+    attempts: u8,
+    pub(super) peers: Vec<Peer>,
+    phase: Phase,
+    /// Ten bit times after the last exchange.
+    quiet_from: Instant,
+    deframer: Deframer,
+    counts: Counts,
+}
+
+impl Conversation {
+    /// Begins in cycle `start`. `bit` is the bit time of the line.
+    #[must_use]
+    pub fn new(jobs: Vec<Job>, settings: &Settings, bit: Cycles, start: Instant) -> Self {
+        let timeout = settings.reply_timeout_cycles.map_or(TIMEOUT_BITS * bit.0, u64::from);
+        Self {
+            bit,
+            timeout: Cycles(timeout),
+            attempts: settings.attempts,
+            peers: jobs.into_iter().map(|job| Peer::new(job, settings, start)).collect(),
+            phase: Phase::Pausing { until: start },
+            quiet_from: start,
+            deframer: Deframer::default(),
+            counts: Counts::default(),
+        }
+    }
+
+    /// Adds a delay of the system to the time-out.
+    #[must_use]
+    pub fn with_slack(mut self, slack: Cycles) -> Self {
+        self.timeout = Cycles(self.timeout.0 + slack.0);
+        self
+    }
+
+    /// For a real line: each job begins with a tick without steps that the controller has to confirm. From then on a
+    /// reset shows in its sequence number and its count of ticks.
+    #[must_use]
+    pub fn with_opening_tick(mut self) -> Self {
+        self.peers.iter_mut().for_each(|peer| peer.opening_tick = true);
+        self
+    }
+
+    /// Progress per controller.
+    pub fn progress(&self) -> impl Iterator<Item = Progress> {
+        self.peers.iter().map(|peer| peer.progress)
+    }
+
+    /// Ticks that each controller has acknowledged.
+    pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
+        self.peers.iter().map(|peer| peer.acknowledged)
+    }
+
+    /// What each controller has reported, with its job.
+    pub fn known(&self) -> impl Iterator<Item = (&Job, &Known)> {
+        self.peers.iter().map(|peer| (&peer.job, &peer.known))
+    }
+
+    /// Positions after the first `ticks` ticks of a job; `None` where the start is unknown.
+    pub fn expected(&mut self, job: usize, ticks: u32) -> Option<Vec<i32>> {
+        self.peers.get_mut(job)?.expected(ticks)
+    }
+
+    /// Steps per channel of the first `ticks` ticks of a job, right positive.
+    pub fn sums(&mut self, job: usize, ticks: u32) -> Vec<i32> {
+        self.peers.get_mut(job).map_or_else(Vec::new, |peer| peer.sums(ticks))
+    }
+
+    /// What it has counted.
+    #[must_use]
+    pub const fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Whether it has finished.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.phase == Phase::Over
+    }
+
+    /// Whether it waits for a reply.
+    #[must_use]
+    pub const fn is_waiting(&self) -> bool {
+        matches!(self.phase, Phase::Waiting { .. })
+    }
+
+    /// The job whose frame is being sent or waits for its reply, and the frame's kind.
+    #[must_use]
+    pub const fn under_way(&self) -> Option<(usize, Kind)> {
+        match self.phase {
+            Phase::Sending(exchange) | Phase::Waiting { exchange, .. } => {
+                Some((exchange.peer, exchange.kind))
+            }
+            Phase::Pausing { .. } | Phase::Over => None,
+        }
+    }
+
+    /// The cycle in which to call [`Self::poll`] if nothing is heard before; [`Instant::NEVER`] while a frame is sent
+    /// and at the end.
+    #[must_use]
+    pub const fn deadline(&self) -> Instant {
+        match self.phase {
+            Phase::Pausing { until } | Phase::Waiting { until, .. } => until,
+            Phase::Sending(_) | Phase::Over => Instant::NEVER,
+        }
+    }
+
+    /// Cycle `now`: the frame to send from the next cycle on, if one is due.
+    pub fn poll(&mut self, now: Instant) -> Option<Vec<u8>> {
+        match self.phase {
+            Phase::Pausing { until } if until <= now => self.next_exchange(now),
+            Phase::Waiting { exchange, until } if until <= now => {
+                if let Some(peer) = self.peers.get_mut(exchange.peer) {
+                    peer.flush = true;
+                }
+                self.pause(now, exchange.peer, Cycles(0));
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// The frame has left: `end` is the first cycle after its last stop bit.
+    pub fn sent(&mut self, end: Instant) {
+        let Phase::Sending(exchange) = self.phase else { return };
+        self.deframer = Deframer::default();
+        let channels = self.peers.get(exchange.peer).map_or(0, |peer| peer.job.channels);
+        self.phase = Phase::Waiting { exchange, until: end + self.timeout_of(exchange.kind, channels) };
+    }
+
+    pub(super) fn timeout_of(&self, kind: Kind, channels: u8) -> Cycles {
+        let further = (reply_len(kind, channels) - NAK_LEN) as u64;
+        Cycles(self.timeout.0 + BYTE_BITS * further * self.bit.0)
+    }
+
+    /// A byte was heard in cycle `now`.
+    pub fn hear(&mut self, byte: u8, now: Instant) {
+        self.hear_unless(byte, now, || false);
+    }
+
+    /// As [`Self::hear`]; a reply is dropped where `misses`.
+    pub(super) fn hear_unless(&mut self, byte: u8, now: Instant, misses: impl FnOnce() -> bool) {
+        let Phase::Waiting { exchange: Exchange { peer: index, kind, ticks }, .. } = self.phase else {
+            return;
+        };
+        let reply = match self.deframer.byte(byte) {
+            None => return,
+            Some(Deframed::Frame(frame)) => Reply::parse(frame).map(|reply| (reply, frame.positions())),
+            Some(_) => None,
+        };
+        let missed = misses();
+        let Some(peer) = self.peers.get_mut(index) else { return };
+        let reply = reply.filter(|(reply, _)| reply.address == peer.job.address && !missed);
+        match reply.map(|(reply, positions)| (reply.answer, reply.status, positions)) {
+            Some((Ok(taken), status, positions)) if taken == kind && peer.fits(kind, status) => {
+                self.counts.replies += 1;
+                (peer.attempts, peer.flush) = (0, false);
+                let wait = peer.acknowledge((kind, ticks), (status, positions), now);
+                self.pause(now, index, wait);
+            }
+            Some((Err(reason), status, _)) => {
+                self.counts.refused += 1;
+                peer.attempts = 0;
+                let wait = peer.refused(kind, reason, status);
+                self.pause(now, index, wait);
+            }
+            _ => self.counts.rejected += 1,
+        }
+    }
+
+    /// Stops: the pending exchange ends, then every unfinished controller gets STOP until it acknowledges it, STATUS
+    /// and POSITIONS.
+    pub fn stop(&mut self, now: Instant) {
+        self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.stop(now));
+        if let Phase::Pausing { .. } = self.phase {
+            self.phase = Phase::Pausing { until: self.quiet_from.max(now) };
+        }
+    }
+
+    /// A host that crashed keeps only its ticks and where it began.
+    pub(super) fn crash(&mut self, now: Instant) {
+        self.counts.crashes += 1;
+        // A reply of the maximum length may be on the line.
+        let channels = self.peers.iter().map(|peer| peer.job.channels).max().unwrap_or(0);
+        let until = now + self.timeout_of(Kind::Positions, channels);
+        self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.restart(now, until));
+        self.phase = Phase::Pausing { until };
+    }
+
+    fn pause(&mut self, now: Instant, peer: usize, span: Cycles) {
+        let until = now + Cycles(PAUSE_BITS * self.bit.0);
+        if let Some(peer) = self.peers.get_mut(peer) {
+            peer.ready_at = until.max(now + span);
+        }
+        self.quiet_from = until;
+        self.phase = Phase::Pausing { until };
+    }
+
+    fn next_exchange(&mut self, now: Instant) -> Option<Vec<u8>> {
+        for peer in self.peers.iter_mut().filter(|peer| peer.is_open()) {
+            let tired = peer.attempts >= self.attempts || peer.stalls(self.attempts);
+            if now.0 >= LAST_BEGIN {
+                peer.progress = Progress::GivenUp(GivenUp::OutOfTime);
+            } else if tired && peer.ready_at <= now {
+                peer.progress = Progress::GivenUp(GivenUp::NoReply);
+            }
+        }
+        let waiting = || self.peers.iter().enumerate().filter(|(_, peer)| peer.is_open());
+        let urgent = waiting()
+            .filter(|(_, peer)| peer.ready_at <= now)
+            .min_by_key(|(index, peer)| (peer.dry_at, *index))
+            .map(|(index, _)| index);
+        if let Some(index) = urgent {
+            return self.begin(index);
+        }
+        self.phase = match waiting().map(|(_, peer)| peer.ready_at).min() {
+            Some(until) => Phase::Pausing { until },
+            None => Phase::Over,
+        };
+        None
+    }
+
+    fn begin(&mut self, index: usize) -> Option<Vec<u8>> {
+        let peer = self.peers.get_mut(index)?;
+        let (kind, ticks) = peer.due();
+        let body = match kind {
+            Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, &peer.commands(ticks)),
+            _ => Vec::new(),
+        };
+        let mut bytes = frame::emit(peer.job.address, kind as u8, &body);
+        if peer.flush {
+            bytes.insert(0, frame::DELIMITER);
+        }
+        self.counts.repeated += u64::from(peer.attempts > 0);
+        peer.attempts = peer.attempts.saturating_add(1);
+        peer.since_progress = peer.since_progress.saturating_add(1);
+        self.counts.frames += 1;
+        self.phase = Phase::Sending(Exchange { peer: index, kind, ticks });
+        Some(bytes)
+    }
+}

@@ -1,0 +1,526 @@
+//! A controller as the host of a framed line knows it: its job, how far it is, and what follows from
+//! its replies.
+
+use super::tick_sums::TickSums;
+use alloc::{rc::Rc, vec::Vec};
+use core::fmt;
+use stepscope_peripheral::signal::Positions;
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::frame::{self, Kind, Reason, State, Status};
+use stepscope_peripheral::wire::packet::MAX_STEPS;
+use stepscope_scenario::Host as Settings;
+
+/// The job of one controller.
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Job {
+    pub address: u8,
+    /// Its channels: the bytes of a tick.
+    pub channels: u8,
+    pub tick: Cycles,
+    pub queue_depth: u8,
+    /// One byte per channel, tick after tick.
+    pub commands: Rc<[u8]>,
+}
+
+impl Job {
+    /// How many ticks.
+    #[must_use]
+    pub fn ticks(&self) -> u32 {
+        (self.commands.len() / usize::from(self.channels.max(1))) as u32
+    }
+
+    /// Maximum ticks per frame: half of the queue, so that the other half runs meanwhile.
+    #[must_use]
+    pub fn ticks_per_frame(&self, settings: &Settings) -> u8 {
+        settings.ticks_per_frame.min(frame::MAX_TICKS).min(self.queue_depth / 2).max(1)
+    }
+}
+
+/// How far the host has come with one controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Reads the sequence number and the ticks done.
+    Opening,
+    /// Reads the positions before the next tick.
+    Locating,
+    /// Real lines only: sends a tick without steps and waits until it is done.
+    Starting,
+    /// Sends ticks.
+    Filling,
+    /// All ticks are acknowledged; checks that they were done.
+    Confirming,
+    /// Checks that the positions are the sums of the ticks.
+    Verifying,
+    /// Every tick was done, and the positions confirm it.
+    Done,
+    /// Every tick was done by the controller's own count; it does not know POSITIONS.
+    Counted,
+    /// Sends STOP until it is acknowledged, then STATUS and POSITIONS.
+    Stopping,
+    /// No more is sent.
+    GivenUp(GivenUp),
+}
+
+/// Why the host gave up on a controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum GivenUp {
+    /// No answer to any attempt.
+    NoReply,
+    Stopped,
+    Refused(Reason),
+    /// It is idle and has done fewer ticks than it acknowledged.
+    TicksMissing,
+    /// Its positions are not the sums of its ticks.
+    Displaced {
+        channel: u8,
+        /// Ticks of the job done by then.
+        ticks: u32,
+        /// The sums of these ticks.
+        expected: i32,
+        told: i32,
+    },
+    /// It has done more ticks than were commanded: it was reset, or another host drives it.
+    OtherTicks {
+        /// Its count since the first tick, wrapping.
+        done: u32,
+        ordered: u32,
+    },
+    /// Its sequence number or its count of ticks went back.
+    Reset,
+    /// It has another number of channels than the ticks.
+    OtherChannels {
+        /// Channels of the ticks.
+        expected: u8,
+        /// Channels it reports.
+        told: u8,
+    },
+    /// The host was stopped, and the controller has acknowledged STOP.
+    Interrupted,
+    /// The maximum length of a run is over.
+    OutOfTime,
+}
+
+impl Progress {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Opening => "opening",
+            Self::Locating => "locating",
+            Self::Starting => "starting",
+            Self::Filling => "filling",
+            Self::Confirming => "confirming",
+            Self::Verifying => "verifying",
+            Self::Done => "done",
+            Self::Counted => "counted",
+            Self::Stopping => "stopping",
+            Self::GivenUp(_) => "given_up",
+        }
+    }
+}
+
+impl fmt::Display for GivenUp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoReply => f.write_str("no reply"),
+            Self::Stopped => f.write_str("it is stopped"),
+            Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
+            Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+            Self::Displaced { channel, ticks, expected, told } => {
+                let s = if *ticks == 1 { "" } else { "s" };
+                write!(
+                    f,
+                    "after {ticks} tick{s} channel {channel} stands at {told}, and its ticks lead to {expected}"
+                )
+            }
+            Self::OtherTicks { done, ordered } => {
+                write!(
+                    f,
+                    "it counts {done} ticks since it was opened, and {ordered} were ordered: it was reset, or another host drives it"
+                )
+            }
+            Self::Reset => f.write_str("it was reset during the job, or another host drives it"),
+            Self::OtherChannels { expected, told } => {
+                write!(f, "it tells positions of {told} channels, and its ticks are for {expected}")
+            }
+            Self::Interrupted => f.write_str("its host was told to stop"),
+            Self::OutOfTime => f.write_str("the longest time of a run is over"),
+        }
+    }
+}
+
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::GivenUp(why) => write!(f, "given up: {why}"),
+            Self::Counted => f.write_str("done by its count of ticks; it does not tell its positions"),
+            progress => f.write_str(progress.name()),
+        }
+    }
+}
+
+/// What a controller has reported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Known {
+    pub opened: Option<Status>,
+    /// Its status after the opening tick of a real line.
+    pub started: Option<Status>,
+    pub last: Option<Status>,
+    /// Ticks of the job that it has done, by the last plausible reply.
+    done: Option<u32>,
+    pub opened_at: Option<Positions>,
+    pub positions: Option<Positions>,
+    pub hides_positions: bool,
+    pub stop_acknowledged: bool,
+}
+
+impl Known {
+    /// Ticks of the job that the controller reported as done; after a reset, those reported before.
+    #[must_use]
+    pub const fn ticks_done(&self) -> Option<u32> {
+        self.done
+    }
+
+    fn counted(&self, status: Status) -> Option<u32> {
+        let began = self.started.or(self.opened)?;
+        Some(status.ticks_done.wrapping_sub(began.ticks_done))
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Peer {
+    pub(super) job: Job,
+    sums: TickSums,
+    pub(super) most: u32,
+    pub(super) progress: Progress,
+    /// While it is stopped: the frame that is due.
+    stop_stage: Kind,
+    pub(super) known: Known,
+    /// Invariant: at most the ticks of the job.
+    pub(super) acknowledged: u32,
+    pub(super) seq: u8,
+    pub(super) free: u32,
+    /// When the next frame may be sent, and when its queue runs dry.
+    pub(super) ready_at: Instant,
+    pub(super) dry_at: Instant,
+    /// Attempts of the pending frame.
+    pub(super) attempts: u8,
+    pub(super) since_progress: u32,
+    /// The next frame begins with a delimiter, because a broken one may wait for it.
+    pub(super) flush: bool,
+    pub(super) opening_tick: bool,
+    /// Opening ticks that were acknowledged, and whether the last one is not done yet.
+    opening_ticks: u32,
+    awaits_opening_tick: bool,
+}
+
+impl Peer {
+    pub(super) fn new(job: Job, settings: &Settings, start: Instant) -> Self {
+        Self {
+            most: job.ticks_per_frame(settings).into(),
+            sums: TickSums::new(Rc::clone(&job.commands), job.channels),
+            progress: Progress::Opening,
+            stop_stage: Kind::Stop,
+            known: Known::default(),
+            acknowledged: 0,
+            seq: 0,
+            free: 0,
+            ready_at: start,
+            dry_at: start,
+            attempts: 0,
+            since_progress: 0,
+            flush: false,
+            opening_tick: false,
+            opening_ticks: 0,
+            awaits_opening_tick: false,
+            job,
+        }
+    }
+
+    /// Whether too many frames brought no progress: `attempts` per place of its queue, which may have to run empty
+    /// first, and for the exchanges around it.
+    pub(super) fn stalls(&self, attempts: u8) -> bool {
+        self.since_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 5)
+    }
+
+    pub(super) const fn is_open(&self) -> bool {
+        !matches!(self.progress, Progress::Done | Progress::Counted | Progress::GivenUp(_))
+    }
+
+    pub(super) fn left(&self) -> u32 {
+        self.job.ticks() - self.acknowledged
+    }
+
+    /// The frame that is due: its kind and number of ticks.
+    pub(super) fn due(&self) -> (Kind, u32) {
+        match self.progress {
+            Progress::Filling => (Kind::Ticks, self.most.min(self.free).min(self.left()).max(1)),
+            // The opening tick.
+            Progress::Starting if !self.awaits_opening_tick => (Kind::Ticks, 0),
+            Progress::Locating | Progress::Verifying => (Kind::Positions, 0),
+            Progress::Stopping => (self.stop_stage, 0),
+            _ => (Kind::Status, 0),
+        }
+    }
+
+    /// Commands of the next ticks; for 0 ticks those of the opening tick.
+    pub(super) fn commands(&self, ticks: u32) -> Vec<u8> {
+        let channels = usize::from(self.job.channels);
+        let commands = &self.job.commands;
+        if ticks == 0 {
+            // The directions of the first tick, so that DIR does not change more often.
+            return commands.iter().take(channels).map(|byte| byte & !MAX_STEPS).collect();
+        }
+        let from = self.acknowledged as usize * channels;
+        commands.get(from..from + ticks as usize * channels).unwrap_or_default().to_vec()
+    }
+
+    const fn queued(&self, free: u32) -> Cycles {
+        Cycles((self.job.queue_depth as u64).saturating_sub(free as u64) * self.job.tick.0)
+    }
+
+    /// A late answer to the frame before has another sequence number.
+    pub(super) fn fits(&self, kind: Kind, status: Status) -> bool {
+        kind != Kind::Ticks || status.expected_seq == self.seq.wrapping_add(1)
+    }
+
+    pub(super) fn stop(&mut self, now: Instant) {
+        (self.progress, self.stop_stage) = (Progress::Stopping, Kind::Stop);
+        (self.attempts, self.since_progress, self.ready_at) = (0, 0, now);
+    }
+
+    pub(super) fn restart(&mut self, now: Instant, until: Instant) {
+        self.progress = Progress::Opening;
+        (self.ready_at, self.dry_at, self.flush) = (until, now, true);
+    }
+
+    /// Takes a reply to the pending frame; returns the time until the next one is due.
+    pub(super) fn acknowledge(
+        &mut self,
+        (kind, ticks): (Kind, u32),
+        (status, positions): (Status, Option<Positions>),
+        now: Instant,
+    ) -> Cycles {
+        self.known.positions = positions.or(self.known.positions);
+        if kind == Kind::Ticks {
+            self.acknowledged += ticks;
+            debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
+            self.seq = self.seq.wrapping_add(1);
+            if ticks > 0 {
+                self.since_progress = 0;
+            } else {
+                self.opening_ticks += 1;
+                self.awaits_opening_tick = true;
+            }
+        }
+        let before = self.known.done;
+        let counted = self.told(status);
+        if self.progress == Progress::Stopping {
+            self.after_stop(kind);
+            return Cycles(0);
+        }
+        if status.state == State::Stopped {
+            self.progress = Progress::GivenUp(GivenUp::Stopped);
+        }
+        let ready = status.state == State::Ready;
+        match self.progress {
+            Progress::Opening if ready => self.open(status),
+            Progress::Locating if ready && self.is_where_it_was(status) => {
+                self.progress = self.located(positions).map_or(self.first_stage(), Progress::GivenUp);
+            }
+            Progress::Starting if kind == Kind::Ticks || !ready => {
+                return Cycles(self.queued(status.free.into()).0 + self.job.tick.0);
+            }
+            Progress::Starting if self.did_opening_ticks(status) => self.start(status),
+            Progress::Starting => {
+                self.forget();
+                return self.job.tick;
+            }
+            // Its queue was emptied: it reports fewer ticks than before, or more than it took.
+            Progress::Filling if counted < before || counted > Some(self.acknowledged) => {
+                self.progress = Progress::GivenUp(GivenUp::Reset);
+            }
+            Progress::Confirming if ready && status.expected_seq != self.seq => {
+                self.progress = Progress::GivenUp(GivenUp::Reset);
+            }
+            Progress::Confirming if counted == Some(self.job.ticks()) => {
+                let verified = !self.known.hides_positions;
+                self.progress = if verified { Progress::Verifying } else { Progress::Counted };
+            }
+            Progress::Confirming if ready => {
+                let (done, ordered) = (counted.unwrap_or(0), self.job.ticks());
+                let other = GivenUp::OtherTicks { done, ordered };
+                self.progress = Progress::GivenUp(if done < ordered { GivenUp::TicksMissing } else { other });
+            }
+            Progress::Verifying if ready && self.is_where_it_was(status) => {
+                self.progress = self.located(positions).map_or(Progress::Done, Progress::GivenUp);
+            }
+            // Another host moves it: open or confirm it again when it is idle.
+            Progress::Locating => {
+                self.progress = Progress::Opening;
+                if self.known.opened_at.is_none() {
+                    self.forget();
+                }
+                return self.job.tick;
+            }
+            Progress::Verifying => {
+                self.progress = Progress::Confirming;
+                return self.job.tick;
+            }
+            Progress::Opening | Progress::Confirming => return self.job.tick,
+            _ => {}
+        }
+        self.free = status.free.into();
+        self.dry_at = now + self.queued(self.free);
+        self.next_due()
+    }
+
+    /// The controller is idle: finds its sequence number and the first tick that is not done.
+    fn open(&mut self, status: Status) {
+        let base = self.known.opened.get_or_insert(status).ticks_done;
+        let (known, ordered) = (self.acknowledged, self.job.ticks());
+        let done = status.ticks_done.wrapping_sub(base);
+        self.acknowledged = done.min(ordered);
+        if self.acknowledged > known {
+            self.since_progress = 0;
+        }
+        self.seq = status.expected_seq;
+        self.known.done = Some(self.acknowledged);
+        self.progress = match self.known.hides_positions {
+            _ if done > ordered => Progress::GivenUp(GivenUp::OtherTicks { done, ordered }),
+            true => self.first_stage(),
+            false => Progress::Locating,
+        };
+    }
+
+    const fn first_stage(&self) -> Progress {
+        if self.opening_tick && self.known.started.is_none() { Progress::Starting } else { Progress::Filling }
+    }
+
+    /// Whether it has done the opening ticks and nothing else.
+    fn did_opening_ticks(&self, status: Status) -> bool {
+        let done = self.known.opened.map(|opened| status.ticks_done.wrapping_sub(opened.ticks_done));
+        done == Some(self.opening_ticks) && status.expected_seq == self.seq
+    }
+
+    /// A controller that was reset expects 0 and has done 0 ticks: if this one reports the same, another opening tick
+    /// is needed to tell both apart.
+    fn start(&mut self, status: Status) {
+        self.awaits_opening_tick = false;
+        if status.expected_seq != 0 && status.ticks_done != 0 {
+            (self.known.started, self.known.done) = (Some(status), Some(0));
+            (self.progress, self.since_progress) = (Progress::Filling, 0);
+        }
+    }
+
+    /// Starts over; nothing of the job has been sent.
+    fn forget(&mut self) {
+        self.progress = Progress::Opening;
+        (self.known.opened, self.known.opened_at, self.known.done) = (None, None, None);
+        (self.acknowledged, self.opening_ticks, self.awaits_opening_tick) = (0, 0, false);
+    }
+
+    /// Takes note of a status; returns its count of ticks since the first one.
+    fn told(&mut self, status: Status) -> Option<u32> {
+        self.known.last = Some(status);
+        let counted = self.known.counted(status);
+        // Then the last ticks may have been taken without the host's knowledge.
+        let knows_less = matches!(self.progress, Progress::Opening | Progress::Stopping);
+        let most = if knows_less { self.job.ticks() } else { self.acknowledged };
+        let can_be = knows_less || status.expected_seq == self.seq;
+        if can_be && counted.is_some_and(|counted| counted <= most) {
+            self.known.done = counted;
+        }
+        counted
+    }
+
+    fn is_where_it_was(&self, status: Status) -> bool {
+        self.known.counted(status) == Some(self.acknowledged) && status.expected_seq == self.seq
+    }
+
+    /// Compares positions with the sums of the acknowledged ticks. The first ones are the start.
+    fn located(&mut self, told: Option<Positions>) -> Option<GivenUp> {
+        let told = told?;
+        let (expected, told_channels) = (self.job.channels, told.as_slice().len() as u8);
+        if told_channels != expected {
+            return Some(GivenUp::OtherChannels { expected, told: told_channels });
+        }
+        self.known.opened_at.get_or_insert(told);
+        let ticks = self.acknowledged;
+        let expected = self.expected(ticks)?;
+        let mut channels = (0..).zip(told.as_slice().iter().zip(expected));
+        channels
+            .find(|(_, (told, expected))| **told != *expected)
+            .map(|(channel, (&told, expected))| GivenUp::Displaced { channel, ticks, expected, told })
+    }
+
+    pub(super) fn sums(&mut self, ticks: u32) -> Vec<i32> {
+        self.sums.after(ticks).to_vec()
+    }
+
+    pub(super) fn expected(&mut self, ticks: u32) -> Option<Vec<i32>> {
+        let began = self.known.opened_at?;
+        let sums = self.sums.after(ticks).iter();
+        Some(began.as_slice().iter().zip(sums).map(|(began, sum)| began.wrapping_add(*sum)).collect())
+    }
+
+    fn after_stop(&mut self, kind: Kind) {
+        match kind {
+            Kind::Stop => {
+                self.known.stop_acknowledged = true;
+                self.stop_stage = Kind::Status;
+            }
+            Kind::Status if self.stop_stage == Kind::Status && !self.known.hides_positions => {
+                self.stop_stage = Kind::Positions;
+            }
+            Kind::Status | Kind::Positions if self.stop_stage == kind => {
+                self.progress = Progress::GivenUp(GivenUp::Interrupted);
+            }
+            // A late answer to a frame from before the stop.
+            _ => {}
+        }
+    }
+
+    fn next_due(&mut self) -> Cycles {
+        if self.progress != Progress::Filling {
+            return Cycles(0);
+        }
+        if self.left() == 0 {
+            self.progress = Progress::Confirming;
+            // The queue, and one more for the tick that runs.
+            let waiting = self.queued(self.free);
+            return Cycles(waiting.0 + self.job.tick.0);
+        }
+        let wanted = self.most.min(self.left());
+        let missing = wanted.saturating_sub(self.free);
+        self.free = self.free.max(wanted);
+        Cycles(u64::from(missing) * self.job.tick.0)
+    }
+
+    /// Takes a refusal; returns the time until the next frame.
+    pub(super) fn refused(&mut self, kind: Kind, reason: Reason, status: Status) -> Cycles {
+        self.told(status);
+        let unknown = kind == Kind::Positions && reason == Reason::UnknownKind;
+        self.known.hides_positions |= unknown;
+        match (self.progress, reason) {
+            (Progress::Locating, _) if unknown => {
+                self.progress = self.first_stage();
+                return self.next_due();
+            }
+            (Progress::Verifying, _) if unknown => self.progress = Progress::Counted,
+            (Progress::Stopping, _) if unknown || kind != self.stop_stage => {
+                self.after_stop(kind);
+                return Cycles(0);
+            }
+            (_, Reason::QueueFull | Reason::Busy) => {}
+            (Progress::Starting, Reason::BadSeq) => self.forget(),
+            (_, Reason::BadSeq) => self.progress = Progress::GivenUp(GivenUp::Reset),
+            (_, Reason::Stopped) => self.progress = Progress::GivenUp(GivenUp::Stopped),
+            (_, other) => self.progress = Progress::GivenUp(GivenUp::Refused(other)),
+        }
+        self.job.tick
+    }
+}

@@ -1,0 +1,444 @@
+//! The host of a raw line against the wall clock (LIVE H3, H4): packets paced, nobody answers, so nothing is verified.
+//!
+//! ```text
+//! packet j is due at t0 + (its cycle - the first one's)/clock_hz - lead*M*Ts/clock_hz, or at once where that is before t0
+//! ```
+//!
+//! Absolute, never summed. One that is late goes at once. The lead is what a late write may cost before the queue runs dry. There
+//! is no port here and no clock: times come in, in nanoseconds since t0.
+//!
+//! ```
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::{Experiment, raw_host::RawHost};
+//!
+//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "raw" } }"#).expect("reads");
+//! let experiment = Experiment::new(&scenario).expect("it has no problems");
+//! let mut host = RawHost::new(&experiment, 2).expect("the queue holds them");
+//! let mut now_ns = 0;
+//! while let Some(due_ns) = host.due_ns() {
+//!     now_ns = now_ns.max(due_ns);
+//!     assert!(host.packet(now_ns).is_some());
+//!     host.written(now_ns);
+//! }
+//! let report = host.report(false);
+//! assert_eq!((report.sent, report.stood_count, report.late.worst_ms()), (report.packets, 0, 0.0));
+//! ```
+
+use crate::{Experiment, lateness::Lateness};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::fmt;
+use stepscope_peripheral::{
+    units::Instant,
+    wire::{Schedule, schedule::line_time},
+};
+
+/// Ticks named in a report.
+const MAX_NAMED: usize = 10;
+const MAX_DEPTH: u64 = u8::MAX as u64;
+
+/// Why packets cannot be sent so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum NotPaced {
+    Nothing,
+    /// A queue of so many places takes fewer packets ahead.
+    Overflow {
+        depth: u8,
+    },
+    /// The queue does not hold the requested lead.
+    Short {
+        slack_ns: u64,
+        tick_ns: u64,
+        depth: u8,
+    },
+}
+
+fn ms(ns: u64) -> f64 {
+    (ns / 1000) as f64 / 1000.0
+}
+
+impl fmt::Display for NotPaced {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Nothing => out.write_str("the scenario sends nothing"),
+            Self::Overflow { depth } => {
+                write!(out, "the queue has {depth} places; give less, so that none overflows")
+            }
+            Self::Short { slack_ns, tick_ns, depth } => {
+                let needed = slack_ns.div_ceil(tick_ns.max(1));
+                let held = u64::from(depth.saturating_sub(1));
+                write!(
+                    out,
+                    "a lead of {} ms is {needed} ticks of {} ms ahead, and the queue of {depth} takes {held}, {} ms",
+                    ms(slack_ns),
+                    ms(tick_ns),
+                    ms(held * tick_ns)
+                )?;
+                let longer = slack_ns.checked_div(held).map(|ns| ms(ns + 999));
+                match (longer, needed < MAX_DEPTH) {
+                    (Some(longer), true) => {
+                        write!(out, "; give ticks of {longer} ms or a queue of {}", needed + 1)
+                    }
+                    (Some(longer), false) => write!(out, "; give ticks of {longer} ms"),
+                    (None, _) => write!(out, "; give a queue of {}", (needed + 1).min(MAX_DEPTH)),
+                }
+            }
+        }
+    }
+}
+
+/// A model of the controller's queue: a tick begins when its packet has arrived and the one before has ended.
+#[derive(Clone, Copy, Debug)]
+struct QueueModel {
+    tick_ns: u64,
+    free_ns: u64,
+    end_ns: Option<u64>,
+}
+
+impl QueueModel {
+    /// Sends a packet that takes `takes_ns`; returns whether the motor stood before its tick.
+    fn packet(&mut self, at_ns: u64, takes_ns: u64) -> bool {
+        self.free_ns = self.free_ns.max(at_ns) + takes_ns;
+        let stood = self.end_ns.is_some_and(|end| end < self.free_ns);
+        self.end_ns = Some(self.end_ns.unwrap_or(0).max(self.free_ns) + self.tick_ns);
+        stood
+    }
+}
+
+/// The host of a raw line.
+#[derive(Clone, Debug)]
+pub struct RawHost {
+    schedule: Schedule,
+    first: Instant,
+    clock_hz: u32,
+    baud: u32,
+    lead: u8,
+    queue: QueueModel,
+    sent: usize,
+    late: Lateness,
+    stood: Vec<usize>,
+    stood_count: u64,
+}
+
+impl RawHost {
+    /// Paces an experiment's packets, the first `lead` of them ahead.
+    /// Errors: nothing to send, or a queue that is too short.
+    pub fn new(experiment: &Experiment, lead: u8) -> Result<Self, NotPaced> {
+        let depth = depth(experiment);
+        if lead > 0 && lead >= depth {
+            return Err(NotPaced::Overflow { depth });
+        }
+        let schedule = experiment.schedule().clone();
+        let first = schedule.get(0).ok_or(NotPaced::Nothing)?.start;
+        let clock_hz = experiment.config().clock_hz().max(1);
+        let tick_ns = tick_ns(experiment);
+        Ok(Self {
+            schedule,
+            first,
+            clock_hz,
+            baud: experiment.baud(),
+            lead,
+            queue: QueueModel { tick_ns, free_ns: 0, end_ns: None },
+            sent: 0,
+            late: Lateness::default(),
+            stood: Vec::new(),
+            stood_count: 0,
+        })
+    }
+
+    /// As [`Self::new`] with the smallest lead of at least `slack_ns`, because after a stop the controller runs all
+    /// of it.
+    /// Errors: nothing to send, or a queue that is too short.
+    pub fn with_slack(experiment: &Experiment, slack_ns: u64) -> Result<Self, NotPaced> {
+        if experiment.schedule().is_empty() {
+            return Err(NotPaced::Nothing);
+        }
+        let depth = depth(experiment);
+        let tick_ns = tick_ns(experiment);
+        let lead = u8::try_from(slack_ns.div_ceil(tick_ns.max(1)).max(1)).ok();
+        let lead = lead.filter(|&lead| lead < depth);
+        Self::new(experiment, lead.ok_or(NotPaced::Short { slack_ns, tick_ns, depth })?)
+    }
+
+    /// Packets sent ahead.
+    #[must_use]
+    pub const fn lead(&self) -> u8 {
+        self.lead
+    }
+
+    /// How late a write may be before the queue runs dry.
+    #[must_use]
+    pub fn slack_ns(&self) -> u64 {
+        u64::from(self.lead) * self.queue.tick_ns
+    }
+
+    /// When the next packet is due; `None` when all are sent.
+    #[must_use]
+    pub fn due_ns(&self) -> Option<u64> {
+        let next = self.schedule.get(self.sent)?;
+        Some(nanos((next.start - self.first).0, self.clock_hz).saturating_sub(self.slack_ns()))
+    }
+
+    /// The next packet, if it is due.
+    #[must_use]
+    pub fn packet(&self, now_ns: u64) -> Option<&[u8]> {
+        self.due_ns().filter(|&due| due <= now_ns)?;
+        self.schedule.get(self.sent).map(|next| next.bytes)
+    }
+
+    /// The next packet was written.
+    pub fn written(&mut self, at_ns: u64) {
+        let (Some(due), Some(packet)) = (self.due_ns(), self.schedule.get(self.sent)) else { return };
+        self.late.add(at_ns.saturating_sub(due));
+        let takes = line_time(packet.bytes.len() as u64, self.clock_hz, self.baud);
+        if self.queue.packet(at_ns, nanos(takes, self.clock_hz)) {
+            self.stood_count += 1;
+            if self.stood.len() < MAX_NAMED {
+                self.stood.push(self.sent);
+            }
+        }
+        self.sent += 1;
+    }
+
+    /// How long the controller has ticks left, by the model of its queue.
+    #[must_use]
+    pub fn left_ns(&self, now_ns: u64) -> u64 {
+        self.queue.end_ns.unwrap_or(0).saturating_sub(now_ns)
+    }
+
+    /// What is known now; `stopped`: the host was stopped.
+    #[must_use]
+    pub fn report(&self, stopped: bool) -> RawReport {
+        RawReport {
+            packets: self.schedule.len(),
+            sent: self.sent,
+            late: self.late,
+            stood: self.stood.clone(),
+            stood_count: self.stood_count,
+            stopped,
+        }
+    }
+}
+
+fn depth(experiment: &Experiment) -> u8 {
+    experiment.configs().map(stepscope_peripheral::config::Config::queue_depth).min().unwrap_or(0)
+}
+
+/// Rounded up: a reported stop must have happened.
+fn tick_ns(experiment: &Experiment) -> u64 {
+    let config = experiment.config();
+    let ns = (u128::from(config.tick().0) * 1_000_000_000).div_ceil(config.clock_hz().max(1).into());
+    u64::try_from(ns).unwrap_or(u64::MAX)
+}
+
+fn nanos(cycles: u64, clock_hz: u32) -> u64 {
+    (u128::from(cycles) * 1_000_000_000 / u128::from(clock_hz)) as u64
+}
+
+/// What became of raw packets. They are not answered, so nothing is confirmed.
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct RawReport {
+    pub packets: usize,
+    pub sent: usize,
+    pub late: Lateness,
+    /// The first ticks before which the motor must have stood.
+    pub stood: Vec<usize>,
+    pub stood_count: u64,
+    pub stopped: bool,
+}
+
+impl RawReport {
+    /// Progress in one line.
+    #[must_use]
+    pub fn standing(&self) -> String {
+        format!("{} of {} packets, late{}", self.sent, self.packets, self.late)
+    }
+}
+
+impl fmt::Display for RawReport {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { packets, sent, late, stood, stood_count, stopped } = self;
+        writeln!(out, "sent {sent} of {packets} packets; not verified: raw packets are not answered")?;
+        let (half, most) = (late.within_ms(50), late.within_ms(99));
+        writeln!(out, "late median <={half} ms, 99 % <={most} ms, worst {:.2} ms", late.worst_ms())?;
+        if *stood_count > 0 {
+            let named: Vec<String> = stood.iter().map(ToString::to_string).collect();
+            let more = if *stood_count > named.len() as u64 { " …" } else { "" };
+            writeln!(out, "the motor must have stood before {stood_count} ticks: {}{more}", named.join(" "))?;
+        }
+        if *stopped {
+            writeln!(
+                out,
+                "stopped sending: what the controller has queued runs on, for a raw line has no STOP"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::session::Session;
+    use stepscope_peripheral::signal::{Event, Record, Sink};
+    use stepscope_scenario::Scenario;
+
+    /// When ticks began and ended.
+    #[derive(Default)]
+    struct Ticks {
+        starts: Vec<Instant>,
+        ends: Vec<Instant>,
+    }
+
+    impl Sink for Ticks {
+        fn record(&mut self, _: Record) {}
+
+        fn event(&mut self, at: Instant, event: Event) {
+            match event {
+                Event::TickStart { .. } => self.starts.push(at),
+                Event::TickEnd => self.ends.push(at),
+                _ => {}
+            }
+        }
+    }
+
+    /// Ticks so long, and a queue.
+    fn experiment(tick_ms: u32, depth: u32) -> Experiment {
+        Experiment::new(&scenario(tick_ms, depth)).expect("it has no problems")
+    }
+
+    fn scenario(tick_ms: u32, depth: u32) -> Scenario {
+        let slot = 1600 * tick_ms;
+        let json = format!(
+            r#"{{ "line": {{ "protocol": "raw" }}, "bus": {{ "slots": 10, "step_period_cycles": {slot}, "queue_depth": {depth} }},
+                "source": {{ "packets": {{ "packets": ["81", "01", "81", "01", "81"] }} }} }}"#
+        );
+        Scenario::from_json(&json).expect("reads")
+    }
+
+    #[test]
+    fn a_motor_stands_before_a_tick_whose_packet_comes_after_the_end_of_the_one_before() {
+        let mut model = QueueModel { tick_ns: 100, free_ns: 0, end_ns: None };
+        // Written at, and whether the motor stood; a packet takes 10.
+        for (at, stood) in [(0, false), (100, false), (190, false), (301, true), (302, false), (2000, true)] {
+            assert_eq!(model.packet(at, 10), stood, "{at}");
+        }
+    }
+
+    #[test]
+    fn packets_are_due_by_their_ticks_but_for_the_lead() {
+        const MS: u64 = 1_000_000;
+        for (lead, due) in [(0, [0, 10, 20, 30, 40]), (1, [0, 0, 10, 20, 30]), (3, [0, 0, 0, 0, 10])] {
+            let mut host = RawHost::new(&experiment(10, 4), lead).expect("the queue takes it");
+            for due in due.map(|ms| ms * MS) {
+                assert_eq!(host.due_ns(), Some(due), "{lead}");
+                assert!(due == 0 || host.packet(due - 1).is_none(), "{lead}");
+                assert_eq!(host.packet(due).map(<[u8]>::len), Some(1), "{lead}");
+                host.written(due);
+            }
+            assert_eq!((host.due_ns(), host.packet(u64::MAX)), (None, None));
+            // The last tick begins when its packet is there or the one before is over; a byte takes 87 us.
+            assert_eq!(host.left_ns(50 * MS) / 1000, 86, "{lead}");
+            assert_eq!(host.report(false).stood, Vec::<usize>::new());
+        }
+    }
+
+    #[test]
+    fn a_motor_never_stands_where_each_packet_is_on_time_also_if_a_tick_is_no_whole_number_of_nanoseconds() {
+        for clock_hz in [16_000_000, 7_372_800, 7_000_000, 11_059_200] {
+            let mut scenario = scenario(1, 4);
+            scenario.clock_hz = clock_hz;
+            let experiment = Experiment::new(&scenario).expect("it has no problems");
+            for lead in [0, 2] {
+                let mut host = RawHost::new(&experiment, lead).expect("the queue takes it");
+                while let Some(due) = host.due_ns() {
+                    host.written(due);
+                }
+                assert_eq!(host.report(false).stood, Vec::<usize>::new(), "{clock_hz} {lead}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_late_is_told_with_the_ticks_before_which_the_motor_stood() {
+        let mut host = RawHost::new(&experiment(10, 4), 0).expect("it needs no queue");
+        for at in [0, 10_000_000, 41_000_000, 41_000_000] {
+            host.written(at);
+        }
+        assert_eq!(
+            host.report(true).to_string(),
+            "sent 4 of 5 packets; not verified: raw packets are not answered\n\
+             late median <=0.1 ms, 99 % <=50 ms, worst 21.00 ms\n\
+             the motor must have stood before 1 ticks: 2\n\
+             stopped sending: what the controller has queued runs on, for a raw line has no STOP\n"
+        );
+    }
+
+    #[test]
+    fn the_ticks_before_which_it_says_that_the_motor_stood_are_those_of_the_device() {
+        for lead in [0, 1, 3] {
+            for late_ms in [[0; 5], [3, 0, 25, 0, 0], [0, 41, 0, 0, 0], [0, 0, 12, 0, 31], [0, 0, 0, 0, 90]] {
+                let mut host = RawHost::new(&experiment(10, 5), lead).expect("the queue takes it");
+                let mut device = Session::new(&scenario(10, 5)).expect("it has no problems");
+                let (mut ticks, mut now_ns) = (Ticks::default(), 0);
+                for late in late_ms {
+                    now_ns = now_ns.max(host.due_ns().expect("a packet is left") + late * 1_000_000);
+                    // Behind its self-test.
+                    device.advance(Instant(100_000 + now_ns * 16 / 1000), core::slice::from_mut(&mut ticks));
+                    device.receive(host.packet(now_ns).expect("it is due"));
+                    host.written(now_ns);
+                }
+                device.advance(Instant(10_000_000), core::slice::from_mut(&mut ticks));
+                assert_eq!((ticks.starts.len(), ticks.ends.len()), (5, 5));
+                let pairs = ticks.starts.iter().skip(1).zip(&ticks.ends);
+                let stood = pairs.enumerate().filter(|(_, (start, end))| start > end);
+                let stood: Vec<usize> = stood.map(|(index, _)| index + 1).collect();
+                assert_eq!(host.report(false).stood, stood, "{lead} {late_ms:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_lead_is_as_long_as_asked_for_or_refused_with_what_to_change() {
+        const SLACK_NS: u64 = 200_000_000;
+        for (tick_ms, depth, lead) in [(10, 21, 20), (10, 255, 20), (30, 16, 7), (200, 2, 1), (255, 2, 1)] {
+            let host = RawHost::with_slack(&experiment(tick_ms, depth), SLACK_NS).expect("it is long enough");
+            assert_eq!(host.lead(), lead, "{tick_ms} {depth}");
+            assert!(host.slack_ns() >= SLACK_NS);
+        }
+        for (tick_ms, depth, why) in [
+            (
+                10,
+                20,
+                "20 ticks of 10 ms ahead, and the queue of 20 takes 19, 190 ms; give ticks of 10.527 ms or a queue of 21",
+            ),
+            (
+                1,
+                200,
+                "200 ticks of 1 ms ahead, and the queue of 200 takes 199, 199 ms; give ticks of 1.006 ms or a queue of 201",
+            ),
+            (100, 1, "2 ticks of 100 ms ahead, and the queue of 1 takes 0, 0 ms; give a queue of 3"),
+        ] {
+            let refused = RawHost::with_slack(&experiment(tick_ms, depth), SLACK_NS).err();
+            let told = refused.expect("the queue is too short").to_string();
+            assert_eq!(told, format!("a lead of 200 ms is {why}"));
+        }
+        // No queue could be so deep.
+        let refused = NotPaced::Short { slack_ns: SLACK_NS, tick_ns: 62_500, depth: 16 };
+        assert!(refused.to_string().ends_with("0.937 ms; give ticks of 13.334 ms"), "{refused}");
+    }
+
+    #[test]
+    fn more_ahead_than_the_queue_takes_is_refused() {
+        assert_eq!(RawHost::new(&experiment(10, 4), 4).err(), Some(NotPaced::Overflow { depth: 4 }));
+        let nothing =
+            Scenario::from_json(r#"{ "source": { "packets": { "packets": [] } } }"#).expect("reads");
+        let nothing = Experiment::new(&nothing).expect("it has no problems");
+        assert_eq!(RawHost::new(&nothing, 0).err(), Some(NotPaced::Nothing));
+    }
+}

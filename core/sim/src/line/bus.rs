@@ -1,0 +1,167 @@
+//! The controllers of a line, with each other and the host (DESIGN A6, A9).
+//!
+//! A controller hears the AND of what the host and all other controllers send, and 1 while it sends itself; the host hears
+//! the controllers while it is not sending. A forced level is heard by all.
+//!
+//! The run goes from window to window. Within a window nobody changes what it does to the line, so each controller runs
+//! through it alone. A window ends where the host or a forced level changes, where a controller may begin or go on to drive,
+//! or where the host acts.
+
+use crate::hosts::framed_host::FramedHost;
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    device::Device,
+    signal::{Event, Sink},
+    units::Instant,
+    wire::Line,
+};
+
+/// A line with all that is on it.
+#[derive(Clone, Debug)]
+pub(crate) struct Bus {
+    line: Line,
+    host: Option<FramedHost>,
+    /// Invariant: one at least.
+    nodes: Vec<Node>,
+    /// The current window: its first cycle and the first one after it.
+    /// Invariant: `start <= until`; both only rise.
+    start: Instant,
+    until: Instant,
+}
+
+/// A controller and what it hears of the others.
+#[derive(Clone, Debug)]
+struct Node {
+    device: Device,
+    /// TX in the window's first cycle, `None` while it does not drive, and what it hears then.
+    drives: Option<bool>,
+    hears: bool,
+    collides: bool,
+}
+
+impl Bus {
+    pub(crate) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
+        debug_assert!(!devices.is_empty(), "a line without a controller");
+        let node = |device| Node { device, drives: None, hears: true, collides: false };
+        let nodes = devices.into_iter().map(node).collect();
+        Self { line, host, nodes, start: Instant::RESET, until: Instant::RESET }
+    }
+
+    pub(crate) const fn line(&self) -> &Line {
+        &self.line
+    }
+
+    pub(crate) const fn line_mut(&mut self) -> &mut Line {
+        &mut self.line
+    }
+
+    pub(crate) const fn host(&self) -> Option<&FramedHost> {
+        self.host.as_ref()
+    }
+
+    pub(crate) fn first(&self) -> &Device {
+        &self.nodes[0].device
+    }
+
+    pub(crate) fn devices(&self) -> impl Iterator<Item = &Device> {
+        self.nodes.iter().map(|node| &node.device)
+    }
+
+    #[cfg(feature = "plant")]
+    pub(crate) fn device_mut(&mut self, index: usize) -> Option<&mut Device> {
+        self.nodes.get_mut(index).map(|node| &mut node.device)
+    }
+
+    pub(crate) fn is_over(&self) -> bool {
+        self.host.as_ref().is_none_or(FramedHost::is_over)
+            && self.devices().all(Device::at_rest)
+            && self.line.is_over()
+    }
+
+    pub(crate) fn has_reached(&self, end: Instant) -> bool {
+        self.start >= end
+    }
+
+    pub(crate) fn now(&self) -> Instant {
+        self.devices().map(Device::now).max().unwrap_or(Instant::RESET)
+    }
+
+    /// The cycle after the last event.
+    pub(crate) fn rests_from(&self) -> Instant {
+        let device = self.devices().map(Device::last_active).max();
+        let host = self.host.as_ref().map(FramedHost::last_active);
+        device.max(host).unwrap_or(Instant::RESET).next()
+    }
+
+    /// Enters cycle `self.start`: what each controller hears in it, and what the host does.
+    fn enter(&mut self, sinks: &mut [impl Sink]) {
+        let Self { line, host, nodes, start, .. } = self;
+        let now = *start;
+        // After a rest there may be several changes that nobody heard.
+        while line.next_change() <= now {
+            line.change();
+        }
+        let host_sends = host.as_ref().map_or(line.is_pulled_low(), |host| host.is_sending(now));
+        let (mut low, mut driving) = (0, 0);
+        for node in nodes.iter_mut() {
+            node.drives = node.device.driven();
+            low += u32::from(node.drives == Some(false));
+            driving += u32::from(node.drives.is_some());
+        }
+        for (index, node) in nodes.iter_mut().enumerate() {
+            let others_low = low - u32::from(node.drives == Some(false));
+            node.hears = line.heard(others_low == 0);
+            let collides = node.drives.is_some() && (host_sends || driving > 1);
+            if collides && !node.collides {
+                sinks.get_mut(index).event(now, Event::Collision);
+            }
+            node.collides = collides;
+        }
+        if let Some(host) = host {
+            let level = host.is_sending(now) || line.replied(low == 0);
+            host.clock(now, level, line);
+        }
+    }
+
+    fn window(&self, end: Instant) -> Instant {
+        let driven = self.nodes.iter().map(|node| node.device.next_driven(node.hears));
+        let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
+        driven.fold(self.line.next_change().min(host).min(end), Instant::min)
+    }
+
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, with a sink per controller;
+    /// stops early when a sink pauses.
+    pub(crate) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
+        while self.start < end {
+            if self.start == self.until {
+                self.enter(sinks);
+                self.until = self.window(end);
+                debug_assert!(self.start < self.until, "an event before {:?} was skipped", self.start);
+            }
+            for (index, node) in self.nodes.iter_mut().enumerate() {
+                node.device.run(node.hears, self.until, &mut sinks.get_mut(index));
+            }
+            let is_behind = |device: &Device| {
+                device.now() < self.until && !(self.until == Instant::NEVER && device.at_rest())
+            };
+            if self.devices().any(is_behind) {
+                return;
+            }
+            self.start = self.until;
+        }
+        if end == Instant::NEVER && self.is_over() {
+            let now = self.rests_from();
+            self.nodes.iter_mut().for_each(|node| node.device.finish(now));
+            (self.start, self.until) = (now, Instant::NEVER);
+        }
+    }
+
+    pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
+        self.enter(sinks);
+        for (index, node) in self.nodes.iter_mut().enumerate() {
+            node.device.clock(node.hears, &mut sinks.get_mut(index));
+        }
+        self.start = self.start.next();
+        self.until = self.start;
+    }
+}

@@ -1,0 +1,509 @@
+//! A session: the controllers of a scenario on a line on which somebody else speaks, as they come (LIVE H1, H5).
+//!
+//! ```text
+//! bytes, as they are read ── receive ──┐
+//! the clock's cycle       ── advance ──┼── the model ── take_replies: bytes, each with the cycle in which it has left
+//!                                      └── recording: a scenario that gives the same traces again
+//! ```
+//!
+//! There is no port here and no clock: time comes in as a cycle, so the same bytes in the same cycles are the same session, on
+//! every machine. A byte that is read when the model stands behind cycle N joins the last send if its place there, start +
+//! floor(10*j*clock_hz/baud), is beyond N; else it begins a send at N + 1. So input never comes into the past, order is kept, and
+//! a burst from the system is spread at the line's rate.
+//!
+//! Levels that the scenario forces on the line are heard by the controllers; replies leave as they were sent.
+//!
+//! Stand-alone controllers have no line: their buttons come in ([`Session::enter`]), and nothing goes out.
+//!
+//! ```
+//! use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::session::Session;
+//!
+//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+//! let mut session = Session::new(&scenario).expect("it has no problems");
+//! let nobody: &mut [Vec<Record>] = &mut [];
+//! session.advance(Instant(5000), nobody);
+//! session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model stands behind cycle 5000
+//! session.advance(Instant(50_000), nobody);
+//! let reply: Vec<u8> = session.take_replies().map(|reply| reply.byte).collect();
+//! assert_eq!(reply.len(), 17);
+//! session.recording().verify().expect("run again it has the same digest");
+//! ```
+
+mod clock;
+mod input;
+#[cfg(feature = "controller")]
+mod panel;
+#[cfg(test)]
+mod tests;
+
+pub use clock::{Pace, SessionClock, Stretches};
+pub use input::Input;
+#[cfg(feature = "controller")]
+pub use panel::MAX_RECORDED_INPUTS;
+
+use crate::{Experiment, Run, replayed};
+use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
+use core::fmt;
+#[cfg(feature = "controller")]
+use stepscope_controller::{
+    NotEntered, StandAlone,
+    input::{Change, Signal},
+};
+use stepscope_peripheral::{
+    config::Protocol,
+    signal::{Event, Record, Sink},
+    trace::Digest,
+    units::{Cycles, Instant},
+    wire::{BitTimes, bit_times::BYTE_BITS},
+};
+use stepscope_scenario::{
+    END_OF_TIME, Hex, Host, LineScript, Noise, Problem, Scenario, ScriptedSend, Source, ValueError,
+};
+
+/// Maximum recorded bytes, as in a line script.
+pub const MAX_RECORDED_BYTES: u64 = 4 << 20;
+/// Maximum recorded sends, so that the scenario can be read again (64 MiB of text).
+pub const MAX_RECORDED_SENDS: u64 = 400_000;
+
+/// Bit times after a frame in which its reply has begun: 11, and a margin for other clocks.
+const REPLY_BEGINS_BITS: u64 = 30;
+
+/// Ends a frame that is not whole: a byte that makes it fail its check, and the delimiter.
+const SPOILED_END: [u8; 2] = [0xff, 0];
+
+/// A byte of a controller's reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct ReplyByte {
+    pub controller: usize,
+    /// First cycle after its stop bit.
+    pub end: Instant,
+    pub byte: u8,
+}
+
+/// Controllers that an external host drives.
+#[derive(Clone)]
+pub struct Session {
+    /// The recording without its sends and its length.
+    blank: Scenario,
+    experiment: Rc<Experiment>,
+    run: Run,
+    times: BitTimes,
+    /// Replies use the controllers' own rates.
+    reply_times: Vec<BitTimes>,
+    /// Start of the last send, and its bytes.
+    last_send: Option<(Instant, u64)>,
+    heard: u64,
+    /// Whether the last byte received is inside of a frame.
+    in_frame: bool,
+    replies: VecDeque<ReplyByte>,
+    /// Replies that begin earlier are for a host that has disconnected.
+    replies_from: Instant,
+    digests: Vec<Digest>,
+    /// What was recorded until the limit.
+    cut: Option<Rc<Recording>>,
+    #[cfg(feature = "controller")]
+    presses: panel::Presses,
+}
+
+fn blank(scenario: &Scenario) -> Scenario {
+    let mut blank = match &scenario.source {
+        #[cfg(feature = "controller")]
+        Source::Standalone(_) => scenario.clone(),
+        _ => replayed(scenario.clone(), LineScript::default()),
+    };
+    #[cfg(feature = "controller")]
+    if let Source::Standalone(controllers) = &mut blank.source {
+        controllers.iter_mut().for_each(|controller| controller.inputs = Vec::new());
+    }
+    blank.line.host = Host::default();
+    blank.line.noise = Noise::default();
+    blank.run_cycles = Some(1);
+    blank
+}
+
+impl Session {
+    /// Starts the controllers of a scenario. Its sends, presses, length, host and noise are left out.
+    /// Errors: every problem of the scenario, and segments, which have no line.
+    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        if scenario.source.runs_segments() {
+            let detail = "segments run a controller by itself, and nothing is on the line; choose ticks, packets or a line script";
+            return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+        }
+        let blank = blank(scenario);
+        let experiment = Experiment::new(&blank)?;
+        let clock_hz = experiment.config().clock_hz();
+        let mut run = experiment.start();
+        run.without_end();
+        let mut session = Self {
+            blank,
+            run,
+            times: BitTimes::new(clock_hz, experiment.baud()),
+            reply_times: experiment
+                .configs()
+                .map(|config| BitTimes::new(clock_hz, config.reply_baud()))
+                .collect(),
+            last_send: None,
+            heard: 0,
+            in_frame: false,
+            replies: VecDeque::new(),
+            replies_from: Instant::RESET,
+            digests: vec![Digest::default(); experiment.controllers()],
+            experiment: Rc::new(experiment),
+            cut: None,
+            #[cfg(feature = "controller")]
+            presses: panel::Presses::default(),
+        };
+        session.advance::<Digest>(Instant::RESET, &mut []);
+        Ok(session)
+    }
+
+    /// Controllers and line, without sends.
+    #[must_use]
+    pub fn experiment(&self) -> &Experiment {
+        &self.experiment
+    }
+
+    /// The controllers as they are now.
+    #[must_use]
+    pub const fn run(&self) -> &Run {
+        &self.run
+    }
+
+    /// The last cycle that was run.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        Instant(self.run.cycles().0.saturating_sub(1))
+    }
+
+    /// Number of bytes received.
+    #[must_use]
+    pub const fn heard(&self) -> u64 {
+        self.heard
+    }
+
+    /// The digest of each trace so far.
+    #[must_use]
+    pub fn digests(&self) -> &[Digest] {
+        &self.digests
+    }
+
+    /// Whether nothing changes without further input, and no reply waits.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        #[cfg(feature = "controller")]
+        if !self.presses.are_done() {
+            return false;
+        }
+        self.run.is_at_rest() && self.replies.is_empty()
+    }
+
+    /// Whether a stand-alone controller jogs without end.
+    #[cfg(feature = "controller")]
+    #[must_use]
+    pub fn jogs_without_end(&self) -> bool {
+        self.presses.are_done() && self.run.stand_alone().is_some_and(StandAlone::jogs_without_end)
+    }
+
+    /// Whether bytes or replies are on the line.
+    #[must_use]
+    pub fn is_busy(&self) -> bool {
+        self.deadline() != Instant::NEVER
+    }
+
+    /// The next cycle worth running to: a reply's byte has left, or everything received has been heard;
+    /// [`Instant::NEVER`] where nothing is on the line.
+    #[must_use]
+    pub fn deadline(&self) -> Instant {
+        self.deadline_of_round(Cycles(0))
+    }
+
+    /// As [`Self::deadline`], but with all bytes of replies that leave within `round` of the first, so that fewer
+    /// rounds are needed.
+    #[must_use]
+    pub fn deadline_of_round(&self, round: Cycles) -> Instant {
+        let now = self.now();
+        let ends = || self.replies.iter().map(|reply| reply.end);
+        let together = |first: Instant| ends().take_while(|&end| end <= first + round).last();
+        let reply = ends().next().and_then(together).map_or(Instant::NEVER, |end| end.max(now.next()));
+        let heard = self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
+        heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
+    }
+
+    /// How many of `most` bytes begin on the line by cycle `until` if they are received now.
+    #[must_use]
+    pub fn fits_until(&self, until: Instant, most: usize) -> usize {
+        let (start, sent) = self.joined_send().unwrap_or((self.now().next(), 0));
+        (0..most).take_while(|&byte| start + self.times.byte(sent + byte as u64) <= until).count()
+    }
+
+    /// The last send, if a byte that is received now joins it.
+    fn joined_send(&self) -> Option<(Instant, u64)> {
+        let next = self.now().next();
+        self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next)
+    }
+
+    /// The host disconnects. Replies to what it has sent are dropped, so that the next host does not get them. A frame that it
+    /// did not finish is spoiled and ended, so that it neither runs nor swallows the next host's first frame.
+    pub fn hang_up(&mut self) {
+        if self.in_frame {
+            self.receive(&SPOILED_END);
+        }
+        self.replies.clear();
+        let end = self.last_send.map_or(self.now(), |(start, sent)| start + self.times.byte(sent));
+        self.replies_from = end.max(self.now()) + self.times.bit(REPLY_BEGINS_BITS);
+    }
+
+    /// Puts bytes on the line from the next cycle on; ignored without a line. A host that sends faster than the line
+    /// waits in an [`Input`].
+    pub fn receive(&mut self, bytes: &[u8]) {
+        let count = bytes.len() as u64;
+        if count == 0 || !matches!(self.blank.source, Source::Line(_)) {
+            return;
+        }
+        let next = self.now().next();
+        let joins = self.joined_send();
+        if self.cut.is_none() {
+            let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
+            if self.heard + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
+                self.cut_recording();
+            }
+        }
+        self.heard += count;
+        self.in_frame =
+            self.blank.line.protocol == Protocol::Framed && bytes.last().is_some_and(|byte| *byte != 0);
+        let line = self.run.line_mut();
+        if self.cut.is_some() {
+            line.forget_sent();
+        }
+        if let Some((start, sent)) = joins {
+            line.extend(bytes);
+            self.last_send = Some((start, sent + count));
+        } else {
+            line.send(next, bytes);
+            self.last_send = Some((next, count));
+        }
+    }
+
+    /// A change at the panel of stand-alone controllers that comes while the model stands behind [`Self::now`]; gives its cycle:
+    /// the next one, or where the same input changes there the one after it. A level that was still to come of that input
+    /// does not come any more.
+    /// Errors: what a script would be refused for, and that a line has no buttons.
+    #[cfg(feature = "controller")]
+    pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
+        if self.cut.is_none() && !self.presses.has_room() {
+            self.cut_recording();
+        }
+        if self.cut.is_some() {
+            self.presses.forget();
+        }
+        let machine = self.run.stand_alone_mut().ok_or(NotEntered::NoController)?;
+        self.presses.enter(machine, controller, change)
+    }
+
+    /// The same for a level that lasts `held`, unless the input changes before.
+    /// Errors: those of [`Self::enter`].
+    #[cfg(feature = "controller")]
+    pub fn enter_for(
+        &mut self,
+        controller: usize,
+        (signal, level): (Signal, bool),
+        held: Cycles,
+    ) -> Result<Instant, NotEntered> {
+        let at = self.enter(controller, Change::Level(signal, level))?;
+        let back = Instant(at.0.saturating_add(held.0.max(1)));
+        self.presses.later(controller, back, (signal, !level));
+        Ok(at)
+    }
+
+    fn cut_recording(&mut self) {
+        self.cut = Some(Rc::new(self.recording_to_now()));
+    }
+
+    /// Runs up to and with cycle `to`, with a sink per controller; nothing comes after the end of time.
+    pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
+        #[cfg(feature = "controller")]
+        while let Some(due) = self.presses.due(to) {
+            self.run_on(Instant(due.0.saturating_sub(1)), sinks);
+            while let Some((controller, change)) = self.presses.take(due) {
+                // The level before it was allowed, so this one is.
+                let _ = self.enter(controller, change);
+            }
+        }
+        self.run_on(to, sinks);
+        #[cfg(feature = "controller")]
+        if self.cut.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
+            self.cut_recording();
+        }
+    }
+
+    fn run_on<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
+        let Self { run, digests, replies, reply_times, replies_from, .. } = self;
+        let mut sinks = sinks.iter_mut();
+        let mut answers: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
+        let taps = digests.iter_mut().zip(reply_times.iter()).zip(&mut answers).enumerate();
+        let mut taps: Vec<Tap<'_, S>> = taps
+            .map(|(controller, ((digest, times), replies))| Tap {
+                controller,
+                digest,
+                times: *times,
+                replies_from: *replies_from,
+                replies,
+                sink: sinks.next(),
+            })
+            .collect();
+        run.run_to(to.min(Instant(END_OF_TIME - 1)).next(), &mut taps);
+        answers.sort_by_key(|replies| replies.first().map(|reply| reply.end));
+        replies.extend(answers.into_iter().flatten());
+    }
+
+    /// The bytes of replies that have left, in order, each once.
+    pub fn take_replies(&mut self) -> impl Iterator<Item = ReplyByte> {
+        let now = self.now();
+        let gone = self.replies.iter().take_while(|reply| reply.end <= now).count();
+        self.replies.drain(..gone)
+    }
+
+    /// Whether everything received is recorded.
+    #[must_use]
+    pub const fn records_all(&self) -> bool {
+        self.cut.is_none()
+    }
+
+    /// The session so far as a scenario, as far as it is recorded.
+    #[must_use]
+    pub fn recording(&self) -> Recording {
+        self.cut.as_ref().map_or_else(|| self.recording_to_now(), |cut| Recording::clone(cut))
+    }
+
+    fn recording_to_now(&self) -> Recording {
+        let mut scenario = self.blank.clone();
+        scenario.source = self.source_to_now();
+        scenario.run_cycles = Some(self.run.cycles().0);
+        let digests = self.digests.iter().map(Digest::value).collect();
+        Recording { scenario, digests, panel_digest: panel_digest(&self.run) }
+    }
+
+    fn source_to_now(&self) -> Source {
+        #[cfg(feature = "controller")]
+        if let Source::Standalone(controllers) = &self.blank.source {
+            let mut controllers = controllers.clone();
+            for (index, controller) in controllers.iter_mut().enumerate() {
+                controller.inputs = self.presses.script(index, self.now());
+            }
+            return Source::Standalone(controllers);
+        }
+        let sends = self.run.schedule().iter().map(|send| ScriptedSend {
+            start_cycle: send.start.0,
+            bytes: Hex(send.bytes.to_vec()),
+            frame: None,
+        });
+        Source::Line(LineScript { sends: sends.collect() })
+    }
+}
+
+struct Tap<'a, S> {
+    controller: usize,
+    digest: &'a mut Digest,
+    times: BitTimes,
+    replies_from: Instant,
+    replies: &'a mut Vec<ReplyByte>,
+    sink: Option<&'a mut S>,
+}
+
+impl<S: Sink> Sink for Tap<'_, S> {
+    fn record(&mut self, record: Record) {
+        self.digest.record(record);
+        self.sink.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Event::Reply { start, reply, positions, .. } = &event
+            && *start >= self.replies_from
+        {
+            let bytes = (0..).zip(reply.emit(positions.as_ref()));
+            let (controller, times) = (self.controller, self.times);
+            self.replies.extend(bytes.map(|(index, byte)| ReplyByte {
+                controller,
+                end: *start + times.byte(index) + times.bit(BYTE_BITS),
+                byte,
+            }));
+        }
+        self.sink.event(at, event);
+    }
+}
+
+/// A session as a scenario.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Recording {
+    /// The same controllers and line, with the received bytes as the source.
+    pub scenario: Scenario,
+    pub digests: Vec<u64>,
+    pub panel_digest: Option<u64>,
+}
+
+#[cfg(feature = "controller")]
+fn panel_digest(run: &Run) -> Option<u64> {
+    run.stand_alone().map(stepscope_controller::StandAlone::panel_digest)
+}
+
+#[cfg(not(feature = "controller"))]
+const fn panel_digest(_: &Run) -> Option<u64> {
+    None
+}
+
+/// Why a recording does not replay the session.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum NotTheSession {
+    /// It cannot be run.
+    Refused(Vec<Problem>),
+    /// A controller does something else.
+    Differs {
+        controller: usize,
+        session: u64,
+        replay: u64,
+    },
+    PanelsDiffer,
+}
+
+impl fmt::Display for NotTheSession {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Refused(problems) => {
+                f.write_str("the recording cannot be run")?;
+                problems.iter().try_for_each(|problem| write!(f, "; {problem}"))
+            }
+            Self::Differs { controller, session, replay } => write!(
+                f,
+                "controller {controller} had the digest {session:016x} in the session, and {replay:016x} when the recording was run"
+            ),
+            Self::PanelsDiffer => {
+                f.write_str("the panels showed something else in the session than when the recording was run")
+            }
+        }
+    }
+}
+
+impl Recording {
+    /// Runs it and compares the digests.
+    /// Errors: the first difference.
+    pub fn verify(&self) -> Result<(), NotTheSession> {
+        let experiment = Experiment::new(&self.scenario).map_err(NotTheSession::Refused)?;
+        let mut replay = vec![Digest::default(); experiment.controllers()];
+        let run = experiment.run_each(&mut replay);
+        let pairs = self.digests.iter().zip(replay.iter().map(Digest::value)).enumerate();
+        for (controller, (&session, replay)) in pairs {
+            if session != replay {
+                return Err(NotTheSession::Differs { controller, session, replay });
+            }
+        }
+        if panel_digest(&run) != self.panel_digest {
+            return Err(NotTheSession::PanelsDiffer);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,74 @@
+//! What a host has sent and the line has not taken yet (LIVE H1): a bounded buffer. While it is full nothing more is read, so that
+//! input waits in the system, and then the host does.
+
+use super::Session;
+use alloc::{collections::VecDeque, vec::Vec};
+use stepscope_peripheral::units::Instant;
+
+/// Bytes on their way from a port to a session's line.
+///
+/// ```
+/// use stepscope_scenario::Scenario;
+/// use stepscope_sim::session::{Input, Session};
+///
+/// let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+/// let mut session = Session::new(&scenario).expect("it has no problems");
+/// let mut input = Input::default();
+/// assert_eq!(input.push(&[0; 100_000]), Input::CAPACITY);
+/// // A byte takes 1389 cycles at 115200 baud.
+/// let until = session.now() + stepscope_peripheral::units::Cycles(10_000);
+/// input.feed(&mut session, until);
+/// assert_eq!((session.heard(), input.len()), (8, Input::CAPACITY - 8));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Input {
+    /// Invariant: at most [`Self::CAPACITY`].
+    bytes: VecDeque<u8>,
+}
+
+impl Input {
+    /// Maximum number of bytes that wait: 1.4 s of a line at 115200 baud.
+    pub const CAPACITY: usize = 16 << 10;
+
+    /// Free bytes.
+    #[must_use]
+    pub fn room(&self) -> usize {
+        Self::CAPACITY.saturating_sub(self.bytes.len())
+    }
+
+    /// Waiting bytes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Whether no byte waits.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// Adds bytes; returns how many fit.
+    pub fn push(&mut self, bytes: &[u8]) -> usize {
+        let count = bytes.len().min(self.room());
+        self.bytes.extend(bytes.iter().take(count));
+        count
+    }
+
+    /// Hands over the bytes that begin on the line by cycle `until`. Called before each [`Session::advance`], it
+    /// leaves every byte in the cycle it would have if the session had received it at once.
+    pub fn feed(&mut self, session: &mut Session, until: Instant) {
+        let count = session.fits_until(until, self.bytes.len());
+        if count > 0 {
+            let bytes: Vec<u8> = self.bytes.drain(..count).collect();
+            session.receive(&bytes);
+        }
+    }
+
+    /// Drops all bytes; returns how many.
+    pub fn clear(&mut self) -> usize {
+        let count = self.bytes.len();
+        self.bytes.clear();
+        count
+    }
+}

@@ -1,0 +1,359 @@
+//! The model beside a real device: it hears each frame that the device is sent, and answers it (LIVE H4).
+//!
+//! ```text
+//! host ── frame ──┬── the device ── its reply, heard ──┐
+//!                 └── the model ─── its reply ─────────┴── what differs first, and both delays
+//! ```
+//!
+//! The device may have run before: sequence numbers, counts of ticks, positions and faults are compared from where it was opened.
+//! What depends on when a frame was heard to the cycle is not compared: how many ticks are done while one moves. The model
+//! is without the scenario's plant.
+//!
+//! ```
+//! use stepscope_peripheral::units::Instant;
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::{Experiment, twin::Twin};
+//!
+//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+//! let experiment = Experiment::new(&scenario).expect("it has no problems");
+//! let mut host = experiment.conversation(Instant::RESET).expect("a framed host waits for replies");
+//! let mut twin = Twin::new(&scenario).expect("it has no problems");
+//!
+//! let now = host.deadline();
+//! let opening = host.poll(now).expect("it asks how the device is");
+//! let known = *host.known().next().expect("there is one controller").1;
+//! twin.send(&opening, now, (experiment.config().channels(), &known));
+//! assert!(twin.answer().is_some_and(|answer| answer.reply.answer.is_ok()));
+//! ```
+
+use crate::{
+    framed_host::Known,
+    session::{ReplyByte, Session},
+};
+use alloc::{
+    format,
+    string::{String, ToString as _},
+    vec,
+    vec::Vec,
+};
+use stepscope_peripheral::{
+    device::Faults,
+    protocol::{Kind, Reply, State, Status},
+    signal::Positions,
+    trace::Digest,
+    units::{Cycles, Instant},
+    wire::{
+        frame::{Deframed, Deframer, Frame, Ticks, emit},
+        schedule::line_time,
+    },
+};
+use stepscope_scenario::{Problem, Scenario};
+
+/// Maximum cycles that the model may need to come to rest.
+const MAX_REST: u64 = 20_000_000_000;
+const REST_ROUND: u64 = 1_000_000;
+
+/// The reply of a device or of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Answer {
+    pub reply: Reply,
+    pub positions: Option<Positions>,
+    /// From the end of the frame to the end of the reply.
+    pub delay: Cycles,
+}
+
+/// First reported status and positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Opened {
+    status: Option<Status>,
+    positions: Option<Positions>,
+}
+
+/// The model of a line's controllers.
+#[derive(Clone)]
+pub struct Twin {
+    session: Session,
+    ahead: Cycles,
+    deframers: Vec<Deframer>,
+    opened: Vec<Opened>,
+    sent_end: Instant,
+}
+
+impl Twin {
+    /// Resets the controllers and waits until they are idle.
+    /// Errors: every problem of the scenario, and segments, which have no line.
+    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+        let mut session = Session::new(&Scenario { plant: None, ..scenario.clone() })?;
+        rest(&mut session);
+        let controllers = session.experiment().controllers();
+        let deframers = (0..controllers).map(|_| Deframer::default()).collect();
+        let ahead = Cycles(session.now().0);
+        Ok(Self {
+            session,
+            ahead,
+            deframers,
+            opened: vec![Opened::default(); controllers],
+            sent_end: Instant(0),
+        })
+    }
+
+    /// The host sends a frame from cycle `now` on; `device` is what it knows of the addressed device.
+    pub fn send(&mut self, bytes: &[u8], now: Instant, (channels, device): (u8, &Known)) {
+        let bytes = renumbered(bytes, device.opened.map_or(0, |opened| opened.expected_seq), channels);
+        self.advance(now);
+        self.session.take_replies().for_each(drop);
+        self.deframers.fill_with(Deframer::default);
+        let experiment = self.session.experiment();
+        let takes = line_time(bytes.len() as u64, experiment.config().clock_hz(), experiment.baud());
+        self.session.receive(&bytes);
+        self.sent_end = self.session.now().next() + Cycles(takes);
+    }
+
+    fn advance(&mut self, now: Instant) {
+        self.session.advance::<Digest>(now + self.ahead, &mut []);
+    }
+
+    /// The model's answer to the last frame, if it has one.
+    pub fn answer(&mut self) -> Option<Answer> {
+        let mut answer = None;
+        while self.session.is_busy() && answer.is_none() {
+            self.session.advance::<Digest>(self.session.deadline(), &mut []);
+            let replies: Vec<ReplyByte> = self.session.take_replies().collect();
+            for ReplyByte { controller, end, byte } in replies {
+                let frame = self.deframers.get_mut(controller).and_then(|deframer| deframer.byte(byte));
+                if let Some(Deframed::Frame(frame)) = frame
+                    && let Some(reply) = Reply::parse(frame)
+                {
+                    let delay = Cycles(end.0.saturating_sub(self.sent_end.0));
+                    answer = Some(Answer { reply, positions: frame.positions(), delay });
+                }
+            }
+        }
+        answer
+    }
+
+    /// The first difference of a device's answer from the model's, in words.
+    pub fn difference(
+        &mut self,
+        controller: usize,
+        (told, device): (&Answer, &Known),
+        model: &Answer,
+    ) -> Option<String> {
+        let own = self.opened.get_mut(controller)?;
+        let (status, model_status) = (told.reply.status, model.reply.status);
+        let rests = |status: Status| status.state == State::Ready;
+        if own.status.is_none() && device.opened.is_some() && rests(model_status) {
+            own.status = Some(model_status);
+        }
+        if own.positions.is_none() && device.opened_at.is_some() {
+            own.positions = model.positions;
+        }
+        let name = |answer: Result<Kind, _>| match answer {
+            Ok(kind) => format!("ACK {}", kind.name()),
+            Err(reason) => format!("NAK {}", stepscope_peripheral::protocol::Reason::name(reason)),
+        };
+        if told.reply.answer != model.reply.answer {
+            let (told, model) = (name(told.reply.answer), name(model.reply.answer));
+            return Some(format!("it answers {told}, the model {model}"));
+        }
+        if (status.state == State::Stopped) != (model_status.state == State::Stopped) {
+            return Some(format!("it is {}, the model {}", status.state.name(), model_status.state.name()));
+        }
+        let (opened, own_opened) = (device.opened?, own.status?);
+        let seqs = [(status, opened), (model_status, own_opened)]
+            .map(|(now, opened)| now.expected_seq.wrapping_sub(opened.expected_seq));
+        if seqs[0] != seqs[1] {
+            let [told, model] = seqs;
+            return Some(format!(
+                "it has taken {told} frames of ticks since it was opened, the model {model}, modulo 256"
+            ));
+        }
+        let faults = [status.faults & !opened.faults, model_status.faults & !own_opened.faults];
+        if faults[0] != faults[1] {
+            let [told, model] = faults.map(names);
+            return Some(format!("its new faults are {told}, the model's {model}"));
+        }
+        if !(rests(status) && rests(model_status)) {
+            return None;
+        }
+        let done = [(status, opened), (model_status, own_opened)]
+            .map(|(now, opened)| now.ticks_done.wrapping_sub(opened.ticks_done));
+        if done[0] != done[1] {
+            let [told, model] = done;
+            return Some(format!("at rest it has done {told} ticks since it was opened, the model {model}"));
+        }
+        let went = |now: Option<Positions>, opened: Option<Positions>| went(now?, opened?);
+        let told = went(told.positions, device.opened_at)?;
+        let model = went(model.positions, own.positions)?;
+        let (channel, (told, model)) =
+            told.iter().zip(&model).enumerate().find(|(_, (told, model))| told != model)?;
+        Some(format!("at rest channel {channel} went {told} steps since it was opened, the model's {model}"))
+    }
+
+    /// The idle controller of the model: its status, ticks and steps per channel since the start.
+    pub fn end(&mut self, controller: usize) -> Option<(Status, u32, Vec<i32>)> {
+        rest(&mut self.session);
+        let opened = self.opened.get(controller)?;
+        let device = self.session.run().devices().nth(controller)?;
+        let status = device.status()?;
+        let channels = usize::from(self.session.experiment().configs().nth(controller)?.channels());
+        let began = opened.positions;
+        let began = began.as_ref().map_or(&[][..], Positions::as_slice).iter().chain(core::iter::repeat(&0));
+        let positions = device.positions();
+        let went = positions.iter().take(channels).zip(began).map(|(now, began)| now.wrapping_sub(*began));
+        let done = status.ticks_done.wrapping_sub(opened.status.map_or(0, |opened| opened.ticks_done));
+        Some((status, done, went.collect()))
+    }
+}
+
+fn names(bits: u16) -> String {
+    let names: Vec<String> = Faults::from_bits(bits).names().map(|name| name.to_string()).collect();
+    if names.is_empty() { "none".into() } else { names.join(" ") }
+}
+
+fn went(now: Positions, began: Positions) -> Option<Vec<i32>> {
+    let (now, began) = (now.as_slice(), began.as_slice());
+    (now.len() == began.len())
+        .then(|| now.iter().zip(began).map(|(now, began)| now.wrapping_sub(*began)).collect())
+}
+
+/// Waits until nothing changes, for a bounded time.
+fn rest(session: &mut Session) {
+    let end = session.now().0.saturating_add(MAX_REST);
+    while !session.is_at_rest() && session.now().0 < end {
+        session.advance::<Digest>(Instant(session.now().0 + REST_ROUND), &mut []);
+        session.take_replies().for_each(drop);
+    }
+}
+
+/// The frame with the sequence number that the model expects.
+fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
+    let mut deframer = Deframer::default();
+    let mut made = None;
+    for &byte in bytes {
+        if let Some(Deframed::Frame(Frame { address, kind, body })) = deframer.byte(byte)
+            && kind == Kind::Ticks as u8
+            && let Some(ticks) = Ticks::parse(body, channels)
+        {
+            let body = Ticks::emit(ticks.seq.wrapping_sub(offset), channels, ticks.orders());
+            // Leading delimiters end what was left of a broken frame.
+            let mut bytes: Vec<u8> = bytes.iter().copied().take_while(|&byte| byte == 0).collect();
+            bytes.extend(emit(address, kind, &body));
+            made = Some(bytes);
+        }
+    }
+    made.unwrap_or_else(|| bytes.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Experiment, framed_host::Conversation};
+
+    const FRAMED: &str = r#"{ "line": { "protocol": "framed" } }"#;
+
+    /// Streams the default motion to a device that another session is, whose replies `spoil` changes, and gives the differences to
+    /// its twin. `before` is streamed to it so often before.
+    fn differences(before: usize, mut spoil: impl FnMut(usize, &mut Reply)) -> Vec<String> {
+        let scenario = Scenario::from_json(FRAMED).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("no problems");
+        let mut device = Session::new(&scenario).expect("no problems");
+        rest(&mut device);
+        let mut found = Vec::new();
+        for stream in 0..=before {
+            let mut host = experiment.conversation(device.now()).expect("it is confirmed");
+            let mut twin = Twin::new(&scenario).expect("no problems");
+            let (mut number, mut deframer) = (0, Deframer::default());
+            while !host.is_over() {
+                let now = host.deadline();
+                device.advance::<Digest>(now, &mut []);
+                let Some(bytes) = host.poll(now) else { continue };
+                let channels = experiment.config().channels();
+                let known = *host.known().next().expect("one job").1;
+                twin.send(&bytes, now, (channels, &known));
+                device.receive(&bytes);
+                let takes = line_time(bytes.len() as u64, experiment.config().clock_hz(), experiment.baud());
+                host.sent(now + Cycles(takes));
+                hear(&mut host, &mut device, &mut deframer, |host, mut told| {
+                    let model = twin.answer().expect("the model answers");
+                    if stream == before {
+                        spoil(number, &mut told.reply);
+                        number += 1;
+                        let known = *host.known().next().expect("one job").1;
+                        assert_eq!(model.delay, told.delay, "reply {number}");
+                        found.extend(twin.difference(0, (&told, &known), &model));
+                    }
+                });
+            }
+            assert_eq!(host.progress().next(), Some(crate::hosts::framed_host::Progress::Done));
+            let (status, done, went) = twin.end(0).expect("there is one");
+            // The opening tick is one more.
+            assert_eq!((status.state, done, went), (State::Ready, 201, vec![3200]));
+        }
+        found
+    }
+
+    /// Hears the reply of a device to the frame that it was sent.
+    fn hear(
+        host: &mut Conversation,
+        device: &mut Session,
+        deframer: &mut Deframer,
+        mut told: impl FnMut(&Conversation, Answer),
+    ) {
+        let sent_end = device.now().next();
+        while device.is_busy() {
+            device.advance::<Digest>(device.deadline(), &mut []);
+            let replies: Vec<ReplyByte> = device.take_replies().collect();
+            for ReplyByte { end, byte, .. } in replies {
+                host.hear(byte, end);
+                if let Some(Deframed::Frame(frame)) = deframer.byte(byte) {
+                    let reply = Reply::parse(frame).expect("a reply");
+                    let frame_bytes =
+                        device.run().schedule().iter().last().map_or(0, |send| send.bytes.len());
+                    let experiment = device.experiment();
+                    let clock_hz = experiment.config().clock_hz();
+                    let takes = line_time(frame_bytes as u64, clock_hz, experiment.baud());
+                    let delay = Cycles(end.0 - sent_end.0 - takes);
+                    told(host, Answer { reply, positions: frame.positions(), delay });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_device_that_is_the_model_differs_in_nothing_also_where_it_ran_before() {
+        for before in [0, 1, 2] {
+            assert_eq!(differences(before, |_, _| {}), Vec::<String>::new(), "{before}");
+        }
+    }
+
+    #[test]
+    fn what_differs_has_a_name() {
+        type Spoil = fn(&mut Reply);
+        let rows: [(usize, Spoil, &str); 5] = [
+            (
+                5,
+                |reply| reply.answer = Err(stepscope_peripheral::protocol::Reason::Busy),
+                "NAK BUSY, the model ACK TICKS",
+            ),
+            (6, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
+            (7, |reply| reply.status.expected_seq = 9, "it has taken 9 frames of ticks"),
+            (8, |reply| reply.status.faults |= 1, "its new faults are"),
+            (
+                29,
+                |reply| reply.status.ticks_done -= 1,
+                "it has done 200 ticks since it was opened, the model 201",
+            ),
+        ];
+        for (at, change, expected) in rows {
+            let found = differences(0, |number, reply| {
+                if number == at {
+                    change(reply);
+                }
+            });
+            assert_eq!(found.len(), 1, "{expected}: {found:?}");
+            assert!(found[0].contains(expected), "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Runs with plants behind the controllers (PLANT).
+
+pub(crate) mod behind;
+pub mod plant_run;

@@ -1,0 +1,125 @@
+//! A scenario read once, judged once and planned once: what a keystroke costs. The run and every question of the study
+//! take what was judged.
+
+use crate::Experiment;
+use alloc::{rc::Rc, vec::Vec};
+use stepscope_motion::{AxisPlan, moves::Axis};
+use stepscope_peripheral::config::Bus;
+use stepscope_scenario::{Problem, Scenario, Source};
+
+/// A scenario with the result of its validation. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    scenario: Rc<Scenario>,
+    unread: Rc<[Problem]>,
+    result: Result<Rc<Experiment>, Rc<[Problem]>>,
+}
+
+/// An axis with its plan and its bus.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct SelectedAxis<'a> {
+    pub scenario: &'a Scenario,
+    /// The bus of the controller that the axis belongs to.
+    pub bus: &'a Bus,
+    pub axis: &'a Axis,
+    pub plan: &'a AxisPlan,
+}
+
+impl Judged {
+    /// Reads and validates a text. A field that cannot be read has its default.
+    #[must_use]
+    pub fn from_json(text: &str) -> Self {
+        let (scenario, unread) = Scenario::from_json_lenient(text);
+        Self::of(scenario, unread)
+    }
+
+    fn of(scenario: Scenario, unread: Vec<Problem>) -> Self {
+        let result = Experiment::of_lenient(&scenario, unread.clone()).map(Rc::new).map_err(Rc::from);
+        Self { scenario: Rc::new(scenario), unread: unread.into(), result }
+    }
+
+    /// The scenario, as far as it could be read.
+    #[must_use]
+    pub const fn scenario(&self) -> &Rc<Scenario> {
+        &self.scenario
+    }
+
+    /// The problems of fields that could not be read.
+    #[must_use]
+    pub fn unread(&self) -> &[Problem] {
+        &self.unread
+    }
+
+    /// The experiment.
+    /// Errors: every problem of the scenario, each with its path.
+    pub fn experiment(&self) -> Result<&Rc<Experiment>, &[Problem]> {
+        self.result.as_ref().map_err(|problems| &**problems)
+    }
+
+    /// Every problem of the scenario.
+    #[must_use]
+    pub fn problems(&self) -> &[Problem] {
+        self.result.as_ref().err().map_or(&[], |problems| &**problems)
+    }
+
+    /// An axis of a controller; `None` where there is none or the scenario has problems.
+    #[must_use]
+    pub fn axis(&self, controller: usize, axis: usize) -> Option<SelectedAxis<'_>> {
+        let plan = self.experiment().ok()?.plans_of(controller).get(axis)?;
+        let scenario = &*self.scenario;
+        let bus = match controller.checked_sub(1) {
+            None => &scenario.bus,
+            Some(index) => &scenario.controllers.get(index)?.bus,
+        };
+        Some(SelectedAxis { scenario, bus, axis: axes_of(scenario, controller).get(axis)?, plan })
+    }
+}
+
+impl From<Scenario> for Judged {
+    fn from(scenario: Scenario) -> Self {
+        Self::of(scenario, Vec::new())
+    }
+}
+
+/// The axes of a controller; empty where the source is no motion.
+#[must_use]
+pub fn axes_of(scenario: &Scenario, controller: usize) -> &[Axis] {
+    match (&scenario.source, controller.checked_sub(1)) {
+        (Source::Motion(motion), None) => &motion.axes,
+        (Source::Motion(_), Some(index)) => {
+            scenario.controllers.get(index).map_or(&[], |controller| &controller.axes)
+        }
+        _ => &[],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::trace::Digest;
+
+    #[test]
+    fn a_run_and_every_question_take_the_one_reading_and_the_one_plan() {
+        let json = r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"dwell":{}}]}]}}}"#;
+        let judged = Judged::from_json(json);
+        let experiment = judged.experiment().expect("no problems");
+        let mut digest = Digest::default();
+        experiment.run(&mut digest);
+        for axis in 0..2 {
+            let selected = judged.axis(0, axis).expect("it is there");
+            assert!(core::ptr::eq(selected.plan, &experiment.plans()[axis]));
+            assert_eq!(selected.axis.moves.len(), selected.plan.moves().len());
+        }
+        assert!(judged.axis(0, 2).is_none() && judged.axis(1, 0).is_none());
+        assert!(digest.records() > 1);
+    }
+
+    #[test]
+    fn a_scenario_with_problems_has_no_experiment_and_no_axis() {
+        let judged = Judged::from_json(r#"{"title":"kept","bus":{"slots":0}}"#);
+        assert_eq!(judged.problems().len(), 1);
+        assert_eq!(judged.scenario().title, "kept");
+        assert!(judged.experiment().is_err() && judged.axis(0, 0).is_none());
+    }
+}
