@@ -35,8 +35,11 @@ import {
   setAside,
 } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
+import { initial, OWN_TEXTS } from "./state/initial.js";
 import { readJson } from "./state/json.js";
-import { EARLIER, held, initial, isStale, OWN_TEXTS, update } from "./state/state.js";
+import { blockedBy, isStale } from "./state/queries.js";
+import { EARLIER } from "./state/result.js";
+import { update } from "./state/update.js";
 import { NAMES } from "./state/views.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createMotion } from "./views/motion/motion.js";
@@ -92,11 +95,11 @@ const engine = new Engine({
   },
   stopped: () => {
     dispatch({ type: "baseline", baseline: null });
-    if (held(state) === "unjudged") judge();
+    if (blockedBy(state) === "unvalidated") judge();
   },
 });
 
-/** @param {import("./state/state.js").Message} message */
+/** @param {import("./state/message.js").Message} message */
 function dispatch(message) {
   const before = state;
   state = update(state, message);
@@ -105,7 +108,7 @@ function dispatch(message) {
 
 /** What follows from a change of the state. @param {State | undefined} before */
 function follow(before) {
-  const { scenario, judgement, approved, drafts, result } = state;
+  const { scenario, validation, approved, drafts, result } = state;
   if (before?.scenario !== scenario) {
     document.documentElement.dataset.state = "busy";
     judge();
@@ -116,7 +119,7 @@ function follow(before) {
       saveScenario(JSON.stringify(scenario));
     }
   }
-  if (before?.judgement !== judgement || before?.approved !== approved || before?.drafts !== drafts) plan();
+  if (before?.validation !== validation || before?.approved !== approved || before?.drafts !== drafts) plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
     if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
@@ -128,7 +131,7 @@ function follow(before) {
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle(
     "dim",
-    result !== null && isStale(state) && held(state) !== "unjudged" && state.run.phase !== "running",
+    result !== null && isStale(state) && blockedBy(state) !== "unvalidated" && state.run.phase !== "running",
   );
   if (result && before?.result !== result) settle(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") settle(Promise.resolve());
@@ -155,8 +158,8 @@ async function settle(drawn) {
 async function judge() {
   const { revision, scenario } = state;
   try {
-    const judgement = await engine.latest("check", "check", JSON.stringify(scenario));
-    dispatch({ type: "judged", revision, judgement });
+    const validation = await engine.latest("check", "check", JSON.stringify(scenario));
+    dispatch({ type: "validated", revision, validation });
   } catch (error) {
     if (!(error instanceof Dropped)) throw error;
   }
@@ -165,9 +168,9 @@ async function judge() {
 /** Runs the scenario once it stands, if nothing holds it. */
 function plan() {
   clearTimeout(timer);
-  const held_by = held(state);
-  if (held_by === "unjudged") return;
-  if (held_by !== null) return void settle(Promise.resolve());
+  const blocked = blockedBy(state);
+  if (blocked === "unvalidated") return;
+  if (blocked !== null) return void settle(Promise.resolve());
   if (ran === state.revision) return;
   timer = window.setTimeout(run, state.result ? REST_MS : 0);
 }
@@ -218,7 +221,7 @@ async function own(fallback) {
 
 /**
  * What would let a refused motion run. Each answer plans some motions more: it is asked for once the numbers rest, and of
- * another worker, so that no judgement waits for it.
+ * another worker, so that no validation waits for it.
  * @param {Engine} engine
  */
 function remediesOf(engine) {
@@ -338,9 +341,9 @@ async function start() {
 async function offerNewer() {
   const newer = loadNewer();
   if (newer === null) return;
-  const judgement = await engine.ask("check", newer).catch(() => null);
-  if (judgement === null) return;
-  const scenario = readJson(judgement.scenario);
+  const validation = await engine.ask("check", newer).catch(() => null);
+  if (validation === null) return;
+  const scenario = readJson(validation.scenario);
   const name = scenario.title ? `, “${scenario.title}”` : "";
   const text = `Another tab has newer work${name}. This tab shows its own.`;
   dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });

@@ -1,6 +1,7 @@
 /** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
 import { button, element } from "../dom.js";
-import { get, MAX_CHANNELS, set } from "../state/state.js";
+import { MAX_CHANNELS } from "../state/limits.js";
+import { get, set } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";
 import { motorItems } from "./motor.js";
 import { fieldsOfKind, labels, mostOf } from "./schema.js";

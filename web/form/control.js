@@ -4,7 +4,8 @@
  */
 import { element, flash, say } from "../dom.js";
 import { parseNumber, si } from "../state/number.js";
-import { derivedAxis, get } from "../state/state.js";
+import { get } from "../state/paths.js";
+import { derivedAxis } from "../state/queries.js";
 import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -34,7 +35,7 @@ let made = 0;
 /**
  * @param {string} path
  * @param {Field} field
- * @param {{dispatch: (message: import("../state/state.js").Message) => void, now: () => State}} page
+ * @param {{dispatch: (message: import("../state/message.js").Message) => void, now: () => State}} page
  * @returns {Control}
  */
 export function control(path, field, { dispatch, now }) {

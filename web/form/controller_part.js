@@ -1,6 +1,6 @@
 /** An additional controller in the form: its address, its bus and what it is to do. */
 import { button, element } from "../dom.js";
-import { MAX_FURTHER } from "../state/state.js";
+import { MAX_ADDITIONAL_CONTROLLERS } from "../state/limits.js";
 import { fields } from "./schema.js";
 import { SOURCES } from "./sources.js";
 
@@ -29,7 +29,7 @@ export function controllerPart(kit, scenario, index, add) {
   const head = element(
     "div",
     { class: "item-head end" },
-    button("Copy", `Copy ${name.toLowerCase()}`, () => add(index), all.length >= MAX_FURTHER),
+    button("Copy", `Copy ${name.toLowerCase()}`, () => add(index), all.length >= MAX_ADDITIONAL_CONTROLLERS),
     button("✕", `Remove ${name.toLowerCase()}`, () => kit.remove("controllers", index)),
   );
   return part(name, true, [

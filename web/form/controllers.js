@@ -1,6 +1,6 @@
 /** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button } from "../dom.js";
-import { MAX_FURTHER } from "../state/state.js";
+import { MAX_ADDITIONAL_CONTROLLERS } from "../state/limits.js";
 import { hex, SOURCES } from "./sources.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -18,7 +18,7 @@ export function controllerItems(kit, scenario) {
     ...(all.length > 0
       ? kit.later((further) => all.map((_, index) => further.controllerPart(kit, scenario, index, add)))
       : []),
-    button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_FURTHER),
+    button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_ADDITIONAL_CONTROLLERS),
   ];
 }
 

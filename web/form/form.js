@@ -4,22 +4,23 @@
  */
 
 import { byId, element, fill, say } from "../dom.js";
-import { get, held } from "../state/state.js";
+import { get } from "../state/paths.js";
+import { blockedBy } from "../state/queries.js";
 import { controllerItems } from "./controllers.js";
 import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
-import { showAbout, showDerived, showProblems } from "./judgement.js";
 import { createKit } from "./kit.js";
 import { plantItems } from "./plant.js";
 import { labelOf, labels, termOf } from "./schema.js";
 import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
+import { showAbout, showDerived, showProblems } from "./validation.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
- *   dispatch: (message: import("../state/state.js").Message) => void,
+ *   dispatch: (message: import("../state/message.js").Message) => void,
  *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0],
  *   extend: () => Promise<void>}} given  `extend` brings the fields and samples of what the page begins without.
  */
@@ -168,22 +169,22 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
     if (before?.scenario !== next.scenario) showAbout(next);
     // Another experiment begins with what it is about.
     if (before && before.origin !== next.origin && next.origin !== "own") scroller.scrollTop = 0;
-    const judged = held(next) !== "unjudged";
-    if (judged && (before?.judgement !== next.judgement || before?.drafts !== next.drafts)) {
+    const validated = blockedBy(next) !== "unvalidated";
+    if (validated && (before?.validation !== next.validation || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
       putRight(({ showOffers }) => showOffers(remedies, () => state, take, hand.released));
     }
     if (
       before?.result !== next.result ||
-      before?.judgement !== next.judgement ||
+      before?.validation !== next.validation ||
       before?.scenario !== next.scenario ||
       before?.drafts !== next.drafts
     ) {
       putRight(({ showRemedy }) => showRemedy(state, drivers, take));
     }
     if (
-      judged &&
-      (before?.judgement !== next.judgement ||
+      validated &&
+      (before?.validation !== next.validation ||
         before?.drafts !== next.drafts ||
         before?.result !== next.result ||
         before?.unit !== next.unit)
@@ -195,9 +196,9 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
 }
 
 /** Whether something is wrong, or the line is made to go wrong. @param {State} state */
-function isIll({ judgement, result, scenario: { line } }) {
+function isIll({ validation, result, scenario: { line } }) {
   return (
-    (judgement?.problems.length ?? 0) > 0 ||
+    (validation?.problems.length ?? 0) > 0 ||
     (result?.summary.controllers ?? []).some(({ violations }) => violations) ||
     line.glitches.length > 0 ||
     Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0)

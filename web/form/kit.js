@@ -17,7 +17,7 @@ import { termButton } from "./term_button.js";
 /** @typedef {ReturnType<typeof createKit>} Kit */
 /** @typedef {typeof import("./further.js").FURTHER} Further */
 
-/** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/state.js").Message) => void,
+/** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/message.js").Message) => void,
  *   anew: () => void, extend: () => Promise<void>}} given  `anew` builds the form once more, `extend` brings more fields and samples. */
 export function createKit({ samples, now, dispatch, anew, extend }) {
   /** @type {Map<string, Control>} */

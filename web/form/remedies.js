@@ -5,7 +5,8 @@
 import { button, byId, element, fill } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { count, pretty, si } from "../state/number.js";
-import { isStale, set } from "../state/state.js";
+import { set } from "../state/paths.js";
+import { isStale } from "../state/queries.js";
 import { runsAlone } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -16,7 +17,7 @@ import { runsAlone } from "./sources.js";
 /** @param {State} state @param {DriverSheet[]} sheets @param {(scenario: Scenario) => void} apply */
 export function showRemedy(state, sheets, apply) {
   const root = byId("remedy");
-  const fresh = state.result !== null && !isStale(state) && state.judged === state.revision;
+  const fresh = state.result !== null && !isStale(state) && state.validated === state.revision;
   const remedy = fresh ? (timing(state, sheets) ?? lost(state)) : null;
   root.hidden = remedy === null;
   if (!remedy) return fill(root);
@@ -37,9 +38,9 @@ export function showRemedy(state, sheets, apply) {
  * @param {() => State} now @param {(scenario: Scenario) => void} apply @param {() => Promise<void>} released  Waits for the pointer: what comes late moves nothing under it.
  */
 export async function showOffers(ask, now, apply, released) {
-  const { revision, scenario, judgement, drafts } = now();
+  const { revision, scenario, validation, drafts } = now();
   const root = byId("offers");
-  const refused = (judgement?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
+  const refused = (validation?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
   // Those that stand are of numbers before: nothing that was typed since may go with them.
   for (const press of root.querySelectorAll("button")) press.disabled = true;
   const found = await ask(refused ? JSON.stringify(scenario) : null);

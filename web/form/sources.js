@@ -101,7 +101,7 @@ export function withSource(scenario, kind, samples) {
   return { ...scenario, source: { [kind]: SOURCES[kind].fresh(scenario, samples) }, controllers };
 }
 
-/** What another kind of source takes the place of. @param {Scenario} scenario @returns {import("../state/state.js").Moved} */
+/** What another kind of source takes the place of. @param {Scenario} scenario @returns {import("../state/paths.js").Moved} */
 export function replacedBySource({ controllers }) {
   const parts = controllers.flatMap((/** @type {any} */ _, /** @type {number} */ index) =>
     ["axes", "packets"].map((key) => `controllers[${index}].${key}`),

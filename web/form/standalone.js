@@ -3,8 +3,9 @@
  * memory and inputs. It loads when such a source is first on show.
  */
 import { button, element } from "../dom.js";
+import { MAX_CHANNELS } from "../state/limits.js";
 import { count } from "../state/number.js";
-import { get, MAX_CHANNELS, set } from "../state/state.js";
+import { get, set } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";
 import { fields, fieldsOfKind, labelOf, labels, mostOf } from "./schema.js";
 import { removed } from "./structure.js";
@@ -247,7 +248,7 @@ function heeded(path, given) {
     ...each,
     also: (value, state) => {
       const at = `${path}.${each.key}`;
-      const warning = state.judgement?.warnings.find((/** @type {{path: string}} */ one) => one.path === at);
+      const warning = state.validation?.warnings.find((/** @type {{path: string}} */ one) => one.path === at);
       return warning?.message ?? each.also?.(value, state) ?? "";
     },
   }));

@@ -3,14 +3,14 @@
  * scenario as it is when it is asked for, not as it was when the form was built, and what is typed in a part and is no
  * value yet goes where the part goes.
  */
-import { get, movedTo } from "../state/state.js";
+import { get, movedTo } from "../state/paths.js";
 import { fieldsOfKind } from "./schema.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {import("../state/state.js").Moved} Moved */
+/** @typedef {import("../state/paths.js").Moved} Moved */
 /** @typedef {import("./field.js").Field} Field */
 
-/** @param {{now: () => State, dispatch: (message: import("../state/state.js").Message) => void}} page */
+/** @param {{now: () => State, dispatch: (message: import("../state/message.js").Message) => void}} page */
 export function createStructure({ now, dispatch }) {
   /**
    * What parts were before they became of another kind, by their paths: a kind that is chosen again has its numbers

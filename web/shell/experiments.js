@@ -4,9 +4,9 @@
  */
 import { button, byId, element, fill, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
+import { MAX_TITLE } from "../state/history.js";
 import { readJson } from "../state/json.js";
 import { counted, si } from "../state/number.js";
-import { MAX_TITLE } from "../state/state.js";
 import { message } from "./link.js";
 import { save } from "./save.js";
 import { loadExperiments, saveExperiments } from "./storage.js";

@@ -5,7 +5,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { count, si, time } from "../state/number.js";
-import { isStale, selected } from "../state/state.js";
+import { isStale, selected } from "../state/queries.js";
 import { message } from "./link.js";
 import { baseName, between } from "./offers.js";
 import { save } from "./save.js";
@@ -132,7 +132,7 @@ export function createExports({ engine, now }, others, { isOpen }) {
       isOpen() &&
       !busy &&
       before &&
-      (before.result !== state.result || before.cursors !== state.cursors || before.judgement !== state.judgement)
+      (before.result !== state.result || before.cursors !== state.cursors || before.validation !== state.validation)
     )
       offer();
   }
@@ -141,15 +141,15 @@ export function createExports({ engine, now }, others, { isOpen }) {
 
 /** @param {State} state @param {Engine} engine @param {Span | null} span  Cycles, both in it; null is the whole run. @returns {Group[]} */
 function offers(state, engine, span) {
-  const { result, judgement, scenario } = state;
+  const { result, validation, scenario } = state;
   const base = baseName(state);
-  const settings = judgement
+  const settings = validation
     ? [
         {
           name: `${base}.json`,
           type: "application/json",
           label: "Scenario, JSON",
-          make: async () => [judgement.scenario, "\n"],
+          make: async () => [validation.scenario, "\n"],
         },
       ]
     : [];

@@ -2,7 +2,7 @@
 import { byId, element, fill, options, say } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { count, si } from "../state/number.js";
-import { held, isStale, selected } from "../state/state.js";
+import { blockedBy, isStale, selected } from "../state/queries.js";
 import { listen } from "./commands.js";
 import { createHealth } from "./health.js";
 import { loadTheme, saveTheme } from "./storage.js";
@@ -101,7 +101,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     if (byId("status").title !== said) byId("status").title = said;
     say(
       byId("computed"),
-      state.result && !state.result.summary.recorded && !long && held(state) !== "problems"
+      state.result && !state.result.summary.recorded && !long && blockedBy(state) !== "problems"
         ? `computed in ${si(state.result.ms / 1000, "s", 2)}`
         : "",
     );
@@ -140,7 +140,7 @@ function status(state, long) {
   if (long && progress)
     return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
   // What is most to be known has the line for itself.
-  if (held(state) === "problems") return "not run: the form needs attention";
+  if (blockedBy(state) === "problems") return "not run: the form needs attention";
   if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
   const { edges = 0 } = selected(state) ?? {};
   return `${count(edges)} edges · ${si(state.result.summary.end_s, "s")}`;
@@ -148,12 +148,12 @@ function status(state, long) {
 
 /** @param {State} state */
 function messages(state) {
-  const over = held(state) === "budget";
+  const over = blockedBy(state) === "budget";
   const budget = byId("budget");
   budget.hidden = !over;
   say(
     /** @type {Element} */ (budget.firstElementChild),
-    over ? `Not run yet: ${state.judgement?.cost?.message ?? "this is much work."}` : "",
+    over ? `Not run yet: ${state.validation?.cost?.message ?? "this is much work."}` : "",
   );
   const failed = byId("engine-message");
   failed.hidden = state.run.phase !== "failed";

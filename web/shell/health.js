@@ -5,7 +5,7 @@
 import { byId, element, fill } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { count } from "../state/number.js";
-import { selected } from "../state/state.js";
+import { selected } from "../state/queries.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */

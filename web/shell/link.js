@@ -4,7 +4,7 @@
  */
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
-import { held } from "../state/state.js";
+import { blockedBy } from "../state/queries.js";
 import { ownIsKept } from "./storage.js";
 import { parseView, viewOf } from "./view_part.js";
 
@@ -37,8 +37,8 @@ export function createLink({ engine, dispatch, now }) {
   async function write() {
     const { revision } = now();
     const before = location.hash;
-    if (held(now()) === "problems") return;
-    if (held(now()) === "unjudged") {
+    if (blockedBy(now()) === "problems") return;
+    if (blockedBy(now()) === "unvalidated") {
       timer = window.setTimeout(write, SETTLE_MS);
       return;
     }

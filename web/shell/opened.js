@@ -5,7 +5,7 @@
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
-import { isStale } from "../state/state.js";
+import { isStale } from "../state/queries.js";
 import { message } from "./link.js";
 import { ownIsKept } from "./storage.js";
 import { around } from "./verdict.js";

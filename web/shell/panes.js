@@ -158,7 +158,7 @@ export function createPanes({ dispatch, now }) {
     return { least: edge.least, most: Math.max(edge.least, both - edge.rest), both };
   }
 
-  /** @param {Partial<Panes>} some @returns {import("../state/state.js").Message} */
+  /** @param {Partial<Panes>} some @returns {import("../state/message.js").Message} */
   const change = (some) => ({ type: "pane", panes: some });
 
   /** Gives the pane before an edge a size; the one after it has the rest. @param {Edge} edge @param {number} px */

@@ -6,7 +6,7 @@ import { button, byId, element, fill, say } from "../dom.js";
 import { openCapture } from "../engine/capture.js";
 import { readJson } from "../state/json.js";
 import { count, counted, plain, si, time } from "../state/number.js";
-import { isStale } from "../state/state.js";
+import { isStale } from "../state/queries.js";
 import { createChannelTable } from "./channel_table.js";
 import { offerDifferences } from "./differences.js";
 import { keep, stands } from "./kept.js";

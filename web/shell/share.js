@@ -1,7 +1,7 @@
 /** Share: the link with all that is in it, to be copied. */
 import { byId, say } from "../dom.js";
 import { count } from "../state/number.js";
-import { held, isStale } from "../state/state.js";
+import { blockedBy, isStale } from "../state/queries.js";
 import { message } from "./link.js";
 import { viewOf } from "./view_part.js";
 
@@ -32,7 +32,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
     copy.disabled = true;
     text.value = "";
     say(about, "Making the link…");
-    if (held(now()) === "problems")
+    if (blockedBy(now()) === "problems")
       return say(about, "No link yet: fields of the form need other values; fix them first.");
     try {
       const { full, digests } = await shared();

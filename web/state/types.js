@@ -11,7 +11,7 @@
  * @typedef {{ticks: number, sends: number, line_load: number | null, duration_s: number,
  *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
- * @typedef {{problems: Problem[], warnings: {path: string, message: string}[], scenario: string, derived: Derived | null, cost: Cost | null}} Judgement
+ * @typedef {{problems: Problem[], warnings: {path: string, message: string}[], scenario: string, derived: Derived | null, cost: Cost | null}} Validation
  * @typedef {{id: string, document: string, title: string, scenario: string | null}} Preset
  * @typedef {{id: string, name: string, source: string, rules: {[rule: string]: number}}} DriverSheet
  *
@@ -91,8 +91,8 @@
  * @property {Moment[]} past
  * @property {Moment[]} future
  * @property {{[path: string]: {text: string, message: string}}} drafts  Texts that are no number yet.
- * @property {Judgement | null} judgement  Of `judged`.
- * @property {number} judged        Revision that `judgement` is about.
+ * @property {Validation | null} validation  Of `validated`.
+ * @property {number} validated        Revision that `validation` is about.
  * @property {Derived | null} derived  The last that there was.
  * @property {number} approved      Revision that the visitor lets run although it is over the budget.
  * @property {Run} run
@@ -126,6 +126,6 @@
  * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is on show, where one was chosen.
  * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
- * @typedef {{dispatch: (message: import("./state.js").Message) => void, now: () => State}} Page  What each part of the page is given.
+ * @typedef {{dispatch: (message: import("./message.js").Message) => void, now: () => State}} Page  What each part of the page is given.
  */
 export {};

@@ -6,7 +6,7 @@
 import { element, fill } from "../dom.js";
 import { listen } from "../shell/commands.js";
 import { exactTime } from "../state/number.js";
-import { endOf, shown } from "../state/state.js";
+import { endOf, shown } from "../state/time_window.js";
 import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */

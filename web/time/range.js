@@ -1,7 +1,7 @@
 /** The shown time in fields and buttons: from, to, zoom in, zoom out, all of it. */
 import { byId, say } from "../dom.js";
 import { parseNumber, time } from "../state/number.js";
-import { endOf, shown } from "../state/state.js";
+import { endOf, shown } from "../state/time_window.js";
 import { zoom } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */

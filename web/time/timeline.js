@@ -3,7 +3,7 @@
  * and cycles, nothing of what is drawn.
  */
 import { listen } from "../shell/commands.js";
-import { endOf, shown } from "../state/state.js";
+import { endOf, shown } from "../state/time_window.js";
 import { gestures, moved, valueAt, zoomed } from "./gestures.js";
 
 /** @typedef {import("../state/types.js").State} State */

@@ -5,7 +5,7 @@
 import { unlessDropped } from "../engine/engine.js";
 import { csv } from "../shell/tables.js";
 import { time } from "../state/number.js";
-import { shown } from "../state/state.js";
+import { shown } from "../state/time_window.js";
 import { color, drawing, font, picture } from "../time/plot.js";
 import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";

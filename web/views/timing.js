@@ -6,7 +6,7 @@
 import { byId, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { listen } from "../shell/commands.js";
-import { selected } from "../state/state.js";
+import { selected } from "../state/queries.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */

@@ -6,7 +6,7 @@ import { byId } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { ruleName } from "../form/schema.js";
 import { si, time } from "../state/number.js";
-import { endOf, shown } from "../state/state.js";
+import { endOf, shown } from "../state/time_window.js";
 import { required } from "./required.js";
 import { paintTiming } from "./timing_table.js";
 

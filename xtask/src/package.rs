@@ -12,7 +12,8 @@ use walkdir::{DirEntry, WalkDir};
 
 use crate::aside::say;
 use crate::made::Made;
-use crate::{apt, page, root, run, toolchain};
+use crate::npm::node_program;
+use crate::{page, root, run, toolchain};
 
 /// What others may use, each after what it needs.
 const LIBRARIES: [&str; 10] = [
@@ -115,7 +116,7 @@ fn clear_own(folder: &Path) -> Result<()> {
 
 /// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
 async fn npm() -> Result<()> {
-    let npm = program("npm").await?;
+    let npm = node_program("npm").await?;
     let home = root().join("target").join("npm");
     let made = home.join("pkg");
     page::npm(&made).await?;
@@ -136,7 +137,7 @@ async fn npm() -> Result<()> {
     let tests = root().join("tests");
     let script = user.join("preset.mjs");
     fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
-    let mut node = Command::new(program("node").await?);
+    let mut node = Command::new(node_program("node").await?);
     node.arg(&script).arg(tests.join("golden"));
     run::to_end(node).await.with_context(|| format!("the program needs Node {NODE}"))
 }
@@ -146,16 +147,6 @@ fn packed(folder: &Path) -> Result<PathBuf> {
     let files = fs::read_dir(folder).with_context(|| format!("{} can't be read", folder.display()))?;
     let mut packages = files.filter_map(|entry| entry.ok().map(|entry| entry.path()));
     packages.find(|path| path.extension().is_some_and(|end| end == "tgz")).context("npm packed nothing")
-}
-
-/// Node's programs, installed by the system's packages if they are missing.
-async fn program(name: &str) -> Result<PathBuf> {
-    let remedy =
-        || format!("the package's test needs {name}: install Node.js with npm so that it is on PATH");
-    if which::which(name).is_err() {
-        apt::install(&["nodejs", "npm"]).await.with_context(remedy)?;
-    }
-    which::which(name).with_context(remedy)
 }
 
 /// Adds to the npm package in `folder` what wasm-pack does not know of.

@@ -1,11 +1,17 @@
-//! What is asked of the page's sources by themselves, before any browser: their form, lints and types.
+//! Checks of the page's sources outside of a browser: format, lints, types, and the unit tests of its models.
 
-use anyhow::Result;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
 use tokio::process::Command;
 
-use crate::npm::Npm;
+use crate::npm::{self, Npm};
 use crate::{root, run};
 
+/// Unit tests of the page's scripts, by their path from the repository's root.
+const TESTS: &str = "tests/scripts";
+/// How the names of their files end.
+const TEST_ENDING: &str = ".test.mjs";
 /// Formatter and linter; `web/biome.jsonc` says how it is meant.
 const BIOME: Npm = Npm { package: "@biomejs/biome", version: "2.6.8" };
 /// The compiler whose checker reads the page's modules and their JSDoc types.
@@ -33,8 +39,34 @@ pub(crate) async fn check_types() -> Result<()> {
     run::to_end(command).await
 }
 
+/// Runs the unit tests of the page's models in Node.
+pub(crate) async fn test() -> Result<()> {
+    // Node's versions differ in how they search a folder, so each file is named.
+    let files = tests()?;
+    ensure!(!files.is_empty(), "{TESTS} holds no *{TEST_ENDING}");
+    let mut command = Command::new(npm::node_program("node").await?);
+    command.arg("--test").args(files);
+    run::to_end(command).await
+}
+
+fn tests() -> Result<Vec<PathBuf>> {
+    let folder = root().join(TESTS);
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(&folder).with_context(|| format!("{} can't be read", folder.display()))? {
+        let path = entry?.path();
+        if path.to_string_lossy().ends_with(TEST_ENDING) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
 async fn biome(arguments: &[&str]) -> Result<()> {
     let mut command = Command::new(BIOME.program("biome").await?);
-    command.current_dir(root().join("web")).args(arguments).arg(".");
+    command
+        .current_dir(root().join("web"))
+        .args(arguments)
+        .args([".".as_ref(), root().join(TESTS).as_path()]);
     run::to_end(command).await
 }

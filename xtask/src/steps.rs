@@ -30,6 +30,8 @@ const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 pub(crate) enum Step {
     /// rustfmt and Biome find nothing to change
     Format,
+    /// Unit tests of the page's models, in Node
+    Scripts,
     /// clippy is silent: native, wasm and bare metal; and Biome of the page's sources
     Lint,
     /// rustdoc is silent
@@ -70,6 +72,7 @@ impl Step {
                 }
                 sources::check_format().await
             }
+            Self::Scripts => sources::test().await,
             Self::Lint => {
                 sources::lint().await?;
                 toolchain::components().await?;
@@ -224,7 +227,7 @@ pub(crate) fn list() {
 /// The steps that run beside each other: in a row those of each lane, one after the other, and the rows one after the other.
 /// Those of the second lane wait for other programs more than they compute; their output is buffered.
 const ROWS: [[&[Step]; 2]; 5] = [
-    [&[Step::Format, Step::Lint, Step::Docs], &[]],
+    [&[Step::Format, Step::Scripts, Step::Lint, Step::Docs], &[]],
     [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
     [&[Step::Types, Step::Package], &[]],
     // Either keeps all cores busy, and lines that are live are held to their times.

@@ -1,6 +1,6 @@
 /** What the three charts of a motion show: which curves, in which unit and colour, over which range. */
 
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { color, GUTTER } from "../../time/plot.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -2,7 +2,7 @@
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";
-import { selected } from "../../state/state.js";
+import { selected } from "../../state/queries.js";
 import { unitPair } from "./ask.js";
 import { baselineAxis, unitOf } from "./bands.js";
 

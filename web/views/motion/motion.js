@@ -2,7 +2,8 @@
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";
-import { selected, shown } from "../../state/state.js";
+import { selected } from "../../state/queries.js";
+import { shown } from "../../state/time_window.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";

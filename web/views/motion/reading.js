@@ -5,7 +5,7 @@
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short } from "../../state/number.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { baselineAxis, QUANTITIES, unitFor, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -2,7 +2,7 @@
 import { button, byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { ask } from "./ask.js";
 import { bandsOf, QUANTITIES, unitFor } from "./bands.js";
 

@@ -1,5 +1,5 @@
 /** What the view Motor can show over time, and how each chart is drawn. */
-import { selected } from "../../state/state.js";
+import { selected } from "../../state/queries.js";
 import { color, GUTTER } from "../../time/plot.js";
 import { shapeOf } from "../lines.js";
 

@@ -2,7 +2,7 @@
 import { unlessDropped } from "../../engine/engine.js";
 import { csv } from "../../shell/tables.js";
 import { time } from "../../state/number.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { channelOf, chartOf, chosen, marksOf } from "./quantities.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -1,5 +1,5 @@
 /** Packets as files, for the menu of exports. */
-import { isFiltering } from "../../state/state.js";
+import { isFiltering } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} PacketFile */

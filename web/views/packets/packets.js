@@ -6,7 +6,7 @@ import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { count } from "../../state/number.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { createInspector } from "./inspector.js";
 import { createSearch } from "./search.js";
 import { createTable } from "./table.js";

@@ -1,8 +1,9 @@
 /** Search and filters of the packets: what is asked for is state, which rows that are the worker knows. */
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
+import { NO_FILTER } from "../../state/initial.js";
 import { count } from "../../state/number.js";
-import { isFiltering, NO_FILTER } from "../../state/state.js";
+import { isFiltering } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 

@@ -58,11 +58,11 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     const row = rowAt(event);
     if (row)
       dispatch({
-        type: "light",
+        type: "highlight",
         highlighted: { start: row.start_cycle, end: row.line_end_cycle, from: "packets", packet: row.index, bit: null },
       });
   });
-  body.addEventListener("pointerleave", () => dispatch({ type: "light", highlighted: null }));
+  body.addEventListener("pointerleave", () => dispatch({ type: "highlight", highlighted: null }));
 
   const { first, visible, scrollTo, resize } = virtualRows(scroller, space, () => answer.shown);
 

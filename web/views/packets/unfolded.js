@@ -48,7 +48,7 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
     for (const each of list.children) each.setAttribute("aria-selected", String(each === cell));
     if (!row || !cell) {
       list.removeAttribute("aria-activedescendant");
-      return dispatch({ type: "light", highlighted: null });
+      return dispatch({ type: "highlight", highlighted: null });
     }
     list.setAttribute("aria-activedescendant", cell.id);
     if (list.matches(":focus")) cell.scrollIntoView({ block: "nearest" });
@@ -58,7 +58,7 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
     if (start === undefined || last === undefined) return undefined;
     const own = row.kind === "reply" && row.mark !== "foreign";
     dispatch({
-      type: "light",
+      type: "highlight",
       highlighted: { start, end: last + row.byte_length, from: "packets", packet: row.index, bit: own ? TX : RX },
     });
   }

@@ -5,7 +5,7 @@
 import { byId, element, fill, options, say, style } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, parseNumber, short, si } from "../../state/number.js";
-import { endOf } from "../../state/state.js";
+import { endOf } from "../../state/time_window.js";
 import { overlaid } from "../../time/cursors.js";
 import { reveal } from "../../time/timeline.js";
 import { createAxis } from "./axis.js";

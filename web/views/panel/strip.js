@@ -5,7 +5,7 @@
 import { element } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { drawCursors } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, fit, font, GUTTER, MARGIN, watch } from "../../time/plot.js";

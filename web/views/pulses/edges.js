@@ -2,7 +2,7 @@
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, time } from "../../state/number.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { nameOf } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -1,6 +1,6 @@
 /** The markers 0 to 9: a button that sets one, and a table of what lies between them (marker_list.js), which goes with the last. */
 import { byId, element, fill, say } from "../../dom.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 

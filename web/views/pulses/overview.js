@@ -6,7 +6,7 @@ import { byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
-import { endOf, shown } from "../../state/state.js";
+import { endOf, shown } from "../../state/time_window.js";
 import { color, fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { pan, zoom } from "../../time/timeline.js";
 import { paintOverview } from "./paint.js";

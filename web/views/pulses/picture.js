@@ -1,7 +1,7 @@
 /** The picture of the logic view: its rows, one below the other, and what is highlighted in them. */
 
 import { rowPx } from "../../state/row_choices.js";
-import { shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { color, fit, ratio } from "../../time/plot.js";
 import { pixelOf } from "../../time/timeline.js";
 import { paintSignal, paintSpans, paintTint } from "./paint.js";

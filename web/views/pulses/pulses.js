@@ -3,8 +3,9 @@ import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
+import { selected } from "../../state/queries.js";
 import { rowPx } from "../../state/row_choices.js";
-import { selected, shown } from "../../state/state.js";
+import { shown } from "../../state/time_window.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
@@ -112,7 +113,7 @@ export function createPulses({ engine, dispatch, now }) {
   /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
   function light(what) {
     dispatch({
-      type: "light",
+      type: "highlight",
       highlighted: what && {
         start: what.start,
         end: what.end,

@@ -3,8 +3,9 @@
  * names: at first the line, so that it is in view beside the first channels; a channel is DIR and STEP, or both in one row
  * when it is folded. Under RX and TX stand their decoders, until they are folded.
  */
+
+import { selected } from "../../state/queries.js";
 import { ordered } from "../../state/row_choices.js";
-import { selected } from "../../state/state.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**

@@ -2,7 +2,8 @@
 import { unlessDropped } from "../../engine/engine.js";
 import { ruleName } from "../../form/schema.js";
 import { si } from "../../state/number.js";
-import { selected, shown } from "../../state/state.js";
+import { selected } from "../../state/queries.js";
+import { shown } from "../../state/time_window.js";
 import { required } from "../required.js";
 import { hasLine } from "./rows.js";
 

@@ -2,7 +2,7 @@
  * The frequencies on show, on a linear or a logarithmic axis, and those before them to go back to. Places on the axis
  * are Hz, or their common logarithms. One axis for the view and for what is saved of it.
  */
-import { DEPTH } from "../../state/state.js";
+import { DEPTH } from "../../state/history.js";
 
 /** @typedef {import("../../state/types.js").Span} Span */
 

@@ -6,7 +6,7 @@
 import { element, fill, say } from "../../dom.js";
 import { Dropped } from "../../engine/engine.js";
 import { count, counted, plain, short, si, time } from "../../state/number.js";
-import { isStale } from "../../state/state.js";
+import { isStale } from "../../state/queries.js";
 import { table } from "./parts.js";
 
 /** @typedef {import("../../state/types.js").State} State */

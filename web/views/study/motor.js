@@ -6,7 +6,7 @@ import { button, element, fill, say } from "../../dom.js";
 import { runsAlone } from "../../form/sources.js";
 import { readJson } from "../../state/json.js";
 import { plain, short, si } from "../../state/number.js";
-import { get, set } from "../../state/state.js";
+import { get, set } from "../../state/paths.js";
 import { color, draw, GUTTER, watch } from "../../time/plot.js";
 import { shapeOf, swatch } from "../lines.js";
 import { createJob, field, table } from "./parts.js";
@@ -255,10 +255,10 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
 
   /** @param {State} state @param {boolean} [again] */
   function refresh(state, again = false) {
-    const { judgement, judged, revision } = state;
-    if (judged !== revision || !judgement) return;
-    panel.classList.toggle("stale", judgement.problems.length > 0);
-    if (judgement.problems.length > 0) return;
+    const { validation, validated, revision } = state;
+    if (validated !== revision || !validation) return;
+    panel.classList.toggle("stale", validation.problems.length > 0);
+    if (validation.problems.length > 0) return;
     body.hidden = ramp.root.hidden = !state.scenario.plant;
     if (!state.scenario.plant) {
       asked = "";
@@ -272,7 +272,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     const { bus } = [state.scenario, ...state.scenario.controllers][selected] ?? {};
     if (!bus) return;
     controller = selected;
-    json = judgement.scenario;
+    json = validation.scenario;
     const channel = Math.min(state.axis, bus.channels - 1);
     say(
       about,
@@ -374,13 +374,13 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   /** The supply current of the run with its pulses at once and one after another. @param {State} state @param {number} motors @param {number} settle_cycles  What was measured. */
   function pairOf(state, motors, settle_cycles) {
     const [of, place] = [json, controller];
-    const { judgement, approved, revision, scenario } = state;
+    const { validation, approved, revision, scenario } = state;
     const why =
       motors < 2
         ? "Of one motor nothing can be staggered."
         : runsAlone(scenario)
           ? "What runs by itself has no ticks: its pulses are not staggered."
-          : judgement?.cost?.over_budget && approved !== revision
+          : validation?.cost?.over_budget && approved !== revision
             ? "The run is not made here before it is approved: it is much work."
             : "";
     say(pair, why);

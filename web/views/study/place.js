@@ -1,5 +1,5 @@
 /** Where in the scenario stands what the study is about. */
-import { get } from "../../state/state.js";
+import { get } from "../../state/paths.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 

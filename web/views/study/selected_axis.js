@@ -6,21 +6,21 @@ import { place } from "./place.js";
 
 /**
  * The axis that the study is about. @param {State} state
- * @returns {SelectedAxis | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is judged.
+ * @returns {SelectedAxis | string | null}  Why there is none: empty where the form has problems, and what was shown may stay; null until it is validated.
  */
 export function selectedAxis(state) {
-  const { judgement, judged, revision } = state;
-  if (judged !== revision || !judgement) return null;
-  if (judgement.problems.length > 0) return "";
+  const { validation, validated, revision } = state;
+  if (validated !== revision || !validation) return null;
+  if (validation.problems.length > 0) return "";
   const found = place(state);
   if (!found.path) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
-  return { json: judgement.scenario, ...found };
+  return { json: validation.scenario, ...found };
 }
 
 /** Whether what a tab asks about the selected axis may have another answer than before. @param {State} state @param {State | undefined} before */
 export function isAnother(state, before) {
   return (
-    before?.judgement !== state.judgement ||
+    before?.validation !== state.validation ||
     before?.revision !== state.revision ||
     before?.axis !== state.axis ||
     before?.result !== state.result

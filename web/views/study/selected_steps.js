@@ -1,6 +1,6 @@
 /** What the study is about where no plan is known: the steps of a channel, as the views show them. */
 import { element, fill } from "../../dom.js";
-import { isStale } from "../../state/state.js";
+import { isStale } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
@@ -8,10 +8,10 @@ import { isStale } from "../../state/state.js";
 
 /** The channel that the study is about; null where the source is a motion, or until the run of the scenario has come. @param {State} state @returns {SelectedSteps | null} */
 export function selectedSteps(state) {
-  const { judgement, judged, revision, scenario, result, axis: channel } = state;
-  if (!judgement || judged !== revision || scenario.source?.motion || !result || isStale(state)) return null;
+  const { validation, validated, revision, scenario, result, axis: channel } = state;
+  if (!validation || validated !== revision || scenario.source?.motion || !result || isStale(state)) return null;
   const { controller, summary } = result;
-  return { json: judgement.scenario, revision, controller, channel, clock_hz: summary.clock_hz };
+  return { json: validation.scenario, revision, controller, channel, clock_hz: summary.clock_hz };
 }
 
 /** A choice out of the list of motors, which is asked for once. @param {Engine} engine @param {() => void} change */

@@ -6,7 +6,7 @@ import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { counted, short } from "../../state/number.js";
-import { get } from "../../state/state.js";
+import { get } from "../../state/paths.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { choice, createJob, field, table } from "./parts.js";
 import { createSegments } from "./segments.js";

@@ -10,7 +10,7 @@ import { byId, element, fill, options, style } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { arrows, choose } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
-import { selected } from "../../state/state.js";
+import { selected } from "../../state/queries.js";
 import { place } from "./place.js";
 
 /** @typedef {import("../../state/types.js").State} State */

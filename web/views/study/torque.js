@@ -4,7 +4,7 @@
  */
 import { button, element, fill, say } from "../../dom.js";
 import { count, plain, short, si } from "../../state/number.js";
-import { get } from "../../state/state.js";
+import { get } from "../../state/paths.js";
 import { color, draw, watch } from "../../time/plot.js";
 import { createJob, table } from "./parts.js";
 import { isAnother, selectedAxis } from "./selected_axis.js";

@@ -1,7 +1,8 @@
 /** Shows what the core says about the scenario: problems beside their fields, and what follows from it. */
 import { button, byId, element, fill, flash, say } from "../dom.js";
 import { count, counted, plain, pretty, short, si } from "../state/number.js";
-import { derivedAxis, derivedShown, get } from "../state/state.js";
+import { get } from "../state/paths.js";
+import { derivedAxis, derivedShown } from "../state/queries.js";
 import { runsAlone } from "./sources.js";
 import { termButton } from "./term_button.js";
 
@@ -16,7 +17,7 @@ export function showProblems(state, controls, groups) {
   const problems = [
     ...Object.entries(state.drafts).map(([path, { message }]) => ({ path, message })),
     // What the core says of a field that holds no number is about the value before.
-    ...(state.judgement?.problems ?? []).filter(
+    ...(state.validation?.problems ?? []).filter(
       ({ path }) => !Object.keys(state.drafts).some((at) => within(path, at) || within(at, path)),
     ),
   ].map(({ path, message }) => ({ path, message: pretty(message) }));

@@ -1,0 +1,90 @@
+/** Changes of the scenario, and undo and redo of them. */
+import { OWN_TEXTS } from "./initial.js";
+import { get, movedTo, set } from "./paths.js";
+
+/** @typedef {import("./types.js").State} State */
+/** @typedef {import("./types.js").Scenario} Scenario */
+/** @typedef {import("./types.js").Origin} Origin */
+
+/** Steps of history that are kept. */
+export const DEPTH = 50;
+/** Prefix of an edited experiment's name until it has a name of its own. */
+const CHANGED_FROM = "changed from ";
+/** Characters that a name can have; a longer one would be refused. */
+export const MAX_TITLE = 120;
+
+/**
+ * Drafts in a replaced part go with it, unless `moved` says where the parts went.
+ * @param {State} state @param {{path: string, value: any, joins?: boolean, moved?: import("./paths.js").Moved}} message
+ */
+export function edit(state, { path, value, joins = false, moved = [[path, null]] }) {
+  const drafts = Object.fromEntries(
+    Object.entries(state.drafts).flatMap(([at, draft]) => {
+      const to = movedTo(at, moved);
+      return to === null ? [] : [[to, draft]];
+    }),
+  );
+  if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
+  const joined = joins && state.edited === path;
+  const before = joined ? state : remember(state);
+  const { scenario, borrowed } = disowned(state, set(state.scenario, path, value));
+  return { ...changed(before, scenario, "own"), borrowed, drafts, edited: joins ? path : null };
+}
+
+/**
+ * A preset or shared experiment that is edited no longer matches its name and note: it is "changed from" that until the
+ * visitor names it, and the note goes.
+ * @param {State} state @param {Scenario} next
+ */
+function disowned({ scenario, borrowed }, next) {
+  const named = next.title !== scenario.title;
+  const noted = next.note !== scenario.note;
+  if (named || noted)
+    return { scenario: next, borrowed: { title: borrowed.title && !named, note: borrowed.note && !noted } };
+  const title = borrowed.title && next.title ? changedFrom(String(next.title)) : next.title;
+  const note = borrowed.note && next.note ? "" : next.note;
+  if (title === next.title && note === next.note) return { scenario: next, borrowed: OWN_TEXTS };
+  return { scenario: { ...next, title, note }, borrowed: OWN_TEXTS };
+}
+
+/** @param {string} title */
+function changedFrom(title) {
+  if (title.startsWith(CHANGED_FROM)) return title;
+  return [...`${CHANGED_FROM}${title}`].slice(0, MAX_TITLE).join("");
+}
+
+/** @param {State} state @returns {import("./types.js").Moment} */
+function momentOf({ scenario, origin, borrowed }) {
+  return { scenario, origin, borrowed };
+}
+
+/** @param {State} state @returns {State} */
+export function remember(state) {
+  return { ...state, past: [...state.past, momentOf(state)].slice(-DEPTH), future: [] };
+}
+
+/** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
+export function changed(state, scenario, origin) {
+  return {
+    ...state,
+    scenario,
+    origin,
+    run: { phase: "waiting", progress: null, message: "" },
+    revision: state.revision + 1,
+    drafts: {},
+    edited: null,
+    notice: null,
+    awaited: null,
+    seen: null,
+  };
+}
+
+/** Undo or redo. @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
+export function travel(state, from, to) {
+  // A draft was never a step of the history: going back discards it first.
+  if (from === "past" && Object.keys(state.drafts).length > 0) return { ...state, drafts: {}, edited: null };
+  const moment = state[from][state[from].length - 1];
+  if (!moment) return state;
+  const moved = { ...changed(state, moment.scenario, moment.origin), borrowed: moment.borrowed };
+  return { ...moved, [from]: state[from].slice(0, -1), [to]: [...state[to], momentOf(state)].slice(-DEPTH) };
+}

@@ -1,0 +1,116 @@
+/**
+ * The one function that changes the page's state: `update(state, message)`. No DOM, no worker, no clock: the sender of a
+ * message validates, runs and draws what follows from it.
+ */
+import { changed, edit, remember, travel } from "./history.js";
+import { FRESH_VIEW, OWN_TEXTS } from "./initial.js";
+import { MAX_CHANNELS } from "./limits.js";
+import { done, openView, selectController, validated } from "./result.js";
+import { moveBack, moveTo } from "./time_window.js";
+
+/** @typedef {import("./types.js").State} State */
+
+/** @param {State} state @param {import("./message.js").Message} message @returns {State} */
+export function update(state, message) {
+  switch (message.type) {
+    case "edit":
+      return edit(state, message);
+    case "draft": {
+      const { path, text, message: error } = message;
+      return { ...state, drafts: { ...state.drafts, [path]: { text, message: error } } };
+    }
+    case "committed":
+      return state.edited === null ? state : { ...state, edited: null };
+    case "replace":
+      return {
+        ...changed(remember(state), message.scenario, message.origin),
+        borrowed: message.origin === "own" ? OWN_TEXTS : { title: true, note: true },
+        ...FRESH_VIEW,
+      };
+    case "undo":
+      return travel(state, "past", "future");
+    case "redo":
+      return travel(state, "future", "past");
+    case "validated":
+      return validated(state, message);
+    case "approve":
+      return { ...state, approved: state.revision };
+    case "running":
+      return { ...state, run: { phase: "running", progress: null, message: "" } };
+    case "progress":
+      return { ...state, run: { ...state.run, progress: message.progress } };
+    case "done":
+      return done(state, message);
+    case "failed":
+      return { ...state, run: { phase: "failed", progress: null, message: message.message } };
+    case "window":
+      return moveTo(state, message);
+    case "back":
+      return moveBack(state);
+    case "box":
+      return { ...state, box: message.on, picked: null };
+    case "pick":
+      return { ...state, picked: message.picked };
+    case "baseline":
+      return { ...state, baseline: message.baseline, difference: message.baseline !== null && state.difference };
+    case "harmonic":
+      return state.harmonic === message.harmonic ? state : { ...state, harmonic: message.harmonic };
+    case "difference":
+      return { ...state, difference: message.on };
+    case "open":
+      return openView(state, message.view);
+    case "seen":
+      return { ...state, seen: { text: message.text, verdict: null } };
+    case "compared":
+      return state.seen?.text === message.text
+        ? { ...state, seen: { ...state.seen, verdict: message.verdict } }
+        : state;
+    case "hover":
+      return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
+    case "highlight":
+      return JSON.stringify(state.highlighted) === JSON.stringify(message.highlighted)
+        ? state
+        : { ...state, highlighted: message.highlighted };
+    case "marker":
+      return { ...state, markers: state.markers.with(message.digit, message.cycle) };
+    case "cursor":
+      return { ...state, cursors: { ...state.cursors, [message.which]: message.cycle } };
+    case "row":
+      return { ...state, row: message.row };
+    case "fold":
+      return { ...state, folds: { ...state.folds, [message.channel]: message.folded } };
+    case "fold-all": {
+      const channels = Array.from({ length: MAX_CHANNELS }, (_, channel) => [channel, message.folded]);
+      return { ...state, folds: { ...state.folds, ...Object.fromEntries(channels) } };
+    }
+    case "all-signals":
+      return { ...state, allSignals: message.on };
+    case "filter":
+      return { ...state, filter: { ...state.filter, ...message.filter } };
+    case "packet":
+      return { ...state, packet: message.packet };
+    case "controller":
+      return selectController(state, message.controller);
+    case "side":
+      return { ...state, sides: { ...state.sides, [message.area]: message.side } };
+    case "axis":
+      return { ...state, axis: message.axis };
+    case "unit":
+      return { ...state, unit: message.unit };
+    case "pane":
+      return { ...state, panes: { ...state.panes, ...message.panes } };
+    case "bare": {
+      const { view, bare } = message;
+      if (state.bare.includes(view) === bare) return state;
+      return { ...state, bare: bare ? [...state.bare, view] : state.bare.filter((each) => each !== view) };
+    }
+    case "rows":
+      return { ...state, panes: { ...state.panes, pulses: { ...state.panes.pulses, ...message.rows } } };
+    case "view":
+      return { ...state, view: message.view };
+    case "study":
+      return { ...state, study: message.study };
+    case "notice":
+      return { ...state, notice: message.notice };
+  }
+}
