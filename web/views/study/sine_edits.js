@@ -1,0 +1,61 @@
+/** How the tab Sine changes the scenario: pure, so that each edit and its message can be tested. */
+import { selectedAxis } from "./selected_axis.js";
+import { rounded } from "./sine_sweep.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+/** @typedef {import("./selected_axis.js").SelectedAxis} SelectedAxis */
+/** @typedef {{axis: SelectedAxis | null, move: number}} Target  The selected axis and its first sine in segments; -1 where it has none. */
+/** @typedef {{path: string, value: any, message: string}} Edit */
+
+const NOT_NOW = "Not while the form has a problem, or is being looked at.";
+
+/** @param {State} state @returns {Target} */
+export function targetOf(state) {
+  const axis = selectedAxis(state);
+  if (!axis || typeof axis === "string") return { axis: null, move: -1 };
+  return { axis, move: axis.moves.findIndex((/** @type {any} */ each) => each.sine_segments) };
+}
+
+/** Why a state has no axis to edit. @param {State} state */
+export const whyNoAxis = (state) => (selectedAxis(state) ? "The scenario has no axis that could take it." : NOT_NOW);
+
+/** Gives the axis' sine a d1. @param {SelectedAxis} axis @param {number} move @param {number} d1 @returns {Edit} */
+export const deviationEdit = (axis, move, d1) => ({
+  path: `${axis.path}.moves[${move}].sine_segments.max_deviation`,
+  value: rounded(d1),
+  message: `Move ${move + 1} of axis ${axis.axis} has d1 = ${rounded(d1)} now; undo brings the one before back.`,
+});
+
+/** Adds a sine with a d1 to an axis without one. @param {SelectedAxis} axis @param {any} sample @param {number} d1 @returns {Edit} */
+export const addedSine = (axis, sample, d1) => ({
+  path: `${axis.path}.moves`,
+  value: [...axis.moves, { sine_segments: { ...sample, max_deviation: rounded(d1) } }],
+  message: `Axis ${axis.axis} ends with a sine in segments now; undo takes it away.`,
+});
+
+/** Puts a move through vertices in place of the axis' sine, or after its moves. @param {Target} target @param {any} sample @param {(sine: any) => object | string} make  Of the sine; a string says why not. @returns {Edit | string} */
+export function vertexEdit({ axis, move }, sample, make) {
+  if (!axis) return NOT_NOW;
+  const value = make((axis.moves[move] ?? sample).sine_segments);
+  if (typeof value === "string") return value;
+  if (move < 0)
+    return {
+      path: `${axis.path}.moves`,
+      value: [...axis.moves, value],
+      message: `Axis ${axis.axis} ends with a curve through these vertices now; undo takes it away.`,
+    };
+  return {
+    path: `${axis.path}.moves[${move}]`,
+    value,
+    message: `Move ${move + 1} of axis ${axis.axis} goes through these vertices now; undo brings the sine back.`,
+  };
+}
+
+/** The sensor's bandwidth in harmonics of the axis' sine; undefined where there is none. @param {State} state @returns {number | undefined} */
+export function sensorHarmonics(state) {
+  const { axis, move } = targetOf(state);
+  const { analysis } = state.scenario;
+  return axis && move >= 0 && analysis?.sensor_hz
+    ? analysis.sensor_hz * axis.moves[move].sine_segments.period_s
+    : undefined;
+}

@@ -1,0 +1,113 @@
+/** What the tab Torque shows of the core's report, as texts and rows. */
+import { count, plain, short, si } from "../../state/number.js";
+
+/** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
+/** @typedef {{index: number, duration_s: number, longest_s: number | null, too_fast: boolean, room_s: number, enough_s: [number, number] | null,
+ *   too_fast_s: [number, number] | null, without_ramps: boolean}} Ramps */
+/**
+ * @typedef {{standing_mn_m: number, load_mn_m: number, corner_rate: number | null, torque_rate: number | null, working_rate: number | null,
+ *   over_working_rate: number | null, jump: number, least: Moment | null, total: number, window_s: number | null,
+ *   shortages: {from_s: number, to_s: number, times: number, worst: Moment}[], ramps: Ramps[]}} Report
+ * @typedef {{report: Report, rate: Float64Array, available: Float64Array, needed: Float64Array}} Torque
+ */
+
+/** @param {number} torque In mN·m. */
+const torqueText = (torque) => `${short(torque, 4)} mN·m`;
+/** @param {number} rate */
+const rateText = (rate) => plain(rate, "steps/s");
+/** @param {number | null} rate */
+const upTo = (rate) => (rate === null ? "any rate" : rate === 0 ? "no rate" : rateText(Math.floor(rate)));
+/** @param {number} seconds */
+const rampText = (seconds) => `${seconds.toFixed(4)} s`;
+
+/** Ramps with enough torque; where there are none, whether rate or torque is the limit. @param {Ramps} ramps */
+function enough({ enough_s, too_fast_s, without_ramps }) {
+  if (enough_s) return `${enough_s[0].toFixed(4)} to ${rampText(enough_s[1])}`;
+  const all = too_fast_s ? "all above the working rate" : "none";
+  return without_ramps ? `without ramps only; with ramps ${all}` : all;
+}
+
+/** @param {Report} report @returns {string[][]} */
+export function motorRows({ standing_mn_m, load_mn_m, corner_rate, torque_rate, working_rate, least, jump }) {
+  const standing =
+    corner_rate === 0
+      ? [
+          ["Torque at standstill", torqueText(standing_mn_m)],
+          ["full current up to", "no rate: the supply is too low"],
+        ]
+      : [
+          ["Full torque", torqueText(standing_mn_m)],
+          ["full torque up to", upTo(corner_rate)],
+        ];
+  return [
+    ...standing,
+    ["Load", torqueText(load_mn_m)],
+    ["torque for it up to", upTo(torque_rate)],
+    ...(working_rate === null ? [] : [["Stated working rate", rateText(working_rate)]]),
+    ...(least
+      ? [
+          ["Least margin", torqueText(least.available_mn_m - Math.abs(least.needed_mn_m))],
+          ["at", `${si(least.at_s, "s")}, ${rateText(least.rate)}`],
+        ]
+      : []),
+    ...(jump > 0 ? [["Greatest jump of speed", rateText(jump)]] : []),
+  ];
+}
+
+/** What is wrong, in a sentence or two; empty where the torque is enough. @param {Report} report */
+export function shortageText({ over_working_rate, total }) {
+  const fast =
+    over_working_rate === null
+      ? ""
+      : `⚠ ${rateText(over_working_rate)} are above the stated working rate: give more time, or shorter ramps. `;
+  const lack =
+    total === 0
+      ? ""
+      : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: give more time, gentler ramps, less load or a higher supply voltage.`;
+  return fast + lack;
+}
+
+/** @param {Report} report @returns {string[][]} */
+export function shortageRows({ shortages }) {
+  return shortages.map(({ from_s, to_s, times, worst: { at_s, rate, needed_mn_m, available_mn_m } }) => [
+    si(from_s, "s"),
+    si(to_s, "s"),
+    torqueText(Math.abs(needed_mn_m) - available_mn_m),
+    si(at_s, "s"),
+    rateText(rate),
+    torqueText(needed_mn_m),
+    torqueText(available_mn_m),
+    count(times),
+  ]);
+}
+
+/** @param {Report} report @returns {string[][]} */
+export function rampRows({ ramps }) {
+  return ramps.map((ramp) => [
+    `${ramp.index + 1}, ${si(ramp.duration_s, "s")}`,
+    enough(ramp),
+    ramp.longest_s === null ? (ramp.too_fast ? "too fast" : "any") : rampText(ramp.longest_s),
+    rampText(ramp.room_s),
+  ]);
+}
+
+/** The limits of the model. @param {Report} report */
+export function modelNote({ window_s, ramps, jump }) {
+  const window =
+    window_s === null
+      ? ""
+      : `The acceleration of steps is taken over the rotor's natural period, ${si(window_s, "s")}: what comes and goes faster moves it little. `;
+  const ramp = ramps.length
+    ? "Enough torque: ramps with which it suffices throughout. Longest ramp for the rate limit: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the longest ramp possible is T/2. "
+    : "";
+  const jumps =
+    jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : "";
+  return `${window}${ramp}${jumps}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`;
+}
+
+/** @param {number} channel @param {string} motor  Name of a motor of the list; empty for the channel's own. @param {Report} report */
+export function stepsText(channel, motor, { least }) {
+  if (!least) return `Channel ${channel} makes no step, so nothing is asked of its motor.`;
+  const which = motor === "" ? "its motor" : "this motor at 16 microsteps, on 24 V without a load,";
+  return `Channel ${channel}: what ${which} has, and what the steps need; no plan is known.`;
+}
