@@ -3,27 +3,459 @@ import { test } from "node:test";
 import { DEPTH } from "../../web/state/history.js";
 import { initial } from "../../web/state/initial.js";
 import { get, movedTo, set } from "../../web/state/paths.js";
-import { blockedBy, derivedAxis, isStale, selected } from "../../web/state/queries.js";
+import { blockedBy, derivedAxis, isStale } from "../../web/state/queries.js";
 import { EARLIER } from "../../web/state/result.js";
-import { clamp, endOf, shown } from "../../web/state/time_window.js";
+import { clamp, endOf, MIN_SPAN, shown } from "../../web/state/time_window.js";
 import { update } from "../../web/state/update.js";
 
-const scenario = { title: "turn", note: "what to look at", bus: { channels: 2 }, list: [1, 2, 3] };
-const summary = { end_cycle: 1000, clock_hz: 100, controllers: [{ channels: 2 }, { channels: 1 }] };
-const after = (state, ...messages) => messages.reduce(update, state);
-const start = () => initial(scenario);
-const withResult = () => after(start(), { type: "done", revision: 0, summary, ms: 1 });
+const first = { a: { b: 1 }, list: [{ c: 1 }, { c: 2 }] };
+const begin = () => initial(structuredClone(first));
+const play = (messages, from = begin()) => messages.flat().reduce(update, from);
 
-test("a path leads to a value, and set copies only what is on its way", () => {
-  const next = set(scenario, "list[1]", 7);
-  assert.deepEqual(next.list, [1, 7, 3]);
-  assert.deepEqual(scenario.list, [1, 2, 3]);
-  assert.equal(next.bus, scenario.bus);
-  assert.equal(get(next, "bus.channels"), 2);
-  assert.equal(get(next, "bus.none.deeper"), undefined);
+const edit = (path, value, joins) => ({ type: "edit", path, value, joins });
+const restructure = (value, moved) => ({ type: "edit", path: "list", value, moved });
+const named = { title: "S", note: "n", a: { b: 7 } };
+const texts = (state) => [state.scenario.title, state.scenario.note];
+const undo = { type: "undo" };
+const redo = { type: "redo" };
+const validated = (revision, { problems = [], over = false, derived = null } = {}) => ({
+  type: "validated",
+  revision,
+  validation: { problems, scenario: "{}", derived, cost: { over_budget: over } },
+});
+const controller = (channels) => ({ digest: "d", channels });
+const done = (revision, end = 1000, { clock = 10, controllers = [controller(4)] } = {}) => ({
+  type: "done",
+  revision,
+  ms: 1,
+  summary: { end_cycle: end, clock_hz: clock, controllers },
+});
+const window = (start, end) => ({ type: "window", window: { start, end } });
+const open = (start, end) => ({ type: "open", view: { window: { start, end } } });
+const view = (parts) => ({ type: "open", view: parts });
+const seen = { type: "seen", text: "x" };
+const compared = (text = "x") => ({ type: "compared", text, verdict: { same: true } });
+const cursor = (which, cycle) => ({ type: "cursor", which, cycle });
+const marker = (digit, cycle) => ({ type: "marker", digit, cycle });
+const replace = (scenario, origin = "preset:x") => ({ type: "replace", scenario, origin });
+const draft = (path) => ({ type: "draft", path, text: "x", message: "no number" });
+const many = (count) => Array.from({ length: count }, (_, at) => edit("a.b", at + 100));
+const b = (state) => state.scenario.a.b;
+
+const bare = (view, bare) => ({ type: "bare", view, bare });
+const rows = (some) => ({ type: "rows", rows: some });
+
+/** @type {[string, any[], (state: any) => any, any][]} name, messages, what is compared, what it must be */
+const cases = [
+  // History.
+  ["an edit changes one value", [edit("a.b", 2)], (s) => s.scenario, { ...first, a: { b: 2 } }],
+  ["an edit in a list changes one entry", [edit("list[1].c", 9)], (s) => s.scenario.list, [{ c: 1 }, { c: 9 }]],
+  ["an edit counts a revision", [edit("a.b", 2), edit("a.b", 3)], (s) => s.revision, 2],
+  ["an edit to the same value is none", [edit("a.b", 1)], (s) => [s.revision, s.past.length], [0, 0]],
+  ["undo takes an edit back", [edit("a.b", 2), undo], (s) => [b(s), s.past.length, s.future.length], [1, 0, 1]],
+  ["redo brings it again", [edit("a.b", 2), undo, redo], (s) => [b(s), s.past.length, s.future.length], [2, 1, 0]],
+  ["undo and redo are revisions of their own", [edit("a.b", 2), undo, redo], (s) => s.revision, 3],
+  ["undo with no past does nothing", [undo, redo], (s) => [b(s), s.revision], [1, 0]],
+  [
+    "an edit after undo ends the future",
+    [edit("a.b", 2), undo, edit("a.b", 3), redo],
+    (s) => [b(s), s.future.length],
+    [3, 0],
+  ],
+  ["typing in one field is one step", [edit("a.b", 2, true), edit("a.b", 23, true), undo], b, 1],
+  [
+    "typing in another field is another step",
+    [edit("a.b", 2, true), edit("list[0].c", 5, true), undo],
+    (s) => [b(s), s.scenario.list[0].c],
+    [2, 1],
+  ],
+  ["leaving the field ends the step", [edit("a.b", 2, true), { type: "committed" }, edit("a.b", 3, true), undo], b, 2],
+  ["undo ends the step", [edit("a.b", 2, true), undo, edit("a.b", 3, true), edit("a.b", 4, true), undo], b, 1],
+  ["the history is as deep as it says", [many(DEPTH + 20)], (s) => s.past.length, DEPTH],
+  [
+    "fifty steps back",
+    [many(DEPTH), Array(DEPTH).fill(undo)],
+    (s) => [b(s), s.past.length, s.future.length],
+    [1, 0, DEPTH],
+  ],
+  [
+    "fifty steps back and forth",
+    [many(DEPTH), Array(DEPTH).fill(undo), Array(DEPTH).fill(redo)],
+    (s) => [b(s), s.past.length, s.future.length],
+    [99 + DEPTH, DEPTH, 0],
+  ],
+  ["beyond fifty the oldest is lost", [many(DEPTH + 1), Array(DEPTH + 5).fill(undo)], b, 100],
+  ["undo brings the origin back", [replace({ a: { b: 7 } }), undo], (s) => [b(s), s.origin], [1, "own"]],
+  ["an edit makes a preset one's own", [replace({ a: { b: 7 } }), edit("a.b", 8)], (s) => s.origin, "own"],
+  [
+    "a preset is one step",
+    [replace({ a: { b: 7 } }), replace({ a: { b: 8 } }), undo],
+    (s) => [b(s), s.origin],
+    [7, "preset:x"],
+  ],
+  [
+    "a preset begins with fresh views",
+    [
+      done(0),
+      window(10, 50),
+      cursor("a", 3),
+      marker(4, 9),
+      { type: "packet", packet: 2 },
+      { type: "row", row: 3 },
+      replace({ a: { b: 7 } }),
+    ],
+    (s) => [s.window, s.cursors.a, s.markers[4], s.packet, s.row],
+    [null, null, null, null, 0],
+  ],
+  // Drafts: texts that are no number yet.
+  ["a draft holds the run", [validated(0), draft("a.b")], (s) => [blockedBy(s), isStale(s)], ["problems", true]],
+  [
+    "undo takes drafts away first",
+    [edit("a.b", 2), draft("a.b"), undo],
+    (s) => [b(s), Object.keys(s.drafts).length],
+    [2, 0],
+  ],
+  ["a number takes its draft's place", [draft("a.b"), edit("a.b", 2)], (s) => Object.keys(s.drafts), []],
+  [
+    "the same number again takes the draft away",
+    [draft("a.b"), edit("a.b", 1)],
+    (s) => [Object.keys(s.drafts), s.revision],
+    [[], 0],
+  ],
+  [
+    "an edit of the whole takes drafts of its parts",
+    [draft("list[0].c"), draft("a.b"), edit("list", [{ c: 1 }])],
+    (s) => Object.keys(s.drafts),
+    ["a.b"],
+  ],
+  [
+    "a part that is added leaves what is typed",
+    [draft("list[0].c"), restructure([{ c: 1 }, { c: 2 }, { c: 3 }], [])],
+    (s) => Object.keys(s.drafts),
+    ["list[0].c"],
+  ],
+  [
+    "what is typed goes where its part goes",
+    [
+      draft("list[0].c"),
+      draft("a.b"),
+      restructure(
+        [{ c: 2 }, { c: 1 }],
+        [
+          ["list[0]", "list[1]"],
+          ["list[1]", "list[0]"],
+        ],
+      ),
+    ],
+    (s) => Object.keys(s.drafts),
+    ["list[1].c", "a.b"],
+  ],
+  [
+    "and away with its part",
+    [
+      draft("list[0].c"),
+      draft("list[1].c"),
+      restructure(
+        [{ c: 2 }],
+        [
+          ["list[0]", null],
+          ["list[1]", "list[0]"],
+        ],
+      ),
+    ],
+    (s) => Object.keys(s.drafts),
+    ["list[0].c"],
+  ],
+  // Name and note.
+  [
+    "an edited preset is changed from it and loses its note",
+    [replace(named), edit("a.b", 8)],
+    texts,
+    ["changed from S", ""],
+  ],
+  [
+    "in no more letters than a name can have",
+    [replace({ ...named, title: "é".repeat(120) }), edit("a.b", 8)],
+    texts,
+    [`changed from ${"é".repeat(107)}`, ""],
+  ],
+  ["once", [replace(named), edit("a.b", 8), edit("a.b", 9)], texts, ["changed from S", ""]],
+  [
+    "also what was changed from it before",
+    [replace({ ...named, title: "changed from S" }, "shared"), edit("a.b", 8)],
+    texts,
+    ["changed from S", ""],
+  ],
+  ["until it has a name", [replace(named), edit("a.b", 8), edit("title", "mine"), edit("a.b", 9)], texts, ["mine", ""]],
+  ["a name that is given first stays", [replace(named), edit("title", "mine"), edit("a.b", 8)], texts, ["mine", ""]],
+  [
+    "a note that is written stays",
+    [replace(named), edit("note", "why"), edit("a.b", 8)],
+    texts,
+    ["changed from S", "why"],
+  ],
+  ["undo gives name and note back", [replace(named), edit("a.b", 8), undo], texts, ["S", "n"]],
+  [
+    "and they are the preset's again",
+    [replace(named), edit("a.b", 8), undo, edit("a.b", 9)],
+    texts,
+    ["changed from S", ""],
+  ],
+  ["redo as well", [replace(named), edit("a.b", 8), undo, redo, edit("a.b", 9)], texts, ["changed from S", ""]],
+  ["one's own experiment keeps both", [replace(named, "own"), edit("a.b", 8)], texts, ["S", "n"]],
+  // Validation.
+  ["a validation is taken", [validated(0)], (s) => [s.validated, blockedBy(s)], [0, null]],
+  [
+    "a stale validation is ignored",
+    [edit("a.b", 2), validated(0, { problems: [{ path: "", message: "" }] })],
+    (s) => [s.validation, s.validated, blockedBy(s)],
+    [null, -1, "unvalidated"],
+  ],
+  ["a validation of a state before undo is ignored", [edit("a.b", 2), undo, validated(1)], blockedBy, "unvalidated"],
+  ["problems hold the run", [validated(0, { problems: [{ path: "", message: "" }] })], blockedBy, "problems"],
+  ["a budget holds the run", [validated(0, { over: true })], blockedBy, "budget"],
+  ["an approved budget does not", [validated(0, { over: true }), { type: "approve" }], blockedBy, null],
+  [
+    "the approval is of one revision",
+    [validated(0, { over: true }), { type: "approve" }, edit("a.b", 2), validated(1, { over: true })],
+    blockedBy,
+    "budget",
+  ],
+  [
+    "what follows stays while nothing new does",
+    [validated(0, { derived: "d" }), edit("a.b", 2), validated(1)],
+    (s) => s.derived,
+    "d",
+  ],
+  // Results.
+  [
+    "a result is taken",
+    [{ type: "running" }, done(0)],
+    (s) => [s.result.revision, s.run.phase, isStale(s), endOf(s)],
+    [0, "done", false, 1000],
+  ],
+  [
+    "a result of an old revision is ignored",
+    [edit("a.b", 2), { type: "running" }, done(0)],
+    (s) => [s.result, s.run.phase],
+    [null, "running"],
+  ],
+  ["a result is stale after an edit", [done(0), edit("a.b", 2)], (s) => [s.result.revision, isStale(s)], [0, true]],
+  ["undo to the same scenario is another revision", [done(0), edit("a.b", 2), undo], isStale, true],
+  [
+    "a failed run keeps the last result",
+    [done(0), edit("a.b", 2), { type: "failed", message: "m" }],
+    (s) => [s.result.revision, s.run.phase, s.run.message],
+    [0, "failed", "m"],
+  ],
+  [
+    "a shorter run clamps the window",
+    [done(0), window(800, 900), edit("a.b", 2), done(1, 500)],
+    (s) => s.window,
+    { start: 400, end: 500 },
+  ],
+  [
+    "another clock drops the window and the cursors",
+    [done(0), window(80, 90), cursor("a", 3), edit("a.b", 2), done(1, 1000, { clock: 11 })],
+    (s) => [s.window, s.cursors.a],
+    [null, null],
+  ],
+  [
+    "cursors and markers behind the end go",
+    [done(0), cursor("a", 700), cursor("b", 300), marker(1, 700), marker(2, 300), edit("a.b", 2), done(1, 500)],
+    (s) => [s.cursors.a, s.cursors.b, s.markers[1], s.markers[2]],
+    [null, 300, null, 300],
+  ],
+  [
+    "a row of a channel that is gone is left",
+    [done(0), { type: "row", row: 3 }, edit("a.b", 2), done(1, 1000, { controllers: [controller(2)] })],
+    (s) => s.row,
+    0,
+  ],
+  [
+    "an axis that is gone is left",
+    [done(0), { type: "axis", axis: 3 }, edit("a.b", 2), done(1, 1000, { controllers: [controller(2)] })],
+    (s) => s.axis,
+    1,
+  ],
+  [
+    "a controller that is gone is left",
+    [
+      done(0, 1000, { controllers: [controller(1), controller(1)] }),
+      { type: "controller", controller: 1 },
+      edit("a.b", 2),
+      done(1),
+    ],
+    (s) => [s.controller, s.result.controller],
+    [1, 0],
+  ],
+  [
+    "and found again when it is back",
+    [
+      done(0, 1000, { controllers: [controller(1), controller(1)] }),
+      { type: "controller", controller: 1 },
+      edit("a.b", 2),
+      done(1),
+      edit("a.b", 3),
+      done(2, 1000, { controllers: [controller(1), controller(1)] }),
+    ],
+    (s) => s.result.controller,
+    1,
+  ],
+  // The shown time.
+  ["without a window all is shown", [done(0)], shown, { start: 0, end: 1000 }],
+  ["before a result the least is shown", [], shown, { start: 0, end: MIN_SPAN }],
+  ["a window is kept inside the run", [done(0), window(-50, 100)], (s) => s.window, { start: 0, end: 150 }],
+  ["on the right as well", [done(0), window(950, 1050)], (s) => s.window, { start: 900, end: 1000 }],
+  ["a window is no longer than the run", [done(0), window(-5000, 5000)], (s) => s.window, { start: 0, end: 1000 }],
+  ["a window has a least length", [done(0), window(500, 500)], (s) => s.window, { start: 500, end: 500 + MIN_SPAN }],
+  ["a window of no numbers is none", [done(0), window(NaN, 5)], (s) => s.window, null],
+  ["a window is whole cycles", [done(0), window(10.4, 99.6)], (s) => s.window, { start: 10, end: 99 }],
+  [
+    "a link's window waits for the result",
+    [open(10, 50), done(0)],
+    (s) => [s.window, s.awaited],
+    [{ start: 10, end: 50 }, null],
+  ],
+  ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
+  [
+    "a link's cursors, axis and unit are taken as far as the run has them",
+    [view({ a: 5, b: 5000, axis: 9, unit: "mm", sides: { spectrum: "timing" } }), done(0)],
+    (s) => [s.cursors, s.axis, s.unit, s.sides, s.awaited],
+    [{ a: 5, b: null }, 3, "mm", { spectrum: "timing" }, null],
+  ],
+  [
+    "a link to the run on show is taken at once",
+    [done(0), view({ a: 7, controller: 4 })],
+    (s) => [s.cursors.a, s.result.controller],
+    [7, 0],
+  ],
+  [
+    "what a sender saw is kept until the run is compared",
+    [seen, done(0), compared()],
+    (s) => s.seen,
+    { text: "x", verdict: { same: true } },
+  ],
+  ["another comparison is not this link's", [seen, done(0), compared("y")], (s) => s.seen.verdict, null],
+  ["another run is compared anew", [seen, done(0), compared(), done(0)], (s) => s.seen.verdict, null],
+  ["an edit forgets what a sender saw", [seen, done(0), compared(), edit("a.b", 2)], (s) => s.seen, null],
+  ["so does undo", [edit("a.b", 2), seen, undo], (s) => s.seen, null],
+  ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
+  // What is pointed at.
+  [
+    "the same highlight is no change",
+    [
+      { type: "highlight", highlighted: { start: 1, end: 2 } },
+      { type: "highlight", highlighted: { start: 1, end: 2 } },
+    ],
+    (s) => s.highlighted,
+    { start: 1, end: 2 },
+  ],
+  [
+    "all channels fold at once",
+    [
+      { type: "fold-all", folded: true },
+      { type: "fold", channel: 3, folded: false },
+    ],
+    (s) => [s.folds[2], s.folds[3], s.folds[15]],
+    [true, false, true],
+  ],
+  // How the views and the rows of the pulses stand.
+  [
+    "a view that has nothing to show is told once",
+    [bare("packets", true), bare("packets", true), bare("spectrum", true)],
+    (s) => s.bare,
+    ["packets", "spectrum"],
+  ],
+  [
+    "until it has",
+    [bare("packets", true), bare("spectrum", true), bare("packets", false)],
+    (s) => s.bare,
+    ["spectrum"],
+  ],
+  [
+    "rows have a height, an order and names, each by itself",
+    [rows({ px: 30 }), rows({ order: ["RX", "EN"] }), rows({ names: { 0: "X" } }), rows({ hidden: ["ticks"] })],
+    (s) => s.panes.pulses,
+    { px: 30, order: ["RX", "EN"], hidden: ["ticks"], names: { 0: "X" } },
+  ],
+  ["which outlive the scenario", [rows({ px: 30 }), replace({ a: { b: 7 } })], (s) => s.panes.pulses.px, 30],
+  [
+    "and what is done to the panes",
+    [rows({ px: 30 }), { type: "pane", panes: { folded: ["motion"] } }],
+    (s) => [s.panes.pulses.px, s.panes.folded],
+    [30, ["motion"]],
+  ],
+  [
+    "each place has its own side",
+    [
+      { type: "side", area: "spectrum", side: "timing" },
+      { type: "side", area: "motion", side: "motor" },
+    ],
+    (s) => s.sides,
+    { spectrum: "timing", motion: "motor" },
+  ],
+];
+
+for (const [name, messages, look, wanted] of cases) test(name, () => assert.deepEqual(look(play(messages)), wanted));
+
+/** @param {any} value */
+function frozen(value) {
+  if (value === null || typeof value !== "object") return value;
+  for (const inner of Object.values(value)) frozen(inner);
+  return Object.freeze(value);
+}
+
+test("no message changes a state that it was given", () => {
+  for (const [name, messages] of cases)
+    assert.doesNotThrow(
+      () => messages.flat().reduce((state, message) => frozen(update(state, message)), frozen(begin())),
+      name,
+    );
 });
 
-test("a draft follows its part of the scenario, or goes with it", () => {
+test("an edit shares what it does not touch, so that views can compare by identity", () => {
+  const base = begin();
+  assert.equal(play([edit("a.b", 2)], base).scenario.list, base.scenario.list);
+});
+
+test("a message without effect gives the same state", () => {
+  const base = begin();
+  for (const type of ["hover", "committed", "undo", "bare"])
+    assert.equal(update(base, { type, cycle: null, bare: false }), base, type);
+});
+
+test("an earlier visit's result is shown while there is none", () => {
+  const { result } = play([done(EARLIER)]);
+  assert.equal(result.revision, EARLIER);
+  assert.equal(play([done(0), done(EARLIER)]).result.revision, 0);
+});
+
+test("the moves of one gesture are one step back", () => {
+  const pinch = (start, end) => ({ ...window(start, end), joins: "pinch" });
+  const zoomed = play([done(0), window(0, 500), pinch(0, 400), pinch(0, 300)]);
+  assert.deepEqual(shown(zoomed), { start: 0, end: 300 });
+  assert.deepEqual(shown(update(zoomed, { type: "back" })), { start: 0, end: 500 });
+});
+
+test("a window is clamped to the run", () => {
+  const rows = [
+    [{ start: 5, end: 100 }, 1000, { start: 5, end: 100 }],
+    [{ start: 0, end: 1 }, 3, { start: 0, end: MIN_SPAN }],
+    [{ start: 1e300, end: 2e300 }, 1000, { start: 0, end: 1000 }],
+    [{ start: -Infinity, end: 5 }, 1000, { start: 0, end: 1000 }],
+    [{ start: 0, end: Number.NaN }, 1000, null],
+  ];
+  for (const [given, last, wanted] of rows) assert.deepEqual(clamp(given, last), wanted);
+});
+
+test("a path leads to a value, and set makes no list of an object", () => {
+  assert.deepEqual(set({ x: [1, 2] }, "x[0]", 9), { x: [9, 2] });
+  assert.equal(get(first, "list[1].c"), 2);
+  assert.equal(get(first, "none.deeper"), undefined);
+});
+
+test("a path follows its part of the scenario", () => {
   const rows = [
     ["moves[1].duration_s", [["moves[1]", "moves[0]"]], "moves[0].duration_s"],
     ["moves[1].duration_s", [["moves[1]", null]], null],
@@ -31,131 +463,6 @@ test("a draft follows its part of the scenario, or goes with it", () => {
     ["anything", [["", null]], null],
   ];
   for (const [at, moved, expected] of rows) assert.equal(movedTo(at, moved), expected);
-  const draft = { type: "draft", path: "list[0]", text: "x", message: "no number" };
-  const replaced = after(start(), draft, { type: "edit", path: "list", value: [9] });
-  assert.deepEqual(replaced.drafts, {});
-});
-
-test("keystrokes in one field are one step of undo until they are committed", () => {
-  const type = (value) => ({ type: "edit", path: "title", value, joins: true });
-  const typed = after(start(), type("a"), type("ab"), { type: "committed" }, type("abc"));
-  assert.equal(typed.past.length, 2);
-  const back = after(typed, { type: "undo" });
-  assert.equal(back.scenario.title, "ab");
-  assert.equal(after(back, { type: "undo" }, { type: "redo" }).scenario.title, "ab");
-});
-
-test("undo discards a draft first", () => {
-  const draft = { type: "draft", path: "list[0]", text: "x", message: "no number" };
-  const drafted = after(start(), { type: "edit", path: "bus.channels", value: 3 }, draft);
-  const back = after(drafted, { type: "undo" });
-  assert.deepEqual([back.drafts, back.scenario.bus.channels], [{}, 3]);
-});
-
-test("the history has a limit", () => {
-  let state = start();
-  for (let i = 0; i < DEPTH + 10; i++) state = update(state, { type: "edit", path: "bus.channels", value: 100 + i });
-  assert.equal(state.past.length, DEPTH);
-});
-
-test("an edited preset is named after it and loses its note", () => {
-  const preset = after(start(), { type: "replace", scenario, origin: "preset:turn" });
-  const edited = after(preset, { type: "edit", path: "bus.channels", value: 4 });
-  assert.equal(edited.scenario.title, "changed from turn");
-  assert.equal(edited.scenario.note, "");
-  assert.equal(edited.origin, "own");
-  const named = after(preset, { type: "edit", path: "title", value: "mine" });
-  assert.deepEqual([named.scenario.title, named.scenario.note], ["mine", scenario.note]);
-});
-
-test("an edit to the same value changes nothing", () => {
-  const state = start();
-  assert.equal(update(state, { type: "edit", path: "bus.channels", value: 2 }).revision, state.revision);
-});
-
-test("only a validated scenario without problems runs", () => {
-  const validation = { problems: [], warnings: [], scenario: "{}", derived: null, cost: null };
-  const validated = (more) =>
-    after(start(), { type: "validated", revision: 0, validation: { ...validation, ...more } });
-  const costly = validated({ cost: { over_budget: true } });
-  const rows = [
-    [start(), "unvalidated"],
-    [validated({}), null],
-    [validated({ problems: [{ path: "bus", message: "no" }] }), "problems"],
-    [costly, "budget"],
-    [update(costly, { type: "approve" }), null],
-    [update(validated({}), { type: "draft", path: "bus", text: "", message: "" }), "problems"],
-    [after(start(), { type: "validated", revision: 9, validation }), "unvalidated"],
-  ];
-  for (const [state, expected] of rows) assert.equal(blockedBy(state), expected);
-});
-
-test("a result of another revision is ignored, except an earlier visit's while there is none", () => {
-  assert.equal(after(start(), { type: "done", revision: 5, summary, ms: 1 }).result, null);
-  const earlier = after(start(), { type: "done", revision: EARLIER, summary, ms: 1 });
-  assert.equal(earlier.result.revision, EARLIER);
-  assert.ok(isStale(earlier));
-  assert.ok(!isStale(withResult()));
-});
-
-test("a run of another clock takes away window, cursors and markers", () => {
-  const set = after(
-    withResult(),
-    { type: "window", window: { start: 100, end: 900 } },
-    { type: "cursor", which: "a", cycle: 500 },
-    { type: "marker", digit: 3, cycle: 950 },
-  );
-  const shorter = after(set, { type: "done", revision: 0, summary: { ...summary, end_cycle: 600 }, ms: 1 });
-  assert.deepEqual(shorter.window, { start: 0, end: 600 });
-  assert.deepEqual([shorter.cursors.a, shorter.markers[3]], [500, null]);
-  const other = after(set, { type: "done", revision: 0, summary: { ...summary, clock_hz: 7 }, ms: 1 });
-  assert.deepEqual([other.window, other.cursors.a, other.zooms], [null, null, []]);
-});
-
-test("a selected controller limits axis and row to its channels", () => {
-  const state = after(withResult(), { type: "axis", axis: 1 }, { type: "row", row: 1 });
-  const second = after(state, { type: "controller", controller: 1 });
-  assert.deepEqual([second.axis, second.row, selected(second).channels], [0, 0, 1]);
-  assert.equal(after(state, { type: "controller", controller: 9 }).result.controller, 1);
-});
-
-test("a link's view waits for the run", () => {
-  const view = { window: { start: 10, end: 110 }, a: 50, b: 5000, axis: 1, unit: "mm" };
-  const early = after(start(), { type: "open", view });
-  assert.equal(early.window, null);
-  const run = after(early, { type: "done", revision: 0, summary, ms: 1 });
-  assert.deepEqual(
-    [run.window, run.cursors, run.axis, run.unit, run.awaited],
-    [{ start: 10, end: 110 }, { a: 50, b: null }, 1, "mm", null],
-  );
-});
-
-test("the window stays inside the run and the moves of a gesture are one step back", () => {
-  const rows = [
-    [
-      { start: -50, end: 50 },
-      { start: 0, end: 100 },
-    ],
-    [
-      { start: 990, end: 1090 },
-      { start: 900, end: 1000 },
-    ],
-    [
-      { start: 500, end: 501 },
-      { start: 500, end: 516 },
-    ],
-    [{ start: Number.NaN, end: 5 }, null],
-  ];
-  for (const [window, expected] of rows) assert.deepEqual(clamp(window, 1000), expected);
-  const zoomed = after(
-    withResult(),
-    { type: "window", window: { start: 0, end: 500 } },
-    { type: "window", window: { start: 0, end: 400 }, joins: "pinch" },
-    { type: "window", window: { start: 0, end: 300 }, joins: "pinch" },
-  );
-  assert.deepEqual(shown(zoomed), { start: 0, end: 300 });
-  assert.deepEqual(shown(after(zoomed, { type: "back" })), { start: 0, end: 500 });
-  assert.deepEqual(shown(after(zoomed, { type: "back" }, { type: "back" })), { start: 0, end: endOf(zoomed) });
 });
 
 test("the axis of a field is found by its path", () => {

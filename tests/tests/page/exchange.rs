@@ -1,7 +1,7 @@
 //! Links that prove themselves, the view in a link, and files that are taken in.
 
 use anyhow::{Context, Result, ensure};
-use serde_json::{Value, json};
+use serde_json::json;
 use stepscope_core::{
     inspect::{
         fingerprint::Fingerprint,
@@ -14,7 +14,7 @@ use stepscope_core::{
 };
 
 use crate::{
-    bench::{in_browser, in_sources},
+    bench::in_browser,
     links::{copied, whole},
     native::{Known, with_distance},
     session::Session,
@@ -123,38 +123,6 @@ fn the_view_of_a_link_is_shown_and_bad_parts_of_it_are_not() -> Result<()> {
         // As links of the first form wrote it.
         page.open(&format!("#{}&v=1000-90000", known.link)).await?;
         page.until_equal("location.hash", &json!(format!("#{}&v=1000-90000", known.link))).await
-    })
-}
-
-/// Every cut and every changed character of a view, as the page's own module reads it.
-const CUTS: &str = "
-    const { parseView, writeView } = await import('./shell/view_part.js');
-    const whole = '120-4500.k1.x2.a300.b900.tpackets.stiming.umm.omotor';
-    const given = [whole];
-    for (let at = 0; at < whole.length; at++) {
-        given.push(whole.slice(0, at));
-        for (const sign of ['0', '9', 'a', 'k', 'Z', '.', '-', '_', '%', ' ', '\\u00e9', '']) given.push(whole.slice(0, at) + sign + whole.slice(at + 1));
-    }
-    const bad = [];
-    for (const text of given) {
-        const view = parseView(text);
-        const ok = Object.entries(view).every(([name, value]) => name === 'window' ? value.start < value.end && Number.isSafeInteger(value.end)
-            : name === 'sides' ? Object.values(value).every((side) => /^[a-z]+$/.test(side))
-            : ['view', 'unit'].includes(name) ? /^[a-z]+$/.test(value) : Number.isSafeInteger(value) && value >= 0);
-        if (!ok || writeView(parseView(writeView(view))) !== writeView(view)) bad.push(text);
-    }
-    const empty = [undefined, '', 'broken', '5-4', '1-2-3', '__proto__', 'constructor', '.'.repeat(9999), '99999999999999999999-1'].filter((text) => JSON.stringify(parseView(text)) !== '{}');
-    return { bad, empty, given: given.length, whole: writeView(parseView(whole)) === whole };";
-
-#[test]
-fn no_cut_and_no_changed_character_of_a_view_does_more_than_leave_parts_out() -> Result<()> {
-    in_sources(|page| async move {
-        page.open("").await?;
-        let script = format!("return (async () => {{ {CUTS} }})();");
-        let found: Value = page.js(&script, vec![]).await?;
-        ensure!(found["given"].as_u64().is_some_and(|given| given > 500), "{found}");
-        assert_eq!((&found["bad"], &found["empty"], &found["whole"]), (&json!([]), &json!([]), &json!(true)));
-        Ok(())
     })
 }
 

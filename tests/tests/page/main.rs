@@ -80,7 +80,6 @@ mod screens;
 mod session;
 mod small_screens;
 mod spectrum;
-mod state;
 mod study;
 mod time_axis;
 mod timing;
