@@ -16,19 +16,19 @@ import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
 import { createHeader, createTheme } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
+import { createLazyPopover } from "./shell/lazy_popover.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
 import { createOwn } from "./shell/own.js";
-import { createPanel } from "./shell/panel.js";
 import { createPanes } from "./shell/panes.js";
 import {
+  listedRecordings,
   loadGood,
   loadHistory,
   loadNewer,
   loadPrevious,
   loadScenario,
-  recordingsKept,
   saveGood,
   saveHistory,
   saveScenario,
@@ -238,8 +238,8 @@ function remediesOf(engine) {
   };
 }
 
-/** What the panel of exports holds; it loads when that is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/panel.js").Panel} panel */
-async function exportsOf(page, panel) {
+/** The content of the popover of exports, which loads when it is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/lazy_popover.js").Popover} popover */
+async function exportsOf(page, popover) {
   const [{ createExports }, { chartFiles }, { packetFiles }, { tableFiles }] = await Promise.all([
     import("./shell/exports.js"),
     import("./views/chart_offers.js"),
@@ -253,7 +253,7 @@ async function exportsOf(page, panel) {
       ["Packets", packetFiles],
       ["Step tables", tableFiles],
     ],
-    panel,
+    popover,
   );
 }
 
@@ -314,20 +314,21 @@ async function start() {
     createPanes(page),
     ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),
     createNotices(page),
-    createPanel(
+    createLazyPopover(
       "share",
       "share-panel",
-      async (panel) => (await import("./shell/share.js")).createShare({ address: link.address, ...page }, panel),
+      async (popover) => (await import("./shell/share.js")).createShare({ address: link.address, ...page }, popover),
       "link-about",
     ),
-    createPanel("export", "export-panel", (panel) => exportsOf(page, panel), "export-status"),
+    createLazyPopover("export", "export-panel", (popover) => exportsOf(page, popover), "export-status"),
     createOwn({ fresh: fallback, ...page }),
     link,
   ];
   createKeys(spectrum.load);
   createGuide(page);
   // Its code and its storage are looked at only where there is something.
-  if (recordingsKept()) await import("./shell/kept.js").then(({ restore }) => restore(page)).catch(() => {});
+  if (listedRecordings())
+    await import("./shell/recording/saved_recordings.js").then(({ restore }) => restore(page)).catch(() => {});
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {
     follow(undefined);

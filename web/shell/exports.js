@@ -22,7 +22,7 @@ const PIECES = 16;
 
 class Cancelled extends Error {}
 
-/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
+/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. @param {import("./lazy_popover.js").Popover} popover @returns {import("./lazy_popover.js").Content} */
 export function createExports({ engine, now }, others, { isOpen }) {
   const stretch = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");

@@ -72,7 +72,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   async function openSample(id) {
     preset.value = "";
     try {
-      await (await import("./recording.js")).openRecording(page, id);
+      await (await import("./recording/recording.js")).openRecording(page, id);
     } catch (error) {
       refuse("The recording", error);
     }

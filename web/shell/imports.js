@@ -7,7 +7,9 @@ export function createImports(page) {
   const chooser = /** @type {HTMLInputElement} */ (byId("open-file"));
   const hint = byId("drop-hint");
   byId("open").addEventListener("click", () => chooser.click());
-  byId("device").addEventListener("click", () => attempt(async () => (await import("./live.js")).openDevice(page)));
+  byId("device").addEventListener("click", () =>
+    attempt(async () => (await import("./live/live.js")).openDevice(page)),
+  );
   chooser.addEventListener("change", () => {
     const [file] = chooser.files ?? [];
     chooser.value = "";

@@ -53,7 +53,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
         );
       else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
-      else await (await import("./recording.js")).openRecording({ engine, dispatch, now }, file);
+      else await (await import("./recording/recording.js")).openRecording({ engine, dispatch, now }, file);
     } catch (error) {
       if (!(error instanceof Dropped)) tell("error", `${file.name} cannot be opened: ${message(error)}`);
     }

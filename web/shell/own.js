@@ -2,7 +2,7 @@
 import { byId, element } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
-import { createPanel } from "./panel.js";
+import { createLazyPopover } from "./lazy_popover.js";
 import { loadExperiments } from "./storage.js";
 
 /** Lists the own experiments beside the presets. */
@@ -24,7 +24,7 @@ async function openOwn({ engine, dispatch }, kept) {
 
 /** @param {import("./experiments.js").Given} page */
 export function createOwn(page) {
-  const panel = createPanel(
+  const panel = createLazyPopover(
     "experiments",
     "experiments-panel",
     async ({ close }) =>

@@ -7,7 +7,7 @@ import { viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** @param {{engine: import("../engine/engine.js").Engine, address: (digests: string | undefined) => Promise<string>} & import("../state/types.js").Page} page @param {import("./panel.js").Panel} panel @returns {import("./panel.js").Content} */
+/** @param {{engine: import("../engine/engine.js").Engine, address: (digests: string | undefined) => Promise<string>} & import("../state/types.js").Page} page @param {import("./lazy_popover.js").Popover} popover @returns {import("./lazy_popover.js").Content} */
 export function createShare({ engine, address, now }, { isOpen }) {
   const text = /** @type {HTMLTextAreaElement} */ (byId("link-text"));
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));

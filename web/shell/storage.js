@@ -134,7 +134,7 @@ export const saveGuided = () => save(GUIDED, "seen");
 export const loadPanes = () => load(PANES);
 /** @param {string} json */
 export const savePanes = (json) => save(PANES, json);
-/** Which recordings are kept beside (kept.js), as JSON; null where none ever was. */
-export const recordingsKept = () => load(RECORDINGS);
+/** The saved recordings (recording/saved_recordings.js), as JSON; null where there never was one. */
+export const listedRecordings = () => load(RECORDINGS);
 /** Whether the list is kept. @param {string} json */
 export const listRecordings = (json) => save(RECORDINGS, json);

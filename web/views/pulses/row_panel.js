@@ -3,7 +3,7 @@
  * loads with the first of them (row_list.js).
  */
 import { listen } from "../../shell/commands.js";
-import { createPanel } from "../../shell/panel.js";
+import { createLazyPopover } from "../../shell/lazy_popover.js";
 
 /** @typedef {ReturnType<typeof import("./row_list.js").createRowList>} RowList */
 
@@ -28,5 +28,5 @@ export function createRowPanel({ canvas, ...page }) {
     { keys: ["Alt+ArrowUp"], text: "lower rows", run: key(({ stretch }) => stretch(-1)) },
     { keys: ["r"], text: "list of the rows: heights, order, names", run: key(({ open }) => open()) },
   ]);
-  return createPanel("rows-open", "rows-panel", load, "rows-about");
+  return createLazyPopover("rows-open", "rows-panel", load, "rows-about");
 }

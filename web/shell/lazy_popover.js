@@ -3,14 +3,14 @@ import { byId } from "../dom.js";
 import { dropDown } from "./popover.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {{isOpen: () => boolean, close: () => void}} Panel */
+/** @typedef {{isOpen: () => boolean, close: () => void}} Popover */
 /** @typedef {{opened: () => void, render?: (state: State, before: State | undefined) => void}} Content  `opened` is called whenever the panel opens. */
 
 /** What is told where its code could not be fetched. */
 const MISSING = "This part of the page could not be loaded; try again when the network is there.";
 
-/** @param {string} button @param {string} panel  Their ids. @param {(panel: Panel) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
-export function createPanel(button, panel, load, about) {
+/** @param {string} button @param {string} panel  Their ids. @param {(popover: Popover) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
+export function createLazyPopover(button, panel, load, about) {
   /** @type {Promise<Content> | null} */
   let loading = null;
   /** @type {Content | null} */

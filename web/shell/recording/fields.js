@@ -1,14 +1,9 @@
 /** The fields of a recording's dialog, each with its error under it. */
-import { element } from "../dom.js";
-import { parseNumber } from "../state/number.js";
+import { element } from "../../dom.js";
+import { parseNumber } from "../../state/number.js";
 
 /** Largest number that a field takes: what the core has room for. */
 const MAX = 2 ** 32 - 1;
-
-/** A message of the core as a sentence. @param {string} text */
-export function sentence(text) {
-  return `${text.slice(0, 1).toUpperCase()}${text.slice(1).replace(/\.$/, "")}.`;
-}
 
 /**
  * A field, its label and its error: of what is typed, or of what the core reports of it.

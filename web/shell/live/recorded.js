@@ -1,18 +1,18 @@
 /** A session that this page had as a device: it opens as a scenario, if it is the session (LIVE H5). */
-import { button, byId } from "../dom.js";
-import { readJson } from "../state/json.js";
-import { counted } from "../state/number.js";
-import { baseName } from "./offers.js";
-import { save } from "./save.js";
-import { ownIsKept } from "./storage.js";
+import { button, byId } from "../../dom.js";
+import { readJson } from "../../state/json.js";
+import { counted } from "../../state/number.js";
+import { baseName } from "../offers.js";
+import { save } from "../save.js";
+import { ownIsKept } from "../storage.js";
 
-/** @typedef {import("../state/types.js").Page} Page */
+/** @typedef {import("../../state/types.js").Page} Page */
 
 /** How long a recorded session may run before it is said that it has not, in ms, and how often that is looked at. */
 const PATIENCE_MS = 60_000;
 const LOOK_MS = 100;
 
-/** @param {Page} page @param {import("../engine/live.js").Recorded} session @param {string} gone  That its port is lost, if it is. */
+/** @param {Page} page @param {import("../../engine/live.js").Recorded} session @param {string} gone  That its port is lost, if it is. */
 export async function openRecorded({ dispatch, now }, { scenario, digests, whole, set_backs, times }, gone) {
   dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
   const part = whole ? "" : " It holds as much as a recording may.";
@@ -31,7 +31,7 @@ export async function openRecorded({ dispatch, now }, { scenario, digests, whole
   byId("link-message").querySelector(".close")?.before(again);
 }
 
-/** Beside the scenario, which the export has. @param {import("../state/types.js").State} state @param {Blob} times */
+/** Beside the scenario, which the export has. @param {import("../../state/types.js").State} state @param {Blob} times */
 export function saveTimes(state, times) {
   save(`${baseName(state)}.session.json`, times.type, [times]);
 }

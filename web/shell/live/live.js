@@ -3,19 +3,19 @@
  * without a press. While it sends it stands aside: the replies come in the packets view, and STOP, first of all, stays in
  * sight. It loads when it is first opened.
  */
-import { button, element, fill, say, style } from "../dom.js";
-import { openLive, serial } from "../engine/live.js";
-import { message } from "./link.js";
-import { carryInto } from "./live_carry.js";
-import { positionCurves } from "./live_curves.js";
-import { openRecorded, saveTimes } from "./live_recorded.js";
-import { outcome, reportText, servedText, twinOf } from "./live_report.js";
-import { about as aboutOf, NAMES, ROLES, stopTitle, usbOf, whyNone, whyNoPort } from "./live_roles.js";
-import { deviceRows } from "./live_rows.js";
+import { button, element, fill, say, style } from "../../dom.js";
+import { openLive, serial } from "../../engine/live.js";
+import { message } from "../link.js";
+import { carryInto } from "./carried_button.js";
+import { deviceRows } from "./device_rows.js";
+import { positionCurves } from "./position_curves.js";
+import { openRecorded, saveTimes } from "./recorded.js";
+import { outcome, reportText, servedText, twinOf } from "./report.js";
+import { about as aboutOf, NAMES, ROLES, stopTitle, usbOf, whyNone, whyNoPort } from "./roles.js";
 
-/** @typedef {import("../engine/live.js").Facts} Facts */
-/** @typedef {import("../engine/live.js").Told} Told */
-/** @typedef {import("./live_roles.js").Role} Role */
+/** @typedef {import("../../engine/live.js").Facts} Facts */
+/** @typedef {import("../../engine/live.js").Told} Told */
+/** @typedef {import("./roles.js").Role} Role */
 
 /** @typedef {{json: string, title: string, baud: number, raw: boolean, port: any}} Sent  An experiment as it goes on a port. */
 
@@ -34,7 +34,7 @@ const stuck = new WeakSet();
 /** Brings the dialog that there is in front. @type {(() => void) | null} */
 let bring = null;
 
-/** @param {import("./opened.js").Given} page */
+/** @param {import("../opened.js").Given} page */
 export async function openDevice(page) {
   if (bring) return bring();
   bring = () => {};
@@ -222,7 +222,7 @@ export async function openDevice(page) {
     const found = facts?.[name];
     const isInFront = inFront();
     const why = noPort || broken || whyNone(scenario, found);
-    say(about, why || aboutOf(name, /** @type {import("../engine/live.js").Role} */ (found)));
+    say(about, why || aboutOf(name, /** @type {import("../../engine/live.js").Role} */ (found)));
     about.classList.toggle("error", why !== "" && (facts !== null || broken !== ""));
     say(choose, port ? "Choose another port…" : "Choose a port…");
     say(start, ROLES[name].start);
@@ -447,7 +447,7 @@ export async function openDevice(page) {
     progress.value = state.ticks > 0 ? state.done / state.ticks : 0;
   }
 
-  /** @param {import("../engine/live.js").Recorded} session */
+  /** @param {import("../../engine/live.js").Recorded} session */
   function recorded(session) {
     const { why, lost, heard, times: clock } = session;
     ended = true;

@@ -2,7 +2,7 @@
  * The table of a recording's channels, each with its signals: it shows and edits all that a channel map can say
  * (core/capture/src/channel_map.rs).
  */
-import { element, fill } from "../dom.js";
+import { element, fill } from "../../dom.js";
 
 /** @typedef {{motors: number[], message?: undefined} | {motors?: undefined, message: string}} Motors */
 

@@ -1,14 +1,14 @@
 /** What became of a stream to a device, or of a session with a host, in words. Nothing is said to be done that is not known. */
-import { element } from "../dom.js";
-import { count, counted, time } from "../state/number.js";
+import { element } from "../../dom.js";
+import { count, counted, time } from "../../state/number.js";
 
-/** @typedef {import("../engine/live.js").Reported} Reported */
-/** @typedef {import("../engine/live.js").ReportedFramed} ReportedFramed */
-/** @typedef {import("../engine/live.js").RawReport} RawReport */
-/** @typedef {import("../engine/live.js").Ended} Ended */
-/** @typedef {import("../engine/live.js").Recorded} Recorded */
-/** @typedef {import("../engine/live.js").Served} Served */
-/** @typedef {import("../engine/live.js").End} End */
+/** @typedef {import("../../engine/live.js").Reported} Reported */
+/** @typedef {import("../../engine/live.js").ReportedFramed} ReportedFramed */
+/** @typedef {import("../../engine/live.js").RawReport} RawReport */
+/** @typedef {import("../../engine/live.js").Ended} Ended */
+/** @typedef {import("../../engine/live.js").Recorded} Recorded */
+/** @typedef {import("../../engine/live.js").Served} Served */
+/** @typedef {import("../../engine/live.js").End} End */
 
 const ms = (/** @type {number | null} */ value) => (value === null ? "–" : `${value.toFixed(2)} ms`);
 

@@ -1,8 +1,8 @@
 /** Where a recording differs from the baseline: a button next to “recording” opens a table whose times are buttons. */
-import { button, byId, element, fill } from "../dom.js";
-import { count, counted, time } from "../state/number.js";
-import { showPlace } from "./notices.js";
-import { around } from "./verdict.js";
+import { button, byId, element, fill } from "../../dom.js";
+import { count, counted, time } from "../../state/number.js";
+import { showPlace } from "../notices.js";
+import { around } from "../verdict.js";
 
 /** Rows of the table; the command writes all. */
 const MAX_ROWS = 10;
@@ -11,7 +11,7 @@ const MAX_ROWS = 10;
 
 /**
  * Adds the button, unless there is no difference. Returns how to take it away.
- * @param {import("../state/types.js").Page} page @param {Found} found
+ * @param {import("../../state/types.js").Page} page @param {Found} found
  */
 export function offerDifferences(page, { rows, recorded, differences }) {
   if (rows.length === 0) return () => {};

@@ -1,8 +1,8 @@
 /** How the positions of a soft device went in the last seconds, from its live trace (LIVE H4): a line a channel. */
-import { element, fill, say } from "../dom.js";
-import { count } from "../state/number.js";
+import { element, fill, say } from "../../dom.js";
+import { count } from "../../state/number.js";
 
-/** @typedef {import("../engine/live.js").Served} Served */
+/** @typedef {import("../../engine/live.js").Served} Served */
 
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT] = [1000, 100];

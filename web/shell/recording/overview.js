@@ -2,12 +2,12 @@
  * All of a recording at a glance, in its dialog: position and speed of a channel from its beginning to its end, as the worker makes
  * them of what it has packed. What is dragged over becomes the part that the views show.
  */
-import { element, fill } from "../dom.js";
-import { plain, time } from "../state/number.js";
-import { message } from "./link.js";
+import { element, fill } from "../../dom.js";
+import { plain, time } from "../../state/number.js";
+import { message } from "../link.js";
 
-/** @typedef {import("../engine/capture.js").Looked} Looked */
-/** @typedef {import("../engine/capture.js").Columns} Columns */
+/** @typedef {import("../../engine/capture.js").Looked} Looked */
+/** @typedef {import("../../engine/capture.js").Columns} Columns */
 
 /** Heights of the position's and the speed's band and of what is between, in CSS pixels. */
 const [POSITION_PX, SPEED_PX, BETWEEN_PX] = [64, 40, 6];
@@ -22,7 +22,7 @@ const REST_MS = 200;
  * @param {{overview: (channel: number, columns: number) => Promise<Columns | null>}} capture
  * @param {(part: {from_s: number, to_s: number} | null) => void} choose  Null for all of it.
  */
-export function createWhole(capture, choose) {
+export function createOverview(capture, choose) {
   const canvas = element("canvas", { role: "img" });
   Object.assign(canvas.style, { display: "block", width: "100%", cursor: "col-resize", touchAction: "pan-y" });
   canvas.style.height = `${POSITION_PX + BETWEEN_PX + SPEED_PX}px`;

@@ -1,8 +1,8 @@
 /** The packets view's other table (LIVE H4): a device's replies as they come, in place of the model's packets. It stays when they end. */
-import { byId, element, fill } from "../dom.js";
-import { count } from "../state/number.js";
+import { byId, element, fill } from "../../dom.js";
+import { count } from "../../state/number.js";
 
-/** @typedef {import("../engine/live.js").Exchange} Exchange */
+/** @typedef {import("../../engine/live.js").Exchange} Exchange */
 
 /** Rows of replies that stay on show. */
 const MOST_ROWS = 300;

@@ -1,8 +1,8 @@
 /** What the page can be to a device or to a host (LIVE H4), in words, and why it cannot. */
-import { movesStreams, serial } from "../engine/live.js";
-import { counted } from "../state/number.js";
+import { movesStreams, serial } from "../../engine/live.js";
+import { counted } from "../../state/number.js";
 
-/** @typedef {import("../engine/live.js").Role} Found */
+/** @typedef {import("../../engine/live.js").Role} Found */
 /** @typedef {"stream" | "serve"} Role */
 
 /** A page on a busy desktop is sometimes so late, in ms. */
@@ -59,7 +59,7 @@ export function about(name, { baud, margin_ms, state }) {
   return `${ROLES.stream.about} ${counted(ticks, "tick")}, ${baud} baud.${tight}`;
 }
 
-/** Why there is nothing to do with an experiment, as it was found; empty where there is. @param {import("../state/types.js").Scenario} scenario @param {Found | undefined} found */
+/** Why there is nothing to do with an experiment, as it was found; empty where there is. @param {import("../../state/types.js").Scenario} scenario @param {Found | undefined} found */
 export function whyNone({ source }, found) {
   if (source?.standalone)
     return "Not with this experiment: a stand-alone controller has no line; its buttons are in the view Panel, or served by the command, stepscope serve.";

@@ -1,0 +1,53 @@
+/** The file of which a part is on show: another part can be chosen without reading it again, until something else is shown. */
+import { button, byId } from "../../dom.js";
+import { openDialog } from "./dialog.js";
+import { scenarioKey } from "./saved_recordings.js";
+
+/** @typedef {import("../../state/types.js").Page} Page */
+
+/** `drop` takes its button away; `close` closes the file, too. @type {{drop: () => void, close: () => void} | null} */
+let open = null;
+
+/** Calls back once the experiment is another one. Returns how to stop that. @param {Page} page @param {() => void} changed */
+export function whileShown({ now }, changed) {
+  const own = scenarioKey(now().scenario);
+  // The page updates this attribute whenever its experiment changes.
+  const watch = new MutationObserver(() => {
+    if (scenarioKey(now().scenario) === own) return;
+    watch.disconnect();
+    changed();
+  });
+  watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
+  return () => watch.disconnect();
+}
+
+export function closeOpenFile() {
+  open?.close();
+  open = null;
+}
+
+/**
+ * Keeps a file open while the experiment stays, with a button that opens its dialog again.
+ * @param {Page} page @param {string} file  Its name. @param {{close: () => void}} capture @param {(dialog: import("./dialog.js").Dialog) => void} show
+ */
+export function keepOpen(page, file, capture, show) {
+  open?.drop();
+  let closeDialog = () => {};
+  const again = button("Another part…", `Show another part of ${file}`, () => {
+    const dialog = openDialog(() => {});
+    closeDialog = dialog.close;
+    show(dialog);
+  });
+  const stop = whileShown(page, closeOpenFile);
+  const drop = () => {
+    stop();
+    again.remove();
+  };
+  const close = () => {
+    drop();
+    closeDialog();
+    capture.close();
+  };
+  byId("on-show").append(" ", again);
+  open = { drop, close };
+}

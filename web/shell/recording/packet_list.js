@@ -1,0 +1,59 @@
+/** The packets that a recording's lines carry: a part of its dialog that is filled when it is unfolded. */
+import { button, element, fill } from "../../dom.js";
+import { save } from "../save.js";
+import { MAX_PACKETS, packetCells, packetsFile, packetsText } from "./texts.js";
+
+/**
+ * @param {string} file  Its name.
+ * @param {(most: number) => Promise<{packets: import("../../engine/capture.js").LinePackets, clock_hz: number} | null>} load
+ * @param {(error: unknown) => void} refuse
+ */
+export function createPacketList(file, load, refuse) {
+  const node = element("details", { class: "packets-said" });
+  node.hidden = true;
+  node.addEventListener("toggle", () => {
+    if (node.open) void list().catch(refuse);
+  });
+
+  async function list() {
+    const found = await load(MAX_PACKETS);
+    if (!found || !node.open) return;
+    const { packets, clock_hz } = found;
+    const name = packetsFile(file);
+    const all = button("Save all (CSV)", `Save all packets: ${name}`, () => save(name, "text/csv", [packets.csv]));
+    fill(
+      node,
+      element("summary", {}, "Packets"),
+      element("p", {}, packetsText(packets), all),
+      grid(
+        ["Line", "from", "bytes", "what it says"],
+        packets.rows.map((row) => packetCells(row, clock_hz)),
+      ),
+    );
+  }
+
+  return {
+    node,
+    hide() {
+      node.hidden = true;
+    },
+    /** @param {boolean} hasPackets */
+    reset(hasPackets) {
+      node.hidden = !hasPackets;
+      node.open = false;
+      fill(node, element("summary", {}, "Packets"));
+    },
+  };
+}
+
+/** @param {string[]} head @param {string[][]} rows */
+function grid(head, rows) {
+  const row = (/** @type {string[]} */ cells) => element("tr", {}, ...cells.map((text) => element("td", {}, text)));
+  const names = head.map((text) => element("th", { scope: "col" }, text));
+  return element(
+    "table",
+    { class: "channels" },
+    element("thead", {}, element("tr", {}, ...names)),
+    element("tbody", {}, ...rows.map(row)),
+  );
+}

@@ -1,0 +1,173 @@
+/**
+ * Recordings that this device saves, so that a reload shows them again: the records of the last few that were imported, each with
+ * its scenario. The database is opened only where `listedRecordings` (storage.js) has a list.
+ *
+ * Every failure of the storage is reported, and the page goes on with the model's view of the scenario.
+ */
+import { readJson } from "../../state/json.js";
+import { count } from "../../state/number.js";
+import { listedRecordings, listRecordings } from "../storage.js";
+import { list, load, remove, store, withDatabase } from "./database.js";
+import { MAX_BYTES, RECORD_BYTES, sizeOf } from "./record_limits.js";
+
+/**
+ * @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page
+ * @typedef {import("./record_limits.js").Saved} Saved
+ * @typedef {{id: string, file: string, scenario: string, lost: string}} Known  A recording of this tab, and why it is not saved; "" where it is.
+ * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The one that was on show when the page was left.
+ */
+
+/** Maximum time to wait for a first result, in ms, and the time between two looks for it. */
+const [MAX_WAIT_MS, POLL_MS] = [30_000, 100];
+/** The recording that the page showed when it was left; each tab has its own. */
+const SHOWN = "stepscope.recording";
+
+/** Recordings of this tab, the newest last. @type {Known[]} */
+const known = [];
+
+/** Identifies a scenario as the owner of a recording, as the worker does (worker.js). @param {any} scenario */
+export const scenarioKey = ({ source, clock_hz, bus, run_cycles, plant }) =>
+  JSON.stringify([source, clock_hz, bus?.channels, run_cycles, plant]);
+
+/** @returns {string[]} */
+function listed() {
+  try {
+    const list = JSON.parse(listedRecordings() ?? "[]");
+    return Array.isArray(list) ? list.map(String) : [];
+  } catch {
+    return [];
+  }
+}
+
+/**
+ * Saves a recording in place of the oldest ones, if there is room for it.
+ * @param {Page} page @param {string} file  Its name. @param {string} scenario @param {Uint8Array[]} pieces  Of its records.
+ * @param {Uint8Array} [replies]  Bytes of TX, where that was recorded.
+ * @returns {Promise<string>}  Why it is not saved; empty where it is.
+ */
+export async function saveRecording(page, file, scenario, pieces, replies) {
+  const id = `${Date.now()}.${Math.random()}`;
+  const recording = { id, file, scenario, sizes: pieces.map((piece) => piece.byteLength), replies };
+  const lost = sizeOf(recording) > MAX_BYTES ? tooLarge(recording) : await stored(recording, pieces);
+  // The list makes a reload report that it is gone.
+  if (lost) listRecordings(JSON.stringify(listed()));
+  known.push({ id, file, scenario, lost });
+  watch(page);
+  return lost && ` It is there until this page is left: ${lost}.`;
+}
+
+/** @param {Saved} recording */
+const tooLarge = (recording) =>
+  `${count(sizeOf(recording) / RECORD_BYTES)} changes are more than the ${count(MAX_BYTES / RECORD_BYTES)} that are kept on this device`;
+
+/** Stores it; returns why it is not stored, or "". @param {Saved} recording @param {Uint8Array[]} pieces */
+async function stored(recording, pieces) {
+  try {
+    if (!listRecordings(JSON.stringify(await store(recording, pieces)))) throw new Error("no list of it can be kept");
+    return "";
+  } catch (error) {
+    return `this browser does not keep it (${message(error)})`;
+  }
+}
+
+/** @param {unknown} error */
+const message = (error) => (error instanceof Error && error.message ? error.message : String(error));
+
+/**
+ * Gives the engine the saved recordings of this experiment, of those of undo and redo, and of the address. Shows the recording
+ * that was on show and has no link. To be called before the first run.
+ * @param {Page} page
+ */
+export async function restore(page) {
+  const [before, shown] = [listed(), shownBefore()];
+  watch(page);
+  if (before.length === 0 && !shown) return;
+  let lost = shown?.lost ?? "";
+  try {
+    lost ||= await withDatabase((database) => restoreFrom(page, database, before, shown));
+    if (!lost && shown && !known.some(({ id }) => id === shown.id)) lost = "it was not kept";
+  } catch (error) {
+    lost ||= `this browser does not give it (${message(error)})`;
+    listRecordings("[]");
+  }
+  if (!lost) return;
+  const name = shown ? `The recording ${shown.file}` : "A recording that was opened before";
+  const text = `${name} is not there any more: ${lost}. The views show what the model makes of the experiment; open the file again.`;
+  void firstResult(page).then(() => page.dispatch({ type: "notice", notice: { kind: "error", text, place: null } }));
+}
+
+/** Waits for a first result: a scenario from the address would remove the notice. @param {Page} page */
+async function firstResult({ now }) {
+  for (let waited = 0; waited < MAX_WAIT_MS && !now().result; waited += POLL_MS)
+    await new Promise((rested) => setTimeout(rested, POLL_MS));
+}
+
+/**
+ * As `restore`; returns why something is lost, or "".
+ * @param {Page} page @param {IDBDatabase} database @param {string[]} before @param {Shown | null} shown
+ */
+async function restoreFrom(page, database, before, shown) {
+  const { engine, dispatch, now } = page;
+  const { scenario, past, future } = now();
+  const wanted = new Set([scenario, ...[...past, ...future].map((moment) => moment.scenario)].map(scenarioKey));
+  const linked = await engine.ask("decode_link", location.hash.slice(1)).catch(() => null);
+  const addressed = linked?.scenario ? scenarioKey(readJson(linked.scenario)) : null;
+  if (addressed !== null) wanted.add(addressed);
+  const all = await list(database);
+  const there = new Set(all.map(({ id }) => id));
+  let lost = before.some((id) => !there.has(id)) ? "what was kept of it is gone" : "";
+  for (const { id, file, scenario, sizes, replies } of all) {
+    const isShown = shown?.id === id;
+    // An earlier version may have saved it, so the core upgrades it.
+    const own = await engine.ask("check", String(scenario));
+    const read = readJson(own.scenario);
+    if (!isShown && !wanted.has(scenarioKey(read))) continue;
+    const pieces = own.problems.length === 0 && Array.isArray(sizes) ? await load(database, id, sizes) : null;
+    if (!pieces) {
+      lost ||= `what was kept of ${file} is damaged`;
+      await remove(database, id);
+      there.delete(id);
+      continue;
+    }
+    engine.record(own.scenario, pieces, replies instanceof Uint8Array ? replies : undefined);
+    known.push({ id, file, scenario: own.scenario, lost: "" });
+    if (isShown && !shown.isOwn && scenarioKey(read) !== addressed) {
+      // The address is of an earlier experiment: this one has no link, or the page was left before the address followed.
+      history.replaceState(null, "", location.pathname + location.search);
+      dispatch({ type: "replace", scenario: read, origin: "shared" });
+    }
+  }
+  if (lost) listRecordings(JSON.stringify([...there]));
+  return lost;
+}
+
+/** The recording on show when the page was left, if this is a reload. @returns {Shown | null} */
+function shownBefore() {
+  try {
+    const [entry] = /** @type {PerformanceNavigationTiming[]} */ (performance.getEntriesByType("navigation"));
+    const shown = JSON.parse(sessionStorage.getItem(SHOWN) ?? "null");
+    return entry?.type !== "navigate" && typeof shown?.file === "string" ? shown : null;
+  } catch {
+    return null;
+  }
+}
+
+let isWatched = false;
+
+/** Notes which recording is on show when the page is left. @param {Page} page */
+function watch({ now }) {
+  if (isWatched) return;
+  isWatched = true;
+  window.addEventListener("pagehide", () => {
+    const { scenario, origin, result, revision } = now();
+    const recorded = result?.revision === revision && result.summary.recorded;
+    const found = recorded && known.findLast((each) => scenarioKey(readJson(each.scenario)) === scenarioKey(scenario));
+    try {
+      if (!found) return sessionStorage.removeItem(SHOWN);
+      const { file, id, lost } = found;
+      sessionStorage.setItem(SHOWN, JSON.stringify({ file, id, lost, isOwn: origin === "own" }));
+    } catch {
+      // Private windows and full disks refuse; the recording then has to be opened again.
+    }
+  });
+}
