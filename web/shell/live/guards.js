@@ -1,0 +1,42 @@
+/** Keeps a moving device under control while the dialog of devices is open: Escape stops it, and leaving the page asks first. */
+
+/**
+ * @param {import("./session.js").LiveSession} session @param {HTMLDialogElement} dialog
+ * @param {{isInFront: () => boolean, pressStop: () => void, stop: () => void}} actions  `stop` only ends the stream, as there is no time for more.
+ * @returns {() => void}  Ends it.
+ */
+export function guardPage(session, dialog, { isInFront, pressStop, stop }) {
+  const listening = new AbortController();
+  const { signal } = listening;
+  // Escape stops what moves before it closes anything; while it sends, wherever it is pressed.
+  window.addEventListener(
+    "keydown",
+    (event) => {
+      if (event.key !== "Escape" || !(session.running === "stream" || (session.mayMove && isInFront()))) return;
+      event.preventDefault();
+      event.stopImmediatePropagation();
+      pressStop();
+    },
+    { capture: true, signal },
+  );
+  window.addEventListener(
+    "beforeunload",
+    (event) => {
+      if (session.running !== null) event.preventDefault();
+    },
+    { signal },
+  );
+  window.addEventListener(
+    "pagehide",
+    () => {
+      if (session.running === "stream") stop();
+    },
+    { signal },
+  );
+  dialog.addEventListener("cancel", (event) => {
+    if (session.running === null && !session.mayMove) return;
+    event.preventDefault();
+    if (session.mayMove) pressStop();
+  });
+  return () => listening.abort();
+}

@@ -1,0 +1,63 @@
+/** The ports of the dialog of devices: which one is chosen, which the browser allowed before, and which it does not give back. */
+import { element, fill } from "../../dom.js";
+import { serial } from "../../engine/live.js";
+import { message } from "../link.js";
+import { usbOf } from "./roles.js";
+
+/** Of a port that the browser does not give back. */
+export const STUCK = "The port could not be closed: load this page again before it is used by anyone.";
+
+/** @type {WeakSet<any>} */
+const stuck = new WeakSet();
+
+/**
+ * @param {import("./session.js").Device} device @param {HTMLElement} allowed  Filled with the ports that were allowed before.
+ * @param {{report: (text: string, isError?: boolean) => void, chosen: () => void, focus: () => void}} dialog
+ */
+export function createPorts(device, allowed, { report, chosen, focus }) {
+  /** @param {any} port */
+  function take(port) {
+    if (stuck.has(port)) return report(STUCK, true);
+    device.port = port;
+    report(`A port is chosen${usbOf(port)}. It is not open yet.`);
+    chosen();
+    return focus();
+  }
+
+  async function choose() {
+    try {
+      take(await serial().requestPort());
+    } catch (error) {
+      // No port was chosen, or this page may have none.
+      const isNone = error instanceof DOMException && error.name === "NotFoundError";
+      report(isNone ? "No port was chosen." : `No port: ${message(error)}.`, !isNone);
+      if (device.port) focus();
+    }
+  }
+
+  /** Ports that the visitor, or the browser's policy, allowed before need no chooser. None is opened. */
+  async function offer() {
+    /** @type {any[]} */
+    const ports =
+      (await serial()
+        ?.getPorts()
+        .catch(() => [])) ?? [];
+    const offers = ports
+      .filter((each) => !stuck.has(each))
+      .map((each, index) => {
+        const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
+        const press = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
+        press.addEventListener("click", () => take(each));
+        return press;
+      });
+    fill(allowed, ...offers);
+  }
+
+  /** Gives up a port that the browser does not give back. @param {any} port */
+  function giveUp(port) {
+    stuck.add(port);
+    if (device.port === port) device.port = null;
+    void offer();
+  }
+  return { choose, offer, giveUp };
+}
