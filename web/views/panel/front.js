@@ -1,9 +1,9 @@
 /** The front of a panel: display, LED, buttons, keys, emergency stop, power, switches; how they stand at one moment. */
 import { element, fill, say } from "../../dom.js";
+import { advice, lcd, led, SWITCHES, sentence } from "./names.js";
 import { driven } from "./script.js";
-import { advice, lcd, led, SWITCHES, sentence } from "./words.js";
 
-/** @typedef {import("./words.js").Word} Word */
+/** @typedef {import("./names.js").Word} Word */
 /** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean, loops: number, groups: number}} Moment */
 /** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} Hand */
 

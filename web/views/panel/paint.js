@@ -1,17 +1,12 @@
 /** Draws the rows of a panel over time: bands of what it did, levels of its inputs, and the entries of its script. */
 import { si } from "../../state/number.js";
 import { color, font } from "../../time/plot.js";
-import { read, STATES, TRUST } from "./words.js";
+import { read, STATES, TRUST } from "./names.js";
+import { lastUpTo } from "./story.js";
+import { ROW_PX, TIME_PX } from "./strip_layout.js";
 
-/** @typedef {{records: Float64Array, inputs: Map<string, {cycles: number[], levels: number[]}>, ignored: {cycle: number, input: string, state: string}[], writes: Float64Array}} Story  What became of a panel. */
 /** @typedef {{left: number, right: number}} Plot */
 /** @typedef {{context: CanvasRenderingContext2D, plot: Plot, start: number, end: number, last: number}} Ground  What is drawn on: `last` is the run's end. */
-
-/** Height of a row, and of the time's labels, in CSS pixels. */
-export const ROW_PX = 22;
-export const TIME_PX = 18;
-/** Bands over the inputs. */
-export const BANDS = /** @type {const} */ (["state", "group", "loop", "trust"]);
 
 /** The ink of each state: what moves, what waits, what rests, what is wrong. */
 const INKS = [
@@ -33,22 +28,13 @@ const INKS = [
 ];
 const TRUST_INKS = ["--error", "--dir", "--enable"];
 
+/** @typedef {typeof import("./strip_layout.js").BANDS[number]} Band */
+
 /** @param {Ground} ground @param {number} cycle */
 export const xOf = ({ plot, start, end }, cycle) =>
   plot.left + ((cycle - start) / (end - start)) * (plot.right - plot.left);
 
-/** The last place in a rising list whose number is at most this one; -1 before all. @param {ArrayLike<number>} list @param {number} value @param {number} [stride] */
-export function lastUpTo(list, value, stride = 1) {
-  let [low, high] = [0, list.length / stride];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (list[middle * stride] <= value) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
-}
-
-/** What a band says in a record, and in which ink. @param {typeof BANDS[number]} band @param {number} word @returns {[string, string]} */
+/** What a band says in a record, and in which ink. @param {Band} band @param {number} word @returns {[string, string]} */
 function wordOf(band, word) {
   const { state, alarm, trust, group, loop } = read(word);
   if (band === "state") return [alarm ? `${state} ${alarm}` : state, INKS[STATES.indexOf(state)]];
@@ -57,7 +43,7 @@ function wordOf(band, word) {
   return [shown && state !== "EDIT" ? String(shown) : "", "--tick"];
 }
 
-/** @param {Ground} ground @param {Float64Array} records @param {typeof BANDS[number]} band @param {number} top */
+/** @param {Ground} ground @param {Float64Array} records @param {Band} band @param {number} top */
 export function paintBand(ground, records, band, top) {
   const { context, plot, start, end, last } = ground;
   const count = records.length / 4;

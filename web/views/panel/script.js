@@ -2,7 +2,7 @@
  * The script of a panel's inputs, as a person changes it: presses are put, moved, removed. Nothing is drawn or dispatched
  * here; what cannot be is told in a sentence, and the script stays as it is.
  */
-import { SHARED } from "./words.js";
+import { SHARED } from "./names.js";
 
 /** @typedef {{cycle: number, input: string | null, level: number, push_steps: number | null}} Entry */
 /** @typedef {{inputs: Entry[]} | {refused: string}} Changed */
@@ -73,4 +73,24 @@ export function moved(inputs, index, cycle, timeOf) {
 /** How it is called. @param {Entry} entry */
 export function nameOf({ input, level, push_steps }) {
   return input === null ? `push by ${push_steps}` : `${input} ${level ? "1" : "0"}`;
+}
+
+/** @typedef {{owner: number, index: number, entry: Entry}} Placed  An entry, the controller whose script it is in, and its place there. */
+
+/** @param {any[]} panels  Settings of all controllers. @param {number} owner @returns {Entry[]} */
+export const inputsOf = (panels, owner) => panels[owner]?.inputs ?? [];
+
+/** All entries that a controller obeys, in the order of time: its own, and those of the first one that are shared. @param {any[]} panels @param {number} controller @returns {Placed[]} */
+export function entriesOf(panels, controller) {
+  const of = (/** @type {number} */ owner) => inputsOf(panels, owner).map((entry, index) => ({ owner, index, entry }));
+  if (controller === 0) return of(0);
+  const shared = of(0).filter(({ entry }) => entry.input !== null && SHARED.includes(entry.input));
+  return [...of(controller), ...shared].sort((a, b) => a.entry.cycle - b.entry.cycle);
+}
+
+/** The same entry in scripts that may have changed. @param {any[]} panels @param {Placed} placed @returns {Placed | null} */
+export function sameEntry(panels, { owner, entry }) {
+  const inputs = inputsOf(panels, owner);
+  const index = inputs.findIndex((each) => JSON.stringify(each) === JSON.stringify(entry));
+  return index < 0 ? null : { owner, index, entry: inputs[index] };
 }

@@ -10,24 +10,23 @@ import { drawCursors } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, fit, font, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
+import { paintBand, paintCurve, paintEntry, paintIgnored, paintLevel, paintName, paintTime, xOf } from "./paint.js";
 import {
   BANDS,
-  paintBand,
-  paintCurve,
-  paintEntry,
-  paintIgnored,
-  paintLevel,
-  paintName,
-  paintTime,
+  entryAfter,
+  entryAt,
+  entryBelow,
+  heights,
+  PUSH,
   ROW_PX,
+  rowOf,
+  rowsOf,
   TIME_PX,
-  xOf,
-} from "./paint.js";
-import { INPUTS } from "./words.js";
+} from "./strip_layout.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./script.js").Entry} Entry */
-/** @typedef {{owner: number, index: number, entry: Entry}} Placed  An entry and whose script it is in. */
+/** @typedef {import("./script.js").Placed} Placed */
 /**
  * @typedef {object} Script  What the strip asks and does.
  * @property {() => Placed[]} entries  All that this panel hears, in the order of time.
@@ -35,13 +34,8 @@ import { INPUTS } from "./words.js";
  * @property {(placed: Placed) => void} remove
  */
 
-/** Room of the position's curve above the bands, in CSS pixels. */
-const [MIN_PX, MAX_PX] = [58, 190];
-/** An entry is taken within so many CSS pixels. */
-const REACH_PX = 8;
 /** What a fast key moves an entry by, in columns of pixels. */
 const FAST = 10;
-const PUSH = "push";
 
 /** @param {HTMLElement} place @param {Script & import("./pane.js").Page & {chosen: (placed: Placed | null) => void, print: (steps: number) => string, room: () => number, channel: () => number}} page  `print` says a position, `room` how tall it all may be. */
 export function createStrip(place, page) {
@@ -58,14 +52,14 @@ export function createStrip(place, page) {
   place.append(strip, stack);
   let plot = { left: GUTTER, right: GUTTER + 1 };
   const handles = createHandles(strip, () => plot, { dispatch, now });
-  /** @type {import("./paint.js").Story | null} */
+  /** @type {import("./story.js").Story | null} */
   let story = null;
   /** @type {import("./paint.js").Curve | null} */
   let curve = null;
   /** @type {string[]} */
   let rows = [];
   /** Height of the position's curve. */
-  let curvePx = MIN_PX;
+  let curvePx = 0;
   /** @type {Placed | null} */
   let chosen = null;
   /** What is dragged, and how far the pointer was from it. @type {{placed: Placed, by: number, moved: boolean} | null} */
@@ -78,7 +72,6 @@ export function createStrip(place, page) {
   });
 
   const xIn = (/** @type {MouseEvent} */ event) => event.clientX - canvas.getBoundingClientRect().left;
-  const rowOf = (/** @type {Entry} */ { input }) => BANDS.length + rows.indexOf(input ?? PUSH);
 
   /** @param {Placed | null} placed */
   function choose(placed) {
@@ -89,22 +82,17 @@ export function createStrip(place, page) {
     paint();
   }
 
-  /** The entry under a pointer. @param {MouseEvent} event */
-  function entryAt(event) {
-    const row = Math.floor((event.clientY - canvas.getBoundingClientRect().top - curvePx) / ROW_PX);
+  /** @param {MouseEvent} event */
+  function entryUnder(event) {
     const ground = groundOf(now());
     if (!ground) return null;
-    const near = page
-      .entries()
-      .filter(({ entry }) => rowOf(entry) === row)
-      .map((placed) => ({ placed, away: Math.abs(xOf(ground, placed.entry.cycle) - xIn(event)) }))
-      .filter(({ away }) => away <= REACH_PX)
-      .sort((a, b) => a.away - b.away);
-    return near[0]?.placed ?? null;
+    const row = Math.floor((event.clientY - canvas.getBoundingClientRect().top - curvePx) / ROW_PX);
+    const distance = (/** @type {number} */ cycle) => Math.abs(xOf(ground, cycle) - xIn(event));
+    return entryAt(page.entries(), rows, row, distance) ?? null;
   }
 
   canvas.addEventListener("pointerdown", (event) => {
-    const placed = event.button === 0 ? entryAt(event) : null;
+    const placed = event.button === 0 ? entryUnder(event) : null;
     if (!placed) return;
     // The time axis under it stays.
     event.stopPropagation();
@@ -117,7 +105,7 @@ export function createStrip(place, page) {
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!drag) {
-      canvas.classList.toggle("over", entryAt(event) !== null);
+      canvas.classList.toggle("over", entryUnder(event) !== null);
       return;
     }
     event.stopPropagation();
@@ -135,27 +123,19 @@ export function createStrip(place, page) {
       dispatch({ type: "committed" });
     });
 
-  /** Another entry: of the chosen one's row, or of the row of this number. @param {number} by */
+  /** Chooses the next or the previous entry. @param {number} by */
   function step(by) {
-    const all = page.entries();
-    const at = chosen ? all.findIndex(({ owner, index }) => owner === chosen?.owner && index === chosen.index) : -1;
-    const to = all[at < 0 ? (by > 0 ? 0 : all.length - 1) : at + by];
+    const to = entryAfter(page.entries(), chosen, by);
     if (!to) return;
     choose(to);
     reveal(page, to.entry.cycle);
   }
 
-  /** @param {number} by */
-  function row(by) {
-    const all = page.entries();
-    const from = chosen ? rowOf(chosen.entry) : BANDS.length - (by > 0 ? 1 : 0);
-    for (let at = from + by; at >= BANDS.length && at < BANDS.length + rows.length; at += by) {
-      const [first] = all.filter(({ entry }) => rowOf(entry) === at).sort((a, b) => away(a) - away(b));
-      if (first) return choose(first);
-    }
-    return undefined;
+  /** Chooses an entry of the row below or above. @param {number} by */
+  function stepRow(by) {
+    const to = entryBelow(page.entries(), rows, chosen, by);
+    if (to) choose(to);
   }
-  const away = (/** @type {Placed} */ { entry }) => Math.abs(entry.cycle - (chosen?.entry.cycle ?? 0));
 
   /** @param {number} columns */
   function nudge(columns) {
@@ -169,8 +149,8 @@ export function createStrip(place, page) {
   listen(canvas, "Rows of the panel", [
     { keys: ["n"], text: "next input", run: () => step(1) },
     { keys: ["p"], text: "previous input", run: () => step(-1) },
-    { keys: ["ArrowDown"], text: "an input of the row below", run: () => row(1) },
-    { keys: ["ArrowUp"], text: "an input of the row above", run: () => row(-1) },
+    { keys: ["ArrowDown"], text: "an input of the row below", run: () => stepRow(1) },
+    { keys: ["ArrowUp"], text: "an input of the row above", run: () => stepRow(-1) },
     { keys: [","], text: "the chosen input earlier", run: () => nudge(-1) },
     { keys: ["."], text: "the chosen input later", run: () => nudge(1) },
     { keys: ["<"], text: "much earlier", run: () => nudge(-FAST) },
@@ -194,11 +174,9 @@ export function createStrip(place, page) {
     const state = now();
     if (!story || stack.clientWidth < 60) return;
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
-    const used = new Set([...story.inputs.keys(), ...page.entries().map(({ entry }) => entry.input ?? PUSH)]);
-    rows = [...INPUTS, PUSH].filter((input) => used.has(input));
-    const low = (BANDS.length + rows.length) * ROW_PX;
-    curvePx = Math.min(MAX_PX, Math.max(MIN_PX, Math.floor(page.room() - low - TIME_PX)));
-    const tall = curvePx + low;
+    rows = rowsOf(story.inputs.keys(), page.entries());
+    const { curve: curveHeight, all: tall } = heights(page.room(), rows);
+    curvePx = curveHeight;
     stack.style.height = `${tall + TIME_PX}px`;
     const { ratio } = fit(canvas);
     const ground = groundOf(state);
@@ -214,7 +192,7 @@ export function createStrip(place, page) {
       paintName(context, band, plot.left, topOf(at), false);
       paintBand(ground, story.records, band, topOf(at));
     }
-    const own = chosen && rowOf(chosen.entry);
+    const own = chosen && rowOf(rows, chosen.entry);
     for (const [at, input] of rows.entries()) {
       const top = topOf(BANDS.length + at);
       paintName(context, input, plot.left, top, BANDS.length + at === own);
@@ -229,7 +207,7 @@ export function createStrip(place, page) {
       const isChosen = owner === chosen?.owner && index === chosen.index;
       const x = xOf(ground, entry.cycle);
       // A hundred thousand of them on one pixel are one.
-      const row = rowOf(entry);
+      const row = rowOf(rows, entry);
       if (!isChosen && Math.abs(x - (last.get(row) ?? -Infinity)) < 0.05) continue;
       last.set(row, x);
       paintEntry(context, x, topOf(row), isChosen);
@@ -269,7 +247,7 @@ export function createStrip(place, page) {
     paintCursor,
     /** The entry that a person has chosen; another one after the script has changed. @param {Placed | null} placed */
     choose,
-    /** @param {import("./paint.js").Story} next @param {string} about */
+    /** @param {import("./story.js").Story} next @param {string} about */
     show(next, about) {
       story = next;
       canvas.setAttribute("aria-label", about);

@@ -14,7 +14,7 @@ const AHEAD_S = 1;
  * @param {(input: string, from: number, until: number, before: number | null) => boolean} given.press  Puts a press, or moves the release of one that was put; whether it could.
  * @param {() => number} given.shortest  Cycles that a press lasts at least.
  */
-export function createLive({ hz, speed, at, press, shortest }) {
+export function createPlayback({ hz, speed, at, press, shortest }) {
   let frame = 0;
   let last = 0;
   let cycle = 0;

@@ -1,0 +1,55 @@
+/** The line under the rows for the chosen entry of the script: its name, its time, and how to remove it. */
+import { element, say } from "../../dom.js";
+import { parseNumber } from "../../state/number.js";
+import { nameOf } from "./script.js";
+
+/** @typedef {import("./script.js").Placed} Placed */
+
+/**
+ * @param {{clock: () => number, timeOf: (cycle: number) => string, report: (text: string, isError?: boolean) => void,
+ *   move: (placed: Placed, cycle: number) => Placed | null, remove: (placed: Placed) => void}} page
+ */
+export function createEntryLine({ clock, timeOf, report, move, remove }) {
+  const name = element("span", { "aria-live": "polite" });
+  const cycle = element("input", {
+    class: "time",
+    "aria-label": "Time of the chosen input, in cycles or as a time",
+    spellcheck: "false",
+  });
+  const removeButton = element("button", { type: "button" }, "Remove");
+  const line = element("p", { class: "entry-line", hidden: "" }, name, " ", cycle, " ", removeButton);
+  const key = (/** @type {string} */ text) => element("kbd", {}, text);
+  const idle = element(
+    "p",
+    { class: "entry-line quiet" },
+    "Diamonds are inputs: drag one, or choose it with ",
+    ...[key("N"), " and ", key("P"), " and move it with ", key(","), " and ", key(".")],
+  );
+  /** @type {Placed | null} */
+  let chosen = null;
+  cycle.addEventListener("change", () => {
+    const given = parseNumber(cycle.value, "cycles", { integer: true, clockHz: clock() });
+    if ("message" in given) return report(given.message, true);
+    const to = chosen && move(chosen, given.value);
+    if (to) cycle.value = String(to.entry.cycle);
+    return undefined;
+  });
+  removeButton.addEventListener("click", () => {
+    if (chosen) remove(chosen);
+  });
+
+  return {
+    parts: [line, idle],
+    /** @param {Placed | null} placed @param {boolean} hasEntries */
+    show(placed, hasEntries) {
+      chosen = placed;
+      line.hidden = placed === null;
+      idle.hidden = placed !== null || !hasEntries;
+      if (!placed) return;
+      const { entry } = placed;
+      say(name, `${nameOf(entry)} at ${timeOf(entry.cycle)}, cycle`);
+      if (document.activeElement !== cycle) cycle.value = String(entry.cycle);
+      removeButton.title = `Remove ${nameOf(entry)} (Delete)`;
+    },
+  };
+}

@@ -1,0 +1,99 @@
+/** The head of the view Panel: the controller, how long a press lasts, live and its speed, and the time on show. */
+import { element, options, say } from "../../dom.js";
+import { si } from "../../state/number.js";
+import { parseHold, shortestPress } from "./presses.js";
+
+/** Speeds of live. @type {[string, string][]} */
+const SPEEDS = [
+  ["1", "real time"],
+  ["0.1", "1/10"],
+  ["0.01", "1/100"],
+];
+
+/**
+ * @param {Element} title  What it follows.
+ * @param {{panel: () => any, clock: () => number, report: (text: string, isError?: boolean) => void,
+ *   select: (controller: number) => void, play: () => void, toEnd: () => void}} page
+ */
+export function createHead(title, { panel, clock, report, select, play, toEnd }) {
+  const controller = element("select", {});
+  const controllerLabel = element("label", {}, "controller ", controller);
+  const at = element("output", { class: "panel-at", "aria-live": "off" });
+  const hold = element("input", { class: "time", size: "8", spellcheck: "false", "aria-describedby": "panel-said" });
+  const playButton = element(
+    "button",
+    {
+      type: "button",
+      "aria-pressed": "false",
+      title: "The cursor goes on with the clock; a button is pressed as long as it is held",
+    },
+    "▶ Live",
+  );
+  const speed = element("select", { "aria-label": "Speed of live" });
+  options(speed, SPEEDS, "1");
+  const end = element(
+    "button",
+    {
+      type: "button",
+      hidden: "",
+      title: "Lets cursor A go: the panel is as it is at the end, and presses come after it",
+    },
+    "To the end",
+  );
+  title.after(
+    controllerLabel,
+    element(
+      "label",
+      { title: "How long a press lasts; it has to stand through the debouncing to count" },
+      "hold ",
+      hold,
+    ),
+    element("span", { class: "group", role: "group", "aria-label": "Live" }, playButton, speed),
+    at,
+    end,
+  );
+  /** The hold that was typed, in cycles. @type {number | null} */
+  let held = null;
+  controller.addEventListener("change", () => select(Number(controller.value)));
+  playButton.addEventListener("click", play);
+  end.addEventListener("click", toEnd);
+  hold.addEventListener("change", () => {
+    const given = parseHold(hold.value, panel(), clock());
+    if ("message" in given) return report(given.message, true);
+    held = given.cycles;
+    if (held !== null) report(given.warning);
+    return showHold();
+  });
+
+  /** Cycles of a press. */
+  const holdCycles = () => held ?? shortestPress(panel(), clock());
+
+  function showHold() {
+    if (document.activeElement !== hold || held !== null) hold.value = si(holdCycles() / clock(), "s", 6);
+  }
+
+  return {
+    holdCycles,
+    showHold,
+    speed: () => Number(speed.value),
+    /** @param {number} count @param {number} selected */
+    showControllers(count, selected) {
+      controllerLabel.hidden = count < 2;
+      options(
+        controller,
+        Array.from({ length: count }, (_, index) => [String(index), String(index)]),
+        String(selected),
+      );
+    },
+    /** @param {boolean} isOn */
+    showLive(isOn) {
+      playButton.setAttribute("aria-pressed", String(isOn));
+      say(playButton, isOn ? "❚❚ Stop" : "▶ Live");
+    },
+    /** @param {string} text @param {boolean} isEnd  Whether there is nothing to go back from. */
+    showTime(text, isEnd) {
+      say(at, text);
+      end.hidden = isEnd;
+    },
+  };
+}
