@@ -60,7 +60,7 @@ export function named({ names }, group, name, own) {
 }
 
 /** Choices that were kept, or what can be read of them. @param {any} kept @returns {RowChoices} */
-export function keptRows(kept) {
+export function savedRows(kept) {
   const groups = (/** @type {any} */ list) =>
     Array.isArray(list) ? list.filter((each) => typeof each === "string").slice(0, MOST_GROUPS) : [];
   const names = Object.entries(kept?.names ?? {}).filter(([, name]) => typeof name === "string" && name !== "");

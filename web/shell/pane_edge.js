@@ -1,0 +1,72 @@
+/** A line between two panes, moved by pointer and keys. */
+import { element } from "../dom.js";
+import { listen } from "./commands.js";
+
+/** @typedef {import("./pane_layout.js").Edge} Edge */
+
+/** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
+const STEP_PX = 16;
+
+/**
+ * @param {Edge} edge
+ * @param {{resize: (px: number, before: number, after: number) => void, reset: (byKey: boolean) => void}} actions  `resize` is given the sizes of both panes, too.
+ */
+export function createEdge(edge, { resize, reset }) {
+  const { pane, label, upright, place } = edge;
+  const node = element("div", {
+    class: `edge ${upright ? "upright" : "level"}`,
+    id: `edge-${pane}`,
+    role: "separator",
+    tabindex: "0",
+    "aria-orientation": upright ? "vertical" : "horizontal",
+    "aria-label": label,
+    "aria-controls": pane === "form" ? "sheet" : `view-${pane}`,
+    "aria-valuemin": "0",
+    "aria-valuemax": "100",
+    "aria-valuenow": "50",
+    title: `${label}: drag, or arrow keys; Enter or double click: as it was`,
+  });
+  document.querySelector(edge.after)?.before(node);
+  if (place) node.style.gridArea = upright ? place.area : `${place.area} / 1 / ${place.area} / -1`;
+
+  /** The first box with a size of some elements. @param {string} css */
+  const boxOf = (css) =>
+    [...document.querySelectorAll(css)].map((each) => each.getBoundingClientRect()).find(({ width }) => width > 0) ??
+    new DOMRect();
+  /** @param {DOMRect} box */
+  const sizeOf = ({ width, height }) => (upright ? width : height);
+  /** @param {number} px */
+  const to = (px) => resize(px, sizeOf(boxOf(edge.before)), sizeOf(boxOf(edge.after)));
+  /** @param {number} px */
+  const by = (px) => to(sizeOf(boxOf(edge.before)) + px);
+
+  node.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    node.focus();
+    node.setPointerCapture(event.pointerId);
+  });
+  node.addEventListener("pointermove", (event) => {
+    if (!node.hasPointerCapture(event.pointerId)) return;
+    const { left, top } = boxOf(edge.before);
+    to((upright ? event.clientX - left : event.clientY - top) - 4);
+  });
+  node.addEventListener("dblclick", () => reset(false));
+  listen(node, "Line between two panes", [
+    { keys: ["ArrowLeft", "ArrowUp"], text: "make the pane before it smaller", run: () => by(-STEP_PX) },
+    { keys: ["ArrowRight", "ArrowDown"], text: "make the pane before it larger", run: () => by(STEP_PX) },
+    { keys: ["Shift+ArrowLeft", "Shift+ArrowUp"], text: "much smaller", run: () => by(-5 * STEP_PX) },
+    { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "much larger", run: () => by(5 * STEP_PX) },
+    { keys: ["Home"], text: "as small as can be", run: () => to(0) },
+    { keys: ["End"], text: "as large as can be", run: () => to(1e6) },
+    { keys: ["Enter"], text: "as it was at first; the form: fold or unfold it", run: () => reset(true) },
+  ]);
+
+  /** Shows where it is, unless it is hidden. @param {(css: string) => boolean} isHiddenBy  Whether a pane of this selector hides it. */
+  function render(isHiddenBy) {
+    node.hidden = isHiddenBy(edge.before) || isHiddenBy(edge.after);
+    const [before, after] = [sizeOf(boxOf(edge.before)), sizeOf(boxOf(edge.after))];
+    if (before + after > 0) node.setAttribute("aria-valuenow", String(Math.round((100 * before) / (before + after))));
+  }
+  return { render };
+}
