@@ -1,4 +1,4 @@
-/** The axes of a controller in the form: their mechanics and their moves. The first controller's and any further one's alike. */
+/** The axes of a controller in the form: their mechanics and their moves. The first controller's and any additional one's alike. */
 import { button, element } from "../dom.js";
 import { MAX_CHANNELS } from "../state/limits.js";
 import { get, set } from "../state/paths.js";

@@ -38,6 +38,6 @@ export function controllerPart(kit, scenario, index, add) {
     ...block(path, own),
     ...block(`${path}.bus`, bus),
     part(`Pulses and queue of controller ${index + 2}`, false, block(`${path}.bus`, folded)),
-    ...SOURCES[kind].orderForm(kit, index),
+    ...SOURCES[kind].additionalForm(kit, index),
   ]);
 }

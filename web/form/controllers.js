@@ -1,7 +1,8 @@
 /** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
 import { button } from "../dom.js";
 import { MAX_ADDITIONAL_CONTROLLERS } from "../state/limits.js";
-import { hex, SOURCES } from "./sources.js";
+import { hex } from "./source_kinds.js";
+import { SOURCES } from "./sources.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -16,7 +17,7 @@ export function controllerItems(kit, scenario) {
   return [
     errorOf("controllers"),
     ...(all.length > 0
-      ? kit.later((further) => all.map((_, index) => further.controllerPart(kit, scenario, index, add)))
+      ? kit.later((parts) => all.map((_, index) => parts.controllerPart(kit, scenario, index, add)))
       : []),
     button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_ADDITIONAL_CONTROLLERS),
   ];
@@ -37,7 +38,7 @@ function withAnother(scenario, like, samples) {
   const first = { ...samples.controller, bus: scenario.bus, axes: source.motion?.axes ?? [] };
   const made = { ...structuredClone(like ?? first), address };
   const kind = Object.keys(source)[0];
-  if (kind === "packets") made.packets = SOURCES.packets.order(addressed, samples, made).packets;
+  if (kind === "packets") made.packets = SOURCES.packets.additional(addressed, samples, made).packets;
   return { ...addressed, controllers: [...scenario.controllers, made] };
 }
 

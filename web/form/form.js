@@ -3,17 +3,21 @@
  * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
  */
 
-import { byId, element, fill, say } from "../dom.js";
+import { byId, element, fill } from "../dom.js";
 import { get } from "../state/paths.js";
 import { blockedBy } from "../state/queries.js";
 import { controllerItems } from "./controllers.js";
+import { showAbout, showDerived } from "./derived.js";
 import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
 import { createKit } from "./kit.js";
 import { plantItems } from "./plant.js";
+import { createPointerHold, keepFocusInSight, showHints } from "./pointer.js";
+import { showProblems } from "./problems.js";
 import { labelOf, labels, termOf } from "./schema.js";
-import { replacedBySource, runsAlone, SOURCES, withSource } from "./sources.js";
-import { showAbout, showDerived, showProblems } from "./validation.js";
+import { isUsed, needsRemedies, shapeOf } from "./shape.js";
+import { hasNoLine, replacedBySource } from "./source_kinds.js";
+import { SOURCES, withSource } from "./sources.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -29,7 +33,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   /** @type {State} */
   let state;
   const scroller = byId("sheet-scroll");
-  const hand = createHand(byId("sheet"), () => draw(state));
+  const pointer = createPointerHold(byId("sheet"), () => draw(state));
   showHints(root);
   keepFocusInSight(scroller);
   /** The state that the form shows. @type {State | undefined} */
@@ -95,14 +99,19 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
     kit.clear();
     const active = /** @type {HTMLElement | null} */ (document.activeElement);
     const focus = active && root.contains(active) ? focusOf(active) : null;
-    const alone = runsAlone(scenario);
-    const shown = sections().filter(({ onLine }) => !(onLine && alone) || scenario.controllers.length > 0);
+    const isLineless = hasNoLine(scenario);
+    const shown = sections().filter(({ onLine }) => !(onLine && isLineless) || scenario.controllers.length > 0);
     const parts = shown.map(({ title, open, blocks, group, list }) =>
       kit.part(title, open, [
         ...blocks.flatMap(({ path, fields }) =>
-          kit.block(path, path === "bus" && alone ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields),
+          kit.block(
+            path,
+            path === "bus" && isLineless ? fields.filter(({ key }) => OF_SEGMENTS.includes(key)) : fields,
+          ),
         ),
-        ...(group ? [kit.part(group.title, used(get(scenario, group.path)), kit.block(group.path, group.fields))] : []),
+        ...(group
+          ? [kit.part(group.title, isUsed(get(scenario, group.path)), kit.block(group.path, group.fields))]
+          : []),
         ...(list ? LISTS[list](scenario) : []),
       ]),
     );
@@ -120,7 +129,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   let loading = null;
   /** @param {(fixes: typeof import("./remedies.js")) => void} show */
   function putRight(show) {
-    if (!loading && !isIll(state)) return;
+    if (!loading && !needsRemedies(state)) return;
     loading ??= import("./remedies.js");
     loading.then(show).catch(() => {
       loading = null;
@@ -130,7 +139,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   /** What is under the pointer stays where it is until it is let go. Whoever waits for the form waits for what it loads. @param {State} next */
   function render(next) {
     state = next;
-    if (!hand.holds()) draw(next);
+    if (!pointer.holds()) draw(next);
     return kit.loading();
   }
 
@@ -150,7 +159,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
 
   function buildAnew() {
     [shape, drawn] = ["", undefined];
-    if (!hand.holds()) draw(state);
+    if (!pointer.holds()) draw(state);
   }
 
   /** @param {State} next */
@@ -172,7 +181,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
     const validated = blockedBy(next) !== "unvalidated";
     if (validated && (before?.validation !== next.validation || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      putRight(({ showOffers }) => showOffers(remedies, () => state, take, hand.released));
+      putRight(({ showOffers }) => showOffers(remedies, () => state, take, pointer.released));
     }
     if (
       before?.result !== next.result ||
@@ -194,101 +203,3 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
 
   return { render };
 }
-
-/** Whether something is wrong, or the line is made to go wrong. @param {State} state */
-function isIll({ validation, result, scenario: { line } }) {
-  return (
-    (validation?.problems.length ?? 0) > 0 ||
-    (result?.summary.controllers ?? []).some(({ violations }) => violations) ||
-    line.glitches.length > 0 ||
-    Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0)
-  );
-}
-
-/** The hint of the field that has the focus, where it moves nothing; to a screen reader the field itself describes it. @param {HTMLElement} root */
-function showHints(root) {
-  const place = byId("field-hint");
-  root.addEventListener("focusin", ({ target }) => {
-    const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
-    say(place, field?.querySelector(".hint")?.textContent ?? "");
-  });
-  root.addEventListener("focusout", () => say(place, ""));
-}
-
-/** The field that has the focus stays in sight when what is said under the form takes room from it. @param {HTMLElement} scroller */
-function keepFocusInSight(scroller) {
-  let height = scroller.clientHeight;
-  new ResizeObserver(() => {
-    const before = height;
-    height = scroller.clientHeight;
-    const active = document.activeElement;
-    const becameLower = height < before && scroller.scrollHeight > height;
-    if (!becameLower || !active || !scroller.contains(active)) return;
-    const [field, sight] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
-    // What the visitor had scrolled away from stays away.
-    if (field.top >= sight.top && field.bottom <= sight.top + before) active.scrollIntoView({ block: "nearest" });
-  }).observe(scroller);
-}
-
-/**
- * Whether the pointer is pressed on the form: what is computed meanwhile is drawn when it is let go, so that nothing
- * moves between press and release. A select opens at the press, and what ends it is not always told.
- * @param {HTMLElement} root @param {() => void} draw
- */
-function createHand(root, draw) {
-  let holds = false;
-  /** Who waits for the release. @type {(() => void)[]} */
-  const waiting = [];
-  root.addEventListener("pointerdown", ({ target }) => {
-    holds = !(/** @type {Element} */ (target).closest("select"));
-  });
-  // A click comes after its release.
-  const free = () =>
-    setTimeout(() => {
-      if (!holds) return;
-      holds = false;
-      draw();
-      for (const go of waiting.splice(0)) go();
-    });
-  for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, free);
-  const released = async () => {
-    if (holds) await new Promise((/** @type {(value?: any) => void} */ go) => waiting.push(go));
-  };
-  return { holds: () => holds, released };
-}
-
-/** Whether anything in a group of numbers is other than 0. @param {{[key: string]: number}} group */
-function used(group) {
-  return Object.values(group).some((value) => value !== 0);
-}
-
-/** What decides which fields there are; values do not. @param {Scenario} scenario */
-function shapeOf({ source, controllers, driver_timing: driver, line, plant }) {
-  const kinds = (/** @type {any[]} */ axes) =>
-    axes.map((axis) => [
-      Object.keys(axis.mechanics)[0],
-      Boolean(axis.motor),
-      ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0]),
-    ]);
-  return JSON.stringify([
-    Object.keys(source)[0],
-    runsAlone({ source }),
-    kinds(source.motion?.axes ?? []),
-    source.line?.sends?.length,
-    source.segments?.channels?.length,
-    source.standalone?.map(panelShape),
-    line.glitches.length,
-    controllers.map((/** @type {any} */ { axes }) => kinds(axes)),
-    driver && (driver.preset ?? "rules"),
-    plant && [Boolean(plant.protection), plant.motors?.length],
-  ]);
-}
-
-/** @param {any} panel */
-function panelShape({ groups, home, soft_limits, axis, inputs }) {
-  const of = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
-  return [groups?.map(of), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
-}
-
-/** @param {any} part */
-const kindOf = (part) => part && Object.keys(part)[0];

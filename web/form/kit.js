@@ -1,9 +1,10 @@
 /** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
 
 import { button, element, say } from "../dom.js";
-import { control, isList, takeLists } from "./control.js";
+import { control } from "./control.js";
 import { createStructure } from "./structure.js";
 import { termButton } from "./term_button.js";
+import { isList, takeLists } from "./values.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */
@@ -15,7 +16,7 @@ import { termButton } from "./term_button.js";
  *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One of everything, with the core's defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
-/** @typedef {typeof import("./further.js").FURTHER} Further */
+/** @typedef {typeof import("./additional_parts.js").ADDITIONAL_PARTS} AdditionalParts */
 
 /** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/message.js").Message) => void,
  *   anew: () => void, extend: () => Promise<void>}} given  `anew` builds the form once more, `extend` brings more fields and samples. */
@@ -29,19 +30,19 @@ export function createKit({ samples, now, dispatch, anew, extend }) {
 
   const structure = createStructure({ now, dispatch });
 
-  /** What makes the parts that few experiments have, once it has loaded. @type {Further | null} */
-  let further = null;
+  /** What makes the parts that few experiments have, once it has loaded. @type {AdditionalParts | null} */
+  let parts = null;
   /** @type {Promise<void> | null} */
   let loading = null;
 
-  /** Such a part; until it can be made a note stands in its place, and the form is built once more. @param {(further: Further) => Node[]} make */
+  /** Such a part; until it can be made a note stands in its place, and the form is built once more. @param {(parts: AdditionalParts) => Node[]} make */
   function later(make) {
-    if (further) return make(further);
+    if (parts) return make(parts);
     const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
-    loading ??= import("./further.js")
+    loading ??= import("./additional_parts.js")
       .then((loaded) => {
-        further = loaded.FURTHER;
-        takeLists(further.lists);
+        parts = loaded.ADDITIONAL_PARTS;
+        takeLists(parts.lists);
       })
       .finally(() => {
         loading = null;

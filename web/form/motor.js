@@ -21,6 +21,6 @@ export function motorItems(kit, path, { motor }, name) {
   return [
     kit.errorOf(at),
     label,
-    ...(motor ? kit.later((further) => further.motorFields(kit, at, Boolean(plant), name)) : []),
+    ...(motor ? kit.later((parts) => parts.motorFields(kit, at, Boolean(plant), name)) : []),
   ];
 }

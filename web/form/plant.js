@@ -3,5 +3,5 @@
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {
   const on = kit.toggle("plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
-  return [kit.errorOf("plant"), on, ...(plant ? kit.later((further) => further.plantFields(kit, plant)) : [])];
+  return [kit.errorOf("plant"), on, ...(plant ? kit.later((parts) => parts.plantFields(kit, plant)) : [])];
 }

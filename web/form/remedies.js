@@ -7,7 +7,7 @@ import { readJson } from "../state/json.js";
 import { count, pretty, si } from "../state/number.js";
 import { set } from "../state/paths.js";
 import { isStale } from "../state/queries.js";
-import { runsAlone } from "./sources.js";
+import { hasNoLine } from "./source_kinds.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
@@ -78,7 +78,7 @@ function timing({ scenario, result }, sheets) {
   for (const index of broken) {
     const path = index === 0 ? "bus" : `controllers[${index - 1}].bus`;
     const bus = index === 0 ? scenario.bus : controllers[index - 1].bus;
-    const wanted = wantedOf(bus, least, runsAlone(scenario));
+    const wanted = wantedOf(bus, least, hasNoLine(scenario));
     for (const [key, [name, needed]] of Object.entries(wanted)) {
       if (needed <= bus[key]) continue;
       fixed = set(fixed, `${path}.${key}`, needed);
@@ -97,8 +97,8 @@ function timing({ scenario, result }, sheets) {
   };
 }
 
-/** What each time of a bus has to be at least, with what it is called. @param {any} bus @param {(rule: string) => number} least @param {boolean} alone @returns {{[key: string]: [string, number]}} */
-function wantedOf(bus, least, alone) {
+/** What each time of a bus has to be at least, with what it is called. @param {any} bus @param {(rule: string) => number} least @param {boolean} isLineless @returns {{[key: string]: [string, number]}} */
+function wantedOf(bus, least, isLineless) {
   const width = Math.max(bus.pulse_width_cycles, least("step_high"));
   const setup = Math.max(bus.dir_setup_cycles, least("dir_setup"));
   const hold = Math.max(bus.dir_hold_cycles, least("dir_hold") - width);
@@ -107,7 +107,7 @@ function wantedOf(bus, least, alone) {
     dir_setup_cycles: ["DIR set-up", setup],
     dir_hold_cycles: ["DIR hold", hold],
   };
-  if (alone) return /** @type {any} */ (times);
+  if (isLineless) return /** @type {any} */ (times);
   // The rules of the contract that join the times of a slot.
   const pulse = width + Math.max(setup + hold, 1);
   const inSlot = bus.pulse_phasing === "staggered" ? bus.channels : bus.dir_line === "common" ? 2 : 1;
@@ -124,7 +124,7 @@ function lost({ scenario, derived, result }) {
   const { line, source, run_cycles } = scenario;
   const disturbed =
     line.glitches.length > 0 || Object.entries(line.noise).some(([key, value]) => key !== "seed" && value !== 0);
-  if (line.protocol !== "raw" || !source.motion || runsAlone(scenario) || run_cycles !== null || !disturbed)
+  if (line.protocol !== "raw" || !source.motion || hasNoLine(scenario) || run_cycles !== null || !disturbed)
     return null;
   const several = scenario.controllers.length > 0;
   const missed = (derived?.controllers ?? []).flatMap(({ axes }, controller) =>

@@ -1,6 +1,6 @@
 /** Sources that are lists of equal rows, in the form: what a host sends, and segments that a controller runs by itself. */
 import { fields } from "./schema.js";
-import { list } from "./sources.js";
+import { sampleSegments } from "./source_kinds.js";
 
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -25,7 +25,7 @@ export function segmentRows(kit, scenario) {
     scenario.source.segments.channels,
     segmentFields(),
     "List",
-    (last) => structuredClone(last ?? list()),
+    (last) => structuredClone(last ?? sampleSegments()),
     "Source.segments",
   );
 }

@@ -1,5 +1,5 @@
 /** What the tab Motor finds out about a motor, its questions to the engine, and its texts. */
-import { runsAlone } from "../../form/sources.js";
+import { hasNoLine } from "../../form/source_kinds.js";
 import { readJson } from "../../state/json.js";
 import { plain, short, si } from "../../state/number.js";
 import { get, set } from "../../state/paths.js";
@@ -113,7 +113,7 @@ export function settleEdit({ step }, controller) {
 /** Why pulses at once and one after another are not compared; empty where they are. @param {State} state @param {number} channels */
 export function whyNoPair({ validation, approved, revision, scenario }, channels) {
   if (channels < 2) return "Of one motor nothing can be staggered.";
-  if (runsAlone(scenario)) return "What runs by itself has no ticks: its pulses are not staggered.";
+  if (hasNoLine(scenario)) return "What runs by itself has no ticks: its pulses are not staggered.";
   if (validation?.cost?.over_budget && approved !== revision)
     return "The run is not made here before it is approved: it is much work.";
   return "";

@@ -5,4 +5,4 @@ import { motorFields } from "./motor_fields.js";
 import { plantFields } from "./plant_fields.js";
 import { segmentRows, sendRows } from "./source_rows.js";
 
-export const FURTHER = { controllerPart, lists: LISTS, motorFields, plantFields, segmentRows, sendRows };
+export const ADDITIONAL_PARTS = { controllerPart, lists: LISTS, motorFields, plantFields, segmentRows, sendRows };

@@ -1,0 +1,54 @@
+/** Shows the scenario's name and note, and the numbers that are derived from it. */
+import { byId, element, fill, flash, say } from "../dom.js";
+import { derivedShown } from "../state/queries.js";
+import { derivedRows, moveNote } from "./derived_rows.js";
+import { termButton } from "./term_button.js";
+
+/** @typedef {import("../state/types.js").State} State */
+
+/** Name and note of the scenario: what to look at. @param {State} state */
+export function showAbout({ scenario }) {
+  const root = byId("about");
+  root.hidden = !scenario.title && !scenario.note;
+  say(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
+  say(/** @type {Element} */ (root.querySelector("p")), String(scenario.note ?? ""));
+}
+
+const OF_LAST_RUN = "of the last run: what the form holds is refused";
+
+/** @param {State} state @param {HTMLElement} form */
+export function showDerived(state, form) {
+  const root = byId("derived");
+  const { derived, fresh } = derivedShown(state);
+  root.classList.toggle("stale", !fresh);
+  root.title = fresh ? "" : OF_LAST_RUN;
+  const rows = derived ? derivedRows(state, derived) : [];
+  const terms = [...root.querySelectorAll("dt")];
+  if (rows.length !== terms.length || rows.some(([name], index) => terms[index].textContent !== name)) {
+    fill(
+      root,
+      element(
+        "dl",
+        {},
+        ...rows.map(([name, value, mark, term]) =>
+          element("div", {}, element("dt", {}, termButton(name, term)), element("dd", { class: mark }, value)),
+        ),
+      ),
+    );
+  } else {
+    for (const [index, value] of [...root.querySelectorAll("dd")].entries()) {
+      const [, text, mark] = rows[index];
+      value.classList.toggle("over", mark === "over");
+      if (value.textContent === text) continue;
+      say(value, text);
+      flash(value);
+    }
+  }
+  for (const note of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll("[data-note]"))) {
+    const { text, warning } = moveNote(note.dataset.note ?? "", { ...state, derived });
+    note.classList.toggle("stale", !fresh);
+    note.title = fresh ? "" : OF_LAST_RUN;
+    if (note.textContent !== text + warning)
+      fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
+  }
+}

@@ -1,0 +1,62 @@
+/** Shows the problems of the scenario next to their fields, and as a list of ways to them. */
+import { button, byId, element, fill, say } from "../dom.js";
+import { counted } from "../state/number.js";
+import { placed, problemsOf } from "./problem_places.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("./control.js").Control} Control */
+
+/** Places that are listed one by one. */
+const MAX_LISTED = 3;
+
+/** @param {State} state @param {Map<string, Control>} controls @param {Map<string, HTMLElement>} groups */
+export function showProblems(state, controls, groups) {
+  const problems = problemsOf(state);
+  const places = placed(problems, controls, groups);
+  for (const [path, control] of controls) control.fail(places.fields.get(path) ?? "");
+  for (const [path, node] of groups) say(node, places.parts.get(path) ?? "");
+  markSections();
+  const list = byId("problems");
+  list.hidden = problems.length === 0;
+  say(
+    /** @type {Element} */ (list.querySelector("h2")),
+    problems.length === 0 ? "" : state.result ? "Not run: the views show the last good result." : "Not run.",
+  );
+  const fields = [...places.fields].map(([path, message]) => {
+    const control = /** @type {Control} */ (controls.get(path));
+    const text = `${nameOf(control)}: ${message}`;
+    return button(text, text, () => control.focus());
+  });
+  const parts = [...places.parts].map(([path, message]) => button(message, message, () => show(groups.get(path))));
+  const ways = [...fields, ...parts];
+  const more = ways.length - MAX_LISTED;
+  const items = [
+    ...ways.slice(0, MAX_LISTED),
+    ...(more > 0 ? [`and ${counted(more, "other place")}`] : []),
+    ...places.others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
+  ].map((item) => element("li", {}, item));
+  fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
+}
+
+/** Shows a part of the form, also where it is folded. @param {HTMLElement | undefined} part */
+function show(part) {
+  for (let at = part?.parentElement; at; at = at.parentElement) if (at instanceof HTMLDetailsElement) at.open = true;
+  part?.scrollIntoView({ block: "center" });
+}
+
+/** A field with the part of the form that it is in. @param {Control} control */
+function nameOf({ label, root }) {
+  const part = root.closest(".item")?.querySelector("legend")?.textContent;
+  return part ? `${label}, ${part}` : label;
+}
+
+/** Marks sections with an error, so that it is seen while they are folded. */
+function markSections() {
+  for (const part of document.querySelectorAll("details.part")) {
+    const summary = /** @type {Element} */ (part.querySelector("summary"));
+    const wrong = [...part.querySelectorAll(".error")].some((error) => error.textContent !== "");
+    const mark = summary.querySelector(".mark");
+    if (wrong && !mark) summary.append(element("span", { class: "mark" }, " – needs attention"));
+    else if (!wrong) mark?.remove();
+  }
+}

@@ -1,0 +1,67 @@
+/** The kinds of sources as data: which use the line, and what each begins with. */
+
+/** @typedef {import("../state/types.js").Scenario} Scenario */
+
+/** Whether segments or panels run it: nothing is on the line, and there are no ticks. @param {Scenario} scenario */
+export function hasNoLine({ source }) {
+  return "segments" in source || "standalone" in source || source.motion?.engine === "segments";
+}
+
+/** Faster to the right, a pause, and evenly back: something to see and to change. */
+export function sampleSegments() {
+  const ms = 16_000 * 65_536;
+  return {
+    start_cycle: 1,
+    segments: [
+      { steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, dir: 1 } },
+      { dwell: { length_q16: 5 * ms } },
+      { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, dir: 0 } },
+    ],
+  };
+}
+
+/** Parts of the scenario that another kind of source replaces. @param {Scenario} scenario @returns {import("../state/paths.js").Moved} */
+export function replacedBySource({ controllers }) {
+  const parts = controllers.flatMap((/** @type {any} */ _, /** @type {number} */ index) =>
+    ["axes", "packets"].map((key) => `controllers[${index}].${key}`),
+  );
+  return ["source", ...parts].map((path) => [path, null]);
+}
+
+/** @param {number} byte */
+export function hex(byte) {
+  return Number(byte).toString(16).padStart(2, "0");
+}
+
+/** Ten steps to the right and ten back on every channel: something to see and to change. @param {any} bus */
+function sampleTicks(bus) {
+  return ["8a", "0a"].map((tick) => tick.repeat(Number(bus.channels) || 1));
+}
+
+/** Their raw packets. @param {Scenario} scenario @param {any} bus @param {number | null} address */
+export function samplePackets({ line }, bus, address) {
+  const prefix = line.protocol === "framed" || address === null ? "" : hex(address);
+  return sampleTicks(bus).map((tick) => prefix + tick);
+}
+
+/** A script that sends them. @param {Scenario} scenario */
+export function sampleSends(scenario) {
+  const { bus, line } = scenario;
+  const start = bus.boot_cycles + 1;
+  const tick = bus.slots * bus.step_period_cycles;
+  if (line.protocol !== "framed") {
+    return samplePackets(scenario, bus, line.address).map((bytes, index) => ({
+      start_cycle: start + index * tick,
+      bytes,
+      frame: null,
+    }));
+  }
+  // TICKS with the sequence number 0, the two of them and one without steps, then STATUS.
+  const to = hex(line.address ?? 0);
+  const ticks = [...sampleTicks(bus), "00".repeat(Number(bus.channels) || 1)];
+  return [`${to}0100${hex(ticks.length)}${ticks.join("")}`, `${to}04`].map((frame, index) => ({
+    start_cycle: start + index * 4 * tick,
+    bytes: "",
+    frame,
+  }));
+}
