@@ -1,6 +1,5 @@
 /**
- * The page: makes the state, the engine and the views, and lets each change flow one way: message, state,
- * judging, run, drawing.
+ * The page: makes the state, the engine and the views. Each change flows one way: message, state, validation, run, drawing.
  *
  * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
  * this:
@@ -8,8 +7,9 @@
  *     pkg -> pkg-study -> pkg-capture -> pkg-panel -> pkg-live -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
-import { Dropped, Engine, unlessDropped } from "./engine/engine.js";
+import { Engine, unlessDropped } from "./engine/engine.js";
 import { createForm } from "./form/form.js";
+import { createRemedyRequests } from "./form/remedy_requests.js";
 import { samples, takeSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
@@ -22,21 +22,11 @@ import { createNotices } from "./shell/notices.js";
 import { keepOffline } from "./shell/offline.js";
 import { createOwn } from "./shell/own.js";
 import { createPanes } from "./shell/panes.js";
-import {
-  listedRecordings,
-  loadGood,
-  loadHistory,
-  loadNewer,
-  loadPrevious,
-  loadScenario,
-  saveGood,
-  saveHistory,
-  saveScenario,
-  setAside,
-} from "./shell/storage.js";
+import { createRunner } from "./shell/runner.js";
+import { offerNewer, savedWork } from "./shell/saved_work.js";
+import { listedRecordings, loadScenario, saveGood, saveHistory, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
-import { initial, OWN_TEXTS } from "./state/initial.js";
-import { readJson } from "./state/json.js";
+import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
 import { EARLIER } from "./state/result.js";
 import { update } from "./state/update.js";
@@ -58,20 +48,11 @@ import { createTiming } from "./views/timing.js";
 const TWO_AT_ONCE = [
   0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 ];
-/** Rest after a change before it runs, in ms: typing a number is one run. */
-const REST_MS = 120;
-/** Rest after a change before it is looked what would do, in ms. */
-const OFFER_REST_MS = 250;
-/** A run that has told nothing for so long is still planning, in ms. */
-const PLANNING_MS = 100;
 
 /** @type {State} */
 let state = initial({});
 /** @type {View[]} */
 let views = [];
-let timer = 0;
-/** Revision whose run is under way or done; none runs twice. */
-let ran = -1;
 
 const engine = new Engine({
   progress: (revision, progress) => {
@@ -82,7 +63,7 @@ const engine = new Engine({
     if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` });
   },
   crashed: (message) => {
-    ran = state.revision;
+    runner.giveUp();
     dispatch({ type: "baseline", baseline: null });
     dispatch({
       type: "failed",
@@ -95,7 +76,7 @@ const engine = new Engine({
   },
   stopped: () => {
     dispatch({ type: "baseline", baseline: null });
-    if (blockedBy(state) === "unvalidated") judge();
+    if (blockedBy(state) === "unvalidated") runner.validate();
   },
 });
 
@@ -111,7 +92,7 @@ function follow(before) {
   const { scenario, validation, approved, drafts, result } = state;
   if (before?.scenario !== scenario) {
     document.documentElement.dataset.state = "busy";
-    judge();
+    runner.validate();
     // What stands at the start is no work of this tab.
     if (before && state.origin === "own") {
       // An edited link or preset becomes the visitor's own work; what was so before is set aside.
@@ -119,7 +100,7 @@ function follow(before) {
       saveScenario(JSON.stringify(scenario));
     }
   }
-  if (before?.validation !== validation || before?.approved !== approved || before?.drafts !== drafts) plan();
+  if (before?.validation !== validation || before?.approved !== approved || before?.drafts !== drafts) runner.plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
     if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
@@ -137,9 +118,6 @@ function follow(before) {
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
 
-/** Of the page: what a tab kept with another one is not read. */
-const version = () => byId("version").textContent ?? "";
-
 /** Shows the form and the views: they stand, or it takes longer. */
 function unveil() {
   delete document.documentElement.dataset.boot;
@@ -155,88 +133,15 @@ async function settle(drawn) {
   keepOffline();
 }
 
-async function judge() {
-  const { revision, scenario } = state;
-  try {
-    const validation = await engine.latest("check", "check", JSON.stringify(scenario));
-    dispatch({ type: "validated", revision, validation });
-  } catch (error) {
-    if (!(error instanceof Dropped)) throw error;
-  }
-}
-
-/** Runs the scenario once it stands, if nothing holds it. */
-function plan() {
-  clearTimeout(timer);
-  const blocked = blockedBy(state);
-  if (blocked === "unvalidated") return;
-  if (blocked !== null) return void settle(Promise.resolve());
-  if (ran === state.revision) return;
-  timer = window.setTimeout(run, state.result ? REST_MS : 0);
-}
-
-function run() {
-  ran = state.revision;
-  document.documentElement.dataset.state = "busy";
-  engine.run(state.revision, JSON.stringify(state.scenario));
-  dispatch({ type: "running" });
-  const { revision } = state;
-  window.setTimeout(() => {
-    const silent = state.revision === revision && state.run.phase === "running" && state.run.progress === null;
-    if (silent) dispatch({ type: "progress", progress: { done: false, cycle: 0, end_cycle: 0, records: 0 } });
-  }, PLANNING_MS);
-}
-
-function cancel() {
-  engine.cancel(state.revision);
-  dispatch({ type: "failed", message: "The run was cancelled; the views show the last result." });
-}
-
-/**
- * The state that an earlier visit left: the visitor's own scenario, also with problems in it, and the one
- * that was set aside for it, which undo brings back.
- * @param {string} fallback @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
- */
-async function own(fallback) {
-  // Where a part of the core that it needs cannot be fetched, it stands as it was kept.
-  const read = (/** @type {string} */ saved) =>
-    engine.ask("check", saved).catch(() => ({ scenario: saved, problems: [] }));
-  const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return { left: initial(readJson(fallback)), good: null };
-  const { scenario, problems } = await read(saved);
-  const kept = loadHistory(version());
-  const past =
-    kept.past.length > 0 || previous === null || previous === saved
-      ? kept.past
-      : [
-          {
-            scenario: readJson((await read(previous)).scenario),
-            origin: /** @type {const} */ ("own"),
-            borrowed: OWN_TEXTS,
-          },
-        ];
-  const left = { ...initial(readJson(scenario)), past, future: kept.future };
-  return { left, good: problems.length > 0 ? loadGood() : null };
-}
-
-/**
- * What would let a refused motion run. Each answer plans some motions more: it is asked for once the numbers rest, and of
- * another worker, so that no validation waits for it.
- * @param {Engine} engine
- */
-function remediesOf(engine) {
-  let asking = new AbortController();
-  return async (/** @type {string | null} */ json) => {
-    asking.abort();
-    if (json === null) return null;
-    asking = new AbortController();
-    const { signal } = asking;
-    await new Promise((rested) => setTimeout(rested, OFFER_REST_MS));
-    if (signal.aborted) return null;
-    const answers = await engine.distribute("remedies", [[json]], signal).catch(unlessDropped);
-    return answers?.[0] ?? null;
-  };
-}
+const runner = createRunner({
+  engine,
+  dispatch,
+  now: () => state,
+  blocked: () => settle(Promise.resolve()),
+  started: () => {
+    document.documentElement.dataset.state = "busy";
+  },
+});
 
 /** The content of the popover of exports, which loads when it is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/lazy_popover.js").Popover} popover */
 async function exportsOf(page, popover) {
@@ -279,22 +184,19 @@ async function start() {
     takeSchema(await engine.ask("panel_schema"));
     Object.assign(made, samples());
   };
-  const { left, good } = await own(fallback);
+  // Another version may have saved another kind of history.
+  const version = byId("version").textContent ?? "";
+  const { left, good } = await savedWork(engine, fallback, version);
   state = left;
   const page = { engine, dispatch, now: () => state };
   // At its end, for many long steps cost more than a keystroke may.
-  window.addEventListener("pagehide", () => saveHistory(version(), state));
+  window.addEventListener("pagehide", () => saveHistory(version, state));
   // Nothing is ever sent; Enter in a field must not try to.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
-  const retry = () => {
-    engine.revive();
-    ran = -1;
-    judge();
-  };
   const pulses = createPulses(page);
-  const remedies = remediesOf(engine);
+  const remedies = createRemedyRequests(engine);
   const spectrum = createSpectrum(page);
   /** @type {{[view in import("./state/views.js").ViewName]: View}} */
   const all = {
@@ -308,7 +210,7 @@ async function start() {
     study: createStudy({ samples: made, ...page }),
   };
   views = [
-    createHeader({ presets, cancel, retry, ...page }),
+    createHeader({ presets, cancel: runner.cancel, retry: runner.retry, ...page }),
     createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies, extend }),
     createTabs(page),
     createPanes(page),
@@ -335,19 +237,7 @@ async function start() {
     // What stood before it went wrong is shown, dimmed.
     if (good !== null) engine.run(EARLIER, good);
   }
-  await offerNewer();
-}
-
-/** Offers the work that another tab kept after this one's. */
-async function offerNewer() {
-  const newer = loadNewer();
-  if (newer === null) return;
-  const validation = await engine.ask("check", newer).catch(() => null);
-  if (validation === null) return;
-  const scenario = readJson(validation.scenario);
-  const name = scenario.title ? `, “${scenario.title}”` : "";
-  const text = `Another tab has newer work${name}. This tab shows its own.`;
-  dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });
+  await offerNewer(page);
 }
 
 start().catch((error) => {

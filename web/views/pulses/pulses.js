@@ -10,21 +10,18 @@ import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
-import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
+import { onTimeAxis, reveal } from "../../time/timeline.js";
+import { jumpText, rowAfter, searchStart } from "./edge_search.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
 import { drawLit, paintRows } from "./picture.js";
+import { createPointer } from "./pointer.js";
 import { createReading } from "./reading.js";
 import { createRowPanel } from "./row_panel.js";
 import { allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-
-/** A cursor that is set this near to an edge is set on it, in CSS pixels. */
-const SNAP_PX = 6;
-/** The sign that folds a channel stands in so many CSS pixels at the left. */
-const FOLD_PX = 26;
 
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createPulses({ engine, dispatch, now }) {
@@ -46,7 +43,7 @@ export function createPulses({ engine, dispatch, now }) {
   const panel = createRowPanel({ ...page, canvas, speak: reading.speak });
   const handles = createHandles(byId("pulses-handles"), () => plot, {
     ...page,
-    settle: (cycle) => snapped(now().row, cycle),
+    settle: (cycle) => pointer.snapped(now().row, cycle),
   });
   const px = () => rowPx(now().panes.pulses);
   /** @type {import("./picture.js").Answer | null} */
@@ -70,7 +67,8 @@ export function createPulses({ engine, dispatch, now }) {
     }
   });
 
-  onTimeAxis(canvas, () => plot, { ...page, click: pick });
+  const pointer = createPointer(canvas, { engine, ...page, plot: () => plot, rowPx: px, reading, spans, fold });
+  onTimeAxis(canvas, () => plot, { ...page, click: pointer.pick });
   watch(stack, () => refresh(now()));
   byId("edge-next").addEventListener("click", () => jump(true));
   byId("edge-previous").addEventListener("click", () => jump(false));
@@ -84,19 +82,9 @@ export function createPulses({ engine, dispatch, now }) {
     { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
     { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
   ]);
-  canvas.addEventListener("pointermove", (event) => {
-    if (event.buttons === 0) point(event);
-  });
-  canvas.addEventListener("pointerleave", () => {
-    light(null);
-    reading.span("");
-  });
-
   /** @param {number} by */
   function step(by) {
-    const all = rowsOf(now()).flatMap((row) => ("bit" in row ? [row] : []));
-    const at = all.findIndex((row) => shows(row, now().row));
-    const to = all[Math.min(all.length - 1, Math.max(0, at + by))];
+    const to = rowAfter(rowsOf(now()), now().row, by);
     if (to) dispatch({ type: "row", row: to.bit });
   }
 
@@ -110,98 +98,18 @@ export function createPulses({ engine, dispatch, now }) {
     );
   }
 
-  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
-  function light(what) {
-    dispatch({
-      type: "highlight",
-      highlighted: what && {
-        start: what.start,
-        end: what.end,
-        from: "pulses",
-        packet: what.packet ?? null,
-        bit: what.bit ?? null,
-      },
-    });
-  }
-
-  /** What is pointed at is highlighted in all views: a span, or an edge that is near. @param {PointerEvent} event */
-  async function point(event) {
-    const row = rowAt(event);
-    const { hover } = now();
-    if (!row || hover === null) {
-      light(null);
-      return reading.span("");
-    }
-    if (!("bit" in row)) {
-      const span = spanAt(row, event);
-      light(span && { ...span });
-      return reading.span(span ? `${row.name}: ${span.texts[0]}` : "");
-    }
-    const pulse = await reading.signal(row.bit);
-    if (!pulse || now().hover !== hover) return;
-    const { start, end } = shown(now());
-    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
-    const near = [pulse.begin, pulse.end].find((edge) => edge !== null && Math.abs(edge - hover) <= reach) ?? null;
-    light(near === null ? null : { start: near, end: near, bit: row.bit });
-  }
-
-  /** @param {import("./spans.js").DecodedRow} row @param {MouseEvent} event */
-  function spanAt(row, event) {
-    if (spans.isDense(row)) return null;
-    const cycle = cycleAt(now(), plot, event.clientX - canvas.getBoundingClientRect().left);
-    return spans.spansOf(now(), row).find(({ start, end }) => start <= cycle && cycle < end) ?? null;
-  }
-
-  /** The row under a pointer. @param {MouseEvent} event */
-  function rowAt(event) {
-    return rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / px())];
-  }
-
-  /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
-  async function snapped(bit, cycle) {
-    const { start, end } = shown(now());
-    const reach = (SNAP_PX * (end - start)) / (plot.right - plot.left);
-    const edges = await Promise.all(
-      [true, false].map((forward) =>
-        engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped),
-      ),
-    );
-    const near = edges.filter((edge) => typeof edge === "number" && Math.abs(edge - cycle) <= reach);
-    return near.sort((a, b) => Math.abs(a - cycle) - Math.abs(b - cycle))[0] ?? cycle;
-  }
-
-  /** A click on a row chooses it and sets a cursor, on an edge if one is near; on a packet, chooses it. @param {PointerEvent} event @param {number} at */
-  function pick(event, at) {
-    const row = rowAt(event);
-    if (!row) return false;
-    const x = event.clientX - canvas.getBoundingClientRect().left;
-    if (x < FOLD_PX && "channel" in row && row.channel !== undefined) {
-      fold(row.channel);
-      return true;
-    }
-    if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
-    if (x < plot.left) return true;
-    if ("bit" in row) return snapped(row.bit, at);
-    const found = spanAt(row, event)?.packet ?? null;
-    if (found !== null) dispatch({ type: "packet", packet: found });
-    return found !== null;
-  }
-
   /** Sets cursor A to the next edge of the chosen row and brings it into view. @param {boolean} forward */
   async function jump(forward) {
     const state = now();
     if (!state.result) return;
-    const { start, end } = shown(state);
-    const { a } = state.cursors;
-    const from = a !== null && a >= start && a <= end ? a : forward ? start : end;
-    const edge = await engine.ask("next_edge", state.row, from, forward, kindSelect.value).catch(unlessDropped);
-    const name = nameOf(state, state.row);
-    const kind = { rise: "rising ", fall: "falling " }[kindSelect.value] ?? "";
-    if (edge === undefined || edge === null)
-      return reading.speak(`${name}: no ${forward ? "later" : "earlier"} ${kind}edge.`);
-    dispatch({ type: "cursor", which: "a", cycle: edge });
-    reveal(page, edge);
-    reading.speak(`${name}: ${kind}edge at ${time(edge / state.result.summary.clock_hz)}, cycle ${edge}.`);
+    const { value: kind } = kindSelect;
+    const from = searchStart(state, forward);
+    const edge = (await engine.ask("next_edge", state.row, from, forward, kind).catch(unlessDropped)) ?? null;
+    if (edge !== null) {
+      dispatch({ type: "cursor", which: "a", cycle: edge });
+      reveal(page, edge);
+    }
+    reading.speak(jumpText(nameOf(state, state.row), kind, forward, edge, state.result.summary.clock_hz));
   }
 
   /** Asks for what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */

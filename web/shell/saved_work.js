@@ -1,0 +1,41 @@
+/** The work that an earlier visit left, and that of another tab. */
+import { initial, OWN_TEXTS } from "../state/initial.js";
+import { readJson } from "../state/json.js";
+import { loadGood, loadHistory, loadNewer, loadPrevious, loadScenario } from "./storage.js";
+
+/** @typedef {import("../state/types.js").State} State */
+/** @typedef {import("../engine/engine.js").Engine} Engine */
+
+/**
+ * The visitor's own scenario, also with problems in it; undo brings back the one that was set aside for it.
+ * @param {Engine} engine @param {string} fallback  The scenario of a first visit. @param {string} version  Of the page: the history of another one is not read.
+ * @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
+ */
+export async function savedWork(engine, fallback, version) {
+  const [saved, previous] = [loadScenario(), loadPrevious()];
+  if (saved === null) return { left: initial(readJson(fallback)), good: null };
+  // Where the core cannot be fetched, the scenario stays as it was saved.
+  const read = (/** @type {string} */ json) =>
+    engine.ask("check", json).catch(() => ({ scenario: json, problems: [] }));
+  const { scenario, problems } = await read(saved);
+  const { past, future } = loadHistory(version);
+  const isAside = past.length === 0 && previous !== null && previous !== saved;
+  const aside = isAside ? [momentOf((await read(previous)).scenario)] : past;
+  const left = { ...initial(readJson(scenario)), past: aside, future };
+  return { left, good: problems.length > 0 ? loadGood() : null };
+}
+
+/** @param {string} scenario @returns {import("../state/types.js").Moment} */
+const momentOf = (scenario) => ({ scenario: readJson(scenario), origin: "own", borrowed: OWN_TEXTS });
+
+/** Offers work that another tab saved after this one's. @param {{engine: Engine} & import("../state/types.js").Page} page */
+export async function offerNewer({ engine, dispatch }) {
+  const newer = loadNewer();
+  if (newer === null) return;
+  const validation = await engine.ask("check", newer).catch(() => null);
+  if (validation === null) return;
+  const scenario = readJson(validation.scenario);
+  const name = scenario.title ? `, “${scenario.title}”` : "";
+  const text = `Another tab has newer work${name}. This tab shows its own.`;
+  dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });
+}

@@ -1,0 +1,92 @@
+/** The pointer over the pulses: what it points at lights up in all views, and a click chooses it. */
+import { unlessDropped } from "../../engine/engine.js";
+import { cycleAt } from "../../time/timeline.js";
+import { nearestEdge, reachOf } from "./edge_search.js";
+import { rowsOf, shows } from "./rows.js";
+
+/** @typedef {import("../../state/types.js").State} State */
+
+/** The sign that folds a channel is within so many CSS pixels of the left edge. */
+const FOLD_PX = 26;
+
+/**
+ * @param {HTMLCanvasElement} canvas
+ * @param {{engine: import("../../engine/engine.js").Engine, plot: () => {left: number, right: number}, rowPx: () => number,
+ *   reading: ReturnType<typeof import("./reading.js").createReading>, spans: ReturnType<typeof import("./spans.js").createSpans>,
+ *   fold: (channel: number) => void} & import("../../state/types.js").Page} page
+ */
+export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fold, dispatch, now }) {
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons === 0) point(event);
+  });
+  canvas.addEventListener("pointerleave", () => {
+    highlight(null);
+    reading.span("");
+  });
+
+  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
+  function highlight(what) {
+    const { start, end, packet = null, bit = null } = what ?? { start: 0, end: 0 };
+    dispatch({ type: "highlight", highlighted: what && { start, end, from: "pulses", packet, bit } });
+  }
+
+  /** @param {MouseEvent} event */
+  const xOf = (event) => event.clientX - canvas.getBoundingClientRect().left;
+  /** @param {MouseEvent} event */
+  const rowAt = (event) => rowsOf(now())[Math.floor((event.clientY - canvas.getBoundingClientRect().top) / rowPx())];
+
+  /** @param {import("./spans.js").DecodedRow} row @param {MouseEvent} event */
+  function spanAt(row, event) {
+    if (spans.isDense(row)) return null;
+    const cycle = cycleAt(now(), plot(), xOf(event));
+    return spans.spansOf(now(), row).find(({ start, end }) => start <= cycle && cycle < end) ?? null;
+  }
+
+  /** @param {PointerEvent} event */
+  async function point(event) {
+    const row = rowAt(event);
+    const { hover } = now();
+    if (!row || hover === null) {
+      highlight(null);
+      return reading.span("");
+    }
+    if (!("bit" in row)) {
+      const span = spanAt(row, event);
+      highlight(span && { ...span });
+      return reading.span(span ? `${row.name}: ${span.texts[0]}` : "");
+    }
+    const pulse = await reading.signal(row.bit);
+    if (!pulse || now().hover !== hover) return;
+    const near = nearestEdge([pulse.begin, pulse.end], hover, reachOf(now(), plot()));
+    highlight(near === null ? null : { start: near, end: near, bit: row.bit });
+  }
+
+  /** The edge of a row within a few pixels of a cycle, else the cycle. @param {number} bit @param {number} cycle */
+  async function snapped(bit, cycle) {
+    const reach = reachOf(now(), plot());
+    const edges = await Promise.all(
+      [true, false].map((forward) =>
+        engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped),
+      ),
+    );
+    return nearestEdge(edges, cycle, reach) ?? cycle;
+  }
+
+  /** A click on a row chooses it and sets a cursor, on an edge if one is near; on a packet, chooses it. @param {PointerEvent} event @param {number} at */
+  function pick(event, at) {
+    const row = rowAt(event);
+    if (!row) return false;
+    const x = xOf(event);
+    if (x < FOLD_PX && "channel" in row && row.channel !== undefined) {
+      fold(row.channel);
+      return true;
+    }
+    if ("bit" in row && !shows(row, now().row)) dispatch({ type: "row", row: row.bit });
+    if (x < plot().left) return true;
+    if ("bit" in row) return snapped(row.bit, at);
+    const found = spanAt(row, event)?.packet ?? null;
+    if (found !== null) dispatch({ type: "packet", packet: found });
+    return found !== null;
+  }
+  return { snapped, pick };
+}
