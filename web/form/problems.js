@@ -28,10 +28,10 @@ export function showProblems(state, controls, groups) {
     return button(text, text, () => control.focus());
   });
   const parts = [...places.parts].map(([path, message]) => button(message, message, () => show(groups.get(path))));
-  const ways = [...fields, ...parts];
-  const more = ways.length - MAX_LISTED;
+  const buttons = [...fields, ...parts];
+  const more = buttons.length - MAX_LISTED;
   const items = [
-    ...ways.slice(0, MAX_LISTED),
+    ...buttons.slice(0, MAX_LISTED),
     ...(more > 0 ? [`and ${counted(more, "other place")}`] : []),
     ...places.others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
   ].map((item) => element("li", {}, item));

@@ -91,8 +91,8 @@ export function termOf(id) {
   const found = schema.groups[group]?.fields.find((each) => each.name === name);
   if (!found) return undefined;
   const { label, text, from } = found;
-  const [head, said] = explanations[id] ?? [label, text];
-  return { name: head, text: plain(said), from };
+  const [head, described] = explanations[id] ?? [label, text];
+  return { name: head, text: plain(described), from };
 }
 
 /** All terms of groups or of all but those, by their ids. @returns {{[id: string]: Term}} */
@@ -192,10 +192,10 @@ function kindOf(type, unit) {
 /** What a field is, which values it takes and what none of them means, in sentences. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
 function hintOf({ text, type, range, empty, unit }) {
   const words = type === "bool" ? [] : wordsOf(type);
-  const said = words.filter(({ label, text }) => text !== label);
+  const described = words.filter(({ label, text }) => text !== label);
   const parts = [
     text,
-    ...said.map(({ label, text }) => capital(text.startsWith(label) ? text : `${label}: ${text}`)),
+    ...described.map(({ label, text }) => capital(text.startsWith(label) ? text : `${label}: ${text}`)),
     capital(range),
     empty && `Empty: ${empty}`,
     unit === "cycles" || unit === "ns" ? "A time such as 2.5 us is taken too" : "",

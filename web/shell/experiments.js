@@ -92,13 +92,13 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   }
 
   function show() {
-    const kept = loadExperiments();
+    const saved = loadExperiments();
     const title = name.value.trim();
-    say(keep, kept.some((each) => each.title === title) ? "Replace" : "Keep");
-    exportAll.disabled = kept.length === 0;
+    say(keep, saved.some((each) => each.title === title) ? "Replace" : "Keep");
+    exportAll.disabled = saved.length === 0;
     fill(
       list,
-      ...kept.map((each) =>
+      ...saved.map((each) =>
         element(
           "li",
           {},
@@ -128,16 +128,16 @@ async function takeExperiments(text, engine) {
     const file = readJson(text);
     if (!Array.isArray(file?.experiments) || !(FILE in file))
       return `This is no file of experiments; give one that “Export all” has made. One experiment is opened with “Open…”.`;
-    const kept = loadExperiments();
+    const saved = loadExperiments();
     const refused = [];
     for (const each of file.experiments) {
       const { problems, scenario } = await engine.ask("check", JSON.stringify(each));
       const read = readJson(scenario);
       if (problems.length > 0) refused.push(`“${read.title}” (${problems[0].path}: ${problems[0].message})`);
-      else if (!kept.some((known) => JSON.stringify(known) === JSON.stringify(read)))
-        kept.push({ ...read, title: freeName(read.title || "experiment", kept) });
+      else if (!saved.some((known) => JSON.stringify(known) === JSON.stringify(read)))
+        saved.push({ ...read, title: freeName(read.title || "experiment", saved) });
     }
-    if (!saveExperiments(kept)) return "This browser keeps nothing here (a private window, or no space is left).";
+    if (!saveExperiments(saved)) return "This browser keeps nothing here (a private window, or no space is left).";
     const not = refused.length > 0 ? ` Not taken: ${refused.join("; ")}.` : "";
     return `${counted(file.experiments.length - refused.length, "experiment")} taken.${not}`;
   } catch (error) {
@@ -146,9 +146,9 @@ async function takeExperiments(text, engine) {
   }
 }
 
-/** @param {string} title @param {Scenario[]} kept */
-function freeName(title, kept) {
-  const taken = (/** @type {string} */ name) => kept.some((each) => each.title === name);
+/** @param {string} title @param {Scenario[]} saved */
+function freeName(title, saved) {
+  const taken = (/** @type {string} */ name) => saved.some((each) => each.title === name);
   let name = title;
   for (let number = 2; taken(name); number++) {
     const tail = ` (${number})`;

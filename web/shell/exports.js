@@ -86,9 +86,9 @@ export function createExports({ engine, now }, others, { isOpen }) {
 
   /** Keeps the last word on a file while the list is made anew. */
   function offerAgain() {
-    const said = status.textContent ?? "";
+    const text = status.textContent ?? "";
     if (isOpen()) offer();
-    say(status, said);
+    say(status, text);
   }
 
   /** @param {State} state @param {State | undefined} before */

@@ -96,9 +96,9 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     progress.hidden = !long;
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
-    const said = status(state, long);
-    say(byId("status"), said);
-    if (byId("status").title !== said) byId("status").title = said;
+    const text = status(state, long);
+    say(byId("status"), text);
+    if (byId("status").title !== text) byId("status").title = text;
     say(
       byId("computed"),
       state.result && !state.result.summary.recorded && !long && blockedBy(state) !== "problems"

@@ -15,26 +15,26 @@ export function createLazyPopover(button, panel, load, about) {
   let loading = null;
   /** @type {Content | null} */
   let content = null;
-  const word = byId(about);
+  const message = byId(about);
   // What is typed before there is anyone to take it would be lost. The panel itself is not inert: it would let clicks
   // through, and nothing in it would be read out.
   /** @type {HTMLElement[]} */
   const parts = Array.from(byId(panel).querySelectorAll(":scope > *"));
-  const hold = (/** @type {boolean} */ held) => {
-    for (const part of parts) part.inert = held && !part.contains(word);
+  const setInert = (/** @type {boolean} */ isInert) => {
+    for (const part of parts) part.inert = isInert && !part.contains(message);
   };
-  hold(true);
+  setInert(true);
   const own = dropDown(button, panel, async () => {
     try {
       loading ??= load(own);
       content = await loading;
     } catch {
       loading = null;
-      word.textContent = MISSING;
+      message.textContent = MISSING;
       return;
     }
-    if (word.textContent === MISSING) word.textContent = "";
-    hold(false);
+    if (message.textContent === MISSING) message.textContent = "";
+    setInert(false);
     content.opened();
   });
   return {

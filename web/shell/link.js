@@ -84,9 +84,9 @@ export function createLink({ engine, dispatch, now }) {
   /** Shows the scenario of a link as a shared one and says so unless it is known, or says why it cannot. @param {string} fragment @param {boolean} [isKnown] */
   async function openLink(fragment, isKnown = false) {
     try {
-      const answer = await engine.ask("decode_link", fragment);
-      if ("error" in answer) return refuse(answer.error);
-      const scenario = readJson(answer.scenario);
+      const reply = await engine.ask("decode_link", fragment);
+      if ("error" in reply) return refuse(reply.error);
+      const scenario = readJson(reply.scenario);
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";

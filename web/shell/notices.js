@@ -21,16 +21,16 @@ export function showPlace({ dispatch, now }, { start, end, controller, cycle }) 
 /** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createNotices(page) {
   const { engine, dispatch, now } = page;
-  /** What a verdict says; it loads with the first. @type {typeof import("./verdict.js").words | null} */
-  let words = null;
+  /** What a verdict says; it loads with the first. @type {typeof import("./verdict.js").verdictText | null} */
+  let verdictText = null;
 
   /** @param {string} text */
   async function compare(text) {
     const { result } = now();
     const verdict = await engine.ask("verify", text).catch(unlessDropped);
-    words ??= (await import("./verdict.js").catch(() => null))?.words ?? null;
-    if (!words)
-      return tell(
+    verdictText ??= (await import("./verdict.js").catch(() => null))?.verdictText ?? null;
+    if (!verdictText)
+      return showLine(
         "seen-message",
         "This part of the page could not be loaded; try again when the network is there.",
         null,
@@ -39,7 +39,7 @@ export function createNotices(page) {
   }
 
   /** @param {string} id @param {string} text @param {Place | null} [place] @param {NonNullable<State["notice"]>["offer"]} [offer] */
-  function tell(id, text, place, offer) {
+  function showLine(id, text, place, offer) {
     const line = byId(id);
     const known = line.dataset.said;
     const key = JSON.stringify([text, place, offer?.label]);
@@ -65,17 +65,17 @@ export function createNotices(page) {
   function render(state, before) {
     const { notice, seen, result, revision } = state;
     if (before?.notice !== notice) {
-      tell("link-message", notice?.text ?? "", notice?.place, notice?.offer);
+      showLine("link-message", notice?.text ?? "", notice?.place, notice?.offer);
       byId("link-message").classList.toggle("error", notice?.kind === "error");
     }
     const current = result?.revision === revision;
     const due = current && seen && !seen.verdict;
-    const asked = before?.seen?.text === seen?.text && before?.result?.summary === result?.summary;
-    if (due && !asked) compare(seen.text);
+    const isCompared = before?.seen?.text === seen?.text && before?.result?.summary === result?.summary;
+    if (due && !isCompared) compare(seen.text);
     if (before?.seen !== seen || before?.result !== result) {
       const verdict = current ? seen?.verdict : null;
-      const said = verdict && words ? words(verdict, state) : null;
-      tell("seen-message", said?.text ?? "", said?.place);
+      const found = verdict && verdictText ? verdictText(verdict, state) : null;
+      showLine("seen-message", found?.text ?? "", found?.place);
       byId("seen-message").classList.toggle("warning", Boolean(verdict) && !verdict?.same);
     }
   }

@@ -16,7 +16,7 @@ export function keepOffline() {
   if (!("serviceWorker" in navigator) || document.documentElement.dataset.build === "development") return;
   const { serviceWorker } = navigator;
   const notice = byId("newer-version");
-  let asked = false;
+  let isAsked = false;
 
   /** @param {ServiceWorkerRegistration} registration */
   const waits = (registration) => {
@@ -24,7 +24,7 @@ export function keepOffline() {
     if (registration.waiting && serviceWorker.controller) notice.hidden = false;
   };
   byId("reload").addEventListener("click", async () => {
-    asked = true;
+    isAsked = true;
     const waiting = (await serviceWorker.getRegistration())?.waiting;
     if (waiting) waiting.postMessage("take over");
     else location.reload();
@@ -34,7 +34,7 @@ export function keepOffline() {
   });
   let controlled = serviceWorker.controller !== null;
   serviceWorker.addEventListener("controllerchange", () => {
-    if (asked) location.reload();
+    if (isAsked) location.reload();
     // Another tab changed over: this one's files may be gone.
     else if (controlled) notice.hidden = false;
     controlled = true;

@@ -30,11 +30,11 @@ const WHAT =
 
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, dispatch, now }, files) {
-  if (files.length > 1) return tell("error", `${files.length} files at once: drop one. ${WHAT}`);
+  if (files.length > 1) return notify("error", `${files.length} files at once: drop one. ${WHAT}`);
   return open(files[0]);
 
   /** @param {"info" | "error"} kind @param {string} text @param {import("../state/types.js").Place | null} [place] */
-  function tell(kind, text, place = null) {
+  function notify(kind, text, place = null) {
     dispatch({ type: "notice", notice: { kind, text, place } });
   }
 
@@ -55,7 +55,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
       else await (await import("./recording/recording.js")).openRecording({ engine, dispatch, now }, file);
     } catch (error) {
-      if (!(error instanceof Dropped)) tell("error", `${file.name} cannot be opened: ${message(error)}`);
+      if (!(error instanceof Dropped)) notify("error", `${file.name} cannot be opened: ${message(error)}`);
     }
   }
 
@@ -100,16 +100,16 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
           path ? `${path}: ${message}` : message,
         );
       const more = problems.length > MAX_TOLD ? `; and ${problems.length - MAX_TOLD} more` : "";
-      return tell(
+      return notify(
         "error",
         `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${listed.join("; ")}${more}. Your own work is as it was.`,
       );
     }
     const read = readJson(scenario);
     if (JSON.stringify(read) === JSON.stringify(now().scenario))
-      return tell("info", `${file.name} holds the very experiment that is on show.`);
+      return notify("info", `${file.name} holds the very experiment that is on show.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
-    tell("info", `${words(read)}${ownIsKept()}`);
+    notify("info", `${words(read)}${ownIsKept()}`);
   }
 
   /** Holds saved edges against the run. @param {File} file */
@@ -119,26 +119,26 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (isStale(now()))
       throw new Error("the experiment has not been run as it stands; fix the form, or run it, then compare");
     const { controller, summary } = result;
-    const held = await engine.session(async (ask, json) => {
+    const comparison = await engine.session(async (ask, json) => {
       await ask("open", "trace_file", json, controller);
       for (let at = 0; at < file.size; at += PIECE) {
         const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
         if (await ask("of", "feed", piece)) break;
-        if (at > 0) tell("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
+        if (at > 0) notify("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
       }
       return ask("of", "end");
     });
-    if (!held || now().result?.summary !== summary)
+    if (!comparison || now().result?.summary !== summary)
       throw new Error("the experiment was run anew meanwhile; compare again");
     const seconds = (/** @type {number} */ cycle) => `${time(cycle / summary.clock_hz)}`;
-    const { difference } = held;
+    const { difference } = comparison;
     if (!difference) {
-      const { start_cycle, end_cycle, goes_on, same } = held;
+      const { start_cycle, end_cycle, goes_on, same } = comparison;
       const all = start_cycle === 0 && !goes_on;
       const range = all
         ? "all of this run"
         : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; what lies outside is not in the file`;
-      return tell("info", `${file.name} is identical, bit for bit: ${count(same)} rows, ${range}.`);
+      return notify("info", `${file.name} is identical, bit for bit: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
     const which = signals.map(
@@ -149,9 +149,9 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
         ? which.slice(0, 4).join(", ") + (which.length > 4 ? `, and ${which.length - 4} more` : "")
         : "a row without a change";
     const place = around(cycle, cycle, summary.end_cycle, controller);
-    tell(
+    notify(
       "error",
-      `${file.name} is not this run: after ${count(held.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
+      `${file.name} is not this run: after ${count(comparison.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
       place,
     );
   }

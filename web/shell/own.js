@@ -16,9 +16,9 @@ export function listOwn() {
   preset.value = value;
 }
 
-/** Shows an own experiment: an earlier version may have kept it, so the core reads it. @param {import("./experiments.js").Given} page @param {any} kept */
-async function openOwn({ engine, dispatch }, kept) {
-  const read = await engine.ask("check", JSON.stringify(kept)).catch(unlessDropped);
+/** Shows an own experiment: an earlier version may have kept it, so the core reads it. @param {import("./experiments.js").Given} page @param {any} saved */
+async function openOwn({ engine, dispatch }, saved) {
+  const read = await engine.ask("check", JSON.stringify(saved)).catch(unlessDropped);
   if (read) dispatch({ type: "replace", scenario: readJson(read.scenario), origin: "own" });
 }
 
@@ -31,7 +31,7 @@ export function createOwn(page) {
       (await import("./experiments.js")).createExperiments(page, {
         close,
         changed: listOwn,
-        open: (kept) => openOwn(page, kept),
+        open: (saved) => openOwn(page, saved),
       }),
     "experiment-about",
   );

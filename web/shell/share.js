@@ -14,7 +14,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
   const about = byId("link-about");
   let timer = 0;
   /** Counts the links that were asked for: an older one comes too late. */
-  let asked = 0;
+  let request = 0;
   copy.addEventListener("click", toClipboard);
 
   /** The link to share, and whether the digests of the run on show are in it. */
@@ -27,7 +27,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
   }
 
   async function make() {
-    const mine = ++asked;
+    const mine = ++request;
     say(copy, "Copy link");
     copy.disabled = true;
     text.value = "";
@@ -36,12 +36,12 @@ export function createShare({ engine, address, now }, { isOpen }) {
       return say(about, "No link yet: fields of the form need other values; fix them first.");
     try {
       const { full, digests } = await shared();
-      if (mine !== asked) return;
+      if (mine !== request) return;
       text.value = full;
       copy.disabled = false;
       say(about, `${count(full.length)} characters: ${contents(now(), digests)}. Nothing is stored on a server.`);
     } catch (error) {
-      if (mine === asked) say(about, `No link: ${message(error)}`);
+      if (mine === request) say(about, `No link: ${message(error)}`);
     }
   }
 

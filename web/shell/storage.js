@@ -95,17 +95,17 @@ export function setAside(next) {
 }
 /** Experiments that the visitor named. @returns {any[]} */
 export function loadExperiments() {
-  const kept = parsed(load(EXPERIMENTS));
-  return Array.isArray(kept) ? kept.filter((each) => typeof each?.title === "string") : [];
+  const saved = parsed(load(EXPERIMENTS));
+  return Array.isArray(saved) ? saved.filter((each) => typeof each?.title === "string") : [];
 }
 /** Whether they are kept. @param {any[]} experiments */
 export const saveExperiments = (experiments) => save(EXPERIMENTS, JSON.stringify(experiments));
 /** @typedef {Pick<import("../state/types.js").State, "past" | "future">} History */
 /** Steps back and forth of this tab, of the same version of the page. @param {string} version @returns {History} */
 export function loadHistory(version) {
-  const kept = parsed(load(HISTORY, ofTab));
-  const whole = kept?.version === version && Array.isArray(kept.past) && Array.isArray(kept.future);
-  return whole ? kept : { past: [], future: [] };
+  const saved = parsed(load(HISTORY, ofTab));
+  const whole = saved?.version === version && Array.isArray(saved.past) && Array.isArray(saved.future);
+  return whole ? saved : { past: [], future: [] };
 }
 /** Keeps as many steps as there is space for, the nearest ones. @param {string} version @param {History} history */
 export function saveHistory(version, { past, future }) {

@@ -6,7 +6,7 @@ import { count, time } from "../state/number.js";
 /** @typedef {import("../state/types.js").Verdict} Verdict */
 
 /** What a verdict says, and the place that is meant. @param {Verdict} verdict @param {State} state @returns {{text: string, place: Place | null}} */
-export function words(verdict, { result }) {
+export function verdictText(verdict, { result }) {
   if (!result) return { text: "", place: null };
   const { controllers, clock_hz, end_cycle } = result.summary;
   if (verdict.error) {

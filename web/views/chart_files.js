@@ -11,7 +11,7 @@ import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
 import { motorPanels, motorValues as motorTable } from "./motor/sheet.js";
 import { chosenSpectrum, spectrumChart } from "./spectrum/chart.js";
-import { distortion, given, nameOf, overFrequency, UNITS } from "./spectrum/harmonics.js";
+import { distortion, namedSpectra, nameOf, overFrequency, UNITS } from "./spectrum/harmonics.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
@@ -28,16 +28,16 @@ const COLUMNS = WIDTH - 94;
 
 /** @param {State} state @param {Engine} engine */
 async function seen(state, engine) {
-  const answer = await ask(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
-  if (!answer) throw new Error("there is no motion to save");
-  return answer;
+  const reply = await ask(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
+  if (!reply) throw new Error("there is no motion to save");
+  return reply;
 }
 
 /** @param {Engine} engine @returns {Promise<import("../state/types.js").Spectra>} */
 async function spectra(engine) {
-  const answer = await engine.ask("spectrum");
-  if (!answer?.ideal && !answer?.pulses) throw new Error(answer?.note || "there is no spectrum to save");
-  return answer;
+  const reply = await engine.ask("spectrum");
+  if (!reply?.ideal && !reply?.pulses) throw new Error(reply?.note || "there is no spectrum to save");
+  return reply;
 }
 
 /** @param {State} state */
@@ -90,7 +90,7 @@ export async function spectrumSheet(state, engine) {
   const found = await spectra(engine);
   const { quantity, db } = chosenSpectrum();
   const { title, note } = titleOf(state);
-  const all = given(found);
+  const all = namedSpectra(found);
   const thd = all[0][1].periodic ? `${distortion(found, quantity)} · ` : "";
   return {
     title,

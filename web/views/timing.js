@@ -32,7 +32,7 @@ export function createTiming(page) {
   }
 
   /** Says it in this view and, visibly, in the pulses. @param {string} text */
-  function tell(text) {
+  function showNote(text) {
     say(byId("timing-sentence"), text);
     speak(text);
   }
@@ -40,28 +40,28 @@ export function createTiming(page) {
   /** What shows what was found; nothing where it could not be loaded. */
   async function found() {
     try {
-      loading ??= import("./timing_found.js").then(({ createFound }) => createFound({ ...page, tell }));
+      loading ??= import("./timing_found.js").then(({ createFound }) => createFound({ ...page, showNote }));
       return await loading;
     } catch {
       loading = null;
-      tell("This part of the page could not be loaded; try again when the network is there.");
+      showNote("This part of the page could not be loaded; try again when the network is there.");
       return null;
     }
   }
 
   /** The next violation after cursor A, or after the one that is chosen. @param {boolean} forward */
   async function next(forward) {
-    if (!timing) return tell("There is no driver whose timing could be broken.");
+    if (!timing) return showNote("There is no driver whose timing could be broken.");
     await (await found())?.next(timing, forward);
   }
 
   /** @param {State} state */
   async function refresh(state) {
     say(byId("timing-sentence"), "");
-    const answer =
+    const reply =
       selected(state)?.violations === null ? null : await engine.latest("timing", "timing").catch(unlessDropped);
-    if (answer === undefined) return;
-    timing = answer;
+    if (reply === undefined) return;
+    timing = reply;
     // Without a driver there is nothing to paint, and nowhere.
     if (timing || loading) (await found())?.take(timing);
   }

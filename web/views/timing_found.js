@@ -17,8 +17,8 @@ const DIR = 16;
 /** A violation is shown in a window of so many of the times that it is about. */
 const AROUND = 14;
 
-/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], tell: (text: string) => void} & import("../state/types.js").Page} page */
-export function createFound({ engine, drivers, tell, dispatch, now }) {
+/** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], showNote: (text: string) => void} & import("../state/types.js").Page} page */
+export function createFound({ engine, drivers, showNote, dispatch, now }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   /** @type {Timing | null} */
   let timing = null;
@@ -28,9 +28,9 @@ export function createFound({ engine, drivers, tell, dispatch, now }) {
     if (row) show(Number(row.dataset.index));
   });
 
-  /** The next violation after cursor A, or after the one that is chosen. @param {Timing} answer @param {boolean} forward */
-  async function next(answer, forward) {
-    take(answer);
+  /** The next violation after cursor A, or after the one that is chosen. @param {Timing} found @param {boolean} forward */
+  async function next(found, forward) {
+    take(found);
     const state = now();
     const chosen = timing?.violations[current];
     const { a } = state.cursors;
@@ -45,7 +45,7 @@ export function createFound({ engine, drivers, tell, dispatch, now }) {
     const first = timing?.violations.findIndex((each) => each.rule === rule) ?? -1;
     const { least, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
     if (first >= 0) return show(first);
-    if (!least) return tell(`${ruleName(rule)}: never measured in this run.`);
+    if (!least) return showNote(`${ruleName(rule)}: never measured in this run.`);
     current = -1;
     const clock = now().result?.summary.clock_hz ?? 1;
     go({
@@ -55,7 +55,7 @@ export function createFound({ engine, drivers, tell, dispatch, now }) {
       measured_cycles: least.measured_cycles,
       required_cycles: required_cycles ?? 0,
     });
-    tell(
+    showNote(
       `${ruleName(rule)}: least ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
     );
   }
@@ -77,12 +77,12 @@ export function createFound({ engine, drivers, tell, dispatch, now }) {
   /** Shows a violation in the pulses, its edge at cursor A. @param {number} index */
   function show(index) {
     const violation = timing?.violations[index];
-    if (!violation) return tell("No further violation that way.");
+    if (!violation) return showNote("No further violation that way.");
     const { cycle, channel, rule, measured_cycles } = violation;
     current = index;
     go(violation);
     const clock = now().result?.summary.clock_hz ?? 1;
-    tell(
+    showNote(
       `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${required(timing, rule)} required.`,
     );
   }
@@ -95,10 +95,10 @@ export function createFound({ engine, drivers, tell, dispatch, now }) {
     }
   }
 
-  /** Shows another answer of the check. @param {Timing | null} answer */
-  function take(answer) {
-    if (answer === timing) return;
-    [timing, current] = [answer, -1];
+  /** Shows another answer of the check. @param {Timing | null} next */
+  function take(next) {
+    if (next === timing) return;
+    [timing, current] = [next, -1];
     paintTiming(timing, { state: now(), drivers, toRule });
   }
   return { next, take };

@@ -25,10 +25,10 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   const at = (/** @type {number} */ cycles) => time(cycles / clock);
   const sheet = drivers.find(({ id }) => id === timing?.driver);
   const total = timing?.total ?? 0;
-  const kept = timing?.violations.length ?? 0;
+  const listed = timing?.violations.length ?? 0;
   say(byId("timing-driver"), sheet?.name ?? "rules of your own");
   byId("timing-driver").title = sheet?.source ?? "";
-  const few = total > kept ? `; the first ${count(kept)} are listed` : "";
+  const few = total > listed ? `; the first ${count(listed)} are listed` : "";
   say(
     byId("timing-total"),
     total === 0

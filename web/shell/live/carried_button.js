@@ -9,7 +9,7 @@ export function carryInto(isNeeded, node, home) {
   /** Modal dialogs, as they were opened. @type {HTMLDialogElement[]} */
   let open = [];
   let isAway = false;
-  function look() {
+  function place() {
     const top = isNeeded() ? open.at(-1) : undefined;
     const other = top === own ? undefined : top;
     if (other && node.parentElement !== other) other.prepend(node);
@@ -21,8 +21,8 @@ export function carryInto(isNeeded, node, home) {
     const modal = [...document.querySelectorAll("dialog")].filter((each) => each.matches(":modal"));
     const [later, earlier] = [true, false].map((is) => modal.filter((each) => opened.has(each) === is));
     open = [...open.filter((each) => earlier.includes(each)), ...later];
-    look();
+    place();
   });
   observer.observe(document.body, { subtree: true, attributeFilter: ["open"] });
-  return { look, end: () => observer.disconnect() };
+  return { place, end: () => observer.disconnect() };
 }

@@ -127,7 +127,7 @@ function createDialog(page) {
     }
     view.allowed.hidden = controls.isAllowedHidden;
     view.end.hidden = controls.isEndHidden;
-    carrier.look();
+    carrier.place();
   }
 
   /** @param {string} text @param {boolean} [isError] */

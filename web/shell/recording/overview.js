@@ -26,21 +26,21 @@ export function createOverview(capture, choose) {
   const canvas = element("canvas", { role: "img" });
   Object.assign(canvas.style, { display: "block", width: "100%", cursor: "col-resize", touchAction: "pan-y" });
   canvas.style.height = `${POSITION_PX + BETWEEN_PX + SPEED_PX}px`;
-  const said = element("p", {});
+  const caption = element("p", {});
   const channel = element("select", { "aria-label": "Channel at a glance" });
-  const node = element("div", { class: "whole" }, channel, canvas, said);
+  const node = element("div", { class: "whole" }, channel, canvas, caption);
   node.hidden = true;
   /** What was looked at. @type {Looked | null} */
-  let looked = null;
+  let preview = null;
   /** What the columns are of, and how many were asked for. */
-  let [shown, asked] = ["", 0];
+  let [shown, askedColumns] = ["", 0];
   /** @type {Columns | null} */
   let columns = null;
   let timer = 0;
   /** Where a drag began and where it is, in s. @type {[number, number] | null} */
   let drag = null;
 
-  const end = () => looked?.kept?.end_s ?? looked?.end_s ?? 0;
+  const end = () => preview?.kept?.end_s ?? preview?.end_s ?? 0;
   /** The time under a pointer, to a pixel's digits. @param {PointerEvent} event */
   const at = ({ clientX }) => {
     const { left, width } = canvas.getBoundingClientRect();
@@ -82,21 +82,21 @@ export function createOverview(capture, choose) {
   /** Asks for the columns, if these are others. */
   async function refresh() {
     const width = canvas.clientWidth;
-    if (!looked || width === 0) return;
+    if (!preview || width === 0) return;
     // The sample rate and the end of the file are in the time of its end.
-    const own = [looked.map, looked.clock_hz, end(), channel.value].join();
-    if (own === shown && width === asked) return draw();
+    const own = [preview.map, preview.clock_hz, end(), channel.value].join();
+    if (own === shown && width === askedColumns) return draw();
     // Until they come, those of another width stand for them, but none of anything else.
-    if (own !== shown) [columns, said.textContent] = [null, "…"];
-    [shown, asked] = [own, width];
+    if (own !== shown) [columns, caption.textContent] = [null, "…"];
+    [shown, askedColumns] = [own, width];
     draw();
-    const isOwn = () => own === shown && width === asked;
+    const isOwn = () => own === shown && width === askedColumns;
     try {
       const found = await capture.overview(Number(channel.value), width);
       if (!isOwn()) return;
       columns = found;
       draw();
-      tell();
+      describe();
     } catch (error) {
       if (!isOwn()) return;
       [columns, shown] = [null, ""];
@@ -108,11 +108,11 @@ export function createOverview(capture, choose) {
   /** @param {string} what @param {boolean} isWrong */
   function say(what, isWrong) {
     canvas.setAttribute("aria-label", what);
-    said.classList.toggle("error", isWrong);
-    said.textContent = isWrong ? what : `${what} Drag over it to show a part.`;
+    caption.classList.toggle("error", isWrong);
+    caption.textContent = isWrong ? what : `${what} Drag over it to show a part.`;
   }
 
-  function tell() {
+  function describe() {
     if (!columns) return;
     const [low, high] = rangeOf([columns.position_min, columns.position_max]);
     const speeds = rangeOf([columns.speed_min, columns.speed_max]).map(Math.abs);
@@ -132,7 +132,9 @@ export function createOverview(capture, choose) {
     band(pen, columns.position_min, columns.position_max, { width, top: 0, high: POSITION_PX, ink: ink("--actual") });
     const top = POSITION_PX + BETWEEN_PX;
     band(pen, columns.speed_min, columns.speed_max, { width, top, high: SPEED_PX, ink: ink("--ideal") });
-    const part = drag ? [Math.min(...drag), Math.max(...drag)] : looked?.kept && [looked.kept.from_s, looked.kept.to_s];
+    const part = drag
+      ? [Math.min(...drag), Math.max(...drag)]
+      : preview?.kept && [preview.kept.from_s, preview.kept.to_s];
     if (!part) return;
     const [from, to] = part.map((at_s) => (at_s / end()) * width);
     pen.globalAlpha = LEFT_OUT;
@@ -148,7 +150,7 @@ export function createOverview(capture, choose) {
     node,
     /** @param {Looked | null} found  What was looked at; none, or no step in it, leaves nothing to see. */
     render(found) {
-      looked = found;
+      preview = found;
       node.hidden = !found || found.steps.length === 0;
       if (!found || node.hidden) return;
       const options = found.steps.map(({ channel: each }) =>

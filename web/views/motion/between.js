@@ -23,32 +23,32 @@ export function createBetween({ engine }) {
       said = "";
       return;
     }
-    const answer = /** @type {import("../../state/types.js").Between | null} */ (
+    const reply = /** @type {import("../../state/types.js").Between | null} */ (
       await engine.latest("between", "between", state.axis, a, b)
     );
-    if (!answer) return;
+    if (!reply) return;
     const seconds = (b - a) / state.result.summary.clock_hz;
     const span = `B−A ${exactTime(b - a, state.result.summary.clock_hz)}${seconds === 0 ? "" : ` · 1/|B−A| ${si(1 / Math.abs(seconds), "Hz", 6)}`}`;
     say(byId("between-span"), `${span} · in ${unitOf(state).unit} and s`);
     fill(
       byId("between-tables"),
       ...[
-        ["ideal", answer.ideal],
-        ["from pulses", answer.actual],
+        ["ideal", reply.ideal],
+        ["from pulses", reply.actual],
       ].flatMap(([name, readings]) =>
         readings
-          ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings), answer.ideal !== null)]
+          ? [table(state, /** @type {string} */ (name), /** @type {Readings} */ (readings), reply.ideal !== null)]
           : [],
       ),
     );
     const mean = QUANTITIES.flatMap((quantity, index) => {
-      const from = answer.ideal ?? answer.actual;
+      const from = reply.ideal ?? reply.actual;
       return from.mean[index] === undefined
         ? []
         : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
     });
-    byId("between-tables").append(...(answer.ideal ? [] : [element("p", { class: "note" }, OF_STEPS)]));
-    said = `Between the cursors: ${span}; means of ${answer.ideal ? "the ideal curve" : "the pulses"}: ${mean.join(", ")}.`;
+    byId("between-tables").append(...(reply.ideal ? [] : [element("p", { class: "note" }, OF_STEPS)]));
+    said = `Between the cursors: ${span}; means of ${reply.ideal ? "the ideal curve" : "the pulses"}: ${mean.join(", ")}.`;
     place.hidden = false;
   }
 

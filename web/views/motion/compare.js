@@ -40,7 +40,7 @@ export function createCompare({ engine, dispatch, now }) {
   }
 
   /** @param {State} state */
-  async function tell(state) {
+  async function showDifference(state) {
     place.hidden = !state.baseline;
     if (!state.baseline || !state.result) return;
     const { tellCompared } = await import("./compared.js");
@@ -63,7 +63,7 @@ export function createCompare({ engine, dispatch, now }) {
       (baseline &&
         (before?.result !== result || before?.axis !== axis || before?.unit !== unit || before?.derived !== derived))
     )
-      void tell(state).catch(unlessDropped);
+      void showDifference(state).catch(unlessDropped);
   }
   return { render };
 }

@@ -74,10 +74,10 @@ export function createMotion({ engine, dispatch, now }) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round(plot.right - plot.left));
-    const answer = await ask(engine, state, shown(state), wanted).catch(unlessDropped);
-    if (!answer) return;
-    if (state.baseline && !answer.baseline) dispatch({ type: "baseline", baseline: null });
-    seen = answer;
+    const reply = await ask(engine, state, shown(state), wanted).catch(unlessDropped);
+    if (!reply) return;
+    if (state.baseline && !reply.baseline) dispatch({ type: "baseline", baseline: null });
+    seen = reply;
     paint(now());
   }
 

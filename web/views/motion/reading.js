@@ -41,7 +41,7 @@ export function createReading({ engine, now }) {
   }
 
   /** The cycle of the pointer, else of a cursor, that is on show. @param {State} state */
-  function wanted(state) {
+  function shownCycle(state) {
     const { start, end } = shown(state);
     return (
       [state.hover, state.cursors.a, state.cursors.b].find((at) => at !== null && at >= start && at <= end) ?? null
@@ -51,12 +51,12 @@ export function createReading({ engine, now }) {
   /** The values there. @param {State} state */
   async function render(state) {
     const { a, b } = state.cursors;
-    const cycle = wanted(state);
+    const cycle = shownCycle(state);
     const result = state.result;
     if (cycle === null || !result) return write("", []);
     const [own, other] = await ask(state, cycle, "reading");
     // What has gone on meanwhile has asked anew, or has nothing to say.
-    if (!own || now().result !== result || wanted(now()) === null) return undefined;
+    if (!own || now().result !== result || shownCycle(now()) === null) return undefined;
     const name = cycle === a ? "A " : cycle === b ? "B " : "";
     const { scale, baseline } = unitOf(state);
     const seconds = cycle / result.summary.clock_hz;
@@ -95,13 +95,13 @@ export function createReading({ engine, now }) {
     const cycle = state.cursors[which];
     speaking = window.setTimeout(async () => {
       if (cycle === null) return say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} is removed.`);
-      const [answer] = await ask({ ...state, baseline: null }, cycle, "spoken");
-      if (!answer) return;
+      const [reply] = await ask({ ...state, baseline: null }, cycle, "spoken");
+      if (!reply) return;
       const { scale } = unitOf(state);
       const texts = QUANTITIES.flatMap((quantity, index) => {
         const values = [
-          ["ideal", readingOf(answer.ideal, index)],
-          ["from pulses", readingOf(answer.actual, index)],
+          ["ideal", readingOf(reply.ideal, index)],
+          ["from pulses", readingOf(reply.actual, index)],
         ].flatMap(([name, value]) => (Number.isFinite(value) ? [`${name} ${exact(Number(value) * scale)}`] : []));
         return values.length ? [`${quantity}: ${values.join(", ")} ${unitFor(state, quantity)}.`] : [];
       });

@@ -26,7 +26,7 @@ export function createChoice({ engine, dispatch, now }, fold) {
   let sheets = null;
   /** @type {boolean | null} */
   let driven = null;
-  for (const select of [motor, drive]) select.addEventListener("change", tell);
+  for (const select of [motor, drive]) select.addEventListener("change", describe);
   fold.addEventListener("toggle", () => fold.open && !sheets && load());
 
   async function load() {
@@ -42,11 +42,11 @@ export function createChoice({ engine, dispatch, now }, fold) {
     ];
     fill(motor, ...of(sheets.motors, "motor: as in the form"));
     fill(drive, ...of(sheets.drives, "driver: as in the form"));
-    return tell();
+    return describe();
   }
 
   /** Where the figures come from. */
-  function tell() {
+  function describe() {
     const chosen = [
       sheets?.motors.find(({ id }) => id === motor.value),
       sheets?.drives.find(({ id }) => id === drive.value),
@@ -67,7 +67,7 @@ export function createChoice({ engine, dispatch, now }, fold) {
     dispatch({ type: "edit", path: "", value: readJson(text) });
     motor.value = drive.value = "";
     fold.open = false;
-    tell();
+    describe();
   }
 
   /** @param {State} state @param {boolean} isDriven */
@@ -78,7 +78,7 @@ export function createChoice({ engine, dispatch, now }, fold) {
     press.classList.toggle("main", !driven);
     // There is nothing else to see where nothing is driven.
     if (state.result && was !== driven) fold.open = !driven;
-    tell();
+    describe();
   }
   return { show };
 }

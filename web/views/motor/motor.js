@@ -14,7 +14,7 @@ import { onTimeAxis } from "../../time/timeline.js";
 import { swatch } from "../lines.js";
 import { createChoice } from "./choice.js";
 import { showNumbers } from "./numbers.js";
-import { channelOf, chartOf, marksOf, QUANTITIES, wanted } from "./quantities.js";
+import { channelOf, chartOf, marksOf, QUANTITIES, shownQuantities } from "./quantities.js";
 import { createVerdict } from "./verdict.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -56,8 +56,8 @@ export function createMotor({ engine, dispatch, now }) {
     const root = element("div", { class: "chart" }, caption, canvas);
     const press = element("button", { type: "button", "aria-pressed": "false" }, quantity.title);
     press.addEventListener("click", () => {
-      if (wanted.has(quantity.name) && wanted.size > 1) wanted.delete(quantity.name);
-      else wanted.add(quantity.name);
+      if (shownQuantities.has(quantity.name) && shownQuantities.size > 1) shownQuantities.delete(quantity.name);
+      else shownQuantities.add(quantity.name);
       arrange();
       paint();
     });
@@ -86,9 +86,9 @@ export function createMotor({ engine, dispatch, now }) {
 
   /** The charts on show share the room; the last one has the time's labels. */
   function arrange() {
-    const on = charts.filter(({ quantity }) => wanted.has(quantity.name));
+    const on = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
     for (const { quantity, root, press } of charts) {
-      root.hidden = !wanted.has(quantity.name);
+      root.hidden = !shownQuantities.has(quantity.name);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
     stack.style.gridTemplateRows = `repeat(${on.length}, minmax(${CHART_PX}px, 1fr))`;
@@ -98,11 +98,9 @@ export function createMotor({ engine, dispatch, now }) {
   /** @param {State} state */
   async function resultOf(state) {
     const of = state.result;
-    const answer = /** @type {Report | null | undefined} */ (
-      await engine.latest("plant", "plant").catch(unlessDropped)
-    );
-    if (answer === undefined || now().result !== of) return;
-    [about, report] = [of, answer];
+    const reply = /** @type {Report | null | undefined} */ (await engine.latest("plant", "plant").catch(unlessDropped));
+    if (reply === undefined || now().result !== of) return;
+    [about, report] = [of, reply];
     const has = report !== null;
     for (const part of ["motor-body", "motor-quantities", "motor-limits"]) byId(part).hidden = !has;
     say(note, "");
@@ -120,11 +118,11 @@ export function createMotor({ engine, dispatch, now }) {
     const { start, end } = shown(state);
     const columns = Math.max(16, Math.round(plot.right - plot.left));
     const channel = channelOf(state);
-    const answer = await engine
+    const reply = await engine
       .latest("plant curves", "plant_curves", channel, start, end, columns)
       .catch(unlessDropped);
-    if (!answer || about !== now().result || channel !== channelOf(now())) return;
-    [curves, stretch] = [answer, { start, end }];
+    if (!reply || about !== now().result || channel !== channelOf(now())) return;
+    [curves, stretch] = [reply, { start, end }];
     paint();
   }
 
@@ -135,7 +133,7 @@ export function createMotor({ engine, dispatch, now }) {
     const { start, end } = stretch;
     const marks = marksOf(report, channelOf(state), stretch, clock);
     const time = { from: start / clock, to: end / clock, marks };
-    const on = charts.filter(({ quantity }) => wanted.has(quantity.name));
+    const on = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
     for (const { quantity, canvas } of on) {
       const last = quantity === on[on.length - 1].quantity;
       const { range, chart } = chartOf(quantity, curves, time, last);
@@ -169,18 +167,19 @@ export function createMotor({ engine, dispatch, now }) {
         : await engine.latest("plant reading", "plant_at", channelOf(state), cycle).catch(unlessDropped);
     if (values === undefined) return;
     const at = cycle === null ? "" : `${cycle === a ? "A " : cycle === b ? "B " : ""}${clockTime(cycle, state)}: `;
-    const told = (/** @type {{of: string}} */ { of }) => short(visible(values?.[of] ?? Number.NaN), 6);
+    const valueText = (/** @type {{of: string}} */ { of }) => short(visible(values?.[of] ?? Number.NaN), 6);
     for (const { quantity, reading } of charts)
-      say(reading, values ? `${at}${quantity.lines.map(told).join(" · ")}` : "");
-    speak(values && state.hover === null ? `${at}${sentence(told)}` : "");
+      say(reading, values ? `${at}${quantity.lines.map(valueText).join(" · ")}` : "");
+    speak(values && state.hover === null ? `${at}${sentence(valueText)}` : "");
   }
 
-  /** The values on show in words. @param {(line: {of: string}) => string} told */
-  function sentence(told) {
-    const on = QUANTITIES.filter(({ name }) => wanted.has(name));
+  /** The values on show in words. @param {(line: {of: string}) => string} valueText */
+  function sentence(valueText) {
+    const on = QUANTITIES.filter(({ name }) => shownQuantities.has(name));
     return on
       .map(
-        ({ title, unit, lines }) => `${title} ${lines.map((each) => `${each.label} ${told(each)}`).join(", ")} ${unit}`,
+        ({ title, unit, lines }) =>
+          `${title} ${lines.map((each) => `${each.label} ${valueText(each)}`).join(", ")} ${unit}`,
       )
       .join("; ");
   }

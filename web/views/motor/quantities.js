@@ -55,10 +55,10 @@ export const QUANTITIES = [
 ];
 
 /** Those on show, by their names. */
-export const wanted = new Set(["angle", "error", "phases", "supply"]);
+export const shownQuantities = new Set(["angle", "error", "phases", "supply"]);
 
 /** Those on show, in their order. */
-export const chosen = () => QUANTITIES.filter(({ name }) => wanted.has(name));
+export const chosen = () => QUANTITIES.filter(({ name }) => shownQuantities.has(name));
 
 /** The motor on show: the last one where there are fewer. @param {State} state */
 export const channelOf = (state) => Math.min(state.axis, (selected(state)?.channels ?? 1) - 1);

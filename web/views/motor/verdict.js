@@ -8,11 +8,11 @@ import { plain, short, si } from "../../state/number.js";
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State, node: HTMLElement}} page */
 export function createVerdict({ engine, now, node }) {
-  let asked = 0;
+  let request = 0;
 
   /** @param {State} state @param {Report | null} report @param {number} channel */
   async function show(state, report, channel) {
-    const own = ++asked;
+    const own = ++request;
     node.hidden = report === null;
     const motor = report?.motors[channel];
     if (!report || !motor) return;
@@ -22,7 +22,7 @@ export function createVerdict({ engine, now, node }) {
     say(first, `${loses ? "⚠ " : stopped ? "" : "✓ "}Motor ${channel} ${motor.verdict}.`);
     const rest = element("span");
     fill(node, ...(stopped ? [element("b", { class: "error" }, overload(report, state)), " "] : []), first, " ", rest);
-    const coarse = [motor.grid_too_coarse, motor.energy_left_over].filter(Boolean).map((told) => `⚠ ${told}.`);
+    const coarse = [motor.grid_too_coarse, motor.energy_left_over].filter(Boolean).map((warning) => `⚠ ${warning}.`);
     say(rest, [...coarse, others(report, channel), supply(report)].filter(Boolean).join(" "));
     if (!loses) return;
     const why = await reason(state, channel).catch((error) =>
@@ -30,7 +30,7 @@ export function createVerdict({ engine, now, node }) {
         ? ""
         : ` (why could not be looked up: ${error instanceof Error ? error.message : error})`,
     );
-    if (why && own === asked) say(first, `⚠ Motor ${channel} ${motor.verdict}${why}.`);
+    if (why && own === request) say(first, `⚠ Motor ${channel} ${motor.verdict}${why}.`);
   }
 
   /** The rate of the first two steps against what the motor starts at. @param {State} state @param {number} channel */

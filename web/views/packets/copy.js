@@ -31,10 +31,10 @@ export async function copyHex(hex, what) {
 export async function copyAll(engine) {
   let hex = "";
   for (let from = 0; from !== undefined; ) {
-    const answer = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
-    if (!answer) return say(byId("packets-note"), "Nothing was copied: the engine was started again; copy once more.");
-    hex += answer.part;
-    from = answer.next;
+    const reply = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
+    if (!reply) return say(byId("packets-note"), "Nothing was copied: the engine was started again; copy once more.");
+    hex += reply.part;
+    from = reply.next;
     if (hex.length > MOST)
       return say(
         byId("packets-note"),

@@ -48,9 +48,9 @@ export function createInspector(page) {
   async function show(index) {
     if (index === wanted) return;
     wanted = index;
-    const answer = await page.engine.latest("packet", "packet", index).catch(unlessDropped);
-    if (!answer || index !== wanted) return;
-    row = /** @type {PacketDetail} */ (answer);
+    const reply = await page.engine.latest("packet", "packet", index).catch(unlessDropped);
+    if (!reply || index !== wanted) return;
+    row = /** @type {PacketDetail} */ (reply);
     details.hidden = false;
     say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome, row.why].filter(Boolean).join(" · "));
     await paint();

@@ -32,7 +32,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
   );
   const panel = byId("packets-filter");
   let matches = 0;
-  let asked = 0;
+  let request = 0;
   options(outcome, OUTCOMES, "");
 
   /** @param {Partial<State["filter"]>} filter */
@@ -92,7 +92,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
 
   /** Another run: what there is to choose from, and the same filter over its rows. @param {State} state */
   async function start(state) {
-    const own = ++asked;
+    const own = ++request;
     const choices = await engine.ask("packet_choices").catch(unlessDropped);
     if (choices) {
       const { framed } = state.result?.summary ?? {};
@@ -119,7 +119,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
       kind.closest("label")?.toggleAttribute("hidden", !framed);
       address.closest("label")?.toggleAttribute("hidden", choices.addresses.length === 0);
     }
-    if (own !== asked) return;
+    if (own !== request) return;
     if (isFiltering(state.filter)) return filter(state);
     matches = 0;
     await reload();
@@ -128,19 +128,19 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
 
   /** Has the worker look for the rows; a newer question ends an older one. @param {State} state */
   async function filter(state) {
-    const own = ++asked;
+    const own = ++request;
     const slow = setTimeout(() => say(byId("packets-found"), "searching…"), LONG_MS);
     const { text: wanted, kind: kindWanted, address: at, outcome: mark, only: alone } = state.filter;
     const row = place().row;
-    const answer = await engine.ask("filter", wanted, kindWanted, at, mark, alone).catch(unlessDropped);
+    const reply = await engine.ask("filter", wanted, kindWanted, at, mark, alone).catch(unlessDropped);
     clearTimeout(slow);
-    if (!answer || own !== asked) return;
-    matches = answer.matches;
-    say(byId("packets-note"), answer.note);
+    if (!reply || own !== request) return;
+    matches = reply.matches;
+    say(byId("packets-note"), reply.note);
     // The row that was the current one stays it; a search goes on from there.
     const there = row ? await engine.ask("packet_position", row.index).catch(unlessDropped) : undefined;
-    if (own === asked) await reload();
-    if (own !== asked) return;
+    if (own === request) await reload();
+    if (own !== request) return;
     if (typeof there === "number") await moveTo(there);
     if (matches > 0 && place().row?.rank === null) return next(true);
     found();

@@ -35,7 +35,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   const table = byId("packets");
   const body = /** @type {HTMLTableSectionElement} */ (table.querySelector("tbody"));
   /** @type {PacketPage} */
-  let answer = { total: 0, shown: 0, matches: 0, unit: "ms", rows: [] };
+  let reply = { total: 0, shown: 0, matches: 0, unit: "ms", rows: [] };
   /** Position of the current row among those on show. */
   let current = 0;
   /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
@@ -46,7 +46,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   new ResizeObserver(reload).observe(scroller);
   const rowAt = (/** @type {Event} */ event) => {
     const row = /** @type {HTMLElement} */ (event.target).closest("tr");
-    return row ? answer.rows.find(({ index }) => index === Number(row.dataset.index)) : undefined;
+    return row ? reply.rows.find(({ index }) => index === Number(row.dataset.index)) : undefined;
   };
   body.addEventListener("click", (event) => {
     const row = rowAt(event);
@@ -64,11 +64,11 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   });
   body.addEventListener("pointerleave", () => dispatch({ type: "highlight", highlighted: null }));
 
-  const { first, visible, scrollTo, resize } = virtualRows(scroller, space, () => answer.shown);
+  const { first, visible, scrollTo, resize } = virtualRows(scroller, space, () => reply.shown);
 
   /** Makes another row the current one. @param {number} position */
   function moveTo(position) {
-    current = Math.min(Math.max(0, answer.shown - 1), Math.max(0, position));
+    current = Math.min(Math.max(0, reply.shown - 1), Math.max(0, position));
     scrollTo(current);
     return reload();
   }
@@ -89,22 +89,22 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     const page = await engine.latest("packets", "packets", from, unseen ? 1 : visible() + 2).catch(unlessDropped);
     if (!page) return;
     if (unseen) return counted(page);
-    const others = page.shown !== answer.shown || page.total !== answer.total;
-    answer = page;
+    const others = page.shown !== reply.shown || page.total !== reply.total;
+    reply = page;
     if (others) {
-      current = Math.min(current, Math.max(0, answer.shown - 1));
-      table.setAttribute("aria-rowcount", String(answer.shown + 1));
+      current = Math.min(current, Math.max(0, reply.shown - 1));
+      table.setAttribute("aria-rowcount", String(reply.shown + 1));
       resize();
       // Fewer rows may have moved the scroll bar.
       if (first() !== from) return reload();
     }
-    counted(answer);
+    counted(reply);
     paint(now());
   }
 
   /** @param {State} state */
   function paint(state) {
-    const { rows, unit } = answer;
+    const { rows, unit } = reply;
     say(byId("packets-time"), `start, ${unit}`);
     say(byId("packets-gap"), `gap, ${unit}`);
     say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
@@ -145,7 +145,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   /** Marks the rows that another view, or this one, points at. @param {State} state */
   function light({ highlighted }) {
     for (const [place, node] of [...body.rows].entries()) {
-      const row = answer.rows[place];
+      const row = reply.rows[place];
       const over =
         highlighted &&
         row &&
@@ -175,9 +175,9 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
         ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + air),
       );
     };
-    const { rows, unit } = answer;
+    const { rows, unit } = reply;
     const [head, plain, hex] = [fontOf("th"), fontOf("td"), fontOf("td:nth-child(3)")];
-    measure("index", plain, count(Math.max(0, answer.total - 1)), "00");
+    measure("index", plain, count(Math.max(0, reply.total - 1)), "00");
     measure("time", plain, ...rows.map(({ start }) => start));
     measure("time", head, `start, ${unit}`);
     measure("gap", plain, ...rows.map(({ gap }) => gap));
@@ -211,7 +211,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
       moveTo(current + by);
     },
     page: () => Math.max(1, visible() - 1),
-    place: () => ({ position: current, row: answer.rows.find(({ position }) => position === current) ?? null }),
+    place: () => ({ position: current, row: reply.rows.find(({ position }) => position === current) ?? null }),
     /** Another run. */
     reset: () => {
       current = 0;

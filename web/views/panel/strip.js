@@ -223,11 +223,11 @@ export function createStrip(place, page) {
     const { start, end } = shown(state);
     const clock = result.summary.clock_hz;
     const columns = Math.max(16, stack.clientWidth - GUTTER - MARGIN);
-    const answer = await engine
+    const reply = await engine
       .latest("panel curve", "motion", page.channel(), start / clock, end / clock, columns)
       .catch(unlessDropped);
-    if (!answer || now().result !== result) return;
-    curve = { start, end, min: answer.actual_position_min, max: answer.actual_position_max };
+    if (!reply || now().result !== result) return;
+    curve = { start, end, min: reply.actual_position_min, max: reply.actual_position_max };
     paint();
   }
 

@@ -36,12 +36,12 @@ export function createEdges({ engine, now }) {
   /** Shows the edges after a cycle, or before it. @param {number} cycle @param {boolean} forward */
   async function turn(cycle, forward) {
     const bit = which.value === "row" ? now().row : undefined;
-    const answer = await engine.latest("edges", "edges", bit, cycle, forward, PAGE).catch(unlessDropped);
-    if (!answer) return;
-    ({ rows } = answer);
+    const reply = await engine.latest("edges", "edges", bit, cycle, forward, PAGE).catch(unlessDropped);
+    if (!reply) return;
+    ({ rows } = reply);
     // At the last page there may still be edges the other way.
-    earlier.disabled = forward ? cycle < 0 : !answer.more;
-    later.disabled = forward && !answer.more;
+    earlier.disabled = forward ? cycle < 0 : !reply.more;
+    later.disabled = forward && !reply.more;
     paint(now());
   }
 

@@ -115,15 +115,15 @@ export function createOverview({ engine, dispatch, now }) {
       return;
     }
     const wanted = Math.max(16, Math.round((canvas.clientWidth - GUTTER - MARGIN) * ratio()));
-    const answer = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
+    const reply = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
     const height = Math.round(canvas.clientHeight * ratio());
-    if (!answer) return;
+    if (!reply) return;
     // Where it was hidden meanwhile it is made when it is shown again.
-    whole = height > 0 ? answer : null;
+    whole = height > 0 ? reply : null;
     if (!whole) return;
     const context = strip.getContext("2d");
     [strip.width, strip.height] = [wanted, height];
-    if (context) paintOverview(context, answer, { left: 0, height });
+    if (context) paintOverview(context, reply, { left: 0, height });
     paint(now());
   }
 

@@ -47,7 +47,7 @@ export function createPulses({ engine, dispatch, now }) {
   });
   const px = () => rowPx(now().panes.pulses);
   /** @type {import("./picture.js").Answer | null} */
-  let answer = null;
+  let reply = null;
   let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
 
@@ -119,17 +119,17 @@ export function createPulses({ engine, dispatch, now }) {
     const { start, end } = shown(state);
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
     const margin = Math.round(wanted / 4);
-    if (answer) soon();
-    const asked = engine
+    if (reply) soon();
+    const request = engine
       .latest("pulses", "pulses", start, end, wanted, margin)
       .catch(unlessDropped)
       .then((columns) => {
         if (!columns) return false;
-        answer = { columns, start, end, count: wanted, margin };
+        reply = { columns, start, end, count: wanted, margin };
         soon();
         return true;
       });
-    const all = await Promise.all([asked, spans.fetch(state, plot.right - plot.left, soon)]);
+    const all = await Promise.all([request, spans.fetch(state, plot.right - plot.left, soon)]);
     // Whoever waits for the drawing waits for this.
     if (all.every(Boolean)) paint(now());
   }
@@ -143,8 +143,8 @@ export function createPulses({ engine, dispatch, now }) {
   function paint(state) {
     cancelAnimationFrame(frame);
     frame = 0;
-    if (!answer || !state.result) return;
-    paintRows(canvas, state, plot, answer, spans);
+    if (!reply || !state.result) return;
+    paintRows(canvas, state, plot, reply, spans);
     describe(state);
     paintCursor(state);
   }

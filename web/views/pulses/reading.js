@@ -43,9 +43,9 @@ export function createReading({ engine, now }) {
   async function signal(bit) {
     const { hover } = now();
     if (hover === null) return span("");
-    const answer = await engine.latest("pulse", "pulse_at", bit, hover).catch(unlessDropped);
-    if (answer) span(measured(now(), bit, answer));
-    return answer ?? undefined;
+    const reply = await engine.latest("pulse", "pulse_at", bit, hover).catch(unlessDropped);
+    if (reply) span(measured(now(), bit, reply));
+    return reply ?? undefined;
   }
 
   /** A span, or nothing, is under the pointer. @param {string} text @returns {undefined} */
@@ -86,12 +86,12 @@ export function createReading({ engine, now }) {
       cursors: { a },
     } = now();
     if (a === null) return;
-    const asked = sentences;
-    const answer = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);
-    if (asked !== sentences) return;
+    const own = sentences;
+    const reply = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);
+    if (own !== sentences) return;
     const state = now();
     const clock = state.result?.summary.clock_hz ?? 1;
-    if (answer) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, answer)}.`);
+    if (reply) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, reply)}.`);
   }
 
   /** What `said` is about. @type {State["result"]} */

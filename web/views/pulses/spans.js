@@ -45,25 +45,25 @@ export function createSpans({ engine }) {
     const [from, to] = [Math.max(0, start - margin), end + margin];
     const line = hasLine(state);
     const known = checked === state.result;
-    /** @template T @param {Promise<T> | T} answer @param {(answer: T) => void} keep */
-    const taken = async (answer, keep) => {
-      const given = await Promise.resolve(answer).catch(unlessDropped);
-      if (given === undefined || given === null) return false;
-      keep(/** @type {T} */ (given));
+    /** @template T @param {Promise<T> | T} request @param {(reply: T) => void} keep */
+    const taken = async (request, keep) => {
+      const reply = await Promise.resolve(request).catch(unlessDropped);
+      if (reply === undefined || reply === null) return false;
+      keep(/** @type {T} */ (reply));
       ready();
       return true;
     };
     const answers = await Promise.all([
-      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (answer) => {
-        packets = answer;
+      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (reply) => {
+        packets = reply;
       }),
-      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (answer) => {
-        ticks = answer;
+      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (reply) => {
+        ticks = reply;
       }),
       taken(
         line ? engine.latest("decoded", "decoded", from, to, MOST, Math.floor(width / (7 * BIT_PX))) : NOTHING,
-        (answer) => {
-          decoded = answer;
+        (reply) => {
+          decoded = reply;
         },
       ),
       known ||
@@ -71,8 +71,8 @@ export function createSpans({ engine }) {
           selected(state)?.violations
             ? engine.latest("violations", "timing")
             : { driver: null, total: 0, rules: [], violations: [] },
-          (answer) => {
-            timing = answer;
+          (reply) => {
+            timing = reply;
           },
         ),
     ]);
@@ -161,13 +161,13 @@ function onReplies({ kind, mark }) {
 
 /** @param {State} state @param {PacketRow} row @returns {Span} */
 function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, outcome, why, mark }) {
-  const said = mark === "good" ? "" : outcome;
+  const shownOutcome = mark === "good" ? "" : outcome;
   const [short] = fields.split(/, |: (?=[A-Z]+,)/);
-  const whole = why ? [[fields, `${said}: ${why}`]] : [];
+  const whole = why ? [[fields, `${shownOutcome}: ${why}`]] : [];
   const texts =
     kind === "packet"
-      ? [...whole, [hex, fields, said], [hex]]
-      : [...whole, [fields, said], [short], [fields ? "" : said]];
+      ? [...whole, [hex, fields, shownOutcome], [hex]]
+      : [...whole, [fields, shownOutcome], [short], [fields ? "" : shownOutcome]];
   const ink = INKS[mark] ?? null;
   return {
     start: start_cycle,

@@ -3,7 +3,7 @@ import { byId } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { color } from "../../time/plot.js";
 import { frequency } from "./frequency.js";
-import { amplitudesOf, FLOOR_DB, given, heard, reference } from "./harmonics.js";
+import { aboveNoise, amplitudesOf, FLOOR_DB, namedSpectra, reference } from "./harmonics.js";
 
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
 /** @typedef {import("./harmonics.js").Quantity} Quantity */
@@ -63,7 +63,7 @@ function logarithmic(min, max, wanted) {
 
 /** @param {Spectra} spectra @param {Quantity} quantity @param {boolean} db @param {number} width  CSS pixels. */
 export function spectrumChart(spectra, quantity, db, width) {
-  const all = given(spectra);
+  const all = namedSpectra(spectra);
   const [, { fundamental_hz }] = all[0];
   const order = Math.max(...all.map(([, spectrum]) => amplitudesOf(spectrum, quantity).length));
   frequency.of(fundamental_hz, order);
@@ -104,7 +104,7 @@ export function spectrumChart(spectra, quantity, db, width) {
           shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
           y: shown.map((n) => {
             const amplitude = amplitudes[n - 1];
-            return db ? 20 * Math.log10(heard(amplitude) / reference(spectrum, quantity)) : amplitude;
+            return db ? 20 * Math.log10(aboveNoise(amplitude) / reference(spectrum, quantity)) : amplitude;
           }),
         },
       },

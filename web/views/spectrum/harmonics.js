@@ -37,12 +37,12 @@ export function reference(spectrum, quantity) {
 }
 
 /** @param {number} amplitude */
-export function heard(amplitude) {
+export function aboveNoise(amplitude) {
   return amplitude < LEAST ? 0 : amplitude;
 }
 
 /** The spectra that there are, by name. @param {Spectra} spectra @returns {[string, Spectrum][]} */
-export function given({ ideal, pulses }) {
+export function namedSpectra({ ideal, pulses }) {
   return [
     .../** @type {[string, Spectrum][]} */ (ideal ? [["ideal", ideal]] : []),
     .../** @type {[string, Spectrum][]} */ (pulses ? [["pulses", pulses]] : []),
@@ -51,14 +51,14 @@ export function given({ ideal, pulses }) {
 
 /** @param {Spectra} spectra @param {Quantity} quantity @returns {{n: number, hz: number, parts: Part[]}[]} */
 export function harmonics(spectra, quantity) {
-  const all = given(spectra);
+  const all = namedSpectra(spectra);
   const length = Math.max(0, ...all.map(([, spectrum]) => amplitudesOf(spectrum, quantity).length));
   return Array.from({ length }, (_, i) => ({
     n: i + 1,
     hz: all[0][1].fundamental_hz * (i + 1),
     parts: all.map(([name, spectrum]) => {
       const amplitude = amplitudesOf(spectrum, quantity)[i];
-      const part = heard(amplitude) / reference(spectrum, quantity);
+      const part = aboveNoise(amplitude) / reference(spectrum, quantity);
       return part >= NOISE ? { name, amplitude, part } : { name, amplitude: 0, part: 0 };
     }),
   }));
@@ -88,18 +88,18 @@ const percent = (ratio) => `${ratio < 1e-9 ? 0 : short(ratio * 100, 5)}\u00a0%`;
 
 /** @param {Spectra} spectra @param {Quantity} quantity */
 export function distortion(spectra, quantity) {
-  const parts = given(spectra).map(([name, spectrum]) => {
+  const parts = namedSpectra(spectra).map(([name, spectrum]) => {
     const value = spectrum[/** @type {const} */ (`thd_${quantity}`)];
     return `${name} ${value === null ? "none" : percent(value)}`;
   });
   const filtered =
     quantity === "acceleration"
-      ? given(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_filtered !== null)
+      ? namedSpectra(spectra).filter(([, spectrum]) => spectrum.thd_acceleration_filtered !== null)
       : [];
   const through = filtered
     .map(([name, spectrum]) => `${name} ${percent(Number(spectrum.thd_acceleration_filtered))}`)
     .join(", ");
-  const [first] = given(spectra);
+  const [first] = namedSpectra(spectra);
   const to = first ? ` to harmonic ${first[1].order}` : "";
   return `THD of ${nameOf(quantity)}${to}, axis ${spectra.axis}: ${parts.join(", ")}${through && `; filtered by the sensor: ${through}`}`;
 }

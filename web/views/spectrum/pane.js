@@ -27,14 +27,14 @@ export function createSpectrum({ engine, dispatch, now }) {
     if (!state.result || !byId("view-spectrum").checkVisibility()) return;
     if (about !== state.result) {
       about = state.result;
-      const answer = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
+      const reply = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
       if (about !== state.result) return;
-      if (!answer) {
+      if (!reply) {
         about = null;
         return;
       }
-      spectra = answer;
-      const some = answer.ideal ?? answer.pulses;
+      spectra = reply;
+      const some = reply.ideal ?? reply.pulses;
       const bare = !some?.periodic;
       split.hidden = !some;
       // What a sensor lets through is there where there is one.
@@ -45,7 +45,7 @@ export function createSpectrum({ engine, dispatch, now }) {
       dispatch({ type: "bare", view: "spectrum", bare });
       // Until the view has drawn it, and where there is no room to, the figure before is not this run's.
       if (bare) say(byId("thd"), "");
-      say(note, answer.note);
+      say(note, reply.note);
     }
     if (!spectra || spectra === drawn || !split.checkVisibility()) return;
     const loaded = await load().catch(() => null);

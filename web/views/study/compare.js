@@ -99,8 +99,8 @@ export function createCompare({ engine, dispatch, now, panel }) {
     all.hidden = subject.steps === 0;
     say(about, aboutText(subject, axis.axis));
     if (subject.steps === 0) return undefined;
-    const asked = [axis.json, axis.controller, axis.axis, move, ramp.value(), POINTS];
-    const found = await engine.consider("compare", "compare", ...asked).catch(unlessDropped);
+    const request = [axis.json, axis.controller, axis.axis, move, ramp.value(), POINTS];
+    const found = await engine.consider("compare", "compare", ...request).catch(unlessDropped);
     if (!found || own !== question) return undefined;
     rows = found;
     rowsOf = `${axisKey(state)} ${move}`;

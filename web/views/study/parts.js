@@ -35,7 +35,7 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   let value = start;
   /** What is wrong with what is typed; and with its value, beside others. */
   let [wrong, invalid] = ["", ""];
-  const tell = () => {
+  const showError = () => {
     say(error, wrong || invalid);
     if (wrong || invalid) input.setAttribute("aria-invalid", "true");
     else input.removeAttribute("aria-invalid");
@@ -44,7 +44,7 @@ export function field(label, unit, start, { least, most, integer = false }, chan
     const read = parseNumber(input.value, unit, { integer, least, most });
     wrong =
       "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
-    tell();
+    showError();
     if (wrong || !("value" in read) || read.value === value) return;
     value = read.value;
     change();
@@ -56,12 +56,12 @@ export function field(label, unit, start, { least, most, integer = false }, chan
     value = next;
     input.value = String(next);
     [wrong, invalid] = ["", ""];
-    tell();
+    showError();
   };
   /** @param {string} message */
   const fail = (message) => {
     invalid = message;
-    tell();
+    showError();
   };
   return { root, value: () => value, set, fail };
 }

@@ -12,18 +12,18 @@ export function createSegments({ engine }) {
   const note = element("p", { class: "study-note" });
   const root = element("div", {}, element("h3", {}, "The scenario's segments"), note, list.root);
   root.hidden = true;
-  let asked = "";
+  let axisKey = "";
 
   /** @param {import("./selected_axis.js").SelectedAxis | null} of */
   async function show(of) {
     const key = of ? `${of.controller} ${of.axis} ${of.json}` : "";
-    if (key === asked) return;
-    asked = key;
+    if (key === axisKey) return;
+    axisKey = key;
     /** @type {Segments | null | undefined} */
     const made = of
       ? await engine.consider("segments", "sine_segments", of.json, of.controller, of.axis).catch(unlessDropped)
       : null;
-    if (key !== asked) return;
+    if (key !== axisKey) return;
     root.hidden = !made;
     if (!made) return;
     say(

@@ -26,12 +26,12 @@ export function motorChoice(engine, change) {
     root.hidden = !wanted;
     if (!wanted || loaded) return;
     loaded = true;
-    const answer = await engine.consider("motors", "sheets").catch(() => null);
+    const reply = await engine.consider("motors", "sheets").catch(() => null);
     // Asked again with the next change of what is shown.
-    loaded = answer !== null;
-    if (!answer) return;
+    loaded = reply !== null;
+    if (!reply) return;
     /** @type {{id: string, name: string}[]} */
-    const motors = answer.motors;
+    const motors = reply.motors;
     const listed = motors.map(({ id, name }) => element("option", { value: id }, name));
     fill(select, element("option", { value: "" }, "none"), ...listed);
   }
