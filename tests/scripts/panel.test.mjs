@@ -1,5 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { initial } from "../../web/state/initial.js";
+import { update } from "../../web/state/update.js";
 import {
   advice,
   INPUTS,
@@ -14,6 +16,7 @@ import {
 } from "../../web/views/panel/names.js";
 import { parseHold, pressCycle, shortestPress, shownCycle, whyNoPush } from "../../web/views/panel/presses.js";
 import { entriesOf, moved, ownerOf, press, put, sameEntry } from "../../web/views/panel/script.js";
+import { createScriptEditor } from "../../web/views/panel/script_editor.js";
 import { ignoredPresses, lastUpTo, levelAt, momentFrom, storyFrom, wearText } from "../../web/views/panel/story.js";
 import { BANDS, entryAfter, entryAt, entryBelow, heights, rowOf, rowsOf } from "../../web/views/panel/strip_layout.js";
 
@@ -183,4 +186,65 @@ test("a pointer takes the nearest entry of its row", () => {
   assert.equal(entryAt(all, rows, BANDS.length, distance(14)), all[1]);
   assert.equal(entryAt(all, rows, BANDS.length, distance(40)), undefined);
   assert.equal(entryAt(all, rows, 0, distance(14)), undefined);
+});
+
+/** An editor of two controllers, with what it reported. */
+function editorOf(panels) {
+  const bench = { reports: [], state: { ...initial({ clock_hz: 1000, source: { standalone: panels } }), axis: 1 } };
+  bench.editor = createScriptEditor({
+    report: (text, isError = false) => bench.reports.push([text, isError]),
+    played: () => null,
+    dispatch: (message) => {
+      bench.state = update(bench.state, message);
+    },
+    now: () => bench.state,
+  });
+  return bench;
+}
+
+test("an edit goes into the selected controller's script and is one step of undo", () => {
+  const bench = editorOf([{ inputs: [] }, { inputs: [], debounce_cycles: 10 }]);
+  bench.state = update(bench.state, { type: "cursor", which: "a", cycle: 500 });
+  bench.editor.click("start", 20);
+  const of = (controller) => bench.state.scenario.source.standalone[controller].inputs.map(({ cycle }) => cycle);
+  assert.deepEqual(of(1), [500, 520]);
+  assert.match(bench.reports[0][0], /^start is pressed at 500 ms, for 20 ms\.$/);
+  assert.equal(bench.state.cursors.a, 540);
+  bench.editor.set("power", 0);
+  assert.deepEqual(of(0), [540]);
+  assert.equal(bench.state.past.length, 2);
+});
+
+test("a refused edit is reported and changes nothing", () => {
+  const bench = editorOf([{ inputs: [] }, { inputs: [entry(100, "start")] }]);
+  bench.state = update(bench.state, { type: "cursor", which: "a", cycle: 500 });
+  bench.editor.click("start", 20);
+  bench.editor.push(0);
+  assert.deepEqual(
+    bench.reports.map(([, isError]) => isError),
+    [true, true],
+  );
+  assert.equal(bench.state.past.length, 0);
+});
+
+test("the moves of one drag are one step of undo", () => {
+  const bench = editorOf([{ inputs: [] }, { inputs: [entry(100, "start"), entry(200, "start", 0)] }]);
+  const [first] = bench.editor.entries();
+  const to = bench.editor.move(bench.editor.move(first, 120, true), 140, true);
+  assert.deepEqual([to.entry.cycle, bench.state.past.length], [140, 1]);
+  assert.deepEqual(bench.editor.same(to), to);
+  bench.editor.remove(to);
+  assert.equal(bench.editor.entries().length, 1);
+  assert.equal(bench.editor.same(to), null);
+});
+
+test("a held button's release is put off, and nothing else is", () => {
+  const bench = editorOf([{ inputs: [] }, { inputs: [] }]);
+  assert.ok(bench.editor.hold("ok", 100, 200, null));
+  assert.ok(bench.editor.hold("ok", 100, 300, 200));
+  assert.deepEqual(
+    bench.editor.entries().map(({ entry }) => entry.cycle),
+    [100, 300],
+  );
+  assert.equal(bench.editor.hold("ok", 100, 400, 200), false);
 });

@@ -4,7 +4,7 @@
  */
 import { byId, element, fill, say, style } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { exactTime, short } from "../../state/number.js";
+import { short } from "../../state/number.js";
 import { endOf } from "../../state/time_window.js";
 import { overlaid } from "../../time/cursors.js";
 import { reveal } from "../../time/timeline.js";
@@ -13,8 +13,8 @@ import { createEntryLine } from "./entry_line.js";
 import { createFront } from "./front.js";
 import { createHead } from "./head.js";
 import { createPlayback } from "./playback.js";
-import { levelText, pressCycle, pressText, pushText, shortestPress, shownCycle, whyNoPush } from "./presses.js";
-import { entriesOf, inputsOf, moved, nameOf, ownerOf, press, put, sameEntry } from "./script.js";
+import { shownCycle } from "./presses.js";
+import { createScriptEditor } from "./script_editor.js";
 import { ignoredPresses, levelAt, momentFrom, storyFrom, storyLabel, wearText } from "./story.js";
 import { createStrip } from "./strip.js";
 
@@ -28,15 +28,9 @@ const LINES_PX = 24 + 90;
 export async function createPanel({ engine, dispatch, now }) {
   await style("panel");
   const view = byId("view-panel");
-  const clock = () => now().result?.summary.clock_hz ?? now().scenario.clock_hz;
-  /** @returns {any[]} */
-  const panels = () => now().scenario.source?.standalone ?? [];
-  const index = () => Math.max(0, Math.min(now().axis, panels().length - 1));
-  const panel = () => panels()[index()];
-  const shortest = () => shortestPress(panel(), clock());
-  const timeOf = (/** @type {number} */ cycle) => exactTime(cycle, clock());
   const played = () => (live.isOn() ? live.cycle() : null);
-  const target = () => pressCycle(now(), played(), clock());
+  const editor = createScriptEditor({ report, played, dispatch, now });
+  const { clock, panels, index, panel, timeOf } = editor;
 
   const head = createHead(/** @type {Element} */ (view.querySelector(".head")?.firstElementChild), {
     ...{ panel, clock, report },
@@ -51,7 +45,7 @@ export async function createPanel({ engine, dispatch, now }) {
   const line = createEntryLine({
     ...{ clock, timeOf, report },
     move(placed, cycle) {
-      const to = move(placed, cycle, false);
+      const to = editor.move(placed, cycle, false);
       if (to) strip.choose(to);
       return to;
     },
@@ -79,13 +73,11 @@ export async function createPanel({ engine, dispatch, now }) {
   let storyOf = null;
   /** @type {Placed | null} */
   let chosen = null;
-  /** Whether this view changes the scenario now. */
-  let isChanging = false;
 
   const live = createPlayback({
     hz: clock,
     speed: head.speed,
-    shortest,
+    shortest: editor.shortest,
     at(cycle) {
       // Out of sight it does not go on.
       if (panels().length === 0 || !view.checkVisibility()) {
@@ -96,13 +88,7 @@ export async function createPanel({ engine, dispatch, now }) {
       const { window } = now();
       if (window && cycle > window.end && cycle <= endOf(now())) reveal({ dispatch, now }, cycle);
     },
-    press(input, from, until, before) {
-      const owner = ownerOf(index(), input);
-      const inputs = inputsOf(panels(), owner);
-      if (before === null) return take(owner, press(inputs, input, from, until, panel()?.axis, timeOf), true);
-      const place = inputs.findIndex((each) => each.input === input && each.level === 0 && each.cycle === before);
-      return place >= 0 && take(owner, moved(inputs, place, until, timeOf), true);
-    },
+    press: editor.hold,
   });
   const faces = createFront(front, {
     down: (input) => live.isOn() && live.down(input),
@@ -110,15 +96,18 @@ export async function createPanel({ engine, dispatch, now }) {
       live.up(input);
       if (live.isOn()) dispatch({ type: "committed" });
     },
-    click,
-    set,
+    click(input) {
+      if (!live.isOn()) editor.click(input, head.holdCycles());
+    },
+    set: editor.set,
   });
   // Over the buttons, where it stays in sight, in place of the advice.
   front.querySelector(".panel-told")?.prepend(status);
-  const axis = createAxis(axisPlace, push);
+  const axis = createAxis(axisPlace, editor.push);
   const strip = createStrip(stripPlace, {
-    ...{ engine, dispatch, now, move, remove },
-    entries: () => entriesOf(panels(), index()),
+    ...{ engine, dispatch, now, remove },
+    move: editor.move,
+    entries: editor.entries,
     room: () => (isWide.matches ? body.clientHeight - axisPlace.offsetHeight - LINES_PX : 0),
     channel: index,
     print: (steps) => short(steps / (panel()?.pulses_per_unit || 1), 6),
@@ -135,62 +124,14 @@ export async function createPanel({ engine, dispatch, now }) {
   }
 
   function showLine() {
-    line.show(chosen, entriesOf(panels(), index()).length > 0);
-  }
-
-  /** Replaces the script of a controller, or reports why not. @param {number} owner @param {import("./script.js").Changed} changed @param {boolean} [joins] */
-  function take(owner, changed, joins = false) {
-    if ("refused" in changed) {
-      report(changed.refused, true);
-      return false;
-    }
-    isChanging = true;
-    dispatch({ type: "edit", path: `source.standalone[${owner}].inputs`, value: changed.inputs, joins });
-    isChanging = false;
-    if (!joins) dispatch({ type: "committed" });
-    return true;
-  }
-
-  /** The cursor goes behind a new press, so that the next one comes after it and its effect is shown. @param {number} cycle @param {string} text */
-  function goBehind(cycle, text) {
-    if (now().cursors.a !== null) dispatch({ type: "cursor", which: "a", cycle: cycle + shortest() });
-    report(text);
-  }
-
-  /** @param {string} input */
-  function click(input) {
-    if (live.isOn()) return;
-    const owner = ownerOf(index(), input);
-    const from = target();
-    const until = from + head.holdCycles();
-    if (take(owner, press(inputsOf(panels(), owner), input, from, until, panel()?.axis, timeOf)))
-      goBehind(until, pressText(input, timeOf(from), (until - from) / clock()));
-  }
-
-  /** @param {string} input @param {number} level */
-  function set(input, level) {
-    const owner = ownerOf(index(), input);
-    const cycle = target();
-    if (take(owner, put(inputsOf(panels(), owner), { cycle, input, level }, panel()?.axis, timeOf)))
-      goBehind(cycle, levelText(input, level, timeOf(cycle)));
-  }
-
-  /** @param {number} steps */
-  function push(steps) {
-    const cycle = target();
-    const why = whyNoPush(steps);
-    if (why) return report(why, true);
-    const entry = { cycle, input: null, level: 1, push_steps: steps };
-    if (take(index(), put(inputsOf(panels(), index()), entry, null, timeOf)))
-      goBehind(cycle, pushText(steps, timeOf(cycle)));
-    return undefined;
+    line.show(chosen, editor.entries().length > 0);
   }
 
   function play() {
     if (live.isOn()) {
       live.stop();
       dispatch({ type: "committed" });
-    } else live.play(target());
+    } else live.play(editor.target());
     showLive();
     draw(now());
   }
@@ -200,18 +141,9 @@ export async function createPanel({ engine, dispatch, now }) {
     report(live.isOn() ? "Live: hold a button as long as it is to be pressed." : "");
   }
 
-  /** @param {Placed} placed @param {number} cycle @param {boolean} joins @returns {Placed | null} */
-  function move({ owner, index: from }, cycle, joins) {
-    const to = moved(inputsOf(panels(), owner), from, cycle, timeOf);
-    if (!take(owner, to, joins) || "refused" in to) return null;
-    const place = to.index ?? from;
-    return { owner, index: place, entry: to.inputs[place] };
-  }
-
   /** @param {Placed} placed */
-  function remove({ owner, index: from, entry }) {
-    take(owner, { inputs: inputsOf(panels(), owner).toSpliced(from, 1) });
-    report(`${nameOf(entry)} at ${timeOf(entry.cycle)} is removed.`);
+  function remove(placed) {
+    editor.remove(placed);
     strip.choose(null);
   }
 
@@ -270,11 +202,11 @@ export async function createPanel({ engine, dispatch, now }) {
     head.showControllers(panels().length, index());
     if (before?.scenario !== state.scenario) {
       head.showHold();
-      if (chosen) strip.choose(sameEntry(panels(), chosen));
+      if (chosen) strip.choose(editor.same(chosen));
       else strip.paint();
       showLine();
       // The report is of a change that may be undone by now.
-      if (before && !isChanging) report("");
+      if (before && !editor.isChanging()) report("");
     }
     if (storyOf?.result !== state.result || storyOf?.index !== index()) return loadStory(state);
     if (before?.window !== state.window) return Promise.all([strip.window(), draw(state)]);
