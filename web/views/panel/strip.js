@@ -10,19 +10,9 @@ import { drawCursors } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, fit, font, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { cycleAt, onTimeAxis, reveal } from "../../time/timeline.js";
-import { paintBand, paintCurve, paintEntry, paintIgnored, paintLevel, paintName, paintTime, xOf } from "./paint.js";
-import {
-  BANDS,
-  entryAfter,
-  entryAt,
-  entryBelow,
-  heights,
-  PUSH,
-  ROW_PX,
-  rowOf,
-  rowsOf,
-  TIME_PX,
-} from "./strip_layout.js";
+import { xOf } from "./paint.js";
+import { entryAfter, entryAt, entryBelow, heights, ROW_PX, rowsOf, TIME_PX } from "./strip_layout.js";
+import { paintStrip } from "./strip_picture.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./script.js").Entry} Entry */
@@ -185,33 +175,10 @@ export function createStrip(place, page) {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.textBaseline = "middle";
     context.font = `11px ${font()}`;
-    paintTime(ground, state.result?.summary.clock_hz ?? 1, 0, tall);
-    if (curve) paintCurve(ground, curve, curvePx, page.print);
-    const topOf = (/** @type {number} */ row) => curvePx + row * ROW_PX;
-    for (const [at, band] of BANDS.entries()) {
-      paintName(context, band, plot.left, topOf(at), false);
-      paintBand(ground, story.records, band, topOf(at));
-    }
-    const own = chosen && rowOf(rows, chosen.entry);
-    for (const [at, input] of rows.entries()) {
-      const top = topOf(BANDS.length + at);
-      paintName(context, input, plot.left, top, BANDS.length + at === own);
-      if (input !== PUSH) paintLevel(ground, story.inputs.get(input), input === "power" ? 1 : 0, top);
-      for (const press of story.ignored)
-        if (press.input === input && inSight(ground, press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
-    }
-    /** Where the last one of each row is. @type {Map<number, number>} */
-    const last = new Map();
-    for (const { entry, owner, index } of page.entries()) {
-      if (!inSight(ground, entry.cycle)) continue;
-      const isChosen = owner === chosen?.owner && index === chosen.index;
-      const x = xOf(ground, entry.cycle);
-      // A hundred thousand of them on one pixel are one.
-      const row = rowOf(rows, entry);
-      if (!isChosen && Math.abs(x - (last.get(row) ?? -Infinity)) < 0.05) continue;
-      last.set(row, x);
-      paintEntry(context, x, topOf(row), isChosen);
-    }
+    const clock = state.result?.summary.clock_hz ?? 1;
+    const { print } = page;
+    const entries = page.entries();
+    paintStrip(ground, { story, curve, rows, entries, chosen, clock, curvePx, height: tall, print });
     fit(overlay);
     paintCursor(state);
   }
@@ -230,9 +197,6 @@ export function createStrip(place, page) {
     curve = { start, end, min: reply.actual_position_min, max: reply.actual_position_max };
     paint();
   }
-
-  /** @param {import("./paint.js").Ground} ground @param {number} cycle */
-  const inSight = ({ start, end }, cycle) => cycle >= start && cycle <= end;
 
   /** @param {State} state */
   function paintCursor(state) {

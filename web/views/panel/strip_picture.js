@@ -1,0 +1,45 @@
+/** The picture of the panel's strip: the position's curve, the bands, the inputs, and the entries of the script. */
+import { paintBand, paintCurve, paintEntry, paintIgnored, paintLevel, paintName, paintTime, xOf } from "./paint.js";
+import { BANDS, PUSH, ROW_PX, rowOf } from "./strip_layout.js";
+
+/** @typedef {import("./script.js").Placed} Placed */
+/** @typedef {import("./paint.js").Ground} Ground */
+
+/** Entries that are closer together, in CSS pixels, are drawn as one. */
+const SAME_PX = 0.05;
+
+/**
+ * @param {Ground} ground
+ * @param {{story: import("./story.js").Story, curve: import("./paint.js").Curve | null, rows: string[], entries: Placed[], chosen: Placed | null,
+ *   clock: number, curvePx: number, height: number, print: (steps: number) => string}} strip
+ */
+export function paintStrip(ground, { story, curve, rows, entries, chosen, clock, curvePx, height, print }) {
+  const { context, plot } = ground;
+  const isShown = (/** @type {number} */ cycle) => cycle >= ground.start && cycle <= ground.end;
+  const topOf = (/** @type {number} */ row) => curvePx + row * ROW_PX;
+  paintTime(ground, clock, 0, height);
+  if (curve) paintCurve(ground, curve, curvePx, print);
+  for (const [at, band] of BANDS.entries()) {
+    paintName(context, band, plot.left, topOf(at), false);
+    paintBand(ground, story.records, band, topOf(at));
+  }
+  const chosenRow = chosen && rowOf(rows, chosen.entry);
+  for (const [at, input] of rows.entries()) {
+    const top = topOf(BANDS.length + at);
+    paintName(context, input, plot.left, top, BANDS.length + at === chosenRow);
+    if (input !== PUSH) paintLevel(ground, story.inputs.get(input), input === "power" ? 1 : 0, top);
+    for (const press of story.ignored)
+      if (press.input === input && isShown(press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
+  }
+  /** Where the last entry of each row is. @type {Map<number, number>} */
+  const last = new Map();
+  for (const { entry, owner, index } of entries) {
+    if (!isShown(entry.cycle)) continue;
+    const isChosen = owner === chosen?.owner && index === chosen.index;
+    const x = xOf(ground, entry.cycle);
+    const row = rowOf(rows, entry);
+    if (!isChosen && Math.abs(x - (last.get(row) ?? -Infinity)) < SAME_PX) continue;
+    last.set(row, x);
+    paintEntry(context, x, topOf(row), isChosen);
+  }
+}
