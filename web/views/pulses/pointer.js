@@ -1,6 +1,6 @@
 /** The pointer over the pulses: what it points at lights up in all views, and a click chooses it. */
 import { unlessDropped } from "../../engine/engine.js";
-import { cycleAt } from "../../time/timeline.js";
+import { cycleAt, onTimeAxis } from "../../time/timeline.js";
 import { nearestEdge, reachOf } from "./edge_search.js";
 import { rowsOf, shows } from "./rows.js";
 
@@ -16,6 +16,8 @@ const FOLD_PX = 26;
  *   fold: (channel: number) => void} & import("../../state/types.js").Page} page
  */
 export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fold, dispatch, now }) {
+  // First, because its listener notes the cycle under the pointer, which those below read.
+  onTimeAxis(canvas, plot, { dispatch, now, click: pick });
   canvas.addEventListener("pointermove", (event) => {
     if (event.buttons === 0) point(event);
   });
@@ -88,5 +90,5 @@ export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fol
     if (found !== null) dispatch({ type: "packet", packet: found });
     return found !== null;
   }
-  return { snapped, pick };
+  return { snapped };
 }

@@ -10,7 +10,7 @@ import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
-import { onTimeAxis, reveal } from "../../time/timeline.js";
+import { reveal } from "../../time/timeline.js";
 import { jumpText, rowAfter, searchStart } from "./edge_search.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
@@ -68,7 +68,6 @@ export function createPulses({ engine, dispatch, now }) {
   });
 
   const pointer = createPointer(canvas, { engine, ...page, plot: () => plot, rowPx: px, reading, spans, fold });
-  onTimeAxis(canvas, () => plot, { ...page, click: pointer.pick });
   watch(stack, () => refresh(now()));
   byId("edge-next").addEventListener("click", () => jump(true));
   byId("edge-previous").addEventListener("click", () => jump(false));
