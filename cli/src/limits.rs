@@ -21,7 +21,7 @@ use stepscope_core::{
     inspect::plant::settling as settling_of,
     plant::{
         Refused,
-        parameters::{Motor, Setup},
+        parameters::{MotorModel, Setup},
         rates::{RAMP_STEPS_S2, Resonance, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
@@ -102,13 +102,13 @@ const _: () = assert!(RAMP_STEPS_S2 == 200_000.0);
 const MAX_RATES: f64 = 100_000.0;
 
 /// A motor alone on its supply, and the channels that have one like it.
-struct Alone {
+struct SingleMotor {
     channels: Vec<usize>,
     setup: Setup,
 }
 
 /// The motors of the first controller's plant, each once.
-fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure> {
+fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
     let path = &common.scenario;
     let (scenario, experiment) = common.replacing.judged(path)?;
     let plants = experiment.plants().ok_or_else(|| no_plant(path))?;
@@ -117,7 +117,7 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure
     if let Some(channel) = common.channel.filter(|&channel| channel >= count) {
         return Err(Failure::Axis(path.clone(), channel, count));
     }
-    let mut found: Vec<Alone> = Vec::new();
+    let mut found: Vec<SingleMotor> = Vec::new();
     for (channel, motor) in setup.motors.iter().enumerate() {
         if common.channel.is_some_and(|only| only != channel) {
             continue;
@@ -125,7 +125,8 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<Alone>), Failure
         match found.iter_mut().find(|alone| alone.setup.motors.first() == Some(motor)) {
             Some(alone) => alone.channels.push(channel),
             None => {
-                found.extend(setup.alone(channel).map(|setup| Alone { channels: vec![channel], setup }));
+                found
+                    .extend(setup.alone(channel).map(|setup| SingleMotor { channels: vec![channel], setup }));
             }
         }
     }
@@ -153,7 +154,7 @@ fn wrong_option(path: &Path, what: &str) -> Failure {
     Failure::Table(path.to_owned(), what.to_owned())
 }
 
-fn channels(alone: &Alone) -> String {
+fn channels(alone: &SingleMotor) -> String {
     let all: Vec<String> = alone.channels.iter().map(usize::to_string).collect();
     all.join(", ")
 }
@@ -168,7 +169,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
     // A step is looked at for eleven of them, in samples that are kept.
-    for Alone { setup, .. } in &motors {
+    for SingleMotor { setup, .. } in &motors {
         let grid = u64::from(setup.grid_cycles());
         if t_step < grid || 11 * t_step / grid > MAX_SAMPLES {
             let most = MAX_SAMPLES * grid / 11;
@@ -236,7 +237,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let ramp = arguments.ramp.get();
     let (_, _, motors) = motors(common)?;
-    let turn = |setup: &Setup| setup.motors.first().map_or(1, Motor::steps_a_turn);
+    let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_a_turn);
     // The pull-out rates first: they take longer.
     let all = on_threads(common, "limits", 2 * motors.len(), |index| {
         let Some(alone) = motors.get(index / 2) else { return Ok(None) };
@@ -250,7 +251,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     })?;
     let all: Vec<Option<f64>> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
-    let rows: Vec<(&Alone, Option<f64>, Option<f64>)> = motors
+    let rows: Vec<(&SingleMotor, Option<f64>, Option<f64>)> = motors
         .iter()
         .zip(all.chunks(2))
         .map(|(alone, pair)| (alone, pair.get(1).copied().flatten(), pair.first().copied().flatten()))
@@ -302,7 +303,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let (_, _, motors) = motors(common)?;
     let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * rung).collect();
     let points =
-        |alone: &Alone| RATE_S * f64::from(alone.setup.clock_hz) / f64::from(alone.setup.grid_cycles());
+        |alone: &SingleMotor| RATE_S * f64::from(alone.setup.clock_hz) / f64::from(alone.setup.grid_cycles());
     let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
     if motor_steps > MAX_MOTOR_STEPS {
         let what = format!(

@@ -4,7 +4,7 @@
 use crate::{files::Output, output::Out};
 use std::io::{self, Write};
 use stepscope_core::{
-    controller::Checked,
+    controller::CheckedSetup,
     inspect::{
         panel::{PANEL_HEAD, PanelSignals, write_panel_row},
         tables::{write_edges_head, write_edges_row},
@@ -49,7 +49,7 @@ impl Output for Records {
 pub(crate) fn csv(
     mut out: Out,
     (clock_hz, channels): (u32, u8),
-    panels: &Checked,
+    panels: &CheckedSetup,
 ) -> io::Result<Box<dyn Output>> {
     let signals = PanelSignals::new(panels);
     let mut text = String::new();
@@ -130,7 +130,7 @@ pub(crate) fn vcd(
     out: Out,
     timescale: Timescale,
     (clock_hz, channels): (u32, u8),
-    panels: &Checked,
+    panels: &CheckedSetup,
 ) -> io::Result<Box<dyn Output>> {
     let signals = PanelSignals::new(panels);
     let words = signals.signals().iter().map(|signal| (signal.name.as_str(), signal.bits));

@@ -12,7 +12,7 @@ use std::{
 };
 use stepscope_core::{
     controller::{
-        Checked,
+        CheckedSetup,
         parameters::{Parameters, Policy, Setup},
     },
     peripheral::units::Instant,
@@ -104,7 +104,7 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The memories that are compared: both policies, without a buffer, with one that is a cycle too short, just enough, and that of
 /// the first controller.
-fn memories(checked: &Checked) -> Vec<(Policy, u64, &'static str)> {
+fn memories(checked: &CheckedSetup) -> Vec<(Policy, u64, &'static str)> {
     let of = |one: &std::rc::Rc<Parameters>| BYTE_TIMES * u64::from(one.memory.byte_write_cycles) - 1;
     let enough = checked.controllers().iter().map(of).max().unwrap_or(0);
     let own = checked.controllers().first().map_or(0, |first| first.memory.hold_up_cycles);
@@ -139,10 +139,10 @@ fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress
 }
 
 /// The hold-up that is just enough for the policy `power_loss`, up to 18 byte times.
-fn least(checked: &Checked, end: Instant, arguments: &Arguments) -> Result<u64, Failure> {
+fn least(checked: &CheckedSetup, end: Instant, arguments: &Arguments) -> Result<u64, Failure> {
     let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
     let mut failed = None;
-    let losses = |one: &Checked| {
+    let losses = |one: &CheckedSetup| {
         let cuts = PowerCuts::of(one, end, arguments.cuts as usize, arguments.seed);
         match counted(&cuts, arguments.threads, Progress::new("hold-up", arguments.progress)) {
             Ok(tally) => tally.lost,
@@ -163,7 +163,12 @@ const fn name(policy: Policy) -> &'static str {
     }
 }
 
-fn print(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)], checked: &Checked) -> io::Result<()> {
+fn print(
+    rows: &[Row],
+    enough: u64,
+    worn: &[(Policy, usize, Wear)],
+    checked: &CheckedSetup,
+) -> io::Result<()> {
     let mut out = terminal::out();
     writeln!(
         out,

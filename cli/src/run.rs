@@ -19,7 +19,7 @@ use std::{
     path::PathBuf,
 };
 use stepscope_core::{
-    controller::{Checked, StandAlone},
+    controller::{CheckedSetup, StandAlone},
     inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
     peripheral::config::Config,
     scenario::{Cause, Problem, Scenario, Source, link},
@@ -224,7 +224,7 @@ fn open(
     outputs: &mut Outputs,
     controller: usize,
     config: &Config,
-    panels: Option<&Checked>,
+    panels: Option<&CheckedSetup>,
 ) -> Result<Files, Failure> {
     let (clock_hz, channels) = (config.clock_hz(), config.channels());
     let timescale = arguments.vcd_timescale;

@@ -14,8 +14,8 @@ use crate::{
 };
 pub(crate) use arguments::Arguments;
 use arguments::Written;
-use driven::Asked;
 pub(crate) use driven::Driven;
+use driven::MotionSource;
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
@@ -84,7 +84,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     let found = asked.filter_map(|(axis, (given, plan))| {
         let machine = Machine::of(given)?;
         let demand = Demand::of(&machine, &plan);
-        Some(Driven { axis, machine, asked: Asked::Plan(plan), demand, agreement: None })
+        Some(Driven { axis, machine, asked: MotionSource::Plan(plan), demand, agreement: None })
     });
     Ok(found.collect())
 }

@@ -11,7 +11,7 @@ use stepscope_core::{
     },
     plant::{
         Plant,
-        parameters::{Decay, Drive, Motor, Regulator, Setup},
+        parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel, Setup},
     },
 };
 
@@ -20,7 +20,7 @@ use stepscope_core::{
 pub struct PlantCase {
     /// As the contract calls it.
     pub name: &'static str,
-    motor: Motor,
+    motor: MotorModel,
     start: u64,
     /// Steps, the first interval, and what each next one is longer, in cycles.
     segments: Vec<(u32, u64, i64)>,
@@ -33,8 +33,12 @@ pub struct PlantCase {
 /// All three.
 #[must_use]
 pub fn plant_cases() -> [PlantCase; 3] {
-    let full_steps = Motor { microsteps: 1, ..Motor::default() };
-    let drive = Drive { regulator: Regulator::Chopper, decay: Decay::Mixed(0.31), ..Drive::default() };
+    let full_steps = MotorModel { microsteps: 1, ..MotorModel::default() };
+    let drive = DriverModel {
+        regulator: CurrentControl::Chopper,
+        decay: CurrentDecay::Mixed(0.31),
+        ..DriverModel::default()
+    };
     let case =
         |name, motor, start, segments, whole, short| PlantCase { name, motor, start, segments, whole, short };
     let (forty, ramps) = (vec![(40, 32_768, 0)], vec![(600, 6000, -8), (600, 1200, 8)]);
@@ -49,7 +53,7 @@ pub fn plant_cases() -> [PlantCase; 3] {
         ),
         case(
             "K2",
-            Motor::default(),
+            MotorModel::default(),
             1,
             ramps,
             (6_000_000, 0xa699_812c_01ef_3b7e),
@@ -57,7 +61,7 @@ pub fn plant_cases() -> [PlantCase; 3] {
         ),
         case(
             "K3",
-            Motor { drive, ..full_steps },
+            MotorModel { drive, ..full_steps },
             1600,
             forty,
             (1_600_000, 0xbf86_f4b1_cc5e_03fc),

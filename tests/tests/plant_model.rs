@@ -8,7 +8,10 @@ use stepscope_core::{
     },
     plant::{
         Observer, Plant, Slip,
-        parameters::{Decay, Drive, Encoder, Motor, Protection, Regulator, SensorChain, Setup, Supply},
+        parameters::{
+            CurrentControl, CurrentDecay, DriverModel, Encoder, MotorModel, Protection, SensorChain, Setup,
+            Supply,
+        },
     },
 };
 use stepscope_tests::plant_oracle::{self as oracle, Case, Run, is_refused};
@@ -20,17 +23,17 @@ fn cases() -> u64 {
     std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(CASES)
 }
 
-fn drive(given: &oracle::Drive) -> Drive {
-    Drive {
+fn drive(given: &oracle::Drive) -> DriverModel {
+    DriverModel {
         regulator: match given.regulator {
-            oracle::Regulator::Averaged => Regulator::Averaged,
-            oracle::Regulator::Chopper => Regulator::Chopper,
+            oracle::Regulator::Averaged => CurrentControl::Averaged,
+            oracle::Regulator::Chopper => CurrentControl::Chopper,
         },
         decay: match given.decay {
-            oracle::Decay::Slow => Decay::Slow,
-            oracle::Decay::Fast => Decay::Fast,
-            oracle::Decay::Mixed(share) => Decay::Mixed(share),
-            oracle::Decay::Auto(share) => Decay::Auto(share),
+            oracle::Decay::Slow => CurrentDecay::Slow,
+            oracle::Decay::Fast => CurrentDecay::Fast,
+            oracle::Decay::Mixed(share) => CurrentDecay::Mixed(share),
+            oracle::Decay::Auto(share) => CurrentDecay::Auto(share),
         },
         off_us: given.off_us,
         blank_us: given.blank_us,
@@ -40,8 +43,8 @@ fn drive(given: &oracle::Drive) -> Drive {
     }
 }
 
-fn motor(given: &oracle::Motor) -> Motor {
-    Motor {
+fn motor(given: &oracle::Motor) -> MotorModel {
+    MotorModel {
         full_step_deg: given.full_step_deg,
         microsteps: u16::try_from(given.microsteps).expect("microsteps"),
         rated_current_a: given.rated_current_a,

@@ -20,7 +20,7 @@ use stepscope_tests::{
 /// The orders of the ticks that began.
 fn executed(left: &Left, channels: usize) -> Vec<u8> {
     let ticks = left.events.iter().filter_map(|(_, event)| match event {
-        Event::TickStart { orders } => Some(orders[..channels].to_vec()),
+        Event::TickStart { commands } => Some(commands[..channels].to_vec()),
         _ => None,
     });
     ticks.flatten().collect()

@@ -9,7 +9,7 @@ use wasm_bindgen::prelude::*;
 
 /// A scenario that was read, judged and planned, once. A run, a link and the study's questions are made of it.
 #[wasm_bindgen]
-pub struct Judged(pub(crate) sim::Judged);
+pub struct Judged(pub(crate) sim::ValidatedScenario);
 
 #[wasm_bindgen]
 impl Judged {
@@ -17,7 +17,7 @@ impl Judged {
     #[wasm_bindgen(constructor)]
     #[must_use]
     pub fn new(json: &str) -> Self {
-        Self(sim::Judged::from_json(json))
+        Self(sim::ValidatedScenario::from_json(json))
     }
 }
 

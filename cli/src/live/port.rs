@@ -16,7 +16,7 @@ use std::{
 };
 
 /// A system does not wait for less.
-const LEAST_WAIT: Duration = Duration::from_millis(1);
+const MIN_WAIT: Duration = Duration::from_millis(1);
 /// How long a write waits for room before it is tried again later.
 const WRITE_WAIT: Duration = Duration::from_millis(1);
 /// How often it is looked whether Ctrl-C ends the wait for a connection.
@@ -92,7 +92,7 @@ pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration)
             if begin.elapsed() > within {
                 return Err(io::Error::new(ErrorKind::TimedOut, "it takes no bytes"));
             }
-            thread::sleep(LEAST_WAIT);
+            thread::sleep(MIN_WAIT);
         }
     }
     Ok(())
@@ -238,7 +238,7 @@ impl Port for Serial {
         if !has_bytes(&self.port, wait)? {
             return Ok(Heard::Nothing);
         }
-        let wait = if wait.is_zero() { wait } else { wait.max(LEAST_WAIT) };
+        let wait = if wait.is_zero() { wait } else { wait.max(MIN_WAIT) };
         self.port.set_read_timeout(wait)?;
         heard(self.port.read(buffer))
     }
@@ -297,7 +297,7 @@ impl Port for Socket {
             return Ok(Heard::Nothing);
         }
         if !cfg!(unix) {
-            self.0.set_read_timeout(Some(wait.max(LEAST_WAIT)))?;
+            self.0.set_read_timeout(Some(wait.max(MIN_WAIT)))?;
         }
         heard(self.0.read(buffer))
     }
@@ -388,7 +388,7 @@ impl Port for Listener {
             return Ok(Heard::Connected);
         }
         let Some(client) = self.client.as_mut().filter(|client| !client.ended) else {
-            return self.wait(wait.min(LEAST_WAIT));
+            return self.wait(wait.min(MIN_WAIT));
         };
         match client.socket.read(buffer, wait) {
             Ok(Heard::Gone) => {
@@ -607,7 +607,7 @@ mod pty {
                     return Ok(Heard::Ended);
                 }
                 // The system reports it at once, again and again.
-                thread::sleep(wait.min(LEAST_WAIT));
+                thread::sleep(wait.min(MIN_WAIT));
             }
             Ok(Heard::Nothing)
         }
@@ -619,7 +619,7 @@ mod pty {
                 return Ok(Heard::Gone);
             }
             if is_closed {
-                thread::sleep(wait.min(LEAST_WAIT));
+                thread::sleep(wait.min(MIN_WAIT));
             }
             Ok(Heard::Nothing)
         }
@@ -667,12 +667,12 @@ mod tests {
             client
         };
         let first = connect(&mut listener);
-        assert_eq!(listener.read(&mut buffer, LEAST_WAIT).expect("it reads"), Heard::Connected);
+        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Heard::Connected);
         drop(first);
-        while listener.read(&mut buffer, LEAST_WAIT).expect("it reads") != Heard::Ended {}
+        while listener.read(&mut buffer, MIN_WAIT).expect("it reads") != Heard::Ended {}
         let mut second = connect(&mut listener);
         assert_eq!(listener.write(b"old").expect("it takes all"), 3);
-        assert_eq!(listener.read(&mut buffer, LEAST_WAIT).expect("it reads"), Heard::Connected);
+        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Heard::Connected);
         assert_eq!(listener.write(b"new").expect("it takes all"), 3);
         second.read_exact(&mut buffer[..3]).expect("a reply");
         assert_eq!(&buffer[..3], b"new");

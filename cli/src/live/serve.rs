@@ -122,7 +122,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     }
     printed?;
     ended?;
-    let stretches = server.clock.stretches();
+    let stretches = server.clock.setbacks();
     if stretches.count > 0 {
         let ms = server.clock.nanos(stretches.cycles) as f64 / 1e6;
         return Err(Failure::NotRealTime(stretches.count, ms));

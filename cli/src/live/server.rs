@@ -338,7 +338,7 @@ impl Server {
         if let Some(errors) = self.port.line_errors() {
             writeln!(out, "line_errors {errors}")?;
         }
-        let stretches = self.clock.stretches();
+        let stretches = self.clock.setbacks();
         if stretches.count > 0 {
             writeln!(out, "stretches {} cycles {}", stretches.count, stretches.cycles.0)?;
         }
@@ -394,7 +394,7 @@ fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &
 
 /// Whether the clock was set back, in the status line.
 fn not_real_time(clock: &SessionClock) -> String {
-    let stretches = clock.stretches();
+    let stretches = clock.setbacks();
     if stretches.count == 0 {
         return String::new();
     }

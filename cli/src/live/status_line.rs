@@ -6,7 +6,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-const LEAST_TIME: Duration = Duration::from_millis(100);
+const MIN_TIME: Duration = Duration::from_millis(100);
 
 /// The line; on a terminal each overwrites the one before, elsewhere it is shown where it is wanted.
 pub(crate) struct StatusLine {
@@ -24,7 +24,7 @@ impl StatusLine {
 
     /// Says it, if it is time to.
     pub(crate) fn tell(&mut self, text: impl FnOnce() -> String) {
-        if !self.shown || self.last.is_some_and(|last| last.elapsed() < LEAST_TIME) {
+        if !self.shown || self.last.is_some_and(|last| last.elapsed() < MIN_TIME) {
             return;
         }
         self.last = Some(Instant::now());

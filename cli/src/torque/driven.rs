@@ -13,14 +13,14 @@ use stepscope_core::{
 pub(crate) struct Driven {
     pub(crate) axis: usize,
     pub(crate) machine: Machine,
-    pub(crate) asked: Asked,
+    pub(crate) asked: MotionSource,
     pub(crate) demand: Demand,
     /// What the plant says, where it was run.
     pub(crate) agreement: Option<Agreement>,
 }
 
 /// What asks for torque.
-pub(crate) enum Asked {
+pub(crate) enum MotionSource {
     /// The plan of an axis.
     Plan(AxisPlan),
     /// Steps without a plan.
@@ -31,6 +31,6 @@ impl Driven {
     /// A channel by its steps, in cycles of `clock_hz`.
     pub(crate) fn of_steps(channel: u8, machine: Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(&machine, steps, clock_hz);
-        Self { axis: channel.into(), machine, asked: Asked::Steps, demand, agreement: None }
+        Self { axis: channel.into(), machine, asked: MotionSource::Steps, demand, agreement: None }
     }
 }

@@ -1,6 +1,6 @@
 //! What `stepscope torque` says, as tables.
 
-use super::driven::{Asked, Driven};
+use super::driven::{Driven, MotionSource};
 use crate::json::Tables;
 use serde_json::{Value, json};
 use stepscope_core::{
@@ -28,7 +28,7 @@ pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
             "plant": agreement.as_ref().map(|found| &found.plant),
             "models_agree": agreement.as_ref().and_then(|found| found.agrees),
             "models_differ_because": agreement.as_ref().and_then(|found| found.why.as_ref()),
-            "window_s": matches!(asked, Asked::Steps).then(|| machine.natural_period_s()),
+            "window_s": matches!(asked, MotionSource::Steps).then(|| machine.natural_period_s()),
         })
     })
 }
@@ -56,8 +56,8 @@ pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
 pub(super) fn tables(driven: &[Driven]) -> Tables {
     let ramps = driven.iter().flat_map(|Driven { axis, machine, asked, .. }| {
         let moves = match asked {
-            Asked::Plan(plan) => plan.moves(),
-            Asked::Steps => &[],
+            MotionSource::Plan(plan) => plan.moves(),
+            MotionSource::Steps => &[],
         };
         moves.iter().enumerate().filter_map(move |(index, planned)| {
             let found = Ramps::of(machine, &planned.profile)?;

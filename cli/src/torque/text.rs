@@ -1,6 +1,6 @@
 //! What `stepscope torque` says for the eye.
 
-use super::driven::{Asked, Driven};
+use super::driven::{Driven, MotionSource};
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
@@ -19,8 +19,8 @@ const MAX_DURATION_S: f64 = 86_400.0;
 pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     let Driven { axis, machine, asked, demand, agreement } = driven;
     match asked {
-        Asked::Plan(_) => writeln!(out, "axis {axis}")?,
-        Asked::Steps => {
+        MotionSource::Plan(_) => writeln!(out, "axis {axis}")?,
+        MotionSource::Steps => {
             let period_ms = machine.natural_period_s() * 1e3;
             writeln!(
                 out,
@@ -53,8 +53,8 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
         let jump = demand.jump;
         let higher = "the motor's start-stop rate has to be higher";
         match asked {
-            Asked::Plan(_) => writeln!(out, "  jump of speed    {jump:.0} steps/s at once; {higher}")?,
-            Asked::Steps => {
+            MotionSource::Plan(_) => writeln!(out, "  jump of speed    {jump:.0} steps/s at once; {higher}")?,
+            MotionSource::Steps => {
                 writeln!(out, "  jump of speed    {jump:.0} steps/s beside a rest or a turn; {higher}")?;
             }
         }
@@ -71,7 +71,7 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
             writeln!(out, "    {why}")?;
         }
     }
-    let Asked::Plan(plan) = asked else { return Ok(()) };
+    let MotionSource::Plan(plan) = asked else { return Ok(()) };
     for (index, planned) in plan.moves().iter().enumerate() {
         if let Some(found) = Ramps::of(machine, &planned.profile) {
             ramps(index, planned, &found, out)?;

@@ -1,7 +1,7 @@
 //! What is wrong with controllers, all of it at once (CONTROLLER.md, "The format" and "Refused").
 
 use crate::{
-    checked::Checked,
+    checked::CheckedSetup,
     input::{Change, Input, Signal},
     limits,
     numbers::Numbers,
@@ -20,7 +20,7 @@ use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
 impl Setup {
     /// Validates it, and makes what a [`StandAlone`](crate::StandAlone) takes.
     /// Errors: everything that is refused, in the order of the fields.
-    pub fn check(self) -> Result<Checked, Vec<Refused>> {
+    pub fn check(self) -> Result<CheckedSetup, Vec<Refused>> {
         let mut judge = Judgement { refused: Vec::new(), controller: None };
         judge.bus(&self);
         for (index, parameters) in self.controllers.iter().enumerate() {
@@ -31,7 +31,7 @@ impl Setup {
             return Err(judge.refused);
         }
         let warned = self.warnings();
-        Ok(Checked::new(self, warned))
+        Ok(CheckedSetup::new(self, warned))
     }
 
     /// What holds, but may not be meant; of controllers whose numbers are in range.

@@ -9,7 +9,7 @@ use stepscope_peripheral::segment::PulseTimes;
 
 /// Controllers that hold every rule of CONTROLLER.md, "The format"; cheap to clone.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Checked {
+pub struct CheckedSetup {
     clock_hz: u32,
     channels: u8,
     pulse: PulseTimes,
@@ -17,7 +17,7 @@ pub struct Checked {
     warned: Rc<[Warned]>,
 }
 
-impl Checked {
+impl CheckedSetup {
     pub(crate) fn new(setup: Setup, warned: Vec<Warned>) -> Self {
         let Setup { clock_hz, channels, pulse, controllers } = setup;
         let controllers = controllers.into_iter().map(Rc::new).collect();

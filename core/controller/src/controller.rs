@@ -9,7 +9,7 @@
 
 use crate::{
     axis::Place,
-    checked::Checked,
+    checked::CheckedSetup,
     debounce::{Inputs, Times},
     eeprom::Eeprom,
     input::Signal,
@@ -142,7 +142,7 @@ pub(crate) struct Controller {
 }
 
 impl Controller {
-    pub(crate) fn new(checked: &Checked, parameters: &Rc<Parameters>, script: Script) -> Self {
+    pub(crate) fn new(checked: &CheckedSetup, parameters: &Rc<Parameters>, script: Script) -> Self {
         let memory = &parameters.memory;
         let len = parameters.memory_len();
         let factory = journal::factory();

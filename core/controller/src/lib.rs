@@ -70,7 +70,7 @@ mod store;
 mod table;
 mod work;
 
-pub use checked::Checked;
+pub use checked::CheckedSetup;
 pub use controller::Press;
 pub use enter::NotEntered;
 pub use machine::StandAlone;

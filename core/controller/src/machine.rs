@@ -1,7 +1,7 @@
 //! All stand-alone controllers of a scenario on one bus (Part G), cycle by cycle or event by event.
 
 use crate::{
-    checked::Checked,
+    checked::CheckedSetup,
     controller::{Controller, NEVER},
     input::Signal,
     limits,
@@ -35,7 +35,7 @@ use stepscope_peripheral::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct StandAlone {
-    pub(crate) checked: Checked,
+    pub(crate) checked: CheckedSetup,
     pub(crate) controllers: Vec<Controller>,
     pub(crate) due: Vec<u64>,
     pub(crate) now: u64,
@@ -48,7 +48,7 @@ pub struct StandAlone {
 impl StandAlone {
     /// The controllers before cycle 0.
     #[must_use]
-    pub fn new(checked: &Checked) -> Self {
+    pub fn new(checked: &CheckedSetup) -> Self {
         let first = checked.controllers().first();
         let shared = first.into_iter().flat_map(|first| first.inputs.iter().copied());
         let shared = script::sorted(shared.filter(|input| script::is_shared(input.change)));

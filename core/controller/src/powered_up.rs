@@ -12,7 +12,7 @@ use stepscope_peripheral::units::Instant;
 
 impl StandAlone {
     /// Before cycle 0 of a power-up: as s of G2's restart, with these raw levels and this memory, and without a script.
-    pub(crate) fn power_up(checked: &crate::Checked, levels: RawLevels, memory: &[u8]) -> Self {
+    pub(crate) fn power_up(checked: &crate::CheckedSetup, levels: RawLevels, memory: &[u8]) -> Self {
         let mut machine = Self::new(checked);
         machine.drop_inputs();
         for controller in &mut machine.controllers {

@@ -1,7 +1,7 @@
 //! What a machine tells of its controllers.
 
 use crate::{
-    checked::Checked,
+    checked::CheckedSetup,
     controller::Press,
     machine::StandAlone,
     panel::{self, PanelRecord},
@@ -14,7 +14,7 @@ use stepscope_peripheral::{signal::MAX_CHANNELS, units::Instant};
 impl StandAlone {
     /// What they were made of.
     #[must_use]
-    pub const fn checked(&self) -> &Checked {
+    pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
 

@@ -16,7 +16,7 @@
 //! rises before the opening record is in the EEPROM itself, however slow that is (G7).
 
 use crate::{
-    checked::Checked,
+    checked::CheckedSetup,
     chip::{Chip, Face, RawLevels},
     controller::NEVER,
     input::Signal,
@@ -69,7 +69,7 @@ pub struct Lateness {
 #[derive(Clone, Debug)]
 pub struct Runner {
     machine: StandAlone,
-    checked: Checked,
+    checked: CheckedSetup,
     /// The tick of the machine's cycle 0, later by all lateness since.
     origin: u64,
     lateness: Lateness,
@@ -82,7 +82,7 @@ impl Runner {
     /// Power comes up: cycle 0 of the machine, which is s of G2, is tick `now`. Memory is what the chip's EEPROM holds, an
     /// input that is held is no press, and neither the script nor `memory.initial` counts. Nothing is written yet.
     /// Errors: more than one controller, or a virtual axis.
-    pub fn power_up(now: Instant, checked: &Checked, chip: &mut impl Chip) -> Result<Self, NotRunnable> {
+    pub fn power_up(now: Instant, checked: &CheckedSetup, chip: &mut impl Chip) -> Result<Self, NotRunnable> {
         let [parameters] = checked.controllers() else {
             return Err(NotRunnable::Controllers(checked.controllers().len()));
         };
@@ -92,7 +92,7 @@ impl Runner {
         Ok(Self::new(now, checked, chip))
     }
 
-    fn new(now: Instant, checked: &Checked, chip: &mut impl Chip) -> Self {
+    fn new(now: Instant, checked: &CheckedSetup, chip: &mut impl Chip) -> Self {
         let heard = chip.inputs();
         let len = checked.controllers().first().map_or(0, |parameters| parameters.memory_len());
         let memory: Vec<u8> = (0..len).map(|address| chip.read_byte(address)).collect();
@@ -108,7 +108,7 @@ impl Runner {
 
     /// What the EEPROM of a new chip has to hold, from address 0: `memory.initial`.
     #[must_use]
-    pub fn factory_memory(checked: &Checked) -> Vec<u8> {
+    pub fn factory_memory(checked: &CheckedSetup) -> Vec<u8> {
         StandAlone::new(checked).memory(0).to_vec()
     }
 

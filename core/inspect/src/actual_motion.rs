@@ -221,7 +221,7 @@ impl<'a> Pulses<'a> {
         let first = ticks.partition_point(|tick| end(tick) < from_s);
         for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
             let order =
-                ChannelCommand::parse(tick.orders.get(usize::from(self.channel)).copied().unwrap_or(0));
+                ChannelCommand::parse(tick.commands.get(usize::from(self.channel)).copied().unwrap_or(0));
             let speed = f64::from(order.steps) * hz / length.0 as f64;
             let speed = if order.right { speed } else { 0.0 - speed };
             each(Rate { from_s: start(tick), to_s: end(tick), speed });
@@ -351,9 +351,9 @@ mod tests {
         let config =
             Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
         let mut log = PacketLog::default();
-        let mut orders = [0; 16];
-        orders[0] = 0x80 | 10;
-        log.event(Instant(16_000), Event::TickStart { orders });
+        let mut commands = [0; 16];
+        commands[0] = 0x80 | 10;
+        log.event(Instant(16_000), Event::TickStart { commands });
         log.event(Instant(24_000), Event::Stopped);
         let pulses = Pulses::of_run(0, &[], &log, None, &config);
         let speed = 10.0 * 16e6 / config.tick().0 as f64;

@@ -288,7 +288,7 @@ fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
     add("seq".into(), 2..3, format!("{}", ticks.seq));
     add("count".into(), 3..4, format!("{}", ticks.count()));
     let channels = usize::from(channels.max(1));
-    for (place, &byte) in ticks.orders().iter().enumerate() {
+    for (place, &byte) in ticks.commands().iter().enumerate() {
         let (tick, channel) = (place / channels, place % channels);
         let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
         add(name.into(), 4 + place..5 + place, command_to_text(byte));

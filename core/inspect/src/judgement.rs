@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use stepscope_inspect::judgement::Judgement;
-//! use stepscope_sim::Judged;
+//! use stepscope_sim::ValidatedScenario;
 //!
 //! let judgement = Judgement::of(&Judged::from_json("{}"));
 //! assert_eq!(judgement.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
@@ -22,7 +22,7 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Curve, PlannedMove, grouped, moves::Axis};
 use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
-use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, Judged, axes_of};
+use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
 /// All that is said of a scenario.
 #[derive(Clone, Debug, Serialize)]
@@ -128,7 +128,7 @@ pub struct RunCost {
 impl Judgement {
     /// Of a scenario that was judged.
     #[must_use]
-    pub fn of(judged: &Judged) -> Self {
+    pub fn of(judged: &ValidatedScenario) -> Self {
         let text = |Problem { path, cause, .. }: &Problem| ProblemText {
             path: path.clone(),
             message: cause.to_string(),

@@ -31,7 +31,7 @@ use stepscope_peripheral::signal::MAX_CHANNELS;
 use stepscope_plant::{
     Observer, Plant, Slip,
     measures::{MotorResult, PlantResult},
-    parameters::{Motor, Setup},
+    parameters::{MotorModel, Setup},
     stability::Natural,
 };
 
@@ -148,7 +148,7 @@ pub fn agreement(
 fn why_it_slips(
     machine: &Machine,
     demand: &Demand,
-    motor: &Motor,
+    motor: &MotorModel,
     rate: Option<f64>,
     (least_v, supply_v): (f64, f64),
 ) -> String {

@@ -310,7 +310,7 @@ impl<'a> PacketTable<'a> {
 
     fn tick(&self, tick: &LoggedTick) -> TickRow {
         let mut fields = String::new();
-        write_steps(tick.orders.iter().take(usize::from(self.own.channels())).copied(), &mut fields);
+        write_steps(tick.commands.iter().take(usize::from(self.own.channels())).copied(), &mut fields);
         TickRow {
             start_cycle: tick.start.0,
             end_cycle: self.log.tick_end(tick, self.own.tick()).0.min(self.run.cycles().0),

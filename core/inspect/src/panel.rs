@@ -17,7 +17,7 @@
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
 use stepscope_controller::{
-    Checked, State,
+    CheckedSetup, State,
     input::Signal,
     panel::{PanelRecord, Word},
     trust_name,
@@ -91,7 +91,7 @@ pub struct PanelSignal {
 impl PanelSignals {
     /// Those of checked controllers, before cycle 0.
     #[must_use]
-    pub fn new(checked: &Checked) -> Self {
+    pub fn new(checked: &CheckedSetup) -> Self {
         let mut signals = Vec::new();
         for (index, parameters) in checked.controllers().iter().enumerate() {
             let controller = index as u8;

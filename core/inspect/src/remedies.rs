@@ -2,10 +2,10 @@
 //!
 //! ```
 //! use stepscope_inspect::remedies::Remedies;
-//! use stepscope_sim::Judged;
+//! use stepscope_sim::ValidatedScenario;
 //!
 //! // 16 000 steps/s at the top, and slots of 2000 cycles at 16 MHz: 8000 steps/s at most.
-//! let slow = Judged::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
+//! let slow = ValidatedScenario::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
 //! let remedies = Remedies::of(&slow).expect("it is refused for its speed");
 //! assert_eq!(remedies.wrong, "The motion needs up to 16000 steps/s, the bus gives at most 8000.");
 //! assert_eq!(remedies.offers[0].change, "slot 1000 cycles");
@@ -22,7 +22,7 @@ use stepscope_motion::{
     plan_axis, problem,
 };
 use stepscope_scenario::{Cause, MotionEngine, Scenario, Source};
-use stepscope_sim::{Judged, axes_of};
+use stepscope_sim::{ValidatedScenario, axes_of};
 
 /// A time is lengthened to a whole number of these, in s.
 const TIME_STEP_S: f64 = 1e-4;
@@ -48,7 +48,7 @@ pub struct Offer {
 impl Remedies {
     /// Of a scenario that was judged; `None` where no motion is too fast for its bus.
     #[must_use]
-    pub fn of(judged: &Judged) -> Option<Self> {
+    pub fn of(judged: &ValidatedScenario) -> Option<Self> {
         let is_too_fast = |cause: &Cause| matches!(cause, Cause::Motion(problem::Cause::TooManySteps { .. }));
         if !judged.problems().iter().any(|problem| is_too_fast(&problem.cause)) {
             return None;
@@ -63,7 +63,10 @@ impl Remedies {
         let changes = [shorter_slots(scenario, &slow), longer_times(scenario, &slow), segments(scenario)];
         let offers = changes.into_iter().flatten().filter_map(|(change, scenario)| {
             let text = scenario.to_json();
-            Judged::from(scenario).problems().is_empty().then_some(Offer { change, scenario: text })
+            ValidatedScenario::from(scenario)
+                .problems()
+                .is_empty()
+                .then_some(Offer { change, scenario: text })
         });
         let Rates { needed, limit, .. } = worst;
         let wrong = format!(
@@ -161,7 +164,7 @@ mod tests {
     use super::*;
 
     fn offers(json: &str) -> Vec<String> {
-        let found = Remedies::of(&Judged::from_json(json));
+        let found = Remedies::of(&ValidatedScenario::from_json(json));
         found.map_or_else(Vec::new, |found| found.offers.into_iter().map(|offer| offer.change).collect())
     }
 
@@ -170,9 +173,9 @@ mod tests {
         let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
         let expected = ["slot 1000 cycles", "more time for the move: 0.8 s", "step generation by segments"];
         assert_eq!(offers(slow), expected);
-        let found = Remedies::of(&Judged::from_json(slow)).expect("too fast");
+        let found = Remedies::of(&ValidatedScenario::from_json(slow)).expect("too fast");
         for Offer { change, scenario } in found.offers {
-            let again = Judged::from_json(&scenario);
+            let again = ValidatedScenario::from_json(&scenario);
             assert!(again.problems().is_empty(), "{change}: {:?}", again.problems());
         }
     }
@@ -192,7 +195,7 @@ mod tests {
     #[test]
     fn other_problems_have_no_remedy_here() {
         for json in ["{}", r#"{"bus":{"slots":0}}"#, "]", r#"{"source":{"line":{}}}"#] {
-            assert!(Remedies::of(&Judged::from_json(json)).is_none(), "{json}");
+            assert!(Remedies::of(&ValidatedScenario::from_json(json)).is_none(), "{json}");
         }
     }
 }

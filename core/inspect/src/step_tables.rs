@@ -3,9 +3,9 @@
 //!
 //! ```
 //! use stepscope_inspect::step_tables::StepTables;
-//! use stepscope_sim::Judged;
+//! use stepscope_sim::ValidatedScenario;
 //!
-//! let judged = Judged::from_json("{}");
+//! let judged = ValidatedScenario::from_json("{}");
 //! let tables = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
 //! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
 //! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
@@ -183,11 +183,12 @@ impl<'a> StepTables<'a> {
 mod tests {
     use super::*;
     use stepscope_peripheral::trace::{Recording, steps};
-    use stepscope_sim::Judged;
+    use stepscope_sim::ValidatedScenario;
 
     #[test]
     fn the_steps_of_a_run_are_kept_as_their_plan_is_but_have_no_documents_table() {
-        let judged = Judged::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
+        let judged =
+            ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
         let experiment = judged.experiment().expect("no problems");
         let mut recording = Recording::default();
         experiment.run(&mut recording);

@@ -65,7 +65,7 @@ pub fn write_ticks_head(out: &mut impl Write, channels: u8) -> fmt::Result {
 pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> fmt::Result {
     write!(out, "{},", tick.start.0)?;
     tick.row.map_or(Ok(()), |row| write!(out, "{row}"))?;
-    for &byte in tick.orders.iter().take(channels.into()) {
+    for &byte in tick.commands.iter().take(channels.into()) {
         let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
         write!(out, ",{}{steps}", if right || steps == 0 { "" } else { "-" })?;
     }

@@ -1,4 +1,4 @@
-//! The words of the framed protocol (DESIGN A6): what a frame orders, what becomes of it, and what
+//! The words of the framed protocol (DESIGN A6): what a frame commands, what becomes of it, and what
 //! a controller tells of itself. How frames are encoded and read is in [`crate::wire::frame`].
 //!
 //! ```

@@ -176,7 +176,7 @@ pub enum Event {
     Stopped,
     TickStart {
         /// One byte per channel.
-        orders: [u8; MAX_CHANNELS],
+        commands: [u8; MAX_CHANNELS],
     },
     TickEnd,
     /// The panel of a stand-alone controller changed.

@@ -48,12 +48,12 @@ const BOOTING: Bus = Bus { boot_cycles: LONG, ..BUS };
 
 /// What became of the frames, and what was replied.
 #[derive(Default)]
-struct Judged {
+struct ValidatedScenario {
     outcomes: Vec<FrameOutcome>,
     replies: Vec<Reply>,
 }
 
-impl Sink for Judged {
+impl Sink for ValidatedScenario {
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, _: Instant, event: Event) {
@@ -82,7 +82,7 @@ fn judge(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
         schedule.push(end, &frame);
         end += Cycles(APART);
     }
-    let (mut device, mut judged) = (Device::new(&config), Judged::default());
+    let (mut device, mut judged) = (Device::new(&config), ValidatedScenario::default());
     let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
     while device.now() < end {
         if line.next_change() == device.now() {

@@ -1,7 +1,7 @@
 //! The driver of one motor: from the count of steps to target currents, from those to the voltages of the phases (F4).
 
 use crate::{
-    parameters::{Decay, Drive, Motor, Regulator},
+    parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel},
     sincos::{nearest, sincos},
 };
 
@@ -55,7 +55,7 @@ pub(crate) struct ChopperTimes {
 }
 
 impl ChopperTimes {
-    pub(crate) fn new(drive: &Drive, clock_hz: f64, step_cycles: u32) -> Self {
+    pub(crate) fn new(drive: &DriverModel, clock_hz: f64, step_cycles: u32) -> Self {
         let steps = |us: f64| round_half_up(us * clock_hz / (1e6 * f64::from(step_cycles))).max(1);
         Self { off: steps(drive.off_us), blank: steps(drive.blank_us) }
     }
@@ -166,15 +166,15 @@ pub(crate) struct Driver {
     microsteps: i64,
     peak: f64,
     levels: Option<f64>,
-    decay: Decay,
-    regulator: Regulator,
+    decay: CurrentDecay,
+    regulator: CurrentControl,
     times: ChopperTimes,
     pub(crate) diodes: f64,
     pub(crate) phases: [Phase; 2],
 }
 
 impl Driver {
-    pub(crate) fn new(motor: &Motor, clock_hz: f64, step_cycles: u32) -> Self {
+    pub(crate) fn new(motor: &MotorModel, clock_hz: f64, step_cycles: u32) -> Self {
         let drive = &motor.drive;
         let phase = Phase::new(0.0, drive.decay.first_share());
         let mut driver = Self {
@@ -213,7 +213,7 @@ impl Driver {
         self.commanded += if right { 1 } else { -1 };
         let targets = self.targets();
         for (phase, target) in self.phases.iter_mut().zip(targets) {
-            if let Decay::Auto(share) = self.decay {
+            if let CurrentDecay::Auto(share) = self.decay {
                 phase.share = if target.abs() < phase.target.abs() { share } else { 0.0 };
             }
             phase.target = target;
@@ -229,7 +229,7 @@ impl Driver {
     /// A grid point with EN = 1.
     #[inline(always)]
     pub(crate) fn decide(&mut self, i_a: f64, i_b: f64) {
-        if self.regulator == Regulator::Chopper {
+        if self.regulator == CurrentControl::Chopper {
             self.phases[0].decide(self.times, i_a);
             self.phases[1].decide(self.times, i_b);
         }
@@ -240,7 +240,7 @@ impl Driver {
         let Some(held) = self.phases.get(phase) else { return Applied::voltage(0.0) };
         if !powered {
             Phase::through_diodes(ask, self.diodes)
-        } else if self.regulator == Regulator::Averaged {
+        } else if self.regulator == CurrentControl::Averaged {
             held.averaged(ask)
         } else {
             held.chopped(ask)

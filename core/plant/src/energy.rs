@@ -2,7 +2,7 @@
 //! is stored follows from the state, and what is left over tells how exact the steps are.
 
 use crate::{
-    machine::{Coupling, Machine, TURN},
+    motor_constants::{Coupling, MotorConstants, TURN},
     sincos::sincos,
     state::State,
 };
@@ -50,7 +50,7 @@ impl EnergyBalance {
 }
 
 impl EnergyAccount {
-    pub(crate) fn new(machine: &Machine, state: &State) -> Self {
+    pub(crate) fn new(machine: &MotorConstants, state: &State) -> Self {
         Self { start: stored(machine, state), ..Self::default() }
     }
 
@@ -72,7 +72,7 @@ impl EnergyAccount {
         self.viscous += h * c.damping * (before - w) * (middle - w_m);
     }
 
-    pub(crate) fn balance(&self, machine: &Machine, state: &State) -> EnergyBalance {
+    pub(crate) fn balance(&self, machine: &MotorConstants, state: &State) -> EnergyBalance {
         let copper = machine.r / 3.0 * self.copper;
         let Self { bus, friction, viscous, diodes, load, start, .. } = *self;
         let stored = stored(machine, state) - start;
@@ -83,7 +83,7 @@ impl EnergyAccount {
 }
 
 /// What inductances, masses, the coupling's spring and the detent hold, in J.
-fn stored(machine: &Machine, state: &State) -> f64 {
+fn stored(machine: &MotorConstants, state: &State) -> f64 {
     let State { x, w, i_a, i_b, x_load, w_load } = *state;
     let mut stored = 0.5 * machine.l * (i_a * i_a + i_b * i_b) + 0.5 * machine.m * w * w;
     if let Some(c) = &machine.coupling {

@@ -9,9 +9,9 @@
 //!
 //! ```
 //! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
-//! use stepscope_plant::{Plant, parameters::{Motor, Setup}};
+//! use stepscope_plant::{Plant, parameters::{MotorModel, Setup}};
 //!
-//! let motor = Motor { microsteps: 1, ..Motor::default() };
+//! let motor = MotorModel { microsteps: 1, ..Motor::default() };
 //! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("it holds");
 //! // One full step to the right in cycle 1600, and 100 ms to come to rest.
 //! let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
@@ -38,7 +38,7 @@ mod digest;
 mod driver;
 mod energy;
 mod lost_steps;
-mod machine;
+mod motor_constants;
 mod plant;
 mod refusal;
 mod root;

@@ -4,9 +4,9 @@
 //! those above (and below) all that came later: among them is the last one that was too far off, whatever the end is.
 //!
 //! ```
-//! use stepscope_plant::{Plant, measures::Measures, parameters::{Motor, Setup}};
+//! use stepscope_plant::{Plant, measures::Measures, parameters::{MotorModel, Setup}};
 //!
-//! let setup = Setup { motors: vec![Motor::default()], ..Setup::default() };
+//! let setup = Setup { motors: vec![MotorModel::default()], ..Setup::default() };
 //! let mut plant = Plant::new(&setup).expect("it holds");
 //! let mut measures = Measures::new(&plant);
 //! plant.advance(16_000, &mut measures);
@@ -114,7 +114,7 @@ struct AfterStep {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Motor {
+struct MotorModel {
     worst: (f64, u64),
     fastest: (f64, u64),
     fastest_load: f64,
@@ -129,7 +129,7 @@ struct Motor {
 /// Takes the measures of a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Measures {
-    motors: Vec<Motor>,
+    motors: Vec<MotorModel>,
     load: Extremes,
     bus: Extremes,
     collapsed: Option<u64>,
@@ -143,7 +143,7 @@ pub struct Measures {
 
 /// Steps of the first motor before the supply current's deviation counts, and steps of each that there must be.
 const FIRST_STEPS: u64 = 5;
-const LEAST_STEPS: u64 = 8;
+const MIN_STEPS: u64 = 8;
 
 /// What one motor did.
 #[derive(Clone, Debug, PartialEq)]
@@ -201,7 +201,7 @@ impl Measures {
     /// Measures that begin at the plant's first point.
     #[must_use]
     pub fn new(plant: &Plant) -> Self {
-        let motors = alloc::vec![Motor::default(); plant.motors()];
+        let motors = alloc::vec![MotorModel::default(); plant.motors()];
         let mut new = Self { motors, steps: alloc::vec![0; plant.motors()], ..Self::default() };
         new.bus.add(plant.bus_v());
         new
@@ -227,7 +227,7 @@ impl Measures {
     }
 
     fn deviation(&self) -> Option<Deviation> {
-        let enough = self.steps.iter().all(|&steps| steps >= LEAST_STEPS);
+        let enough = self.steps.iter().all(|&steps| steps >= MIN_STEPS);
         if !enough || self.rest.1 == 0 || self.sensor.points == 0 {
             return None;
         }
@@ -243,7 +243,7 @@ impl Measures {
     }
 }
 
-impl Motor {
+impl MotorModel {
     fn result(&self, plant: &Plant, channel: usize) -> MotorResult {
         let state = plant.state(channel).copied().unwrap_or_default();
         let command = plant.command(channel);

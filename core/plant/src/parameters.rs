@@ -4,10 +4,10 @@
 //! of each number.
 //!
 //! ```
-//! use stepscope_plant::{Plant, parameters::{Drive, Motor, Regulator, Setup}};
+//! use stepscope_plant::{Plant, parameters::{DriverModel, MotorModel, CurrentControl, Setup}};
 //!
-//! let drive = Drive { regulator: Regulator::Chopper, ..Drive::default() };
-//! let setup = Setup { motors: vec![Motor { microsteps: 1, drive, ..Motor::default() }], ..Setup::default() };
+//! let drive = DriverModel { regulator: CurrentControl::Chopper, ..Drive::default() };
+//! let setup = Setup { motors: vec![MotorModel { microsteps: 1, drive, ..Motor::default() }], ..Setup::default() };
 //! let plant = Plant::new(&setup).expect("it holds");
 //! assert_eq!(plant.step_cycles(), 16, "a grid step is a microsecond where a driver chops");
 //! ```
@@ -35,7 +35,7 @@ macro_rules! parameters {
 
 /// How the driver holds the phase currents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Regulator {
+pub enum CurrentControl {
     /// The mean of an ideal chopper.
     #[default]
     Averaged,
@@ -45,7 +45,7 @@ pub enum Regulator {
 
 /// How fast a current decays while its phase is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Decay {
+pub enum CurrentDecay {
     /// The phase is short-circuited.
     Slow,
     /// The supply works against the current.
@@ -57,7 +57,7 @@ pub enum Decay {
     Auto(f64),
 }
 
-impl Decay {
+impl CurrentDecay {
     /// The share that is fast before the first step, 0..=1.
     #[must_use]
     pub const fn first_share(self) -> f64 {
@@ -71,11 +71,11 @@ impl Decay {
 
 parameters! {
     /// The driver of one motor.
-    pub struct Drive {
+    pub struct DriverModel {
         /// How it holds the currents.
-        pub regulator: Regulator = Regulator::Averaged,
+        pub regulator: CurrentControl = CurrentControl::Averaged,
         /// How they decay.
-        pub decay: Decay = Decay::Fast,
+        pub decay: CurrentDecay = CurrentDecay::Fast,
         /// Off-time of a chopper in us.
         pub off_us: f64 = 20.0,
         /// Minimum on-time of a chopper in us.
@@ -89,7 +89,7 @@ parameters! {
     }
 
     /// A two-phase hybrid stepping motor, what turns with it, and its driver. The defaults are those of a scenario.
-    pub struct Motor {
+    pub struct MotorModel {
         /// Full step in degrees.
         pub full_step_deg: f64 = 1.8,
         /// Microsteps in a full step.
@@ -131,7 +131,7 @@ parameters! {
         /// Damping of the coupling in uN*m*s.
         pub coupling_un_m_s: f64 = 0.0,
         /// Its driver.
-        pub drive: Drive = Drive::default(),
+        pub drive: DriverModel = DriverModel::default(),
     }
 
     /// The supply of all motors of a plant.
@@ -201,7 +201,7 @@ parameters! {
         /// The protection against overload, where there is one.
         pub protection: Option<Protection> = None,
         /// The motor of channel 0, 1, ….
-        pub motors: Vec<Motor> = Vec::new(),
+        pub motors: Vec<MotorModel> = Vec::new(),
     }
 }
 
@@ -209,7 +209,7 @@ impl Setup {
     /// Cycles of a grid step: `step_cycles`, or 5 us, where a driver chops 1 us, at least one.
     #[must_use]
     pub fn grid_cycles(&self) -> u32 {
-        let chops = self.motors.iter().any(|motor| motor.drive.regulator == Regulator::Chopper);
+        let chops = self.motors.iter().any(|motor| motor.drive.regulator == CurrentControl::Chopper);
         let a_second = if chops { 1_000_000 } else { 200_000 };
         self.step_cycles.unwrap_or((self.clock_hz / a_second).max(1))
     }
@@ -222,7 +222,7 @@ impl Setup {
     }
 }
 
-impl Motor {
+impl MotorModel {
     /// Steps of a turn, rounded.
     #[must_use]
     pub fn steps_a_turn(&self) -> u64 {

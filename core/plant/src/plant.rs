@@ -175,7 +175,7 @@ impl Plant {
         for motor in &mut motors {
             motor.driver.decide(motor.state.i_a, motor.state.i_b);
         }
-        let encoder = |(channel, motor): (usize, &crate::parameters::Motor)| {
+        let encoder = |(channel, motor): (usize, &crate::parameters::MotorModel)| {
             Encoder::new(&setup.encoder, channel as u64, motor.full_step_deg)
         };
         let accelerometers = setup.accelerometer.iter().flat_map(|chain| {

@@ -8,9 +8,9 @@
 //! ```
 //!
 //! ```
-//! use stepscope_plant::{parameters::{Motor, Setup}, rates::{search, starts}};
+//! use stepscope_plant::{parameters::{MotorModel, Setup}, rates::{search, starts}};
 //!
-//! let setup = Setup { motors: vec![Motor::default()], ..Setup::default() };
+//! let setup = Setup { motors: vec![MotorModel::default()], ..Setup::default() };
 //! let found = search(|rate| starts(&setup, rate, 3200)).expect("a plant");
 //! assert!((found.expect("it starts") - 34_700.0).abs() < 400.0);
 //! ```
@@ -40,7 +40,7 @@ pub const MAP_S: f64 = 0.6;
 
 const FIRST_RATE: f64 = 4000.0;
 /// It must work at this one.
-const LEAST_RATE: f64 = 500.0;
+const MIN_RATE: f64 = 500.0;
 const GREATEST_RATE: f64 = 5e6;
 const NEAR: f64 = 1.002;
 
@@ -57,7 +57,7 @@ impl Search {
     pub fn rate(&self) -> Option<f64> {
         match (self.holds, self.fails) {
             (None, None) => Some(FIRST_RATE),
-            (None, Some(fails)) => (fails > LEAST_RATE).then_some(LEAST_RATE),
+            (None, Some(fails)) => (fails > MIN_RATE).then_some(MIN_RATE),
             (Some(holds), None) => (holds < GREATEST_RATE).then_some(2.0 * holds),
             (Some(holds), Some(fails)) => (fails > NEAR * holds).then(|| square_root(holds * fails)),
         }

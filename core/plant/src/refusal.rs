@@ -2,7 +2,7 @@
 
 use crate::{
     limits,
-    parameters::{Decay, Motor, SensorChain, Setup},
+    parameters::{CurrentDecay, MotorModel, SensorChain, Setup},
     stability::{self, Measure},
 };
 use alloc::vec::Vec;
@@ -139,7 +139,7 @@ fn judge_chain(ranges: &mut Ranges<'_>, chain: &SensorChain) {
     ranges.whole("current_sensor.adc_max", chain.adc_max.into(), &limits::ADC_MAX);
 }
 
-fn judge_motor(ranges: &mut Ranges<'_>, motor: &Motor) {
+fn judge_motor(ranges: &mut Ranges<'_>, motor: &MotorModel) {
     let above_0 = f64::MIN_POSITIVE..=1e9;
     ranges.number("full_step_deg", motor.full_step_deg, &(0.001..=90.0));
     ranges.whole("microsteps", motor.microsteps.into(), &(1..=512));
@@ -172,7 +172,7 @@ fn judge_motor(ranges: &mut Ranges<'_>, motor: &Motor) {
     ranges.whole("drive.dac_levels", drive.dac_levels.unwrap_or(1).into(), &limits::DAC_LEVELS);
     ranges.number("drive.bridge_ohm", drive.bridge_ohm, &limits::BRIDGE_OHM);
     ranges.number("drive.diode_v", drive.diode_v, &limits::DIODE_V);
-    if let Decay::Mixed(share) | Decay::Auto(share) = drive.decay {
+    if let CurrentDecay::Mixed(share) | CurrentDecay::Auto(share) = drive.decay {
         ranges.number("drive.decay.share", share, &limits::SHARE);
     }
 }

@@ -8,15 +8,15 @@
 use crate::{
     driver::{Ask, Driver},
     energy::EnergyAccount,
-    machine::{Machine, Span},
-    parameters::Motor,
+    motor_constants::{MotorConstants, Span},
+    parameters::MotorModel,
     sincos::sincos,
     state::State,
 };
 
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor {
-    pub(crate) machine: Machine,
+    pub(crate) machine: MotorConstants,
     pub(crate) driver: Driver,
     pub(crate) state: State,
     pub(crate) energy: EnergyAccount,
@@ -41,8 +41,8 @@ fn towards_zero(value: f64, by: f64) -> f64 {
 }
 
 impl Rotor {
-    pub(crate) fn new(motor: &Motor, clock_hz: f64, step_cycles: u32) -> Self {
-        let (machine, driver) = (Machine::new(motor), Driver::new(motor, clock_hz, step_cycles));
+    pub(crate) fn new(motor: &MotorModel, clock_hz: f64, step_cycles: u32) -> Self {
+        let (machine, driver) = (MotorConstants::new(motor), Driver::new(motor, clock_hz, step_cycles));
         let [i_a, i_b] = [driver.phases[0].target, driver.phases[1].target];
         let x = machine.rest(i_a, i_b);
         let x_load = machine.coupling.as_ref().map_or(x, |c| x + machine.load.at(x) / c.stiffness);

@@ -1,7 +1,7 @@
 //! What measures the plant: current sensors and accelerometers behind low passes and a converter, and encoders (F6).
 
 use crate::{
-    machine::TURN,
+    motor_constants::TURN,
     parameters::{self, SensorChain},
     sincos::{nearest, one_minus_exp},
 };

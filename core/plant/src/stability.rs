@@ -2,15 +2,15 @@
 //! frequency of a rotor that is held by its currents.
 //!
 //! ```
-//! use stepscope_plant::{parameters::Motor, stability::Natural};
+//! use stepscope_plant::{parameters::MotorModel, stability::Natural};
 //!
 //! let natural = Natural::of(&Motor::default());
 //! assert!((natural.frequency_hz - 282.14).abs() < 0.05);
 //! ```
 
 use crate::{
-    machine::{Machine, TURN},
-    parameters::Motor,
+    motor_constants::{MotorConstants, TURN},
+    parameters::MotorModel,
     root::square_root,
 };
 
@@ -26,8 +26,8 @@ pub struct Natural {
 impl Natural {
     /// Of a motor at its peak current.
     #[must_use]
-    pub fn of(motor: &Motor) -> Self {
-        let machine = Machine::new(motor);
+    pub fn of(motor: &MotorModel) -> Self {
+        let machine = MotorConstants::new(motor);
         let inertia = machine.m / (machine.g * machine.g);
         let k = machine.k / machine.g;
         let frequency_hz =
@@ -64,8 +64,8 @@ impl Measure {
 }
 
 /// The numbers of a motor on a grid of `h` seconds.
-pub(crate) fn measures(motor: &Motor, h: f64) -> impl Iterator<Item = (Measure, f64)> {
-    let machine = Machine::new(motor);
+pub(crate) fn measures(motor: &MotorModel, h: f64) -> impl Iterator<Item = (Measure, f64)> {
+    let machine = MotorConstants::new(motor);
     let natural = Natural::of(motor).frequency_hz;
     let (spring, damper) = machine.coupling.as_ref().map_or((0.0, 0.0), |c| {
         let masses = 1.0 / machine.m + 1.0 / c.mass;

@@ -10,7 +10,7 @@ use stepscope_peripheral::{
 };
 use stepscope_plant::{
     Plant, State,
-    parameters::{Motor, Setup, Supply},
+    parameters::{MotorModel, Setup, Supply},
     stability::Natural,
 };
 
@@ -47,7 +47,7 @@ fn periods(places: &[f64]) -> (Vec<f64>, Vec<f64>) {
 
 #[test]
 fn a_small_swing_has_its_frequency_and_decrement() {
-    let motor = Motor { friction_mn_m: 0.0, ..Motor::default() };
+    let motor = MotorModel { friction_mn_m: 0.0, ..MotorModel::default() };
     let (rises, peaks) = periods(&rings(&one(motor), 0.01, 1_600_000));
     let count = (rises.len() - 1) as f64;
     near_part(count / (rises[rises.len() - 1] - rises[0]) * 200_000.0, 282.09, 0.0002);
@@ -75,7 +75,7 @@ fn frequency(places: &[f64], guess: f64) -> f64 {
 
 #[test]
 fn two_masses_on_a_spring_have_two_frequencies() {
-    let motor = Motor { load_inertia_g_cm2: 200.0, coupling_n_m_rad: Some(20.0), ..frictionless() };
+    let motor = MotorModel { load_inertia_g_cm2: 200.0, coupling_n_m_rad: Some(20.0), ..frictionless() };
     let places = rings(&one(motor), 0.01, 16_000_000);
     near_part(frequency(&places, 98.5), 98.5, 0.003);
     near_part(frequency(&places, 455.9), 455.9, 0.003);
@@ -83,7 +83,7 @@ fn two_masses_on_a_spring_have_two_frequencies() {
 
 #[test]
 fn without_current_a_rotor_coasts_to_rest_by_its_friction() {
-    let motor = Motor { friction_mn_m: 10.0, viscous_un_m_s: 0.0, ..Motor::default() };
+    let motor = MotorModel { friction_mn_m: 10.0, viscous_un_m_s: 0.0, ..MotorModel::default() };
     let mut plant = Plant::new(&one(motor)).expect("it holds");
     let off = Record { cycle: Instant(0), levels: Levels(Levels::RX | Levels::TX) };
     plant.record(off, &mut ());
@@ -106,7 +106,7 @@ fn without_current_a_rotor_coasts_to_rest_by_its_friction() {
 fn torque(rate: f64, lag: f64) -> f64 {
     let full_steps_s = rate / 16.0;
     // Its inertia lets nothing change its speed.
-    let motor = Motor { rotor_inertia_g_cm2: 1e9, ..frictionless() };
+    let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..frictionless() };
     let mut plant = Plant::new(&one(motor)).expect("it holds");
     let state = *plant.state(0).expect("a motor");
     plant.set_state(0, State { x: -lag, w: full_steps_s, ..state });
@@ -176,24 +176,26 @@ fn torque_at_an_imposed_speed_is_that_of_the_static_curve_up_to_the_corner_and_a
 }
 
 /// Motors of the usual sizes that the default grid suits.
-fn motors() -> impl Strategy<Value = Motor> {
+fn motors() -> impl Strategy<Value = MotorModel> {
     let electrical = (0.5..4.0, 0.5..5.0, 1.0..10.0);
     let mechanical = (100.0..1000.0, 20.0..300.0, 0.0..300.0, prop::sample::select(vec![0.9, 1.8, 3.6, 7.5]));
-    (electrical, mechanical).prop_map(|((current, ohm, mh), (holding, rotor, load, full_step_deg))| Motor {
-        rated_current_a: current,
-        peak_current_a: current,
-        resistance_ohm: ohm,
-        inductance_mh: mh,
-        holding_torque_mn_m: holding,
-        rotor_inertia_g_cm2: rotor,
-        load_inertia_g_cm2: load,
-        full_step_deg,
-        ..Motor::default()
+    (electrical, mechanical).prop_map(|((current, ohm, mh), (holding, rotor, load, full_step_deg))| {
+        MotorModel {
+            rated_current_a: current,
+            peak_current_a: current,
+            resistance_ohm: ohm,
+            inductance_mh: mh,
+            holding_torque_mn_m: holding,
+            rotor_inertia_g_cm2: rotor,
+            load_inertia_g_cm2: load,
+            full_step_deg,
+            ..MotorModel::default()
+        }
     })
 }
 
 /// With a supply that never limits the current.
-fn held(motor: Motor) -> Setup {
+fn held(motor: MotorModel) -> Setup {
     Setup { supply: Supply { supply_v: 900.0, ..Supply::default() }, ..one(motor) }
 }
 
@@ -203,7 +205,7 @@ proptest! {
     #[test]
     fn a_current_rises_as_resistance_and_inductance_have_it(motor in motors(), supply_v in 5.0..60.0) {
         // The rotor stands; the supply is too weak for the target, so the phase is held at its voltage.
-        let motor = Motor { rotor_inertia_g_cm2: 1e9, peak_current_a: 1000.0, ..motor };
+        let motor = MotorModel { rotor_inertia_g_cm2: 1e9, peak_current_a: 1000.0, ..motor };
         let (r, l) = (motor.resistance_ohm, motor.inductance_mh / 1000.0);
         let setup = Setup { supply: Supply { supply_v, ..Supply::default() }, ..one(motor) };
         let mut plant = Plant::new(&setup).expect("it holds");
@@ -217,7 +219,7 @@ proptest! {
 
     #[test]
     fn a_held_rotor_swings_at_its_natural_frequency_and_its_decrement(motor in motors(), viscous in 100.0..1000.0) {
-        let motor = Motor { friction_mn_m: 0.0, viscous_un_m_s: viscous, ..motor };
+        let motor = MotorModel { friction_mn_m: 0.0, viscous_un_m_s: viscous, ..motor };
         let natural = Natural::of(&motor);
         prop_assume!(natural.damping_ratio < 0.1);
         let (rises, peaks) = periods(&rings(&held(motor), 0.001, 4_800_000));
@@ -233,7 +235,7 @@ proptest! {
     #[test]
     fn a_load_turns_the_rotor_by_the_angle_whose_sine_is_their_ratio(motor in motors(), part in 0.05..0.9_f64) {
         let peak = motor.holding_torque_mn_m / SQRT_2;
-        let motor = Motor { friction_mn_m: 0.0, gravity_torque_mn_m: part * peak, ..motor };
+        let motor = MotorModel { friction_mn_m: 0.0, gravity_torque_mn_m: part * peak, ..motor };
         let plant = Plant::new(&held(motor)).expect("it holds");
         let found = plant.state(0).expect("a motor").x;
         prop_assert!((found + f64::asin(part) / FRAC_PI_2).abs() < 1e-9, "{found}");
@@ -241,7 +243,7 @@ proptest! {
 
     #[test]
     fn a_rotor_without_current_coasts_as_far_as_its_friction_lets_it(motor in motors(), w in 20.0..300.0) {
-        let motor = Motor { friction_mn_m: 20.0, viscous_un_m_s: 0.0, ..motor };
+        let motor = MotorModel { friction_mn_m: 20.0, viscous_un_m_s: 0.0, ..motor };
         let g = motor.full_step_deg.to_radians();
         let inertia = (motor.rotor_inertia_g_cm2 + motor.load_inertia_g_cm2) * 1e-7;
         let mut plant = Plant::new(&held(motor)).expect("it holds");
@@ -257,7 +259,7 @@ proptest! {
 
     #[test]
     fn two_masses_swing_at_both_roots_of_their_equation(motor in motors(), n_m_rad in 5.0..50.0, load in 50.0..500.0) {
-        let motor = Motor {
+        let motor = MotorModel {
             friction_mn_m: 0.0, viscous_un_m_s: 0.0, load_inertia_g_cm2: load, coupling_n_m_rad: Some(n_m_rad), ..motor
         };
         let pole_pairs = 90.0 / motor.full_step_deg;
@@ -281,7 +283,7 @@ proptest! {
         coupled: bool, buffer: bool, off: bool,
     ) {
         let holding = motor.holding_torque_mn_m;
-        let motor = Motor {
+        let motor = MotorModel {
             detent_torque_mn_m: detent * holding,
             gravity_torque_mn_m: gravity * holding,
             sine_torque_mn_m: sine * holding,
@@ -310,9 +312,9 @@ proptest! {
 
     #[test]
     fn slicing_a_run_cannot_show(motor in motors(), rate in 50.0..20_000.0, chop: bool, cuts in prop::collection::vec(1_u64..900_000, 0..40)) {
-        let mut motor = Motor { microsteps: 8, ..motor };
+        let mut motor = MotorModel { microsteps: 8, ..motor };
         if chop {
-            motor.drive.regulator = stepscope_plant::parameters::Regulator::Chopper;
+            motor.drive.regulator = stepscope_plant::parameters::CurrentControl::Chopper;
         }
         let setup = one(motor);
         let Ok(mut sliced) = Plant::new(&setup) else { return Ok(()) };
@@ -337,7 +339,7 @@ proptest! {
 fn a_step_is_of_second_order_and_close_to_the_continuous_equations_at_five_microseconds() {
     // The same ringing on grids of 5 us, of a half and of a sixteenth of it, which stands for the continuous one.
     let ringing = |step_cycles: u32| {
-        let motor = Motor { friction_mn_m: 0.0, ..full_steps() };
+        let motor = MotorModel { friction_mn_m: 0.0, ..full_steps() };
         let mut plant =
             Plant::new(&Setup { step_cycles: Some(step_cycles), ..one(motor) }).expect("it holds");
         let state = *plant.state(0).expect("a motor");

@@ -8,7 +8,7 @@ use stepscope_peripheral::{
 };
 use stepscope_plant::{
     Plant,
-    parameters::{Decay, Drive, Motor, Regulator, Setup},
+    parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel, Setup},
 };
 
 fn steps(count: u32, interval: u64, add: i64) -> Segment {
@@ -25,7 +25,7 @@ fn trace(start: u64, segments: Vec<Segment>, cycles: u64) -> Vec<Record> {
     trace
 }
 
-fn check(motor: Motor, records: &[Record], cycles: u64, digest: u64) -> Plant {
+fn check(motor: MotorModel, records: &[Record], cycles: u64, digest: u64) -> Plant {
     let setup = Setup { motors: vec![motor], ..Setup::default() };
     let mut plant = Plant::new(&setup).expect("it holds");
     for &record in records {
@@ -39,7 +39,7 @@ fn check(motor: Motor, records: &[Record], cycles: u64, digest: u64) -> Plant {
 #[test]
 fn k1_forty_full_steps() {
     let records = trace(1600, vec![steps(40, 32_768, 0)], 1_600_000);
-    let motor = Motor { microsteps: 1, ..Motor::default() };
+    let motor = MotorModel { microsteps: 1, ..MotorModel::default() };
     let plant = check(motor, &records, 1_600_000, 0x35f2_6c33_1139_1d20);
     let x = plant.state(0).expect("a motor").x;
     assert_eq!(format!("{x:.14}"), "39.91075131887101");
@@ -48,18 +48,23 @@ fn k1_forty_full_steps() {
 #[test]
 fn k2_a_ramp_up_and_down() {
     let records = trace(1, vec![steps(600, 6000, -8), steps(600, 1200, 8)], 6_000_000);
-    check(Motor::default(), &records, 6_000_000, 0xa699_812c_01ef_3b7e);
+    check(MotorModel::default(), &records, 6_000_000, 0xa699_812c_01ef_3b7e);
 }
 
 #[test]
 fn k3_forty_full_steps_with_a_chopper_of_mixed_decay() {
     let records = trace(1600, vec![steps(40, 32_768, 0)], 1_600_000);
-    let drive = Drive {
-        regulator: Regulator::Chopper,
-        decay: Decay::Mixed(0.31),
+    let drive = DriverModel {
+        regulator: CurrentControl::Chopper,
+        decay: CurrentDecay::Mixed(0.31),
         off_us: 20.0,
         blank_us: 1.0,
-        ..Drive::default()
+        ..DriverModel::default()
     };
-    check(Motor { microsteps: 1, drive, ..Motor::default() }, &records, 1_600_000, 0xbf86_f4b1_cc5e_03fc);
+    check(
+        MotorModel { microsteps: 1, drive, ..MotorModel::default() },
+        &records,
+        1_600_000,
+        0xbf86_f4b1_cc5e_03fc,
+    );
 }

@@ -3,7 +3,7 @@
 use crate::common::one;
 use stepscope_plant::{
     Plant,
-    parameters::{Decay, Drive, Motor, Setup, Supply},
+    parameters::{CurrentDecay, DriverModel, MotorModel, Setup, Supply},
 };
 
 fn refused(setup: &Setup) -> Vec<String> {
@@ -12,36 +12,43 @@ fn refused(setup: &Setup) -> Vec<String> {
 
 #[test]
 fn each_refusal_names_the_field_the_number_and_what_to_give() {
-    let coupled = Motor { coupling_n_m_rad: Some(1e5), load_inertia_g_cm2: 10.0, ..Motor::default() };
+    let coupled =
+        MotorModel { coupling_n_m_rad: Some(1e5), load_inertia_g_cm2: 10.0, ..MotorModel::default() };
     let rows: Vec<(Setup, &str)> = vec![
         (Setup::default(), "motors: 0 is out of range; give 1 to 16"),
         (
-            one(Motor { friction_mn_m: -1.0, ..Motor::default() }),
+            one(MotorModel { friction_mn_m: -1.0, ..MotorModel::default() }),
             "motor 0: friction_mn_m: -1 is out of range; give 0 to 1000000",
         ),
         (
-            one(Motor { stiction_mn_m: Some(4.0), ..Motor::default() }),
+            one(MotorModel { stiction_mn_m: Some(4.0), ..MotorModel::default() }),
             "motor 0: stiction_mn_m: 4 is out of range; give 5 to 1000000",
         ),
         (
-            one(Motor { detent_torque_mn_m: 201.0, ..Motor::default() }),
+            one(MotorModel { detent_torque_mn_m: 201.0, ..MotorModel::default() }),
             "motor 0: detent_torque_mn_m: 201 is out of range; give 0 to 200",
         ),
         (
-            one(Motor { drive: Drive { decay: Decay::Mixed(1.5), ..Drive::default() }, ..Motor::default() }),
+            one(MotorModel {
+                drive: DriverModel { decay: CurrentDecay::Mixed(1.5), ..DriverModel::default() },
+                ..MotorModel::default()
+            }),
             "motor 0: drive.decay.share: 1.5 is out of range; give 0 to 1",
         ),
         (
-            Setup { supply: Supply { source_ohm: f64::NAN, ..Supply::default() }, ..one(Motor::default()) },
+            Setup {
+                supply: Supply { source_ohm: f64::NAN, ..Supply::default() },
+                ..one(MotorModel::default())
+            },
             "source_ohm: NaN is out of range; give 0.001 to 100",
         ),
         (
-            one(Motor { inductance_mh: 0.03, ..Motor::default() }),
+            one(MotorModel { inductance_mh: 0.03, ..MotorModel::default() }),
             "motor 0: R*h/L is 0.267 at grid steps of 80 cycles; at most 0.25 is exact enough: give a smaller \
              step_cycles, or more inductance",
         ),
         (
-            one(Motor { rotor_inertia_g_cm2: 0.05, ..Motor::default() }),
+            one(MotorModel { rotor_inertia_g_cm2: 0.05, ..MotorModel::default() }),
             "motor 0: 2*pi*f_n*h is 0.266 at grid steps of 80 cycles; at most 0.25 is exact enough: give a smaller \
              step_cycles, or more inertia",
         ),
@@ -51,14 +58,14 @@ fn each_refusal_names_the_field_the_number_and_what_to_give() {
              a smaller step_cycles, or more inertia or a softer coupling",
         ),
         (
-            one(Motor { coupling_n_m_rad: Some(1.0), coupling_un_m_s: 1e8, ..coupled }),
+            one(MotorModel { coupling_n_m_rad: Some(1.0), coupling_un_m_s: 1e8, ..coupled }),
             "motor 0: h*Cd*(1/M + 1/M_l) is 611.111 at grid steps of 80 cycles; at most 0.25 is exact enough: give a \
              smaller step_cycles, or more inertia or less damping of the coupling",
         ),
         (
             Setup {
                 supply: Supply { source_ohm: 50.0, buffer_uf: Some(100.0), ..Supply::default() },
-                ..one(Motor::default())
+                ..one(MotorModel::default())
             },
             "through 50 ohm the supply cannot give the 3.6 W that the motors take at rest; give a smaller source_ohm",
         ),
@@ -70,14 +77,15 @@ fn each_refusal_names_the_field_the_number_and_what_to_give() {
 
 #[test]
 fn the_same_motor_on_a_finer_grid_is_taken() {
-    let motor = Motor { inductance_mh: 0.03, ..Motor::default() };
+    let motor = MotorModel { inductance_mh: 0.03, ..MotorModel::default() };
     assert_eq!(refused(&Setup { step_cycles: Some(64), ..one(motor) }), [""; 0]);
 }
 
 #[test]
 fn all_numbers_out_of_range_come_at_once() {
-    let motor = Motor { microsteps: 0, resistance_ohm: 0.0, ..Motor::default() };
-    let setup = Setup { step_cycles: Some(0), motors: vec![Motor::default(), motor], ..Setup::default() };
+    let motor = MotorModel { microsteps: 0, resistance_ohm: 0.0, ..MotorModel::default() };
+    let setup =
+        Setup { step_cycles: Some(0), motors: vec![MotorModel::default(), motor], ..Setup::default() };
     let fields: Vec<String> =
         refused(&setup).iter().map(|text| text.split(" is ").next().unwrap_or("").to_owned()).collect();
     assert_eq!(fields, ["step_cycles: 0", "motor 1: microsteps: 0", "motor 1: resistance_ohm: 0"]);

@@ -8,11 +8,11 @@ use stepscope_peripheral::{
 use stepscope_plant::{
     Plant, State,
     measures::Measures,
-    parameters::{Motor, Setup, Supply},
+    parameters::{MotorModel, Setup, Supply},
 };
 
 fn buffered(supply: Supply) -> Setup {
-    Setup { supply: Supply { buffer_uf: Some(100.0), ..supply }, ..one(Motor::default()) }
+    Setup { supply: Supply { buffer_uf: Some(100.0), ..supply }, ..one(MotorModel::default()) }
 }
 
 fn off() -> Record {
@@ -50,7 +50,7 @@ fn a_source_that_takes_nothing_back_lets_the_bus_rise_when_the_motors_brake() {
 fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
     // At rest 3.6 W are just there. When the currents build up from 0 again they take 4.8 mJ; the buffer holds 2.9 mJ.
     let weak = Supply { source_ohm: 39.0, buffer_uf: Some(10.0), source_sinks: true, ..Supply::default() };
-    let setup = Setup { supply: weak, ..one(Motor::default()) };
+    let setup = Setup { supply: weak, ..one(MotorModel::default()) };
     let on = Record { cycle: Instant(16_000), levels: Levels::RESET };
     let mut measures = Measures::new(&Plant::new(&setup).expect("it holds"));
     let plant = run(&setup, &[off(), on], 1_600_000, &mut measures);
@@ -68,7 +68,7 @@ fn currents_decay_through_the_diodes_in_the_time_of_supply_and_inductance() {
             zero.get_or_insert(plant.cycle() - 1600);
         }
     });
-    let motor = Motor { rotor_inertia_g_cm2: 1e9, ..Motor::default() };
+    let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..MotorModel::default() };
     run(&one(motor), &[off()], 160_000, &mut look);
     // L/R*ln(1 + R*i/(V + 2*0.7)) = 0.1737 ms, then the next point.
     near(zero.expect("it ends") as f64 / 16e3, 0.1737, 0.005);
@@ -76,8 +76,9 @@ fn currents_decay_through_the_diodes_in_the_time_of_supply_and_inductance() {
 
 #[test]
 fn an_open_motor_that_is_driven_fast_feeds_the_bus() {
-    let mut plant = Plant::new(&one(Motor { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..Motor::default() }))
-        .expect("it holds");
+    let mut plant =
+        Plant::new(&one(MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..MotorModel::default() }))
+            .expect("it holds");
     plant.record(Record { cycle: Instant(0), ..off() }, &mut ());
     for (w, feeds) in [(4000.0, false), (6000.0, true)] {
         // Its back-EMF is 5.92 V at 1000 full steps/s; the bus and two diodes are at 25.4 V.

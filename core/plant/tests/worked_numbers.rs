@@ -6,7 +6,7 @@ use crate::common::{
 use stepscope_plant::{
     Observer, Plant, Slip,
     measures::{Measures, MotorResult},
-    parameters::{Decay, Drive, Motor, Protection, Regulator, Setup, Supply},
+    parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel, Protection, Setup, Supply},
     rates::{self, RAMP_STEPS_S2, Search},
     settling::{Deviation, Sample, SensorLog, StepResponse},
     stability::Natural,
@@ -17,13 +17,13 @@ const HZ: f64 = 16e6;
 
 #[test]
 fn natural_frequency_of_the_default_motor() {
-    near_part(Natural::of(&Motor::default()).frequency_hz, 282.14, 0.0002);
+    near_part(Natural::of(&MotorModel::default()).frequency_hz, 282.14, 0.0002);
 }
 
 #[test]
 fn a_rotor_rests_where_its_currents_hold_the_gravity() {
     for (gravity, expected) in [(50.0, -0.113_134), (150.0, -0.355_864), (250.0, -0.690_160)] {
-        let motor = Motor { friction_mn_m: 0.0, gravity_torque_mn_m: gravity, ..Motor::default() };
+        let motor = MotorModel { friction_mn_m: 0.0, gravity_torque_mn_m: gravity, ..MotorModel::default() };
         let mut plant = Plant::new(&one(motor)).expect("it holds");
         near(plant.state(0).expect("a motor").x, expected, 1e-6);
         plant.advance(1_600_000, &mut ());
@@ -33,7 +33,7 @@ fn a_rotor_rests_where_its_currents_hold_the_gravity() {
 
 /// A default motor in full steps whose rotor nothing moves, on a grid of 4 cycles.
 fn locked() -> Setup {
-    let motor = Motor { rotor_inertia_g_cm2: 1e9, ..full_steps() };
+    let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..full_steps() };
     Setup { step_cycles: Some(4), ..one(motor) }
 }
 
@@ -99,7 +99,7 @@ fn without_friction_a_motor_starts_at_eight_natural_frequencies() {
 }
 
 /// 3200 steps at one rate from rest, and 0.2 s.
-fn direct_start(motor: Motor, rate: f64) -> MotorResult {
+fn direct_start(motor: MotorModel, rate: f64) -> MotorResult {
     let rises: Vec<u64> = rates::even(16_000_000, rate, 3200).collect();
     let end = rises[3199] + 3_200_000;
     let setup = one(motor);
@@ -111,7 +111,7 @@ fn direct_start(motor: Motor, rate: f64) -> MotorResult {
 #[test]
 fn a_direct_start_overshoots_and_rings() {
     for (rate, overshoot, settling_ms) in [(8000.0, 0.265, 12.1), (19_200.0, 0.676, 26.5)] {
-        let result = direct_start(Motor::default(), rate);
+        let result = direct_start(MotorModel::default(), rate);
         assert_eq!((result.lost, result.slips.len()), (0, 0));
         near_part(result.overshoot.expect("it stepped"), overshoot, 0.02);
         near_part(result.settling.expect("it stepped") as f64 / HZ * 1e3, settling_ms, 0.02);
@@ -121,7 +121,7 @@ fn a_direct_start_overshoots_and_rings() {
 
 #[test]
 fn a_direct_start_with_a_load_stalls() {
-    let result = direct_start(Motor { load_inertia_g_cm2: 200.0, ..Motor::default() }, 19_200.0);
+    let result = direct_start(MotorModel { load_inertia_g_cm2: 200.0, ..MotorModel::default() }, 19_200.0);
     assert_eq!(result.lost, 188);
     near(result.slips[0].cycle as f64 / HZ * 1e3, 2.81, 0.02);
     assert!(result.slips[0].is_behind);
@@ -130,11 +130,14 @@ fn a_direct_start_with_a_load_stalls() {
 
 #[test]
 fn start_stop_rates() {
-    let load = |load_torque_mn_m| Motor { load_torque_mn_m, ..Motor::default() };
-    let heavy = Motor { load_inertia_g_cm2: 200.0, ..Motor::default() };
-    for (motor, expected) in
-        [(Motor::default(), 34_700.0), (load(100.0), 24_500.0), (load(200.0), 12_970.0), (heavy, 14_220.0)]
-    {
+    let load = |load_torque_mn_m| MotorModel { load_torque_mn_m, ..MotorModel::default() };
+    let heavy = MotorModel { load_inertia_g_cm2: 200.0, ..MotorModel::default() };
+    for (motor, expected) in [
+        (MotorModel::default(), 34_700.0),
+        (load(100.0), 24_500.0),
+        (load(200.0), 12_970.0),
+        (heavy, 14_220.0),
+    ] {
         let setup = one(motor);
         near_part(search(|rate| rates::starts(&setup, rate, 3200).expect("it holds")), expected, 0.015);
     }
@@ -145,7 +148,7 @@ fn pull_out_rates() {
     for (load_torque_mn_m, expected, part) in
         [(200.0, 46_900.0, 0.01), (250.0, 34_600.0, 0.01), (100.0, 53_200.0, 0.02), (0.0, 121_000.0, 0.02)]
     {
-        let setup = one(Motor { load_torque_mn_m, ..Motor::default() });
+        let setup = one(MotorModel { load_torque_mn_m, ..MotorModel::default() });
         near_part(
             search(|rate| rates::pulls(&setup, rate, RAMP_STEPS_S2).expect("it holds")),
             expected,
@@ -157,7 +160,7 @@ fn pull_out_rates() {
 #[test]
 fn resonance_of_full_half_and_sixteenth_steps() {
     let at = |microsteps: u16, full_steps_s: f64| {
-        let setup = one(Motor { friction_mn_m: 20.0, microsteps, ..Motor::default() });
+        let setup = one(MotorModel { friction_mn_m: 20.0, microsteps, ..MotorModel::default() });
         rates::resonance(&setup, full_steps_s * f64::from(microsteps)).expect("it holds")
     };
     let rungs = || (5..=100).map(|rung| 4.0 * f64::from(rung));
@@ -262,16 +265,16 @@ fn four_motors_that_step_together_are_an_overload_and_staggered_ones_are_none() 
     assert_eq!(overload(8192), None);
 }
 
-fn chopped(decay: Decay) -> Drive {
-    Drive { regulator: Regulator::Chopper, decay, ..Drive::default() }
+fn chopped(decay: CurrentDecay) -> DriverModel {
+    DriverModel { regulator: CurrentControl::Chopper, decay, ..DriverModel::default() }
 }
 
 #[test]
 fn a_chopper_at_rest() {
     for (decay, mean, khz, swing) in
-        [(Decay::Slow, 1.058, 46.5, None), (Decay::Mixed(0.31), 1.033, 35.8, Some(0.046))]
+        [(CurrentDecay::Slow, 1.058, 46.5, None), (CurrentDecay::Mixed(0.31), 1.033, 35.8, Some(0.046))]
     {
-        let setup = one(Motor { drive: chopped(decay), ..Motor::default() });
+        let setup = one(MotorModel { drive: chopped(decay), ..MotorModel::default() });
         let mut currents = vec![];
         run(
             &setup,
@@ -294,12 +297,13 @@ fn a_chopper_at_rest() {
 #[test]
 fn small_currents_do_not_decay_slowly() {
     let rows = [
-        (Drive::default(), -0.0004, -0.0004),
-        (chopped(Decay::Mixed(0.31)), -0.0093, 0.0084),
-        (chopped(Decay::Slow), -0.284, 0.158),
+        (DriverModel::default(), -0.0004, -0.0004),
+        (chopped(CurrentDecay::Mixed(0.31)), -0.0093, 0.0084),
+        (chopped(CurrentDecay::Slow), -0.284, 0.158),
     ];
     for (drive, least, most) in rows {
-        let motor = Motor { friction_mn_m: 0.0, viscous_un_m_s: 30_000.0, drive, ..Motor::default() };
+        let motor =
+            MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 30_000.0, drive, ..MotorModel::default() };
         let rises: Vec<u64> = (1..=129).map(|k| k * 160_000).collect();
         let mut plant = Plant::new(&one(motor)).expect("it holds");
         let mut errors = vec![];

@@ -26,7 +26,7 @@ const MAX_BYTES: usize = 4 << 20;
 
 /// A scenario whose numbers hold, but for its motions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checked {
+pub struct CheckedScenario {
     /// The controllers on the line, the scenario's own first.
     pub configs: Vec<Config>,
     /// What the additional ones do.
@@ -45,7 +45,7 @@ pub struct Checked {
     pub segments: Option<CheckedSegments>,
     /// The stand-alone controllers, where the source is such.
     #[cfg(feature = "controller")]
-    pub stand_alone: Option<stepscope_controller::Checked>,
+    pub stand_alone: Option<stepscope_controller::CheckedSetup>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
     /// What the edges drive.
@@ -53,7 +53,7 @@ pub struct Checked {
     pub plants: Option<crate::plant::Plants>,
 }
 
-impl Checked {
+impl CheckedScenario {
     /// Whether the host sends frame after frame, each when the one before is answered.
     #[must_use]
     pub fn waits_for_replies(&self) -> bool {
@@ -67,7 +67,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Every problem, each with its path.
-    pub fn check(&self) -> Result<Checked, Vec<Problem>> {
+    pub fn check(&self) -> Result<CheckedScenario, Vec<Problem>> {
         let mut validator = Validator::default();
         if self.version > crate::VERSION {
             let given = u64::from(self.version);
@@ -128,7 +128,7 @@ impl Scenario {
         let configs: Vec<Config> = config.into_iter().chain(additional).collect();
         #[cfg(feature = "plant")]
         let plants = self.plants(&configs, &mut validator);
-        validator.end(()).map(|()| Checked {
+        validator.end(()).map(|()| CheckedScenario {
             configs,
             additional: self.controllers.clone(),
             // Where nothing is sent it has not been judged.

@@ -8,7 +8,7 @@
 //!     { "cosine": { "distance": { "steps": 6400 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }
 //! ```
 //!
-//! A scenario as read is only text with types; [`Scenario::check`] makes a [`Checked`] of it or
+//! A scenario as read is only text with types; [`Scenario::check`] makes a [`CheckedScenario`] of it or
 //! returns every problem at once, each with its path. What comes after never meets a bad number.
 //!
 //! ```
@@ -69,7 +69,7 @@ pub mod link;
 
 pub mod presets;
 
-pub use check::Checked;
+pub use check::CheckedScenario;
 pub use compact::{Compact, Kinds};
 pub use hex::Hex;
 pub use json::Json;

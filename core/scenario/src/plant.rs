@@ -241,9 +241,9 @@ fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[Placed<'_>]) -> para
     }
 }
 
-fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::Motor {
+fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::MotorModel {
     let drive = &motor.drive;
-    parameters::Motor {
+    parameters::MotorModel {
         full_step_deg: placed.full_step_deg,
         microsteps: placed.microsteps,
         rated_current_a: motor.rated_current_a,
@@ -264,16 +264,16 @@ fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::Motor {
         sine_phase_deg: motor.sine_phase_deg,
         coupling_n_m_rad: motor.coupling_n_m_rad,
         coupling_un_m_s: motor.coupling_un_m_s,
-        drive: parameters::Drive {
+        drive: parameters::DriverModel {
             regulator: match drive.regulator {
-                Regulator::Averaged => parameters::Regulator::Averaged,
-                Regulator::Chopper => parameters::Regulator::Chopper,
+                Regulator::Averaged => parameters::CurrentControl::Averaged,
+                Regulator::Chopper => parameters::CurrentControl::Chopper,
             },
             decay: match drive.decay {
-                Decay::Slow => parameters::Decay::Slow,
-                Decay::Fast => parameters::Decay::Fast,
-                Decay::Mixed => parameters::Decay::Mixed(drive.decay_share),
-                Decay::Auto => parameters::Decay::Auto(drive.decay_share),
+                Decay::Slow => parameters::CurrentDecay::Slow,
+                Decay::Fast => parameters::CurrentDecay::Fast,
+                Decay::Mixed => parameters::CurrentDecay::Mixed(drive.decay_share),
+                Decay::Auto => parameters::CurrentDecay::Auto(drive.decay_share),
             },
             off_us: drive.off_us,
             blank_us: drive.blank_us,

@@ -26,7 +26,7 @@ impl Scenario {
         &self,
         controllers: &[StandAlone],
         validator: &mut Validator,
-    ) -> Option<stepscope_controller::Checked> {
+    ) -> Option<stepscope_controller::CheckedSetup> {
         let outside = validator.enter("source.standalone");
         let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
         validator.length("", controllers.len(), 1..=most, "controllers, each on a channel of `bus.channels`");

@@ -23,7 +23,7 @@ use stepscope_peripheral::{
     },
 };
 use stepscope_scenario::{
-    Checked, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
+    CheckedScenario, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
 };
 
 /// Maximum bytes of all controllers' ticks together.
@@ -79,7 +79,7 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
 }
 
 pub(super) fn controller_plans(
-    checked: &Checked,
+    checked: &CheckedScenario,
     plans: Vec<Vec<AxisPlan>>,
 ) -> Result<Vec<ControllerPlan>, Vec<Problem>> {
     let (mut controllers, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
@@ -116,7 +116,7 @@ fn additional_path(index: usize) -> Option<String> {
 }
 
 fn ticks_of(
-    checked: &Checked,
+    checked: &CheckedScenario,
     index: usize,
     config: &Config,
     plans: &[AxisPlan],
@@ -142,7 +142,7 @@ fn ticks_of(
 }
 
 pub(super) fn segments(
-    checked: &Checked,
+    checked: &CheckedScenario,
     controllers: &[ControllerPlan],
 ) -> Result<Option<CheckedSegments>, Vec<Problem>> {
     match (&checked.source, controllers.first()) {
@@ -165,7 +165,10 @@ fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
 }
 
 /// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
-pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Schedule, Vec<ForcedLevel>) {
+pub(super) fn schedule(
+    checked: &CheckedScenario,
+    controllers: &[ControllerPlan],
+) -> (Schedule, Vec<ForcedLevel>) {
     let schedule = match &checked.source {
         Source::Line(script) => script.schedule(),
         _ if checked.waits_for_replies() => return (Schedule::default(), Vec::new()),
@@ -178,12 +181,12 @@ pub(super) fn schedule(checked: &Checked, controllers: &[ControllerPlan]) -> (Sc
     }
 }
 
-fn start(checked: &Checked) -> Instant {
+fn start(checked: &CheckedScenario) -> Instant {
     checked.configs.iter().map(|config| config.boot()).max().unwrap_or(Instant::RESET).next()
 }
 
 /// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
-fn paced(checked: &Checked, controllers: &[ControllerPlan]) -> Schedule {
+fn paced(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Schedule {
     let mut turn: Vec<Packets<'_>> = Vec::new();
     for (index, plan) in controllers.iter().enumerate() {
         let packets = Packets::of(checked, index, plan);
@@ -206,7 +209,7 @@ struct Packets<'a> {
 }
 
 impl<'a> Packets<'a> {
-    fn of(checked: &'a Checked, index: usize, plan: &'a ControllerPlan) -> Self {
+    fn of(checked: &'a CheckedScenario, index: usize, plan: &'a ControllerPlan) -> Self {
         let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
         let given = match &checked.source {
             Source::Packets(source) => {
@@ -239,7 +242,7 @@ pub(super) fn jobs(controllers: &[ControllerPlan]) -> Vec<Job> {
     busy.map(|plan| job(&plan.config, &plan.ticks)).collect()
 }
 
-pub(super) fn framed_host(checked: &Checked, controllers: &[ControllerPlan]) -> FramedHost {
+pub(super) fn framed_host(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> FramedHost {
     let (clock_hz, baud) = (controllers.first().map_or(1, |first| first.config.clock_hz()), checked.baud);
     let noise = Noise::new(&checked.noise, clock_hz, baud);
     let start = start(checked);
@@ -264,7 +267,7 @@ pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
 
 /// The part of the line's time that is taken while all controllers move; `None` where no ticks are sent.
 /// Errors: above 1, with the rate that is needed.
-pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem> {
+pub(super) fn line_load<'a>(checked: &'a CheckedScenario) -> Result<Option<f64>, Problem> {
     let Some(first) = checked.configs.first() else { return Ok(None) };
     if !checked.source.is_ticks() {
         return Ok(None);
@@ -291,7 +294,7 @@ pub(super) fn line_load<'a>(checked: &'a Checked) -> Result<Option<f64>, Problem
 }
 
 /// Bit times, in thousandths, of one tick with its share of the frame around it and of the reply.
-fn frame_bits(checked: &Checked, config: &Config) -> u128 {
+fn frame_bits(checked: &CheckedScenario, config: &Config) -> u128 {
     let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
     let bytes = (encode_frame(&content).len() + ACK_LEN) as u128;

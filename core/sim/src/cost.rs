@@ -18,7 +18,7 @@ use stepscope_peripheral::{
         schedule::line_time,
     },
 };
-use stepscope_scenario::{Checked, Noise, Source};
+use stepscope_scenario::{CheckedScenario, Noise, Source};
 
 /// Maximum edges of a byte on the line, and how many of them fall.
 const MAX_EDGES_A_BYTE: u64 = 10;
@@ -57,7 +57,7 @@ impl Cost {
         self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
     }
 
-    pub(super) fn of(checked: &Checked, controllers: &[ControllerPlan], schedule: &Schedule) -> Self {
+    pub(super) fn of(checked: &CheckedScenario, controllers: &[ControllerPlan], schedule: &Schedule) -> Self {
         let sends = if checked.waits_for_replies() {
             Sends::framed(checked, controllers)
         } else {
@@ -78,7 +78,7 @@ impl Cost {
     }
 
     #[cfg(feature = "plant")]
-    pub(super) fn with_plants(self, checked: &Checked) -> Self {
+    pub(super) fn with_plants(self, checked: &CheckedScenario) -> Self {
         let Some(plants) = &checked.plants else { return self };
         let tail = if checked.run.is_some() { 0 } else { plants.tail.0 };
         let boot = if plants.self_test && checked.run.is_none() {
@@ -120,7 +120,7 @@ struct Sends {
 }
 
 impl Sends {
-    fn scheduled(checked: &Checked, schedule: &Schedule) -> Self {
+    fn scheduled(checked: &CheckedScenario, schedule: &Schedule) -> Self {
         let bytes = schedule.total_bytes() as u64;
         let framed = checked.configs.iter().any(|config| config.protocol() == Protocol::Framed);
         // A frame is seven bytes at least.
@@ -131,7 +131,7 @@ impl Sends {
 
     /// Ticks, and STATUS and POSITIONS before and after them. On a noisy line each frame may be repeated, and a host
     /// that crashes opens every controller again: an estimate, not a bound.
-    fn framed(checked: &Checked, controllers: &[ControllerPlan]) -> Self {
+    fn framed(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
         let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
         let repeats = tries * if checked.noise.host_crashes_ppm > 0 { controllers.len() as u64 } else { 1 };
@@ -160,7 +160,7 @@ const fn longest_reply(config: &Config) -> u64 {
     reply_len(Kind::Positions, config.channels()) as u64
 }
 
-fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -> u64 {
+fn tick_records(checked: &CheckedScenario, plan: &ControllerPlan, schedule: &Schedule) -> u64 {
     let config = plan.config();
     if checked.waits_for_replies() || comes_as_ordered(checked, config) {
         if let Source::Packets(_) = &checked.source
@@ -177,15 +177,15 @@ fn tick_records(checked: &Checked, plan: &ControllerPlan, schedule: &Schedule) -
     most_ticks(checked, config, schedule) * records_of(config, most)
 }
 
-fn comes_as_ordered(checked: &Checked, config: &Config) -> bool {
+fn comes_as_ordered(checked: &CheckedScenario, config: &Config) -> bool {
     checked.source.is_ticks() && is_faithful(checked, config)
 }
 
-fn is_faithful(checked: &Checked, config: &Config) -> bool {
+fn is_faithful(checked: &CheckedScenario, config: &Config) -> bool {
     checked.forced.is_empty() && checked.noise == Noise::default() && hears(config, checked.baud)
 }
 
-fn most_ticks(checked: &Checked, config: &Config, schedule: &Schedule) -> u64 {
+fn most_ticks(checked: &CheckedScenario, config: &Config, schedule: &Schedule) -> u64 {
     let heard = if is_faithful(checked, config) {
         schedule.total_bytes() as u64
     } else {
@@ -202,7 +202,7 @@ fn hears(config: &Config, baud: u32) -> bool {
 }
 
 /// Maximum bytes heard when so many are sent back to back.
-fn most_heard(checked: &Checked, config: &Config, bytes: usize) -> u64 {
+fn most_heard(checked: &CheckedScenario, config: &Config, bytes: usize) -> u64 {
     let (bytes, bit) = (bytes as u64, config.bit().0);
     let Some(before) = bytes.checked_sub(1) else { return 0 };
     let Cycles(last_fall) =
@@ -223,7 +223,7 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
 
 /// A cycle by which everything has been sent, and a late byte, the ticks that run and wait, or a reply and the gap
 /// have passed.
-fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerPlan]) -> u64 {
+fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[ControllerPlan]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
     let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
     let sent =
@@ -251,7 +251,12 @@ fn last_cycle(schedule: &Schedule, checked: &Checked, controllers: &[ControllerP
 
 /// The end of a controller's last tick if each packet is heard as it was sent. A late packet delays all ticks after
 /// it.
-fn ordered_end(schedule: &Schedule, checked: &Checked, controllers: usize, plan: &ControllerPlan) -> u64 {
+fn ordered_end(
+    schedule: &Schedule,
+    checked: &CheckedScenario,
+    controllers: usize,
+    plan: &ControllerPlan,
+) -> u64 {
     let config = plan.config();
     let tick = config.tick().0;
     // Any packet may address any controller, more than once per turn.

@@ -23,7 +23,7 @@ use stepscope_peripheral::{
     units::Instant,
     wire::{Line, Schedule},
 };
-use stepscope_scenario::{Checked, END_OF_TIME, Problem, Scenario, ValueError};
+use stepscope_scenario::{CheckedScenario, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Maximum bytes that a host may have to send: the most ticks of 16 channels on an addressed raw line.
 const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
@@ -34,7 +34,7 @@ const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 /// A validated scenario with its motions planned and its packets encoded.
 #[derive(Clone, Debug)]
 pub struct Experiment {
-    checked: Checked,
+    checked: CheckedScenario,
     /// Invariant: one at least, the scenario's own first.
     controllers: Vec<ControllerPlan>,
     /// Sent without waiting for replies.
@@ -219,7 +219,7 @@ impl Experiment {
     /// The stand-alone controllers.
     #[cfg(feature = "controller")]
     #[must_use]
-    pub const fn stand_alone(&self) -> Option<&stepscope_controller::Checked> {
+    pub const fn stand_alone(&self) -> Option<&stepscope_controller::CheckedSetup> {
         self.checked.stand_alone.as_ref()
     }
 
@@ -250,7 +250,7 @@ impl Experiment {
     /// A run before cycle 0.
     #[must_use]
     pub fn start(&self) -> Run {
-        let Checked { baud, forced, run, .. } = &self.checked;
+        let CheckedScenario { baud, forced, run, .. } = &self.checked;
         let clock_hz = self.config().clock_hz();
         let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
         let host = self.host();

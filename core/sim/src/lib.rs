@@ -52,4 +52,4 @@ pub use run::Run;
 #[cfg(feature = "controller")]
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
-pub use validated::{Judged, SelectedAxis, axes_of};
+pub use validated::{SelectedAxis, ValidatedScenario, axes_of};

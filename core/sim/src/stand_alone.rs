@@ -3,7 +3,7 @@
 use crate::{BUDGET_RECORDS, Cost};
 use alloc::{format, vec, vec::Vec};
 use core::fmt;
-use stepscope_controller::{Alarm, Checked, Press, StandAlone, State, Work, trust_name};
+use stepscope_controller::{Alarm, CheckedSetup, Press, StandAlone, State, Work, trust_name};
 use stepscope_peripheral::{
     signal::{Record, Sink},
     units::{Cycles, Instant},
@@ -13,7 +13,10 @@ use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 impl Cost {
     /// Tries the run up to the budget: it has no closed form.
     /// Errors: too many groups begin.
-    pub(crate) fn of_stand_alone(controllers: &Checked, run: Option<Cycles>) -> Result<Self, Vec<Problem>> {
+    pub(crate) fn of_stand_alone(
+        controllers: &CheckedSetup,
+        run: Option<Cycles>,
+    ) -> Result<Self, Vec<Problem>> {
         let mut tried = StandAlone::new(controllers);
         let mut counted = Counted(0);
         let until = run.map_or(Instant::NEVER, |Cycles(run)| Instant(run));
@@ -34,7 +37,7 @@ impl Cost {
 }
 
 /// Whether the run comes to a jog without end.
-pub(crate) fn jogs_without_end(controllers: &Checked) -> bool {
+pub(crate) fn jogs_without_end(controllers: &CheckedSetup) -> bool {
     let mut tried = StandAlone::new(controllers);
     tried.run_events(Instant::NEVER, MAX_TRIED_EVENTS, &mut Counted(0));
     tried.jogs_without_end()

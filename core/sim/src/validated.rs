@@ -9,7 +9,7 @@ use stepscope_scenario::{Problem, Scenario, Source};
 
 /// A scenario with the result of its validation. Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct ValidatedScenario {
     scenario: Rc<Scenario>,
     unread: Rc<[Problem]>,
     result: Result<Rc<Experiment>, Rc<[Problem]>>,
@@ -26,7 +26,7 @@ pub struct SelectedAxis<'a> {
     pub plan: &'a AxisPlan,
 }
 
-impl Judged {
+impl ValidatedScenario {
     /// Reads and validates a text. A field that cannot be read has its default.
     #[must_use]
     pub fn from_json(text: &str) -> Self {
@@ -76,7 +76,7 @@ impl Judged {
     }
 }
 
-impl From<Scenario> for Judged {
+impl From<Scenario> for ValidatedScenario {
     fn from(scenario: Scenario) -> Self {
         Self::of(scenario, Vec::new())
     }
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn a_run_and_every_question_take_the_one_reading_and_the_one_plan() {
         let json = r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"dwell":{}}]}]}}}"#;
-        let judged = Judged::from_json(json);
+        let judged = ValidatedScenario::from_json(json);
         let experiment = judged.experiment().expect("no problems");
         let mut digest = Digest::default();
         experiment.run(&mut digest);
@@ -117,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_scenario_with_problems_has_no_experiment_and_no_axis() {
-        let judged = Judged::from_json(r#"{"title":"kept","bus":{"slots":0}}"#);
+        let judged = ValidatedScenario::from_json(r#"{"title":"kept","bus":{"slots":0}}"#);
         assert_eq!(judged.problems().len(), 1);
         assert_eq!(judged.scenario().title, "kept");
         assert!(judged.experiment().is_err() && judged.axis(0, 0).is_none());

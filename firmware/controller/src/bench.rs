@@ -22,7 +22,7 @@
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 use stepscope_controller::{
-    Checked, Runner,
+    CheckedSetup, Runner,
     chip::{Chip, Face, RawLevels},
     input::{Change, Input, Signal},
     panel::PanelRecord,
@@ -68,7 +68,7 @@ pub struct Bench<S> {
 
 impl<S: Sink> Bench<S> {
     /// A new chip with the memory that comes from the factory, and levels that its inputs take at their ticks.
-    pub fn new(checked: &Checked, presses: impl IntoIterator<Item = Input>, sink: S) -> Self {
+    pub fn new(checked: &CheckedSetup, presses: impl IntoIterator<Item = Input>, sink: S) -> Self {
         let mut presses: Vec<Input> = presses.into_iter().collect();
         presses.sort_by_key(|input| core::cmp::Reverse(input.cycle));
         let write = checked.controllers().first().map_or(1, |one| one.memory.byte_write_cycles);

@@ -10,7 +10,7 @@ pub mod clock;
 pub mod wiring;
 
 use core::ops::ControlFlow;
-use stepscope_controller::{Checked, NotRunnable, Runner, chip::Chip};
+use stepscope_controller::{CheckedSetup, NotRunnable, Runner, chip::Chip};
 use stepscope_peripheral::units::Instant;
 
 /// The program, from power-up on. `sleep` waits until the tick that it is given, or until an input changes, which may be as
@@ -21,7 +21,7 @@ use stepscope_peripheral::units::Instant;
 /// See [`Runner::power_up`].
 pub fn run<C: Chip>(
     chip: &mut C,
-    checked: &Checked,
+    checked: &CheckedSetup,
     mut sleep: impl FnMut(&mut C, &Runner, Option<Instant>) -> ControlFlow<()>,
 ) -> Result<Runner, NotRunnable> {
     let mut runner = Runner::power_up(chip.now(), checked, chip)?;

@@ -4,7 +4,7 @@
 
 use core::ops::ControlFlow;
 use stepscope_controller::{
-    Alarm, Checked, NotRunnable, Runner, State,
+    Alarm, CheckedSetup, NotRunnable, Runner, State,
     chip::Chip,
     input::{Change, Input, Signal},
     panel,
@@ -54,7 +54,7 @@ fn cases() -> [Case; 8] {
 }
 
 /// The controller of a scenario without axis and script, and the script: the chip's own are real.
-fn split(json: &str) -> (Checked, Vec<Input>) {
+fn split(json: &str) -> (CheckedSetup, Vec<Input>) {
     let experiment = Experiment::from_json(json).expect("it has no problems");
     let mut setup = experiment.stand_alone().expect("it has controllers").setup();
     let inputs = std::mem::take(&mut setup.controllers[0].inputs);
@@ -62,7 +62,7 @@ fn split(json: &str) -> (Checked, Vec<Input>) {
     (setup.check().expect("it holds"), inputs)
 }
 
-fn checked(parameters: Parameters) -> Checked {
+fn checked(parameters: Parameters) -> CheckedSetup {
     Setup { controllers: vec![parameters], ..Setup::default() }.check().expect("it holds")
 }
 

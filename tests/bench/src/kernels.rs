@@ -18,7 +18,7 @@ use stepscope_core::{
         trace::Digest,
         units::{Cycles, Instant},
     },
-    plant::{Plant, parameters::Regulator, sincos},
+    plant::{Plant, parameters::CurrentControl, sincos},
     scenario::{Problem, of_motion},
     sim::{Experiment, plant_run::PlantRun},
 };
@@ -155,8 +155,8 @@ impl Kernels {
                 .map(black_box)
                 .fold(0, |sum, row| sum ^ row.distortion.position.to_bits()),
             Kernel::SineCosine => sine_cosine(black_box(0.37)).to_bits(),
-            Kernel::PlantAveraged => plant(Regulator::Averaged),
-            Kernel::PlantChopper => plant(Regulator::Chopper),
+            Kernel::PlantAveraged => plant(CurrentControl::Averaged),
+            Kernel::PlantChopper => plant(CurrentControl::Chopper),
             Kernel::PlantRun => {
                 let parts = vec![(Digest::default(), ())];
                 PlantRun::new(black_box(&self.plant_run), parts).map_or(0, |mut run| {
@@ -274,7 +274,7 @@ fn sine_cosine(quarters: f64) -> f64 {
 
 /// Motors that step all at once, 4000 times a second.
 #[inline(never)]
-fn plant(regulator: Regulator) -> u64 {
+fn plant(regulator: CurrentControl) -> u64 {
     let Ok(mut plant) = Plant::new(black_box(&motions::plant(regulator))) else { return 0 };
     let end = MOTOR_STEPS / MOTORS * plant.step_cycles();
     let [low, high] = [Levels(Levels::EN), Levels(Levels::EN | 0xffff_ffff)];

@@ -9,7 +9,7 @@ use stepscope_core::{
         config::{Bus, DirLine, Protocol, PulsePhasing},
         wire::schedule::Sent,
     },
-    plant::parameters::{self, Regulator, Setup},
+    plant::parameters::{self, CurrentControl, Setup},
     scenario::{
         ChannelSegments, Controller, Hex, Line, LineScript, Motion, PlantSettings, Problem, Scenario,
         ScriptedSend, Segment, SegmentLists, Source, StepSegment,
@@ -174,9 +174,13 @@ pub fn plant_run() -> Result<Experiment, Vec<Problem>> {
 
 /// The plant of sixteen motors, which chop or do not.
 #[must_use]
-pub fn plant(regulator: Regulator) -> Setup {
-    let motor = parameters::Motor {
-        drive: parameters::Drive { regulator, decay: parameters::Decay::Mixed(0.31), ..Default::default() },
+pub fn plant(regulator: CurrentControl) -> Setup {
+    let motor = parameters::MotorModel {
+        drive: parameters::DriverModel {
+            regulator,
+            decay: parameters::CurrentDecay::Mixed(0.31),
+            ..Default::default()
+        },
         ..Default::default()
     };
     Setup { motors: vec![motor; 16], ..Setup::default() }

@@ -17,7 +17,7 @@ use stepscope_controller_firmware::{
 };
 use stepscope_core::{
     controller::{
-        Checked, Runner, State,
+        CheckedSetup, Runner, State,
         chip::{Chip, Face, RawLevels},
         input::Signal,
         panel,
@@ -62,7 +62,7 @@ struct Board {
 }
 
 impl Board {
-    fn new(mut timer: SYST, checked: &Checked) -> Self {
+    fn new(mut timer: SYST, checked: &CheckedSetup) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(RELOAD);
         timer.clear_current();
@@ -135,7 +135,7 @@ impl Chip for Board {
 }
 
 /// One move of 60 steps at 1000 Hz; a byte is written in 0.4 ms.
-fn checked() -> Result<Checked, String> {
+fn checked() -> Result<CheckedSetup, String> {
     let group = Group::Move(Move { length: 6, speed_hz: 1000, level: 1, ..Move::default() });
     let memory = Memory { byte_write_cycles: 10_000, hold_up_cycles: 1_000_000, ..Memory::default() };
     let controller =

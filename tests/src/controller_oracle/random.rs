@@ -14,9 +14,9 @@ use super::run::{Outcome, run_up_to};
 use script::Script;
 
 /// A run that is longer gets `run_cycles`.
-const MOST_CYCLES: u64 = 1_000_000;
+const MAX_CYCLES: u64 = 1_000_000;
 /// So does one of which more cycles cannot be passed over.
-const MOST_STEPS: u64 = 60_000;
+const MAX_STEPS: u64 = 60_000;
 
 /// SplitMix64.
 #[derive(Debug, Clone)]
@@ -130,12 +130,12 @@ impl Dice {
 
     /// The run; one that goes on for too long gets an end.
     fn outcome(&mut self, case: &mut Case) -> Option<Outcome> {
-        let outcome = run_up_to(case, MOST_CYCLES, MOST_STEPS);
+        let outcome = run_up_to(case, MAX_CYCLES, MAX_STEPS);
         if outcome.is_some() {
             return outcome;
         }
         case.run_cycles = Some(self.doublings(10_000, 300_000));
-        run_up_to(case, MOST_CYCLES, MOST_CYCLES)
+        run_up_to(case, MAX_CYCLES, MAX_CYCLES)
     }
 
     /// A controller's memory at reset, its journal and banks made by the encoder, sometimes damaged.

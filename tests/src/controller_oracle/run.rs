@@ -7,7 +7,7 @@ use super::room::{Alarm, Plan, Room, State};
 use crate::xxh64::xxh64;
 
 /// Groups that may begin in a run.
-const MOST_GROUPS: u64 = 1_000_000;
+const MAX_GROUPS: u64 = 1_000_000;
 
 /// What a run leaves of a controller.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,9 +115,9 @@ fn finished(case: &Case, most_cycles: u64, most_steps: u64, every_cycle: bool) -
         if trace.last().is_none_or(|(_, last)| *last != levels) {
             trace.push((c, levels));
         }
-        if rooms.iter().map(|room| room.s.groups_begun).sum::<u64>() > MOST_GROUPS {
+        if rooms.iter().map(|room| room.s.groups_begun).sum::<u64>() > MAX_GROUPS {
             // Reading: groups of all controllers of the run are counted together.
-            work = Some(format!("more than {MOST_GROUPS} groups begin"));
+            work = Some(format!("more than {MAX_GROUPS} groups begin"));
             break;
         }
         let changed = rooms.iter().zip(&before).any(|(room, before)| room.s != *before);

@@ -141,7 +141,7 @@ fn read_as_written(frame: Frame<'_>) {
         if let Some(ticks) = Ticks::parse(frame.body, channels) {
             assert!((1..=32).contains(&ticks.count()), "{} ticks", ticks.count());
             assert_eq!(ticks.iter().count(), ticks.count());
-            assert_eq!(Ticks::emit(ticks.seq, channels, ticks.orders()), frame.body);
+            assert_eq!(Ticks::emit(ticks.seq, channels, ticks.commands()), frame.body);
         }
     }
 }

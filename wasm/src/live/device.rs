@@ -189,7 +189,7 @@ impl LiveDevice {
                 ticks_done: device.ticks_done(),
             }
         });
-        let stretches = clock.stretches();
+        let stretches = clock.setbacks();
         object(&SessionState {
             seconds: to.0 as f64 / f64::from(clock_hz),
             curves_from: from.0 as f64 / f64::from(clock_hz),

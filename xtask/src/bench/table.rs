@@ -118,7 +118,7 @@ pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimat
 }
 
 /// Slower than this part of before is told.
-const LEAST_OF_BEFORE: f64 = 0.95;
+const MIN_OF_BEFORE: f64 = 0.95;
 
 /// What each kernel does now in parts of what it did before, as native code and in the browser.
 pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
@@ -127,7 +127,7 @@ pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
     for kernel in &first.native {
         let [native, browser] = both(now, before, &kernel.name);
         let cells = |ratio: Option<Ratio>| match ratio {
-            Some(ratio) => [ratio.print(), ratio.judge(Some(LEAST_OF_BEFORE))],
+            Some(ratio) => [ratio.print(), ratio.judge(Some(MIN_OF_BEFORE))],
             None => ["–".to_owned(), String::new()],
         };
         let ([native, native_aim], [browser, browser_aim]) = (cells(native), cells(browser));

@@ -16,7 +16,7 @@ const SELDOM: [u32; 8] = [14_400, 28_800, 31_250, 74_880, 76_800, 128_000, 256_0
 /// How far a measured rate may be from a usual one: oscillators are that far off.
 const NEAR: f64 = 0.02;
 /// Least samples per bit.
-const LEAST_BIT: f64 = 2.5;
+const MIN_BIT: f64 = 2.5;
 /// Edges that all bit times are tried on, and those that the best of them are measured on.
 const TRIED_EDGES: usize = 300;
 const MEASURED_EDGES: usize = 4000;
@@ -27,7 +27,7 @@ const MAX_MEASURED: usize = 16;
 /// Share of words that may have faults at a rate that fits.
 const MAX_FAULTS: f64 = 0.2;
 /// Different bytes by which a rate that is not usual is known.
-const LEAST_VALUES: usize = 3;
+const MIN_VALUES: usize = 3;
 /// What happens once in so many times is no chance.
 const NO_CHANCE: u64 = 64;
 /// Pulses, words and share of faults of a channel that is taken for a line by what it does.
@@ -107,7 +107,7 @@ impl Quality {
     fn refined(self, edges: &[Edge], format: Format) -> Self {
         let mut best = self;
         for _ in 0..4 {
-            let Some(bit) = best.fitted.filter(|bit| *bit >= LEAST_BIT && *bit != best.bit) else { break };
+            let Some(bit) = best.fitted.filter(|bit| *bit >= MIN_BIT && *bit != best.bit) else { break };
             let next = Self::of(edges, bit, format);
             if next.cost() > best.cost() {
                 break;
@@ -195,7 +195,7 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
         let fitting = fitting_usual(edges, format, hz, &best);
         match fitting.as_slice() {
             [(only, _)] => best = *only,
-            [] if words(edges, best.bit, format).values() < LEAST_VALUES => return Err(NoRate::None),
+            [] if words(edges, best.bit, format).values() < MIN_VALUES => return Err(NoRate::None),
             [] => {}
             several => return Err(NoRate::Ambiguous(by_distance(several, hz))),
         }
@@ -243,7 +243,7 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
         if usual(hz, best) == Some(*rate) {
             return Some((*best, *rate));
         }
-        if bit < LEAST_BIT {
+        if bit < MIN_BIT {
             return None;
         }
         let first = Quality::of(tried, bit, format).refined(tried, format);
@@ -335,7 +335,7 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     lengths.sort_unstable();
     // Up to a twentieth of the pulses may be glitches.
     let shortest = *lengths.get(lengths.len() / 20)? as f64;
-    let mut bit = (shortest / 10.0).max(LEAST_BIT);
+    let mut bit = (shortest / 10.0).max(MIN_BIT);
     let mut all = Vec::new();
     while bit <= shortest * 1.35 + 1.5 {
         all.push(Quality::of(tried, bit, format));

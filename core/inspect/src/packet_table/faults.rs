@@ -102,15 +102,15 @@ impl PacketTable<'_> {
     }
 
     /// The first order of a tick that is more than a tick has slots for.
-    fn too_many(&self, orders: &[u8]) -> String {
+    fn too_many(&self, commands: &[u8]) -> String {
         let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
         let asked =
-            orders.iter().enumerate().map(|(place, &byte)| (place, ChannelCommand::parse(byte).steps));
+            commands.iter().enumerate().map(|(place, &byte)| (place, ChannelCommand::parse(byte).steps));
         let Some((place, steps)) = asked.into_iter().find(|(_, steps)| *steps > slots) else {
             return String::new();
         };
         let tick = match place / channels {
-            0 if orders.len() <= channels => String::new(),
+            0 if commands.len() <= channels => String::new(),
             tick => format!("tick {tick}, "),
         };
         format!("{tick}channel {}: {steps} steps, and a tick has {slots} slots", place % channels)
@@ -132,7 +132,7 @@ impl PacketTable<'_> {
                     count(status.free.into(), "place")
                 )
             }
-            (Reason::TooManySteps, Some(ticks), _) => self.too_many(ticks.orders()),
+            (Reason::TooManySteps, Some(ticks), _) => self.too_many(ticks.commands()),
             (Reason::Busy, _, Some(status)) => format!("the controller was {}", status.state.name()),
             (Reason::Stopped, ..) => "after STOP only ENABLE lets it move again".into(),
             (Reason::BadBody, ..) => {
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn frames_that_were_dropped_or_refused_tell_why() {
         let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-        let ticks = |seq, orders: &[u8]| emit(0, 1, &Ticks::emit(seq, 1, orders));
+        let ticks = |seq, commands: &[u8]| emit(0, 1, &Ticks::emit(seq, 1, commands));
         let frames = [
             (vec![3, 1, 2, 0], "2 bytes without COBS, and a frame has at least 6"),
             (vec![9, 1, 2, 0], "the end mark came after 2 bytes, within what COBS announced"),

@@ -15,7 +15,7 @@ const MILLI: f64 = 1000.0;
 /// kg*m^2 in a g*cm^2.
 const GRAM_CM2: f64 = 1e-7;
 /// Shortest natural period in s.
-const LEAST_PERIOD_S: f64 = 1e-6;
+const MIN_PERIOD_S: f64 = 1e-6;
 
 /// An axis' motor, its driver and its load.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl Machine {
     /// Of a motor of a plant on its supply.
     #[cfg(feature = "plant")]
     #[must_use]
-    pub fn of_plant(motor: &stepscope_plant::parameters::Motor, supply_v: f64) -> Self {
+    pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
         Self {
             constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
             current_a: motor.peak_current_a,
@@ -96,7 +96,7 @@ impl Machine {
     #[must_use]
     pub fn natural_period_s(&self) -> f64 {
         let stiffness = self.pole_pairs * self.constant * self.current_a;
-        libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), LEAST_PERIOD_S)
+        libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), MIN_PERIOD_S)
     }
 
     /// Microsteps of half a full step, at least 1.

@@ -442,13 +442,13 @@ fn a_stated_rate_and_steps_in_one_cycle_are_judged_too() {
 #[cfg(feature = "plant")]
 #[test]
 fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
-    use stepscope_plant::{parameters::Motor, stability::Natural};
+    use stepscope_plant::{parameters::MotorModel, stability::Natural};
     let scenario = |text: &str| stepscope_scenario::Scenario::from_json(text).unwrap();
     let listed = scenario(
         r#"{"bus":{"channels":3},"source":{"segments":{}},"plant":{"motors":[{"motor":{"working_rate_hz":500}},{"microsteps":4}]}}"#,
     );
     let of = |channel| Machine::of_channel(&listed, 0, channel).unwrap();
-    close(1.0 / of(1).natural_period_s(), Natural::of(&Motor::default()).frequency_hz, 1e-9);
+    close(1.0 / of(1).natural_period_s(), Natural::of(&MotorModel::default()).frequency_hz, 1e-9);
     assert_eq!((of(0).working_rate(), of(1).working_rate()), (Some(500.0), None));
     // The last entry holds for the rest; four microsteps reach a rate that sixteen need four times of.
     assert_eq!(of(1), of(2));

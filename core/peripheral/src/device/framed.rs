@@ -117,7 +117,7 @@ impl Execution<'_> {
             self.executor.fault(Faults::BAD_SEQ);
             return FrameOutcome::Refused(Reason::BadSeq);
         }
-        if let Err(reason) = self.executor.admit(self.now, ticks.orders(), ticks.count()) {
+        if let Err(reason) = self.executor.admit(self.now, ticks.commands(), ticks.count()) {
             return FrameOutcome::Refused(reason);
         }
         for tick in ticks.iter() {

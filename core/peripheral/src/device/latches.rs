@@ -12,7 +12,7 @@ use stepscope_registers as map;
 pub(super) struct Latches {
     pub(super) config: Config,
     pub(super) timing: Timing,
-    pub(super) orders: Tick,
+    pub(super) commands: Tick,
     pub(super) result: u32,
 }
 
@@ -89,19 +89,19 @@ impl Timing {
 
 impl Latches {
     pub(super) fn new(config: &Config) -> Self {
-        Self { config: config.clone(), timing: Timing::of(config), orders: [0; MAX_CHANNELS], result: 0 }
+        Self { config: config.clone(), timing: Timing::of(config), commands: [0; MAX_CHANNELS], result: 0 }
     }
 
     /// The commands of four channels, the first in the lowest byte.
-    pub(super) fn orders(&self, index: usize) -> u32 {
-        self.orders.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
+    pub(super) fn commands(&self, index: usize) -> u32 {
+        self.commands.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
     }
 
-    pub(super) fn set_orders(&mut self, index: usize, value: u32) {
+    pub(super) fn set_commands(&mut self, index: usize, value: u32) {
         let used = usize::from(self.config.channels());
-        if let Some(four) = self.orders.as_chunks_mut::<4>().0.get_mut(index) {
+        if let Some(four) = self.commands.as_chunks_mut::<4>().0.get_mut(index) {
             *four = value.to_le_bytes();
         }
-        self.orders.iter_mut().skip(used).for_each(|byte| *byte = 0);
+        self.commands.iter_mut().skip(used).for_each(|byte| *byte = 0);
     }
 }

@@ -42,7 +42,7 @@ impl Device {
             return self.positions().get(index).map_or(0, |position| position.cast_unsigned());
         }
         if let Some(index) = index(&map::orders::REGISTER, offset) {
-            return latches.orders(index);
+            return latches.commands(index);
         }
         match offset {
             map::id::OFFSET => map::id::MAGIC_STEP,
@@ -69,7 +69,7 @@ impl Device {
         // `finish` must not go back behind an access.
         self.last = self.before();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
-            return self.latches.set_orders(index, value);
+            return self.latches.set_commands(index, value);
         }
         match offset {
             map::control::OFFSET => self.command(value, sink),
@@ -118,10 +118,10 @@ impl Device {
     }
 
     fn push(&mut self, sink: &mut impl Sink) {
-        let (now, orders) = (self.before(), self.latches.orders);
-        self.latches.result = match self.executor.admit(now, &orders, 1) {
+        let (now, commands) = (self.before(), self.latches.commands);
+        self.latches.result = match self.executor.admit(now, &commands, 1) {
             Ok(()) => {
-                self.executor.sequencer.push(now, orders);
+                self.executor.sequencer.push(now, commands);
                 sink.event(now, Event::Pushed);
                 map::result::CODE_DONE
             }

@@ -203,7 +203,7 @@ impl Sequencer {
     fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
-            sink.event(now, Event::TickStart { orders: tick });
+            sink.event(now, Event::TickStart { commands: tick });
             self.plan.set(tick);
             self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
         }

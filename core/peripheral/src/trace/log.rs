@@ -92,8 +92,8 @@ pub struct RecordedReply<'a> {
 #[allow(missing_docs, reason = "the names say it")]
 pub struct LoggedTick {
     pub start: Instant,
-    /// What it orders, one byte per channel.
-    pub orders: Tick,
+    /// What it commands, one byte per channel.
+    pub commands: Tick,
     /// The row that brought it; `None` for one that firmware pushed.
     pub row: Option<usize>,
 }
@@ -351,12 +351,12 @@ impl Sink for PacketLog {
             Event::Underrun => self.underruns.push(at),
             Event::Pushed => self.waiting.push_back(None),
             Event::Stopped => self.stop(at),
-            Event::TickStart { orders } => {
+            Event::TickStart { commands } => {
                 let row = self.waiting.pop_front().flatten();
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
                     row.tick_start.get_or_insert(at);
                 }
-                self.ticks.push(LoggedTick { start: at, orders, row });
+                self.ticks.push(LoggedTick { start: at, commands, row });
             }
             // Stand-alone controllers have no packets.
             Event::Panel { .. } | Event::Input { .. } => {}
@@ -378,7 +378,7 @@ mod tests {
     fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
         let packet =
             |seen| [Event::Byte { seen: Instant(seen), byte: 1 }, Event::Packet(PacketOutcome::Queued)];
-        let [start, pushed] = [Event::TickStart { orders: [0; 16] }, Event::Pushed];
+        let [start, pushed] = [Event::TickStart { commands: [0; 16] }, Event::Pushed];
         let (first, second) = (packet(10), packet(20));
         let events = [first[0], first[1], pushed, second[0], second[1], start, start, Event::Stopped];
         let after = [pushed, start];
@@ -409,7 +409,7 @@ mod tests {
             log.event(Instant(seen + 6), Event::Frame(FrameOutcome::Queued(1)));
             let (start, end) = (Instant(seen + 50), Instant(seen + 90));
             log.event(Instant(seen + 6), Event::Reply { start, end, reply, positions: None });
-            log.event(Instant(seen + 7), Event::TickStart { orders: [0; 16] });
+            log.event(Instant(seen + 7), Event::TickStart { commands: [0; 16] });
         }
         log.finish();
         assert_eq!(log.rows().len(), 4);
@@ -450,7 +450,7 @@ mod tests {
     fn a_tick_that_is_stopped_in_the_cycle_of_its_start_lasts_no_time() {
         let mut log = PacketLog::default();
         log.event(Instant(5), Event::Stopped);
-        log.event(Instant(9), Event::TickStart { orders: [0; 16] });
+        log.event(Instant(9), Event::TickStart { commands: [0; 16] });
         log.event(Instant(9), Event::Stopped);
         assert_eq!(
             log.tick_end(&log.ticks()[0], Cycles(100)),
@@ -467,7 +467,7 @@ mod tests {
             (25, Event::Collision),
             (30, Event::Byte { seen: Instant(22), byte: 2 }),
             (30, Event::Packet(PacketOutcome::Queued)),
-            (31, Event::TickStart { orders: [0; 16] }),
+            (31, Event::TickStart { commands: [0; 16] }),
         ];
         for (at, event) in events {
             log.event(Instant(at), event);

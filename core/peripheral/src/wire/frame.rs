@@ -18,7 +18,7 @@
 //! assert!(bytes.iter().all(|&byte| deframer.byte(byte).is_none()));
 //! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("its CRC holds") };
 //! let ticks = Ticks::parse(frame.body, 1).expect("a body of TICKS");
-//! assert_eq!((frame.address, ticks.seq, ticks.orders()), (7, 0, &[0x85, 0x03][..]));
+//! assert_eq!((frame.address, ticks.seq, ticks.commands()), (7, 0, &[0x85, 0x03][..]));
 //! ```
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
@@ -185,46 +185,46 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
 pub struct Ticks<'a> {
     pub seq: u8,
     channels: usize,
-    orders: &'a [u8],
+    commands: &'a [u8],
 }
 
 impl<'a> Ticks<'a> {
     /// Reads a body for a controller with `channels` channels; `None` is BAD_BODY.
     #[must_use]
     pub fn parse(body: &'a [u8], channels: u8) -> Option<Self> {
-        let (&[seq, count], orders) = body.split_first_chunk()?;
+        let (&[seq, count], commands) = body.split_first_chunk()?;
         let channels = usize::from(channels.max(1));
-        let fits = (1..=MAX_TICKS).contains(&count) && orders.len() == usize::from(count) * channels;
-        fits.then_some(Self { seq, channels, orders })
+        let fits = (1..=MAX_TICKS).contains(&count) && commands.len() == usize::from(count) * channels;
+        fits.then_some(Self { seq, channels, commands })
     }
 
     /// The body of ticks, `channels` bytes each.
     #[must_use]
-    pub fn emit(seq: u8, channels: u8, orders: &[u8]) -> Vec<u8> {
-        let count = orders.len() / usize::from(channels.max(1));
+    pub fn emit(seq: u8, channels: u8, commands: &[u8]) -> Vec<u8> {
+        let count = commands.len() / usize::from(channels.max(1));
         debug_assert!(count <= MAX_TICKS.into(), "{count} ticks in a frame");
         let mut body = alloc::vec![seq, count as u8];
-        body.extend_from_slice(orders);
+        body.extend_from_slice(commands);
         body
     }
 
     /// How many, 1..=32.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.orders.len() / self.channels
+        self.commands.len() / self.channels
     }
 
     /// One byte per channel, tick after tick.
     #[must_use]
-    pub const fn orders(&self) -> &'a [u8] {
-        self.orders
+    pub const fn commands(&self) -> &'a [u8] {
+        self.commands
     }
 
     /// The ticks one by one.
     pub fn iter(&self) -> impl Iterator<Item = Tick> + use<'a> {
-        self.orders.chunks(self.channels).map(|orders| {
+        self.commands.chunks(self.channels).map(|commands| {
             let mut tick = [0; MAX_CHANNELS];
-            tick.iter_mut().zip(orders).for_each(|(place, &byte)| *place = byte);
+            tick.iter_mut().zip(commands).for_each(|(place, &byte)| *place = byte);
             tick
         })
     }
@@ -407,8 +407,11 @@ mod tests {
             let firsts = ticks.map(|ticks| ticks.iter().map(|tick| tick[0]).collect::<Vec<_>>());
             assert_eq!(firsts.as_deref(), expected, "{body:?}");
             if let Some(ticks) = ticks {
-                assert_eq!((ticks.seq, ticks.count(), ticks.orders()), (body[0], body[1].into(), &body[2..]));
-                assert_eq!(Ticks::emit(ticks.seq, channels, ticks.orders()), body);
+                assert_eq!(
+                    (ticks.seq, ticks.count(), ticks.commands()),
+                    (body[0], body[1].into(), &body[2..])
+                );
+                assert_eq!(Ticks::emit(ticks.seq, channels, ticks.commands()), body);
             }
         }
     }

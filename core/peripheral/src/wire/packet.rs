@@ -1,4 +1,4 @@
-//! Raw packets (DESIGN A5, RU 2704486): bytes, and the orders that they mean.
+//! Raw packets (DESIGN A5, RU 2704486): bytes, and the commands that they mean.
 //!
 //! A packet is one byte a channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps;
 //! on an addressed line the controller's address stands first. Raw packets have no end mark: a

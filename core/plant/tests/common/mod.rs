@@ -7,36 +7,36 @@ use stepscope_peripheral::{
 };
 use stepscope_plant::{
     Observer, Plant,
-    parameters::{Drive, Motor, SensorChain, Setup, Supply},
+    parameters::{DriverModel, MotorModel, SensorChain, Setup, Supply},
 };
 
 /// T_step of the patent, in cycles: 2.048 ms.
 pub const T_STEP: u64 = 32_768;
 
 /// The default motor without any friction.
-pub fn frictionless() -> Motor {
-    Motor { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..Motor::default() }
+pub fn frictionless() -> MotorModel {
+    MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..MotorModel::default() }
 }
 
-pub fn full_steps() -> Motor {
-    Motor { microsteps: 1, ..Motor::default() }
+pub fn full_steps() -> MotorModel {
+    MotorModel { microsteps: 1, ..MotorModel::default() }
 }
 
 /// F10's patent set: the project's own, as the patent names no motor.
-pub fn patent_set() -> Motor {
-    Motor {
+pub fn patent_set() -> MotorModel {
+    MotorModel {
         microsteps: 1,
         inductance_mh: 5.3,
         holding_torque_mn_m: 300.0,
         load_inertia_g_cm2: 100.0,
         friction_mn_m: 15.0,
         viscous_un_m_s: 1000.0,
-        drive: Drive { bridge_ohm: 1.0, ..Drive::default() },
-        ..Motor::default()
+        drive: DriverModel { bridge_ohm: 1.0, ..DriverModel::default() },
+        ..MotorModel::default()
     }
 }
 
-pub fn one(motor: Motor) -> Setup {
+pub fn one(motor: MotorModel) -> Setup {
     Setup { motors: vec![motor], ..Setup::default() }
 }
 

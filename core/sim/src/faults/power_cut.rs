@@ -29,7 +29,7 @@ use rand_xoshiro::{
     rand_core::{Rng, SeedableRng},
 };
 use stepscope_controller::{
-    Checked, StandAlone, State,
+    CheckedSetup, StandAlone, State,
     input::{Change, Signal},
     parameters::{Initial, Policy},
 };
@@ -99,7 +99,7 @@ impl Tally {
 /// The cycles in which the power of a scenario's run is cut.
 #[derive(Clone, Debug)]
 pub struct PowerCuts {
-    checked: Checked,
+    checked: CheckedSetup,
     cycles: Vec<u64>,
     length: u64,
 }
@@ -108,7 +108,7 @@ impl PowerCuts {
     /// At most `count` cycles of a run that ends before `end`: all of them if they are few; else seeded ones, half of
     /// them anywhere, half while a record is written.
     #[must_use]
-    pub fn of(checked: &Checked, end: Instant, count: usize, seed: u64) -> Self {
+    pub fn of(checked: &CheckedSetup, end: Instant, count: usize, seed: u64) -> Self {
         let (length, writes) = writes(checked, end);
         let count = count as u64;
         let cycles = if length <= count {
@@ -146,14 +146,14 @@ impl PowerCuts {
 
     /// The controllers.
     #[must_use]
-    pub const fn checked(&self) -> &Checked {
+    pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
 }
 
 /// The same controllers with another policy and hold-up of their memories.
 #[must_use]
-pub fn with_memory(checked: &Checked, policy: Policy, hold_up_cycles: u64) -> Checked {
+pub fn with_memory(checked: &CheckedSetup, policy: Policy, hold_up_cycles: u64) -> CheckedSetup {
     let mut setup = checked.setup();
     for one in &mut setup.controllers {
         (one.memory.policy, one.memory.hold_up_cycles) = (policy, hold_up_cycles);
@@ -163,7 +163,7 @@ pub fn with_memory(checked: &Checked, policy: Policy, hold_up_cycles: u64) -> Ch
 
 /// The minimum hold-up with which cuts lose no more positions than with `most` of it, with the policy `power_loss`;
 /// `losses` counts the losses of a setup.
-pub fn least_hold_up(checked: &Checked, most: u64, mut losses: impl FnMut(&Checked) -> u64) -> u64 {
+pub fn least_hold_up(checked: &CheckedSetup, most: u64, mut losses: impl FnMut(&CheckedSetup) -> u64) -> u64 {
     let mut lost = |hold_up| losses(&with_memory(checked, Policy::PowerLoss, hold_up));
     // What a jump beyond the start-stop range loses, no buffer saves.
     let least = lost(most);
@@ -177,7 +177,7 @@ pub fn least_hold_up(checked: &Checked, most: u64, mut losses: impl FnMut(&Check
 
 /// Cuts the power in each of these cycles, which rise, and counts the outcomes.
 #[must_use]
-pub fn tally(checked: &Checked, cycles: &[u64]) -> Tally {
+pub fn tally(checked: &CheckedSetup, cycles: &[u64]) -> Tally {
     let mut found = Tally::default();
     let mut run = Watched::new(checked);
     for &cycle in cycles {
@@ -213,7 +213,7 @@ struct Watched {
 }
 
 impl Watched {
-    fn new(checked: &Checked) -> Self {
+    fn new(checked: &CheckedSetup) -> Self {
         let run = StandAlone::new(checked);
         // Before memory is read, its content is the truth.
         let truth = (0..run.controllers()).map(|index| {
@@ -297,7 +297,7 @@ const fn is_down(state: Option<State>) -> bool {
 }
 
 /// Length of the run, and begin and end of each byte written.
-fn writes(checked: &Checked, end: Instant) -> (u64, Vec<(u64, u64)>) {
+fn writes(checked: &CheckedSetup, end: Instant) -> (u64, Vec<(u64, u64)>) {
     let mut run = StandAlone::new(checked);
     let mut found = BTreeSet::new();
     while let Some(cycles) = run.cycles_until_event().filter(|cycles| run.now() + *cycles < end) {
@@ -340,7 +340,7 @@ pub struct Wear {
 /// The wear of controller `index`: its run up to `end` with a cut there, `cycles` times in a row, each with the
 /// memory that the run before left.
 #[must_use]
-pub fn wear(checked: &Checked, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
+pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
     let mut setup = checked.setup();
     let mut totals: Vec<u64> = Vec::new();
     for _ in 0..cycles {

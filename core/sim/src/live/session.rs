@@ -38,7 +38,7 @@ mod panel;
 #[cfg(test)]
 mod tests;
 
-pub use clock::{Pace, SessionClock, Stretches};
+pub use clock::{Pace, SessionClock, Setbacks};
 pub use input::Input;
 #[cfg(feature = "controller")]
 pub use panel::MAX_RECORDED_INPUTS;

@@ -109,7 +109,7 @@ impl SessionTimes {
     /// The whole file. `records_all`: whether the recording has the whole session.
     #[must_use]
     pub fn to_json(&self, clock: &SessionClock, recording: &Recording, records_all: bool) -> String {
-        let stretches = clock.stretches();
+        let stretches = clock.setbacks();
         let digest = |digest: &u64| format!("{digest:016x}");
         let contents = Contents {
             stepscope: env!("CARGO_PKG_VERSION"),

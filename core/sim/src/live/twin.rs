@@ -236,7 +236,7 @@ fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
             && kind == Kind::Ticks as u8
             && let Some(ticks) = Ticks::parse(body, channels)
         {
-            let body = Ticks::emit(ticks.seq.wrapping_sub(offset), channels, ticks.orders());
+            let body = Ticks::emit(ticks.seq.wrapping_sub(offset), channels, ticks.commands());
             // Leading delimiters end what was left of a broken frame.
             let mut bytes: Vec<u8> = bytes.iter().copied().take_while(|&byte| byte == 0).collect();
             bytes.extend(emit(address, kind, &body));

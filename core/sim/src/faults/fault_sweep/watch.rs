@@ -30,7 +30,7 @@ impl Sink for Watch {
     fn event(&mut self, _: Instant, event: Event) {
         let counted = &mut self.counted;
         let place = match event {
-            Event::TickStart { orders } => return self.ticks.push(orders),
+            Event::TickStart { commands } => return self.ticks.push(commands),
             Event::FramingError { .. } => &mut counted.framing,
             Event::Frame(FrameOutcome::BadCrc { .. }) => &mut counted.bad_check,
             Event::Frame(FrameOutcome::Short) | Event::Gap { short: true } => &mut counted.short,

@@ -27,8 +27,8 @@ impl Sink for Executed {
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, _: Instant, event: Event) {
-        if let Event::TickStart { orders } = event {
-            self.0.push(orders);
+        if let Event::TickStart { commands } = event {
+            self.0.push(commands);
         }
     }
 }
@@ -254,7 +254,7 @@ fn converse_with(
                     }
                     told.seq = told.seq.wrapping_add(1);
                     told.ticks_done = told.ticks_done.wrapping_add(ticks.count() as u32);
-                    let orders = ticks.orders().chunks(2).flat_map(|tick| tick.iter().zip(0..));
+                    let orders = ticks.commands().chunks(2).flat_map(|tick| tick.iter().zip(0..));
                     for (&byte, channel) in orders {
                         let steps = i32::from(byte & 0x7f) * if byte & 0x80 == 0 { -1 } else { 1 };
                         told.positions[channel] = told.positions[channel].wrapping_add(steps);

@@ -13,7 +13,7 @@
 //! assert_eq!(clock.target(2_000_000, Instant(0)), Instant(2000));
 //! // 200 ms later nothing has been run: 150 of them are left out.
 //! assert_eq!(clock.target(202_000_000, Instant(2000)), Instant(52_000));
-//! assert_eq!((clock.stretches().count, clock.stretches().cycles), (1, Cycles(150_000)));
+//! assert_eq!((clock.setbacks().count, clock.setbacks().cycles), (1, Cycles(150_000)));
 //! ```
 
 use core::{fmt, str::FromStr};
@@ -56,7 +56,7 @@ impl fmt::Display for Pace {
 /// How often and how far the clock was set back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names say it")]
-pub struct Stretches {
+pub struct Setbacks {
     /// How often the machine did not keep up.
     pub count: u64,
     pub cycles: Cycles,
@@ -68,7 +68,7 @@ pub struct SessionClock {
     clock_hz: u32,
     pace: Pace,
     lag_ns: u64,
-    stretches: Stretches,
+    setbacks: Setbacks,
     /// Whether the last call set it back: then the next one continues the same lag.
     behind: bool,
 }
@@ -77,7 +77,7 @@ impl SessionClock {
     /// A clock at cycle 0 and time 0 that may be `lag_ns` nanoseconds ahead of the model.
     #[must_use]
     pub fn new(clock_hz: u32, pace: Pace, lag_ns: u64) -> Self {
-        Self { clock_hz, pace, lag_ns, stretches: Stretches::default(), behind: false }
+        Self { clock_hz, pace, lag_ns, setbacks: Setbacks::default(), behind: false }
     }
 
     fn cycles(&self, ns: u64) -> u64 {
@@ -96,17 +96,17 @@ impl SessionClock {
     /// Delay of an event behind its cycle.
     #[must_use]
     pub fn late_ns(&self, elapsed_ns: u64, cycle: Instant) -> u64 {
-        elapsed_ns.saturating_sub(self.nanos(Cycles(cycle.0 + self.stretches.cycles.0)))
+        elapsed_ns.saturating_sub(self.nanos(Cycles(cycle.0 + self.setbacks.cycles.0)))
     }
 
     /// The cycle up to which the model may run at a time, having reached `reached`. Beyond the allowed lag the clock
     /// is set back.
     pub fn target(&mut self, elapsed_ns: u64, reached: Instant) -> Instant {
-        let now = self.cycles(elapsed_ns).saturating_sub(self.stretches.cycles.0);
+        let now = self.cycles(elapsed_ns).saturating_sub(self.setbacks.cycles.0);
         let excess = now.saturating_sub(reached.0).saturating_sub(self.cycles(self.lag_ns));
         if excess > 0 {
-            self.stretches.count += u64::from(!self.behind);
-            self.stretches.cycles = Cycles(self.stretches.cycles.0 + excess);
+            self.setbacks.count += u64::from(!self.behind);
+            self.setbacks.cycles = Cycles(self.setbacks.cycles.0 + excess);
         }
         self.behind = excess > 0;
         Instant(now - excess)
@@ -114,8 +114,8 @@ impl SessionClock {
 
     /// Where it was set back so far.
     #[must_use]
-    pub const fn stretches(&self) -> Stretches {
-        self.stretches
+    pub const fn setbacks(&self) -> Setbacks {
+        self.setbacks
     }
 }
 
@@ -151,7 +151,7 @@ mod tests {
             let target = clock.target(ms * 1_000_000, reached);
             assert!(target >= reached, "{ms}");
             reached = target;
-            assert_eq!(clock.stretches(), Stretches { count, cycles: Cycles(cycles) }, "{ms}");
+            assert_eq!(clock.setbacks(), Setbacks { count, cycles: Cycles(cycles) }, "{ms}");
         }
     }
 }

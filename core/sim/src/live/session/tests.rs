@@ -219,8 +219,8 @@ impl Sink for Executed {
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, _: Instant, event: Event) {
-        if let Event::TickStart { orders } = event {
-            self.0.push(orders);
+        if let Event::TickStart { commands } = event {
+            self.0.push(commands);
         }
     }
 }

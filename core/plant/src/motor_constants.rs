@@ -1,7 +1,7 @@
 //! The constants of one motor's equations, in full steps (F2), and of a step of so many cycles (F3).
 
 use crate::{
-    parameters::Motor,
+    parameters::MotorModel,
     sincos::{phi, sincos},
 };
 use core::f64::consts::{SQRT_2, TAU};
@@ -11,7 +11,7 @@ pub(crate) const DEGREE: f64 = 0.017_453_292_519_943_295;
 pub(crate) const TURN: f64 = TAU;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Machine {
+pub(crate) struct MotorConstants {
     pub(crate) g: f64,
     pub(crate) k: f64,
     pub(crate) r: f64,
@@ -56,8 +56,8 @@ pub(crate) struct Coupling {
     pub(crate) friction: f64,
 }
 
-impl Machine {
-    pub(crate) fn new(motor: &Motor) -> Self {
+impl MotorConstants {
+    pub(crate) fn new(motor: &MotorModel) -> Self {
         let g = motor.full_step_deg * DEGREE;
         let force = |mn_m: f64| mn_m / 1000.0 * g;
         let damping = |un_m_s: f64| un_m_s / 1e6 * g * g;
@@ -142,7 +142,7 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) fn new(machine: &Machine, cycles: u64, clock_hz: f64) -> Self {
+    pub(crate) fn new(machine: &MotorConstants, cycles: u64, clock_hz: f64) -> Self {
         let h = cycles as f64 / clock_hz;
         let (phi1, phi2) = phi(machine.r * h / machine.l);
         let a = h / machine.l * phi1;
