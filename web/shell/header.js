@@ -1,11 +1,11 @@
 /** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
 import { byId, element, fill, options, say } from "../dom.js";
 import { readJson } from "../state/json.js";
-import { count, si } from "../state/number.js";
+import { si } from "../state/number.js";
 import { blockedBy, isStale, selected } from "../state/queries.js";
 import { listen } from "./commands.js";
 import { createHealth } from "./health.js";
-import { loadTheme, saveTheme } from "./storage.js";
+import { statusText } from "./run_texts.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Preset} Preset */
@@ -96,7 +96,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     progress.hidden = !long;
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
-    const text = status(state, long);
+    const text = statusText(state, long);
     say(byId("status"), text);
     if (byId("status").title !== text) byId("status").title = text;
     say(
@@ -133,19 +133,6 @@ function isElsewhere({ target }) {
   return target instanceof Element && target.matches("input, textarea") && !target.closest("#form");
 }
 
-/** @param {State} state @param {boolean} long */
-function status(state, long) {
-  const { progress } = state.run;
-  if (long && progress?.end_cycle === 0) return "planning the motion…";
-  if (long && progress)
-    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
-  // What is most to be known has the line for itself.
-  if (blockedBy(state) === "problems") return "not run: the form needs attention";
-  if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
-  const { edges = 0 } = selected(state) ?? {};
-  return `${count(edges)} edges · ${si(state.result.summary.end_s, "s")}`;
-}
-
 /** @param {State} state */
 function messages(state) {
   const over = blockedBy(state) === "budget";
@@ -170,33 +157,4 @@ function groups(presets) {
     group.append(element("option", { value: id }, title));
   }
   return made.values();
-}
-
-const THEMES = {
-  system: ["◐", "Colours: as the system"],
-  light: ["☀", "Colours: light"],
-  dark: ["☾", "Colours: dark"],
-};
-
-/** The button that goes through the themes; the choice is kept. */
-export function createTheme() {
-  const button = byId("theme");
-  const names = /** @type {(keyof typeof THEMES)[]} */ (Object.keys(THEMES));
-  let theme = names.find((name) => name === loadTheme()) ?? "system";
-  const apply = () => {
-    document.documentElement.dataset.theme = theme;
-    const [sign, label] = THEMES[theme];
-    say(button, sign);
-    button.title = label;
-    button.setAttribute("aria-label", label);
-    document.dispatchEvent(new Event("themechange"));
-  };
-  button.addEventListener("click", () => {
-    theme = names[(names.indexOf(theme) + 1) % names.length];
-    saveTheme(theme);
-    apply();
-  });
-  for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"])
-    matchMedia(query).addEventListener("change", apply);
-  apply();
 }

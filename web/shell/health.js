@@ -6,6 +6,7 @@ import { byId, element, fill } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { count } from "../state/number.js";
 import { selected } from "../state/queries.js";
+import { hostText } from "./run_texts.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */
@@ -52,7 +53,7 @@ export function createHealth({ engine, dispatch, now }) {
     const { host } = state.result.summary;
     const lost = host?.jobs.some(({ progress }) => progress !== "done");
     /** @type {Piece[][]} */
-    const groups = [host ? [{ text: outcome(state.result.summary), bad: lost }] : []];
+    const groups = [host ? [{ text: hostText(state.result.summary), bad: lost }] : []];
     // A framed line mends what noise does to it.
     const bad = !host || lost;
     groups.push(
@@ -90,28 +91,4 @@ export function createHealth({ engine, dispatch, now }) {
   }
 
   return { render };
-}
-
-/** What became of the orders on a framed line. @param {Summary} summary */
-function outcome({ host, controllers }) {
-  if (!host) return "";
-  const { jobs, repeated, crashes } = host;
-  const sum = (/** @type {number[]} */ numbers) => numbers.reduce((a, b) => a + b, 0);
-  const lost = jobs.filter(({ progress }) => progress === "given_up");
-  const ticks = sum(jobs.map((job) => job.ticks));
-  const acknowledged = sum(jobs.map((job) => job.acknowledged));
-  const parts = [];
-  if (lost.length > 0) {
-    // The others' names would say nothing where there is one controller only.
-    const names =
-      controllers.length > 1
-        ? lost.map(({ controller, why }) => `on controller ${controller + 1}: ${why}`)
-        : [`: ${lost[0].why}`];
-    parts.push(`gave up${controllers.length > 1 ? " " : ""}${names.join(", ")}`);
-  }
-  if (jobs.every(({ progress }) => progress === "done")) parts.push(`all ${count(ticks)} ticks done`);
-  else parts.push(`${count(acknowledged)} of ${count(ticks)} ticks acknowledged`);
-  if (repeated > 0) parts.push(`${count(repeated)} ${repeated === 1 ? "frame" : "frames"} repeated`);
-  if (crashes > 0) parts.push(`the host crashed ${crashes === 1 ? "once" : `${count(crashes)} times`}`);
-  return parts.join(", ");
 }

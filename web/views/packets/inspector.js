@@ -3,7 +3,7 @@ import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
 import { count } from "../../state/number.js";
-import { worded } from "./table.js";
+import { meaningOf } from "./columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketDetail} PacketDetail */
@@ -52,7 +52,10 @@ export function createInspector(page) {
     if (!reply || index !== wanted) return;
     row = /** @type {PacketDetail} */ (reply);
     details.hidden = false;
-    say(byId("packet-detail"), [`#${count(row.index)}`, worded(row), row.outcome, row.why].filter(Boolean).join(" · "));
+    say(
+      byId("packet-detail"),
+      [`#${count(row.index)}`, meaningOf(row), row.outcome, row.why].filter(Boolean).join(" · "),
+    );
     await paint();
   }
 

@@ -3,26 +3,13 @@ import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
 import { ROW_PX, virtualRows } from "../virtual_rows.js";
+import { COLUMNS, columnWidths, isHighlighted, meaningOf } from "./columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
 /** @typedef {import("../../state/types.js").PacketPage} PacketPage */
+/** @typedef {import("./columns.js").Widths} Widths */
 
-/** Room for a few bytes: the most that they get of a frame whose words need the rest. */
-const FEW_BYTES_PX = 104;
-/** Of the columns of bytes and of the outcome there is always so much. */
-const [LEAST_BYTES_PX, LEAST_OUTCOME_PX] = [80, 52];
-/** Of the meaning there is so much while the bytes can give way, and then at least the other. */
-const [MEANING_PX, LEAST_MEANING_PX] = [64, 30];
-/** Texts of a row's cells, each with what its pointer tells where that is more. @type {((row: PacketRow) => [string, string?])[]} */
-const COLUMNS = [
-  ({ index }) => [count(index)],
-  ({ start }) => [start],
-  ({ hex }) => [hex],
-  (row) => [worded(row)],
-  ({ short, outcome, why }) => [short, why ? `${outcome}: ${why}` : outcome],
-  ({ gap }) => [gap || "–"],
-];
 const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("canvas").getContext("2d"));
 
 /**
@@ -146,13 +133,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   function light({ highlighted }) {
     for (const [place, node] of [...body.rows].entries()) {
       const row = reply.rows[place];
-      const over =
-        highlighted &&
-        row &&
-        (highlighted.packet === null
-          ? highlighted.start < row.line_end_cycle && highlighted.end > row.start_cycle
-          : highlighted.packet === row.index);
-      node.classList.toggle("highlighted", Boolean(over));
+      node.classList.toggle("highlighted", row !== undefined && isHighlighted(row, highlighted));
     }
   }
 
@@ -186,16 +167,9 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("outcome", head, "outcome");
     measure("bytes", hex, ...rows.map((row) => row.hex));
     measure("bytes", head, "bytes (hex)");
-    measure("meaning", plain, ...rows.map(worded));
-    // Of a frame the bytes say less than the words: they get what these leave.
-    const framed = now().result?.summary.framed;
-    const all = table.clientWidth - widest.index - widest.time;
-    const both = all - widest.gap - widest.outcome;
-    const wanted = Math.min(widest.bytes, Math.max(framed ? both - widest.meaning : both / 2, FEW_BYTES_PX));
-    const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
-    const room = all - (tight ? 0 : widest.gap);
-    const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, room - widest.outcome - MEANING_PX));
-    const outcome = Math.min(widest.outcome, Math.max(LEAST_OUTCOME_PX, room - bytes - LEAST_MEANING_PX));
+    measure("meaning", plain, ...rows.map(meaningOf));
+    const isFramed = Boolean(now().result?.summary.framed);
+    const { tight, bytes, outcome } = columnWidths(/** @type {Widths} */ (widest), table.clientWidth, isFramed);
     table.classList.toggle("tight", tight);
     for (const [column, width] of Object.entries({ ...widest, outcome, bytes }))
       table.style.setProperty(`--${column}-px`, `${width}px`);
@@ -219,11 +193,4 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
       scroller.scrollTop = 0;
     },
   };
-}
-
-/** What a row says, and which way it went. @param {PacketRow} row */
-export function worded({ kind, fields }) {
-  if (kind === "packet") return fields;
-  const arrow = { frame: "→", reply: "←", collision: "↯" }[kind];
-  return `${arrow} ${fields || kind}`;
 }

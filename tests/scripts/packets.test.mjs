@@ -1,0 +1,53 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { COLUMNS, columnWidths, isHighlighted, meaningOf } from "../../web/views/packets/columns.js";
+
+const widest = { index: 30, time: 80, gap: 60, outcome: 90, bytes: 400, meaning: 300 };
+
+test("a wide table shows all bytes and the gap", () => {
+  assert.deepEqual(columnWidths(widest, 1200, false), { tight: false, bytes: 400, outcome: 90 });
+});
+
+test("the bytes of a frame get what its meaning leaves", () => {
+  assert.equal(columnWidths(widest, 800, true).bytes, 800 - 30 - 80 - 60 - 90 - 300);
+  assert.equal(columnWidths(widest, 800, false).bytes, (800 - 30 - 80 - 60 - 90) / 2);
+});
+
+test("in a narrow table the gap goes first, and the outcome narrows last", () => {
+  const narrow = columnWidths(widest, 360, false);
+  assert.ok(narrow.tight);
+  assert.deepEqual([narrow.bytes, narrow.outcome], [96, 90]);
+  const least = columnWidths(widest, 260, false);
+  assert.deepEqual([least.bytes, least.outcome], [80, 52]);
+});
+
+test("a row is lit by its packet, or by the time that it takes", () => {
+  const row = { index: 4, start_cycle: 100, line_end_cycle: 200 };
+  const rows = [
+    [null, false],
+    [{ packet: 4, start: 0, end: 0 }, true],
+    [{ packet: 5, start: 150, end: 160 }, false],
+    [{ packet: null, start: 150, end: 160 }, true],
+    [{ packet: null, start: 200, end: 300 }, false],
+    [{ packet: null, start: 50, end: 100 }, false],
+  ];
+  for (const [highlighted, expected] of rows) assert.equal(isHighlighted(row, highlighted), expected);
+});
+
+test("cells say what a row is, and the tooltip why", () => {
+  const row = {
+    index: 1234,
+    start: "5",
+    hex: "0a",
+    kind: "frame",
+    fields: "",
+    short: "bad",
+    outcome: "dropped",
+    why: "CRC",
+    gap: "",
+  };
+  const cells = COLUMNS.map((column) => column(row));
+  assert.deepEqual(cells, [["1\u202f234"], ["5"], ["0a"], ["→ frame"], ["bad", "dropped: CRC"], ["–"]]);
+  assert.equal(meaningOf({ kind: "packet", fields: "ch0 +7" }), "ch0 +7");
+  assert.equal(meaningOf({ kind: "reply", fields: "ACK" }), "← ACK");
+});

@@ -1,0 +1,32 @@
+/** The button that goes through the themes. */
+import { byId, say } from "../dom.js";
+import { loadTheme, saveTheme } from "./storage.js";
+
+const THEMES = {
+  system: ["◐", "Colours: as the system"],
+  light: ["☀", "Colours: light"],
+  dark: ["☾", "Colours: dark"],
+};
+
+/** Applies the saved theme, and each one that is chosen. */
+export function createTheme() {
+  const button = byId("theme");
+  const names = /** @type {(keyof typeof THEMES)[]} */ (Object.keys(THEMES));
+  let theme = names.find((name) => name === loadTheme()) ?? "system";
+  const apply = () => {
+    document.documentElement.dataset.theme = theme;
+    const [sign, label] = THEMES[theme];
+    say(button, sign);
+    button.title = label;
+    button.setAttribute("aria-label", label);
+    document.dispatchEvent(new Event("themechange"));
+  };
+  button.addEventListener("click", () => {
+    theme = names[(names.indexOf(theme) + 1) % names.length];
+    saveTheme(theme);
+    apply();
+  });
+  for (const query of ["(prefers-color-scheme: dark)", "(forced-colors: active)"])
+    matchMedia(query).addEventListener("change", apply);
+  apply();
+}
