@@ -5,7 +5,7 @@ import { initial } from "../../web/state/initial.js";
 import { get, movedTo, set } from "../../web/state/paths.js";
 import { blockedBy, derivedAxis, isStale } from "../../web/state/queries.js";
 import { EARLIER } from "../../web/state/result.js";
-import { clamp, endOf, MIN_SPAN, shown } from "../../web/state/time_window.js";
+import { clamp, endOf, MIN_SPAN, readingCycle, shown } from "../../web/state/time_window.js";
 import { update } from "../../web/state/update.js";
 
 const first = { a: { b: 1 }, list: [{ c: 1 }, { c: 2 }] };
@@ -473,4 +473,11 @@ test("the axis of a field is found by its path", () => {
     ["clock_hz", "a"],
   ];
   for (const [path, expected] of rows) assert.equal(derivedAxis({ derived }, path), expected);
+});
+
+test("values are read under the pointer, else at a cursor that is in sight", () => {
+  const state = play([done(0), window(100, 900), cursor("a", 50), cursor("b", 500)]);
+  assert.equal(readingCycle(state), 500);
+  assert.equal(readingCycle(update(state, { type: "hover", cycle: 300 })), 300);
+  assert.equal(readingCycle(update(state, cursor("b", null))), null);
 });

@@ -17,6 +17,13 @@ export function shown(state) {
   return state.window ?? { start: 0, end: endOf(state) };
 }
 
+/** The cycle to read values at: under the pointer, else at a cursor that is in sight. @param {State} state */
+export function readingCycle(state) {
+  const { start, end } = shown(state);
+  const { a, b } = state.cursors;
+  return [state.hover, a, b].find((at) => at !== null && at >= start && at <= end) ?? null;
+}
+
 /** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
 export function clamp({ start, end }, last) {
   const most = Math.max(MIN_SPAN, last);

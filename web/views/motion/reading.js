@@ -5,7 +5,7 @@
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short } from "../../state/number.js";
-import { shown } from "../../state/time_window.js";
+import { readingCycle } from "../../state/time_window.js";
 import { baselineAxis, QUANTITIES, unitFor, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -40,23 +40,15 @@ export function createReading({ engine, now }) {
     ]);
   }
 
-  /** The cycle of the pointer, else of a cursor, that is on show. @param {State} state */
-  function shownCycle(state) {
-    const { start, end } = shown(state);
-    return (
-      [state.hover, state.cursors.a, state.cursors.b].find((at) => at !== null && at >= start && at <= end) ?? null
-    );
-  }
-
   /** The values there. @param {State} state */
   async function render(state) {
     const { a, b } = state.cursors;
-    const cycle = shownCycle(state);
+    const cycle = readingCycle(state);
     const result = state.result;
     if (cycle === null || !result) return write("", []);
     const [own, other] = await ask(state, cycle, "reading");
     // What has gone on meanwhile has asked anew, or has nothing to say.
-    if (!own || now().result !== result || shownCycle(now()) === null) return undefined;
+    if (!own || now().result !== result || readingCycle(now()) === null) return undefined;
     const name = cycle === a ? "A " : cycle === b ? "B " : "";
     const { scale, baseline } = unitOf(state);
     const seconds = cycle / result.summary.clock_hz;

@@ -6,7 +6,7 @@ import { byId, element, fill, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
-import { shown } from "../../state/time_window.js";
+import { readingCycle, shown } from "../../state/time_window.js";
 import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
@@ -158,9 +158,8 @@ export function createMotor({ engine, dispatch, now }) {
 
   /** The exact values at the pointer or a cursor. @param {State} state */
   async function read(state) {
-    const { start, end } = shown(state);
     const { a, b } = state.cursors;
-    const cycle = [state.hover, a, b].find((at) => at !== null && at >= start && at <= end) ?? null;
+    const cycle = readingCycle(state);
     const values =
       cycle === null
         ? null
