@@ -45,7 +45,7 @@ pub(crate) async fn test() -> Result<()> {
     let files = tests()?;
     ensure!(!files.is_empty(), "{TESTS} holds no *{TEST_ENDING}");
     let mut command = Command::new(npm::node_program("node").await?);
-    command.arg("--test").args(files);
+    command.args(["--test", "--test-reporter=spec"]).args(files);
     run::to_end(command).await
 }
 
