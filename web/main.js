@@ -4,10 +4,11 @@
  * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
  * this:
  *
- *     pkg -> pkg-study -> pkg-capture -> pkg-panel -> pkg-live -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
+ *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
 import { byId } from "./dom.js";
 import { Engine, unlessDropped } from "./engine/engine.js";
+import { preloadTools } from "./engine/wasm.js";
 import { createForm } from "./form/form.js";
 import { createRemedyRequests } from "./form/remedy_requests.js";
 import { samples, takeSchema } from "./form/schema.js";
@@ -59,7 +60,10 @@ const engine = new Engine({
   progress: (revision, progress) => {
     if (revision === state.revision) dispatch({ type: "progress", progress });
   },
-  done: (revision, summary, ms) => dispatch({ type: "done", revision, summary, ms }),
+  done: (revision, summary, ms) => {
+    dispatch({ type: "done", revision, summary, ms });
+    preloadTools();
+  },
   failed: (revision, message) => {
     if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` });
   },
@@ -181,10 +185,6 @@ async function start() {
   ]);
   takeSchema(schema);
   const made = samples();
-  const extend = async () => {
-    takeSchema(await engine.ask("panel_schema"));
-    Object.assign(made, samples());
-  };
   // Another version may have saved another kind of history.
   const version = byId("version").textContent ?? "";
   const { left, good } = await savedWork(engine, fallback, version);
@@ -212,7 +212,7 @@ async function start() {
   };
   views = [
     createHeader({ presets, cancel: runner.cancel, retry: runner.retry, ...page }),
-    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies, extend }),
+    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
     ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),

@@ -81,28 +81,25 @@
     doc = "| [`motion`] | profiles, planners, their steps as ticks, segments and tables | `motion` |"
 )]
 #![cfg_attr(
-    feature = "plant",
-    doc = "| [`plant`] | drivers, motors, supply and sensors behind the bus | `plant` |"
+    feature = "scenario",
+    doc = "| [`plant`] | drivers, motors, supply and sensors behind the bus | `scenario` |"
 )]
 #![cfg_attr(
-    feature = "controller",
-    doc = "| [`controller`] | the stand-alone controller: buttons, programs, memory | `controller` |"
+    feature = "scenario",
+    doc = "| [`controller`] | the stand-alone controller: buttons, programs, memory | `scenario` |"
 )]
 #![cfg_attr(
     feature = "scenario",
     doc = "| [`scenario`] | what a file, a link and the form hold | `scenario` |"
 )]
-#![cfg_attr(
-    feature = "capture",
-    doc = "| [`capture`] | files of logic analysers, put into cycles | `capture` |"
-)]
+#![cfg_attr(feature = "std", doc = "| [`capture`] | files of logic analyzers, in cycles | `std` |")]
 #![cfg_attr(feature = "sim", doc = "| [`sim`] | a scenario judged, planned and run | `sim` |")]
 #![cfg_attr(
     feature = "inspect",
     doc = "| [`inspect`] | what one looks at: packets, spectra, measures, timing, torque | `inspect` |"
 )]
 //!
-//! A room's feature brings those to its left. `std` adds the spectrum and value change dumps; without it all of this is
+//! A room's feature brings those to its left. `std` adds the spectrum, value change dumps and recordings; without it all of this is
 //! `no_std` with `alloc`. By default everything is on; firmware tests need no more than
 //! `stepscope-core = { version = "0.1", default-features = false }`.
 //!
@@ -135,13 +132,13 @@ pub use stepscope_registers as registers;
 #[cfg(feature = "motion")]
 pub use stepscope_motion as motion;
 
-#[cfg(feature = "plant")]
+#[cfg(feature = "scenario")]
 pub use stepscope_plant as plant;
 
-#[cfg(feature = "controller")]
+#[cfg(feature = "scenario")]
 pub use stepscope_controller as controller;
 
-#[cfg(feature = "capture")]
+#[cfg(feature = "std")]
 pub use stepscope_capture as capture;
 
 #[cfg(feature = "scenario")]

@@ -1,11 +1,7 @@
 //! Results as JavaScript values.
 
-#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
-use js_sys::Float64Array;
-#[cfg(any(feature = "run", feature = "study", feature = "panel", feature = "capture"))]
-use js_sys::{Object, Reflect};
+use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
-#[cfg(any(feature = "run", feature = "capture", feature = "study"))]
 use stepscope_core::peripheral::{
     signal::{Levels, Record},
     units::Instant,
@@ -18,27 +14,23 @@ pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
 }
 
 /// Adds a field to an object.
-#[cfg(any(feature = "run", feature = "study", feature = "panel", feature = "capture"))]
 pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
     // Setting a field of a fresh plain object cannot fail.
     let _ = Reflect::set(object, &name.into(), value);
 }
 
 /// Adds an array of numbers to an object.
-#[cfg(any(feature = "run", feature = "study", feature = "panel"))]
 pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
     field(object, name, &Float64Array::from(values));
 }
 
 /// Adds an array of 64-bit words to an object, each as its low and its high half.
-#[cfg(feature = "run")]
 pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
     let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
     field(object, name, &js_sys::Uint32Array::from(halves.as_slice()));
 }
 
 /// Records as they go from one worker to another: 16 bytes each, cycle and levels, little-endian.
-#[cfg(any(feature = "run", feature = "capture", feature = "study"))]
 pub(crate) fn records(bytes: &[u8]) -> impl Iterator<Item = Record> {
     let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
     let record = move |record: &[u8]| Record {

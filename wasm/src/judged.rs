@@ -1,10 +1,10 @@
 //! A scenario that was read, judged and planned, once; all questions about it begin here.
 
-#[cfg(feature = "study")]
-use stepscope_core::sim::SelectedAxis;
-#[cfg(any(feature = "run", feature = "study"))]
-use stepscope_core::{peripheral::config::Config, sim::Experiment};
-use stepscope_core::{scenario::Problem, sim};
+use stepscope_core::{
+    peripheral::config::Config,
+    scenario::Problem,
+    sim::{self, Experiment, SelectedAxis},
+};
 use wasm_bindgen::prelude::*;
 
 /// A scenario that was read, judged and planned, once. A run, a link and the study's questions are made of it.
@@ -21,7 +21,6 @@ impl Judged {
     }
 }
 
-#[cfg(feature = "study")]
 impl Judged {
     /// Axis `axis` of controller `controller`.
     ///
@@ -40,7 +39,6 @@ pub(crate) fn listed(problems: &[Problem]) -> JsError {
 }
 
 /// The configuration of controller `index`.
-#[cfg(any(feature = "run", feature = "study"))]
 pub(crate) fn config(experiment: &Experiment, index: usize) -> &Config {
     experiment.configs().nth(index).unwrap_or_else(|| experiment.config())
 }

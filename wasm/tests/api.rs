@@ -6,8 +6,9 @@ mod js;
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
 use stepscope_wasm::{
-    Judged, PanelRun, Simulation, default_scenario, drivers, open_link, pack_link, panel_preset, presets,
-    sheets, unpack_link, version, with_motor,
+    Judged,
+    tools::{sheets, with_motor},
+    view::{Simulation, default_scenario, drivers, open_link, presets, version},
 };
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
@@ -30,22 +31,7 @@ fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
 }
 
 fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
-    pack_link(&Judged::new(json).link_json()?)
-}
-
-/// What a fragment comes to, in both steps.
-fn decode_link(fragment: &str) -> Result<JsValue, wasm_bindgen::JsError> {
-    let packed = unpack_link(fragment)?;
-    if sure(js_sys::Reflect::has(&packed, &"error".into())) {
-        return Ok(packed);
-    }
-    open_link(&text(&packed, "json"), number(&packed, "version") as u32)
-}
-
-/// The scenario of a preset of the menu, from whichever part of the module has it.
-fn scenario_of(preset: &JsValue) -> String {
-    let own = get(preset, "scenario").as_string();
-    own.unwrap_or_else(|| there(panel_preset(&text(preset, "id"))))
+    Judged::new(json).link()
 }
 
 /// A finished run.
@@ -128,9 +114,9 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
     let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
     assert!(!all.is_empty());
     for preset in &all {
-        let scenario = scenario_of(preset);
+        let scenario = text(preset, "scenario");
         let link = sure(encode_link(&scenario));
-        let opened = sure(decode_link(&format!("#{link}&v=views")));
+        let opened = sure(open_link(&format!("#{link}&v=views")));
         assert_eq!(text(&opened, "scenario"), scenario, "{}", text(preset, "id"));
         assert!(!get(&opened, "over_budget").is_truthy(), "{}", text(preset, "id"));
         assert!(!text(preset, "document").is_empty());
@@ -144,7 +130,7 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
         ("c=1".repeat(10_000), "too long"),
         ("c=1.z.__proto__.00000000".into(), "cut short"),
     ] {
-        let error = text(&sure(decode_link(&given)), "error");
+        let error = text(&sure(open_link(&given)), "error");
         assert!(error.contains(why), "{why}: {error}");
     }
     assert!(encode_link("{").is_err());
@@ -152,46 +138,26 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
     assert!(encode_link(&long).is_err(), "more than a link carries");
 }
 
-/// The finished run of stand-alone controllers.
-fn panels(json: &str) -> PanelRun {
-    let mut run = there(sure(Judged::new(json).panels()));
-    while !get(&sure(run.advance(1000)), "done").is_truthy() {}
-    run
-}
-
 #[wasm_bindgen_test]
-fn what_stand_alone_controllers_made_is_looked_at_as_their_run() {
+fn stand_alone_controllers_have_a_run_and_panels() {
     let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
-    let elsewhere: Vec<&JsValue> = all.iter().filter(|preset| get(preset, "scenario").is_null()).collect();
-    assert!(elsewhere.len() > 5);
-    for preset in elsewhere {
-        let (id, scenario) = (text(preset, "id"), scenario_of(preset));
-        assert!(!text(preset, "title").is_empty() && scenario.contains(&text(preset, "title")), "{id}");
-        // The module with all features runs them by itself, too.
-        let whole = sure(finished(&scenario).summary());
-        let run = panels(&scenario);
-        let mut shown = sure(Judged::new(&run.frame()).run());
-        let mut from = 0;
-        loop {
-            let piece = run.records(from, 100);
-            shown.take_records(&piece);
-            from += 100;
-            if piece.is_empty() {
-                break;
-            }
-        }
-        while !get(&sure(shown.advance(100_000)), "done").is_truthy() {}
-        let shown = sure(shown.summary());
-        assert!(!get(&shown, "recorded").is_truthy(), "{id}");
-        assert_eq!(number(&shown, "end_cycle"), number(&whole, "end_cycle"), "{id}");
-        let ([own], [seen]) = (&list(&whole, "controllers")[..], &list(&shown, "controllers")[..]) else {
-            unreachable!("there is one bus")
-        };
-        assert_eq!(text(own, "digest"), text(seen, "digest"), "{id}");
-        assert_eq!(positions(own), positions(seen), "{id}");
-        assert_eq!(number(own, "edges"), number(seen, "edges"), "{id}");
+    let scenarios = all.iter().map(|preset| (text(preset, "id"), text(preset, "scenario")));
+    let standalone: Vec<_> = scenarios.filter(|(_, scenario)| scenario.contains("\"standalone\"")).collect();
+    assert!(standalone.len() > 5);
+    for (id, scenario) in standalone {
+        let mut run = sure(Judged::new(&scenario).run());
+        while !get(&sure(run.advance(1000)), "done").is_truthy() {}
+        let summary = sure(run.summary());
+        assert!(!get(&summary, "recorded").is_truthy(), "{id}");
+        let panel = JsValue::from(there(run.panel(0)));
+        let shown = numbers(&panel, "records");
+        assert!(shown.len() >= 4 && !numbers(&panel, "inputs").is_empty(), "{id}");
+        // The state at the last record is that record's.
+        let [cycle, word, position, display] = shown[shown.len() - 4..] else { unreachable!("four numbers") };
+        let at = there(run.panel_at(0, cycle + 1.0));
+        assert_eq!(at[..3], [word, position, display], "{id}");
     }
-    assert!(sure(Judged::new("{}").panels()).is_none());
+    assert!(finished("{}").panel(0).is_none());
 }
 
 #[wasm_bindgen_test]
@@ -199,7 +165,7 @@ fn a_link_beyond_the_budget_says_so() {
     // Ten million edges of STEP.
     let scenario = r#"{"bus":{"channels":1,"slots":127,"step_period_cycles":100},"line":{"baud":1000000},
         "source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":5000000},"speed":{"steps_s":150000}}}]}]}}}"#;
-    let opened = sure(decode_link(&sure(encode_link(scenario))));
+    let opened = sure(open_link(&sure(encode_link(scenario))));
     assert!(get(&opened, "over_budget").is_truthy());
     assert!(text(&opened, "message").contains("edges"));
 }

@@ -52,7 +52,7 @@ export function openCapture(file, onProgress, map) {
       if ("error" in data) question?.reject(Object.assign(new Error(data.error), { field: data.field }));
       else question?.resolve(data.value);
     };
-    compiled("capture").then((module) => {
+    compiled("tools").then((module) => {
       worker.postMessage({ module });
       worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MOST_READ, map });
     }, reject);

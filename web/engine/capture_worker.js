@@ -4,7 +4,7 @@
  * In: first of all {module}, the compiled code; {file, most, map}, the file, how much of it is kept and the map whose channels are read first, for {progress} now and
  * then, and {facts} or {error}; {sample}, the name of a sample, in the file's place; {id, method, args} for an answer {id, value} or {id, error}. Ending the worker cancels.
  */
-import init, * as core from "../pkg-capture/stepscope_wasm.js";
+import init, * as core from "../pkg-tools/stepscope_wasm.js";
 import { fatal, text } from "./judging.js";
 
 /** Least time between two reports of progress, in ms. */

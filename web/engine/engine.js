@@ -214,18 +214,8 @@ export class Engine {
     return (await this.#further()).session((ask) => work(ask, good.json));
   }
 
-  /** Hands the worker a further part of the core. @param {import("./wasm.js").Part} part */
-  #hand(part) {
-    const worker = this.#worker;
-    compiled(part).then(
-      (module) => worker.postMessage({ part: module }),
-      () => worker.postMessage({ part: null }),
-    );
-  }
-
   /** @param {any} data */
   #heard(data) {
-    if (data.wants) return this.#hand(data.wants);
     if (data.event !== "crashed") this.#crashes = 0;
     switch (data.event) {
       case "progress":

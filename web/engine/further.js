@@ -113,7 +113,7 @@ export class Further {
 /** A worker that has the study's part of the core; the page says which script it begins with. @param {string} missing */
 function another(missing) {
   const made = new Worker(/** @type {string} */ (byId("main").dataset.studyWorker), { type: "module" });
-  compiled("study").then(
+  compiled("tools").then(
     (module) => made.postMessage({ module }),
     () => made.dispatchEvent(new ErrorEvent("error", { message: missing })),
   );

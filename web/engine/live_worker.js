@@ -8,7 +8,7 @@
  * Out: {facts}; while it has the port {state} and {rows}; {reported} or {recorded} at the end; {closed} when both streams are;
  * {error} where nothing began, or the core failed: what had the port has given it back, and this worker is of no use any more.
  */
-import init, * as core from "../pkg-live/stepscope_wasm.js";
+import init, * as core from "../pkg-tools/stepscope_wasm.js";
 import { fatal, text } from "./judging.js";
 
 /** How much later than on the line a reply may come, in ms: what the system and the adapter add, and the page's window, through which

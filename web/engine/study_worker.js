@@ -1,6 +1,6 @@
 /**
  * A further worker: answers long questions beside the run that the views ask about, those of the study and of what a form
- * could be changed to. It has a wasm module of its own, which loads when the first such question is asked.
+ * could be changed to.
  *
  * In: first of all {module}, the compiled code; {id, method, args} for an answer {id, value} or {id, error}. The methods
  * `open` and `of` make an object of a scenario and ask it.
@@ -14,12 +14,11 @@ import init, {
   sine_vertices,
   step_figures,
   with_motor,
-} from "../pkg-study/stepscope_wasm.js";
-import { readJson } from "../state/json.js";
+} from "../pkg-tools/stepscope_wasm.js";
 import { createJudging, fatal, text } from "./judging.js";
 
 /** Questions that are about no scenario. @type {{[method: string]: (...args: any[]) => any}} */
-const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures };
+const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures, with_motor };
 
 const { judge } = createJudging((json) => new Judged(json));
 
@@ -48,40 +47,10 @@ function answer(method, args) {
     if (ask === "end") opened = null;
     return held[ask](...rest);
   }
-  if (method === "with_motor") {
-    const [json, motor, drive] = args;
-    const { known, source } = withoutPanels(json);
-    const made = with_motor(known, motor, drive);
-    return source ? JSON.stringify({ ...readJson(made), source }) : made;
-  }
   const call = CALLS[method];
   if (call) return call(...args);
   const [json, ...rest] = args;
-  return /** @type {any} */ (judge(withoutPanels(String(json)).known))[method](...rest);
-}
-
-/**
- * A scenario as the study knows it: stand-alone controllers are in another part of the core, so nothing runs theirs here, and
- * what they made comes as records.
- * @param {string} json @returns {{known: string, source: any}}  And what was left out, if it was.
- */
-function withoutPanels(json) {
-  if (json.includes('"standalone"')) {
-    const scenario = readable(json);
-    const { source } = scenario ?? {};
-    if (source?.standalone)
-      return { known: JSON.stringify({ ...scenario, source: { segments: { channels: [] } } }), source };
-  }
-  return { known: json, source: null };
-}
-
-/** @param {string} json @returns {any}  null where it is none: the core says why. */
-function readable(json) {
-  try {
-    return readJson(json);
-  } catch {
-    return null;
-  }
+  return /** @type {any} */ (judge(String(json)))[method](...rest);
 }
 
 self.onmessage = async ({ data }) => {

@@ -1,10 +1,13 @@
 /**
- * The core's code: fetched and compiled once, for the charts on the page and for every worker; and that of the study, of
- * files of logic analysers and of stand-alone controllers, once something is asked of it. The page says where they lie, because what is built has other names.
+ * The two wasm modules, each fetched and compiled once for the page and all workers: the core, and the tools, which the page
+ * loads in the background. The page's HTML has their addresses, because built files have other names.
  */
 import { byId } from "../dom.js";
 
-/** @typedef {"core" | "study" | "capture" | "panel" | "live"} Part */
+/** @typedef {"core" | "tools"} Part */
+
+/** Time for the first result to be drawn before the tools load, in ms. */
+const PRELOAD_MS = 500;
 
 /** @type {{[part in Part]?: Promise<WebAssembly.Module>}} */
 const modules = {};
@@ -21,6 +24,16 @@ export function compiled(which = "core") {
     modules[which] = undefined;
   });
   return made;
+}
+
+let preloaded = false;
+
+/** Loads the tools once the first result is on the screen, so that opening one of them waits for nothing. */
+export function preloadTools() {
+  // A visitor who saves data loads them with the first tool.
+  if (preloaded || /** @type {any} */ (navigator).connection?.saveData) return;
+  preloaded = true;
+  setTimeout(() => compiled("tools").catch(() => {}), PRELOAD_MS);
 }
 
 /** @param {string} address */

@@ -2,10 +2,7 @@
  * The worker: holds the wasm core, judges a scenario once, runs it in slices, answers the views' questions about the
  * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
  *
- * Stand-alone controllers are run by a part of the core of their own, which loads with the first of them; what they made is
- * then looked at by the core as a run of its own.
- *
- * In: first of all {module}, the compiled core; {part}, that of stand-alone controllers, once it was asked for by {wants}; {id, method, args} for an answer {id, value} or {id, error};
+ * In: first of all {module}, the compiled core; {id, method, args} for an answer {id, value} or {id, error};
  * {recording}, the number of a scenario whose run is looked at as it was recorded, and how many {piece} of it come; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
  * {cancel} for {event: "cancelled"} once that run is no longer under way.
  */
@@ -16,10 +13,8 @@ import init, {
   link_part,
   link_with,
   open_link,
-  pack_link,
   presets,
   schema,
-  unpack_link,
 } from "../pkg/stepscope_wasm.js";
 import { createJudging, fatal, text } from "./judging.js";
 
@@ -29,8 +24,6 @@ const SLICE_MS = 15;
 const REPORT_MS = 60;
 /** Records that are handed on at a time. */
 const PIECE = 1 << 19;
-/** What is told where the code of a part could not be fetched. */
-const MISSING = "this part of the page could not be loaded; try again when the network is there";
 
 /** @type {any} The simulation that the views ask about. */
 let finished = null;
@@ -38,15 +31,9 @@ let finished = null;
 let baseline = null;
 /** Controller that the views look at. */
 let selected = 0;
-const judging = createJudging((json) => new (isAlone(json) ? panels.Judged : Judged)(json));
+const judging = createJudging((json) => new Judged(json));
 /** Questions about no run. @type {{[method: string]: (...args: any[]) => any}} */
-const CALLS = { default_scenario, drivers, link_part, link_with, presets, schema };
-/** The part of the core for stand-alone controllers, once it is there. @type {any} */
-let panels = null;
-/** @type {Promise<void> | null} */
-let coming = null;
-/** Takes its code, or that there is none. @type {(module: WebAssembly.Module | null) => void} */
-let providePart = () => {};
+const CALLS = { decode_link: open_link, default_scenario, drivers, link_part, link_with, presets, schema };
 /** How often a scenario was run; a test reads it. */
 let runs = 0;
 /** No run has this number. */
@@ -79,37 +66,9 @@ function yieldToMessages() {
   });
 }
 
-/** Whether stand-alone controllers run it; what cannot be read is the core's to refuse. @param {string} json */
-function isAlone(json) {
-  try {
-    return json.includes('"standalone"') && JSON.parse(json).source.standalone !== undefined;
-  } catch {
-    return false;
-  }
-}
-
-/** Loads what stand-alone controllers need. */
-function withPanels() {
-  coming ??= (async () => {
-    postMessage({ wants: "panel" });
-    const code = new Promise((resolve) => {
-      providePart = resolve;
-    });
-    const [part, module] = await Promise.all([import("../pkg-panel/stepscope_wasm.js"), code]);
-    if (module === null) throw new Error("fetch");
-    await part.default({ module_or_path: module });
-    panels = part;
-  })();
-  return coming.catch(() => {
-    coming = null;
-    throw new Error(MISSING);
-  });
-}
-
 /** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
-async function ofScenario(method, [text, ...args]) {
+function ofScenario(method, [text, ...args]) {
   const json = String(text);
-  if (isAlone(json)) await withPanels();
   // What is judged next frees it: it is asked at once.
   const value = /** @type {any} */ (judging.judge(json))[method](...args);
   // What could not be read stands at its default in the text that comes back: that is another scenario.
@@ -149,48 +108,13 @@ async function runInSlices(simulation, { run, quiet = false }) {
   }
 }
 
-/** What stand-alone controllers made, as a run that the core looks at; null if a newer one came. @param {any} alone @param {{run: number, quiet?: boolean}} order */
-async function asSimulation(alone, order) {
-  if (!(await runInSlices(alone, order))) return null;
-  const simulation = frameOf(alone);
-  for (let from = 0, isMore = true; isMore; from += PIECE) {
-    const piece = alone.records(from, PIECE);
-    simulation.take_records(piece);
-    isMore = piece.length > 0;
-    await yieldToMessages();
-    if (order.run !== newest) {
-      letGo(simulation);
-      return null;
-    }
-  }
-  alone.records_are_taken();
-  return simulation;
-}
-
-/** An empty run of the core, as long as theirs. @param {any} alone */
-function frameOf(alone) {
-  const frame = new Judged(alone.frame());
-  try {
-    return Object.assign(/** @type {any} */ (frame.run()), { alone });
-  } catch (error) {
-    alone.free();
-    throw error;
-  } finally {
-    frame.free();
-  }
-}
-
 /** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
 async function simulate(order) {
   const { run, json, quiet = false, select = 0 } = order;
   const begin = performance.now();
-  const alone = isAlone(json);
-  if (alone) await withPanels();
-  if (run !== newest) return;
   const scenario = /** @type {any} */ (judging.judge(json));
   runs += 1;
-  const simulation = alone ? await asSimulation(scenario.panels(), order) : scenario.run();
-  if (!simulation) return;
+  const simulation = scenario.run();
   const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
   if (recording?.replies) simulation.answer(recording.replies);
   for (let at = 0; recording && at < recording.count; ) {
@@ -220,7 +144,6 @@ async function simulate(order) {
 
 /** Frees a run. @param {any} simulation */
 function letGo(simulation) {
-  simulation?.alone?.free();
   simulation?.free();
 }
 
@@ -266,40 +189,24 @@ async function search(args) {
   }
 }
 
-/** The scenario of a link. @param {string} fragment */
-async function openLink(fragment) {
-  const { json, version, error } = unpack_link(fragment);
-  if (error !== undefined) return { error };
-  if (!isAlone(json)) return open_link(json, version);
-  await withPanels();
-  return panels.open_link(json, version);
-}
-
 /** @param {string} method @param {any[]} args */
 async function answer(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
   if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
   if (method === "counts") return { judged: judging.count(), runs };
-  if (method === "encode_link") return pack_link(await ofScenario("link_json", args));
-  if (method === "decode_link") return openLink(args[0]);
-  if (method === "panel_schema") return withPanels().then(() => panels.schema());
-  if (method === "panel_preset") return withPanels().then(() => panels.panel_preset(args[0]));
+  if (method === "encode_link") return ofScenario("link", args);
   if (method in Judged.prototype) return ofScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const call = CALLS[method];
   if (call) return call(...args);
   if (!finished) return null;
-  // What is behind the drivers, and before them, those have who made the run.
-  const { alone } = finished;
-  if (method.startsWith("panel") || (alone && method.startsWith("plant"))) return alone ? alone[method](...args) : null;
   return finished[method](...args);
 }
 
 self.onmessage = async ({ data }) => {
   goOn();
   if ("module" in data) return provide(data.module);
-  if ("part" in data) return providePart(data.part);
   if ("recording" in data) {
     recordings = [...recordings, { ...data, pieces: [] }].slice(-MAX_RECORDINGS);
     return;

@@ -25,10 +25,9 @@ import { SOURCES, withSource } from "./sources.js";
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
  *   dispatch: (message: import("../state/message.js").Message) => void,
- *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0],
- *   extend: () => Promise<void>}} given  `extend` brings the fields and samples of what the page begins without.
+ *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0]}} given
  */
-export function createForm({ root, samples, drivers, dispatch, remedies, extend }) {
+export function createForm({ root, samples, drivers, dispatch, remedies }) {
   let shape = "";
   /** @type {State} */
   let state;
@@ -38,7 +37,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies, extend 
   keepFocusInSight(scroller);
   /** The state that the form shows. @type {State | undefined} */
   let drawn;
-  const kit = createKit({ samples, now: () => state, dispatch, anew, extend });
+  const kit = createKit({ samples, now: () => state, dispatch, anew });
 
   /** @param {Scenario} scenario @returns {Node[]} */
   function source(scenario) {

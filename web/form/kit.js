@@ -19,8 +19,8 @@ import { isList, takeLists } from "./values.js";
 /** @typedef {typeof import("./additional_parts.js").ADDITIONAL_PARTS} AdditionalParts */
 
 /** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/message.js").Message) => void,
- *   anew: () => void, extend: () => Promise<void>}} given  `anew` builds the form once more, `extend` brings more fields and samples. */
-export function createKit({ samples, now, dispatch, anew, extend }) {
+ *   anew: () => void}} given  `anew` builds the form once more. */
+export function createKit({ samples, now, dispatch, anew }) {
   /** @type {Map<string, Control>} */
   const controls = new Map();
   /** @type {Map<string, HTMLElement>} Errors of whole axes, moves and controllers. */
@@ -159,7 +159,6 @@ export function createKit({ samples, now, dispatch, anew, extend }) {
     /** What is being loaded, if anything is. */
     loading: () => loading,
     anew,
-    extend,
     controls,
     groups,
   };

@@ -54,8 +54,8 @@ export const SOURCES = {
   },
   standalone: {
     fresh: (_, samples) => structuredClone(samples.sources.standalone),
-    load: async (kit) => {
-      [standAlone] = await Promise.all([import("./standalone.js"), kit.extend()]);
+    load: async () => {
+      standAlone = await import("./standalone.js");
     },
     form: (kit, scenario) => {
       if (standAlone) return standAlone.standAloneItems(kit, scenario);

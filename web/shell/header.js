@@ -55,13 +55,9 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   ]);
 
   /** @param {Preset} chosen */
-  async function openPreset({ id, scenario }) {
+  function openPreset({ id, scenario }) {
     try {
-      // Those of stand-alone controllers are where these are.
-      const json = scenario ?? (await page.engine.ask("panel_preset", id));
-      // Another one was chosen while it came.
-      if (preset.value !== id) return;
-      dispatch({ type: "replace", scenario: readJson(json), origin: `preset:${id}` });
+      dispatch({ type: "replace", scenario: readJson(scenario), origin: `preset:${id}` });
     } catch (error) {
       preset.value = "";
       refuse("The preset", error);

@@ -94,10 +94,10 @@ fn names_others(file: &str) -> bool {
 const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
 /// Where a page names a file that its scripts ask for later; those of one row load together.
 const LATER: [&[&str]; 4] = [
-    &["data-study-worker=\"", "data-study-core=\"", "data-study-style=\""],
-    &["data-capture-worker=\"", "data-capture-core=\""],
-    &["data-panel-core=\"", "data-panel-style=\""],
-    &["data-live-worker=\"", "data-live-core=\"", "data-live-style=\""],
+    &["data-study-worker=\"", "data-tools-core=\"", "data-study-style=\""],
+    &["data-capture-worker=\"", "data-tools-core=\""],
+    &["data-panel-style=\""],
+    &["data-live-worker=\"", "data-tools-core=\"", "data-live-style=\""],
 ];
 
 /// Every file of this site that a page or the manifest names, in its order.

@@ -74,7 +74,7 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Build the page's wasm into web/pkg, web/pkg-study, web/pkg-capture, web/pkg-panel and web/pkg-live, for `serve`
+    /// Build the page's wasm into web/pkg and web/pkg-tools, for `serve`
     Build {
         #[command(flatten)]
         optimising: Optimising,

@@ -145,7 +145,6 @@ impl Judgement {
 }
 
 /// Of stand-alone controllers; the others have theirs where they belong, such as [`DerivedMove::warning`].
-#[cfg(feature = "controller")]
 fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
     let all = experiment.stand_alone().into_iter().flat_map(|controllers| controllers.warnings());
     all.map(|warned| ProblemText {
@@ -153,11 +152,6 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
         message: warned.warning.to_string(),
     })
     .collect()
-}
-
-#[cfg(not(feature = "controller"))]
-const fn warnings(_: &Experiment) -> Vec<ProblemText> {
-    Vec::new()
 }
 
 impl RunCost {

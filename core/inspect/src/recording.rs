@@ -40,7 +40,6 @@ pub mod drift;
 pub mod events;
 pub mod figures;
 pub mod matching;
-#[cfg(feature = "capture")]
 pub mod opened;
 pub mod overview;
 pub mod packets;

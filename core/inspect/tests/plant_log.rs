@@ -1,5 +1,4 @@
 //! What is kept of a plant's run against every one of its points: least and greatest of a stretch, and values at a cycle.
-#![cfg(feature = "plant")]
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_inspect::plant_log::{MOTOR, PlantLog, SUPPLY, Stretch};

@@ -44,12 +44,10 @@ pub struct CheckedScenario {
     /// What the segment engine runs, where the source is segments.
     pub segments: Option<CheckedSegments>,
     /// The stand-alone controllers, where the source is such.
-    #[cfg(feature = "controller")]
     pub stand_alone: Option<stepscope_controller::CheckedSetup>,
     /// Length of the run, if it is given.
     pub run: Option<Cycles>,
     /// What the edges drive.
-    #[cfg(feature = "plant")]
     pub plants: Option<crate::plant::Plants>,
 }
 
@@ -86,7 +84,6 @@ impl Scenario {
         }
         if runs_alone && !self.controllers.is_empty() {
             let detail = match self.source {
-                #[cfg(feature = "controller")]
                 Source::Standalone(_) => {
                     "stand-alone controllers are on no line; give all of them in source.standalone"
                 }
@@ -98,7 +95,6 @@ impl Scenario {
         self.host(&mut validator);
         let forced = self.glitches(&mut validator);
         let mut segments = None;
-        #[cfg(feature = "controller")]
         let mut stand_alone = None;
         match &self.source {
             Source::Motion(motion) => {
@@ -116,7 +112,6 @@ impl Scenario {
             }
             Source::Line(script) => self.script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
-            #[cfg(feature = "controller")]
             Source::Standalone(controllers) => stand_alone = self.stand_alone(controllers, &mut validator),
         }
         let axes = match &self.source {
@@ -126,7 +121,6 @@ impl Scenario {
         let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
         validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
         let configs: Vec<Config> = config.into_iter().chain(additional).collect();
-        #[cfg(feature = "plant")]
         let plants = self.plants(&configs, &mut validator);
         validator.end(()).map(|()| CheckedScenario {
             configs,
@@ -138,10 +132,8 @@ impl Scenario {
             forced,
             source: self.source.clone(),
             segments,
-            #[cfg(feature = "controller")]
             stand_alone,
             run: self.run_cycles.map(Cycles),
-            #[cfg(feature = "plant")]
             plants,
         })
     }

@@ -159,7 +159,6 @@ macro_rules! plain {
     )*};
 }
 plain!(u8, u16, u32, u64, i64, String);
-#[cfg(feature = "plant")]
 plain!(bool);
 
 impl ToParts for f64 {

@@ -47,14 +47,12 @@ mod table;
 
 pub mod schema;
 
-#[cfg(feature = "plant")]
 mod plant;
 
 mod points;
 
 mod segments;
 
-#[cfg(feature = "controller")]
 mod standalone;
 
 mod check;
@@ -74,7 +72,6 @@ pub use compact::{Compact, Kinds};
 pub use hex::Hex;
 pub use json::Json;
 pub use limits::{END_OF_TIME, MAX_CONTROLLERS, MAX_TEXT_BYTES};
-#[cfg(feature = "plant")]
 pub use plant::Plants;
 pub use points::points_of_table;
 pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
@@ -85,9 +82,7 @@ pub use schema::{
     LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists, Source,
     StepSegment, TimingRules,
 };
-#[cfg(feature = "plant")]
 pub use schema::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
-#[cfg(feature = "controller")]
 pub use schema::{
     Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
     ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,

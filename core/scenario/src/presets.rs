@@ -79,7 +79,6 @@ presets! {
     DRIVERS => "driver-timing-broken";
 }
 
-#[cfg(feature = "plant")]
 presets! {
     /// Presets with a plant.
     PLANT_PRESETS:
@@ -92,45 +91,23 @@ presets! {
     PROFILES => "resonance-full-steps";
 }
 
-/// A preset by its name in a menu.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Named {
-    /// Its name in files and on the command line.
-    pub id: &'static str,
-    /// The document that it comes from.
-    pub document: &'static str,
-    /// Its scenario's title.
-    pub title: &'static str,
-}
-
-macro_rules! named_presets {
-    ($(#[$meta:meta])* $titles:ident, $list:ident: $($document:expr => $id:literal, $title:literal;)*) => {
-        /// Their titles, in the order of the menu, also where the list itself is left out.
-        pub const $titles: &[Named] = &[$(Named { id: $id, document: $document, title: $title }),*];
-
-        presets! { $(#[$meta])* $list: $($document => $id;)* }
-    };
-}
-
-named_presets! {
+presets! {
     /// Presets of stand-alone controllers.
-    #[cfg(feature = "controller")]
-    CONTROLLER_TITLES, CONTROLLER_PRESETS:
-    ZHANG => "zhang-2012-controller", "The fixed-length controller: 30.5 cm by a press of start";
-    ZHANG => "zhang-2012-program", "Four cuts, three times: a program with delays and loops";
-    ZHANG => "zhang-2012-zero-by-jog", "Zero by hand: coarse jog, fine jog, ok";
-    ALONE => "controller-homing", "Homing to a switch: seek, off, fine";
-    ALONE => "controller-limit", "A limit switch in mid-move";
-    ALONE => "controller-emergency-stop", "The emergency stop in a pulse";
-    ALONE => "controller-power-cut", "A power cut with hold-up: the position is held";
-    ALONE => "controller-power-cut-lost", "A power cut without hold-up: known to be lost";
+    CONTROLLER_PRESETS:
+    ZHANG => "zhang-2012-controller";
+    ZHANG => "zhang-2012-program";
+    ZHANG => "zhang-2012-zero-by-jog";
+    ALONE => "controller-homing";
+    ALONE => "controller-limit";
+    ALONE => "controller-emergency-stop";
+    ALONE => "controller-power-cut";
+    ALONE => "controller-power-cut-lost";
 }
 
-named_presets! {
+presets! {
     /// Presets of stand-alone controllers with a plant.
-    #[cfg(all(feature = "controller", feature = "plant"))]
-    CONTROLLER_PLANT_TITLES, CONTROLLER_PLANT_PRESETS:
-    ALONE => "controller-held-and-wrong", "Held, and wrong: what turned while the power was off";
+    CONTROLLER_PLANT_PRESETS:
+    ALONE => "controller-held-and-wrong";
 }
 
 #[cfg(test)]
@@ -138,19 +115,6 @@ mod tests {
     use super::*;
     use crate::Kinds;
     use alloc::vec::Vec;
-
-    #[cfg(feature = "plant")]
-    const PLANTS: &[Preset] = PLANT_PRESETS;
-    #[cfg(not(feature = "plant"))]
-    const PLANTS: &[Preset] = &[];
-    #[cfg(feature = "controller")]
-    const CONTROLLERS: &[Preset] = CONTROLLER_PRESETS;
-    #[cfg(not(feature = "controller"))]
-    const CONTROLLERS: &[Preset] = &[];
-    #[cfg(all(feature = "controller", feature = "plant"))]
-    const WITH_PLANT: &[Preset] = CONTROLLER_PLANT_PRESETS;
-    #[cfg(not(all(feature = "controller", feature = "plant")))]
-    const WITH_PLANT: &[Preset] = &[];
 
     #[test]
     fn every_kind_of_move_has_a_preset() {
@@ -162,25 +126,18 @@ mod tests {
 
     #[test]
     fn every_preset_reads_and_holds() {
-        let all: Vec<&Preset> = PRESETS.iter().chain(PLANTS).chain(CONTROLLERS).chain(WITH_PLANT).collect();
+        let all: Vec<&Preset> = PRESETS
+            .iter()
+            .chain(PLANT_PRESETS)
+            .chain(CONTROLLER_PRESETS)
+            .chain(CONTROLLER_PLANT_PRESETS)
+            .collect();
         for (index, preset) in all.iter().enumerate() {
             let scenario =
                 Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
             scenario.check().unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(all[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
-        }
-    }
-    #[test]
-    fn titles_of_presets_that_may_be_left_out_are_those_of_their_scenarios() {
-        let titles = CONTROLLER_TITLES.iter().chain(CONTROLLER_PLANT_TITLES);
-        let all: Vec<&Preset> = CONTROLLERS.iter().chain(WITH_PLANT).collect();
-        for preset in &all {
-            let named = titles.clone().find(|named| named.id == preset.id).expect("it is named");
-            assert_eq!((named.document, named.title), (preset.document, preset.scenario().title.as_str()));
-        }
-        if cfg!(all(feature = "controller", feature = "plant")) {
-            assert_eq!(titles.count(), all.len());
         }
     }
 }

@@ -104,16 +104,12 @@ pub enum Cause {
         first_cycles: u64,
     },
     /// A stand-alone controller that is refused (CONTROLLER.md).
-    #[cfg(feature = "controller")]
     StandAlone(stepscope_controller::Refusal),
     /// A program without an end (CONTROLLER.md G5).
-    #[cfg(feature = "controller")]
     Work(stepscope_controller::Work),
     /// A plant that cannot be made of these numbers (F3, F5).
-    #[cfg(feature = "plant")]
     Plant(stepscope_plant::Refused),
     /// Motors of one plant on different supplies (F9).
-    #[cfg(feature = "plant")]
     OtherSupply {
         /// This motor's supply in V.
         supply_v: f64,
@@ -121,7 +117,6 @@ pub enum Cause {
         first_v: f64,
     },
     /// A boot that is too short for a self-test (F7).
-    #[cfg(feature = "plant")]
     SelfTest {
         /// Its cycles.
         given: u64,
@@ -216,18 +211,13 @@ impl fmt::Display for Cause {
                 f,
                 "{channels} channels beside {first_channels} on the first controller; a raw packet has a byte a channel and no end mark, so all controllers of a raw line need as many: change one of them, or choose the framed protocol"
             ),
-            #[cfg(feature = "controller")]
             Self::StandAlone(refusal) => refusal.fmt(f),
-            #[cfg(feature = "controller")]
             Self::Work(work) => work.fmt(f),
-            #[cfg(feature = "plant")]
             Self::Plant(refused) => refused.fmt(f),
-            #[cfg(feature = "plant")]
             Self::OtherSupply { supply_v, first_v } => write!(
                 f,
                 "{supply_v} V beside {first_v} V of the first motor; all motors of a plant hang on one supply: give {first_v}"
             ),
-            #[cfg(feature = "plant")]
             Self::SelfTest { given, needed } => write!(
                 f,
                 "a self-test takes {needed} cycles and the boot has {given}; give at least {needed}, or no plant.self_test"

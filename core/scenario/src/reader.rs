@@ -190,13 +190,7 @@ impl Reader {
 
     fn unknown(&mut self, name: &str, fields: &[(&'static str, &mut dyn Read)]) {
         let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
-        let detail = if cfg!(not(feature = "plant")) && name == "plant" {
-            // As the page is built.
-            "what the edges drive is not shown here; leave it out to see the bus, or give the file to the command: stepscope plant"
-                .to_owned()
-        } else {
-            format!("there is no such field; give one of {}", names.join(", "))
-        };
+        let detail = format!("there is no such field; give one of {}", names.join(", "));
         self.validator.add(name, Cause::Type { detail });
     }
 
@@ -232,12 +226,6 @@ impl Reader {
             Some((Ok(kind), content)) if count == 1 => return Some((kind, content)),
             Some((Err(name), _)) if count == 1 => {
                 let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
-                if cfg!(not(feature = "controller")) && name == "standalone" {
-                    // The page has them in a module of their own.
-                    let detail = "stand-alone controllers are left out of this part; the command has them: stepscope run SCENARIO, stepscope capture FILE --against SCENARIO";
-                    self.wrong(detail.to_owned());
-                    return None;
-                }
                 self.note(format!(
                     "\u{201c}{name}\u{201d} is no choice here; give one of {}",
                     kinds.join(", ")
@@ -329,7 +317,6 @@ impl Read for f64 {
     }
 }
 
-#[cfg(feature = "plant")]
 impl Read for bool {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         match value.written() {

@@ -2,9 +2,7 @@
 
 use crate::line::bus::Bus;
 use alloc::boxed::Box;
-#[cfg(feature = "controller")]
 use stepscope_controller::StandAlone;
-#[cfg(feature = "plant")]
 use stepscope_peripheral::units::Cycles;
 use stepscope_peripheral::{
     device::{Faults, SegmentEngine},
@@ -16,7 +14,6 @@ use stepscope_peripheral::{
 pub(crate) enum Generator {
     Bus,
     Segments(Box<SegmentEngine>),
-    #[cfg(feature = "controller")]
     StandAlone(StandAlone),
 }
 
@@ -34,7 +31,6 @@ impl Controllers {
         match &self.generator {
             Generator::Bus => self.bus.now(),
             Generator::Segments(engine) => engine.now(),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => machine.now(),
         }
     }
@@ -51,7 +47,6 @@ impl Controllers {
         match &self.generator {
             Generator::Bus => self.bus.is_over(),
             Generator::Segments(engine) => engine.at_rest(),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => machine.at_rest(),
         }
     }
@@ -62,7 +57,6 @@ impl Controllers {
         match &mut self.generator {
             Generator::Bus => self.bus.run(end, sinks),
             Generator::Segments(engine) => engine.run(end, &mut sinks.first_mut()),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => machine.run(end, &mut sinks.first_mut()),
         }
     }
@@ -71,7 +65,6 @@ impl Controllers {
         match &mut self.generator {
             Generator::Bus => self.bus.clock(sinks),
             Generator::Segments(engine) => drop(engine.clock(&mut sinks.first_mut())),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => drop(machine.clock(&mut sinks.first_mut())),
         }
     }
@@ -81,7 +74,6 @@ impl Controllers {
         match &self.generator {
             Generator::Bus => self.bus.first().positions(),
             Generator::Segments(engine) => engine.positions(),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => machine.positions(),
         }
     }
@@ -90,20 +82,17 @@ impl Controllers {
         match &self.generator {
             Generator::Bus => self.bus.first().faults(),
             Generator::Segments(engine) => engine.faults(),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(_) => Faults::default(),
         }
     }
 }
 
-#[cfg(feature = "plant")]
 impl Controllers {
     /// At rest, the cycle after the last change; the last edge was in `last`.
     pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
         self.at_rest().then(|| match &self.generator {
             Generator::Bus => self.bus.rests_from(),
             Generator::Segments(_) => last.next(),
-            #[cfg(feature = "controller")]
             Generator::StandAlone(machine) => machine.rests_from(),
         })
     }
@@ -120,7 +109,6 @@ impl Controllers {
                 engine.overload();
                 true
             }
-            #[cfg(feature = "controller")]
             Generator::StandAlone(_) => false,
         }
     }

@@ -77,7 +77,6 @@ impl Cost {
         }
     }
 
-    #[cfg(feature = "plant")]
     pub(super) fn with_plants(self, checked: &CheckedScenario) -> Self {
         let Some(plants) = &checked.plants else { return self };
         let tail = if checked.run.is_some() { 0 } else { plants.tail.0 };

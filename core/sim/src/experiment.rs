@@ -1,6 +1,5 @@
 //! From a scenario to its trace: the whole line in one call.
 
-#[cfg(feature = "plant")]
 use crate::plant::behind::PlantsBehind;
 use crate::{
     controller_plan::{self, ControllerPlan},
@@ -12,7 +11,6 @@ use crate::{
 };
 use alloc::{boxed::Box, rc::Rc, vec::Vec};
 use core::slice;
-#[cfg(feature = "controller")]
 use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::{
@@ -74,7 +72,6 @@ impl Experiment {
             Some(segments) => Cost::of_segments(segments, checked.run),
             None => Cost::of(&checked, &controllers, &schedule),
         };
-        #[cfg(feature = "controller")]
         let cost = match &checked.stand_alone {
             Some(stand_alone) => Cost::of_stand_alone(stand_alone, checked.run)?,
             None => cost,
@@ -84,7 +81,6 @@ impl Experiment {
             let cause = ValueError::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
             return Err(alloc::vec![Problem::new("source", cause)]);
         }
-        #[cfg(feature = "plant")]
         let cost = cost.with_plants(&checked);
         if cost.motor_steps > MAX_MOTOR_STEPS {
             let (given, most) = (cost.motor_steps as f64, MAX_MOTOR_STEPS as f64);
@@ -209,7 +205,6 @@ impl Experiment {
     }
 
     /// Whether a run never ends because a jog button of a stand-alone controller stays pressed.
-    #[cfg(feature = "controller")]
     #[must_use]
     pub fn jogs_without_end(&self) -> bool {
         let has_end = self.checked.run.is_some() || self.cost.end_cycle < END_OF_TIME;
@@ -217,14 +212,12 @@ impl Experiment {
     }
 
     /// The stand-alone controllers.
-    #[cfg(feature = "controller")]
     #[must_use]
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::CheckedSetup> {
         self.checked.stand_alone.as_ref()
     }
 
     fn generator(&self) -> Generator {
-        #[cfg(feature = "controller")]
         if let Some(checked) = &self.checked.stand_alone {
             return Generator::StandAlone(StandAlone::new(checked));
         }
@@ -260,24 +253,16 @@ impl Experiment {
                 generator: self.generator(),
                 end: run.map(|cycles| Instant(cycles.0)),
             },
-            #[cfg(feature = "plant")]
             plants: self.plants().map(|plants| Box::new(PlantsBehind::new(plants, self.configs()))),
         }
     }
 
-    #[cfg(not(feature = "plant"))]
-    fn device(&self, config: &Config) -> Device {
-        Device::new(config)
-    }
-
-    #[cfg(feature = "plant")]
     fn device(&self, config: &Config) -> Device {
         let tests = self.checked.plants.as_ref().is_some_and(|plants| plants.self_test);
         if tests { Device::with_self_test(config) } else { Device::new(config) }
     }
 
     /// The plants behind the controllers.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
         self.checked.plants.as_ref()

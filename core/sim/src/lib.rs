@@ -27,10 +27,8 @@ mod faults;
 mod hosts;
 mod line;
 mod live;
-#[cfg(feature = "plant")]
 mod plant;
 mod run;
-#[cfg(feature = "controller")]
 mod stand_alone;
 mod summary;
 mod validated;
@@ -38,7 +36,6 @@ mod validated;
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::fault_sweep;
-#[cfg(feature = "controller")]
 pub use faults::power_cut;
 pub use hosts::{
     framed_host, raw_host,
@@ -46,10 +43,8 @@ pub use hosts::{
 };
 pub use line::noise;
 pub use live::{lateness, live_trace, session, session_times, twin};
-#[cfg(feature = "plant")]
 pub use plant::plant_run;
 pub use run::Run;
-#[cfg(feature = "controller")]
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
 pub use validated::{SelectedAxis, ValidatedScenario, axes_of};

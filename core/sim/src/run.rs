@@ -1,12 +1,10 @@
 //! A run under way: its state, and going on.
 
-#[cfg(feature = "plant")]
 use crate::plant::behind::{Behind, PlantsBehind};
 use crate::{
     controllers::{Controllers, Generator},
     hosts::framed_host::FramedHost,
 };
-#[cfg(feature = "plant")]
 use alloc::{boxed::Box, vec::Vec};
 use core::slice;
 use stepscope_peripheral::{
@@ -15,7 +13,6 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
     wire::{ForcedLevel, Line, Schedule},
 };
-#[cfg(feature = "plant")]
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::END_OF_TIME;
 
@@ -23,7 +20,6 @@ use stepscope_scenario::END_OF_TIME;
 #[derive(Clone, Debug)]
 pub struct Run {
     pub(crate) controllers: Controllers,
-    #[cfg(feature = "plant")]
     pub(crate) plants: Option<Box<PlantsBehind>>,
 }
 
@@ -65,7 +61,6 @@ impl Run {
     }
 
     /// The stand-alone controllers; `None` where a line or segments run the scenario.
-    #[cfg(feature = "controller")]
     #[must_use]
     pub fn stand_alone(&self) -> Option<&stepscope_controller::StandAlone> {
         match &self.controllers.generator {
@@ -74,7 +69,6 @@ impl Run {
         }
     }
 
-    #[cfg(feature = "controller")]
     pub(crate) fn stand_alone_mut(&mut self) -> Option<&mut stepscope_controller::StandAlone> {
         match &mut self.controllers.generator {
             Generator::StandAlone(machine) => Some(machine),
@@ -97,7 +91,6 @@ impl Run {
     /// Cycles that have been run.
     #[must_use]
     pub fn cycles(&self) -> Cycles {
-        #[cfg(feature = "plant")]
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
         }
@@ -107,7 +100,6 @@ impl Run {
     /// Whether the run is over.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        #[cfg(feature = "plant")]
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
         }
@@ -121,7 +113,6 @@ impl Run {
 
     /// Runs until one controller has made `records` more, with a sink per controller; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
-        #[cfg(feature = "plant")]
         if self.plants.is_some() {
             return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
         }
@@ -138,7 +129,6 @@ impl Run {
 
     /// Runs to cycle `end`, with a sink per controller.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
-        #[cfg(feature = "plant")]
         if self.plants.is_some() {
             self.advance_observed::<_, ()>((end, u64::MAX), sinks, &mut []);
             return;
@@ -157,7 +147,6 @@ impl Run {
 
     /// Runs to a cycle, or until a controller has made so many records more, with a sink and an observer per
     /// controller; true at the end. Does nothing without plants.
-    #[cfg(feature = "plant")]
     pub fn advance_observed<S: Sink, O: Observer>(
         &mut self,
         until: (Instant, u64),
@@ -168,41 +157,35 @@ impl Run {
         plants.as_mut().is_none_or(|plants| plants.advance(controllers, until, sinks, observers))
     }
 
-    #[cfg(feature = "plant")]
     pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
         if let Some(plants) = &mut self.plants {
             plants.clock(&mut self.controllers, sinks, observers);
         }
     }
 
-    #[cfg(feature = "plant")]
     fn behind(&self, controller: usize) -> Option<&Behind> {
         self.plants.as_ref()?.behind.get(controller)
     }
 
     /// The plant behind a controller.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn plant(&self, controller: usize) -> Option<&Plant> {
         self.behind(controller).map(|behind| &behind.plant)
     }
 
     /// Settling time per channel found by the self-test, in cycles; empty before the end of the boot.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
         self.behind(controller).map_or(&[], |behind| &behind.found)
     }
 
     /// Cycle of the last overload of a controller.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn overload(&self, controller: usize) -> Option<u64> {
         self.behind(controller)?.overload_at
     }
 
     /// What each plant has measured so far.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn results(&self) -> Vec<PlantResult> {
         let all = (0..).map_while(|index| self.behind(index));
@@ -211,7 +194,6 @@ impl Run {
 
     /// Runs one cycle, with a sink per controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
-        #[cfg(feature = "plant")]
         if self.plants.is_some() {
             return self.clock_observed::<_, ()>(sinks, &mut []);
         }

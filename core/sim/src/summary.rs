@@ -44,7 +44,6 @@ pub struct Summary {
     pub host: Option<Counts>,
     pub controllers: Vec<ControllerSummary>,
     /// Where a line or segments run the scenario, `None`.
-    #[cfg(feature = "controller")]
     pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
@@ -94,7 +93,6 @@ impl Summary {
             line_load: experiment.line_load(),
             host: run.host().map(|host| host.counts()),
             controllers: controllers.collect(),
-            #[cfg(feature = "controller")]
             stand_alone: run.stand_alone().map(crate::StandAloneSummary::of),
         }
     }
@@ -150,7 +148,6 @@ impl fmt::Display for Summary {
             writeln!(f, "rejected {rejected} refused {refused} crashes {crashes}")?;
         }
         self.line_load.map_or(Ok(()), |load| writeln!(f, "line_load {:.1} %", 100.0 * load))?;
-        #[cfg(feature = "controller")]
         self.stand_alone.as_ref().map_or(Ok(()), |panels| panels.fmt(f))?;
         Ok(())
     }

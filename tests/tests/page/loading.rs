@@ -32,11 +32,17 @@ async fn seen(page: &Session) -> Result<Seen> {
     page.eval("window.seen").await
 }
 
+async fn seen_fetches(page: &Session) -> Result<usize> {
+    Ok(seen(page).await?.fetched.len())
+}
+
 #[test]
-fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
+fn all_that_loads_is_of_this_site_and_each_module_is_fetched_once() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
         page.open("").await?;
+        // The tools load in the background, after the first result.
+        page.until("seen.fetched.length === 2").await?;
         let names: Vec<String> =
             page.eval("performance.getEntriesByType('resource').map(({ name }) => name)").await?;
         ensure!(names.len() > 10, "{names:?}");
@@ -44,9 +50,12 @@ fn all_that_loads_is_of_this_site_and_the_core_is_fetched_once() -> Result<()> {
             ensure!(name.starts_with(page.address()), "{name} is of another site");
         }
         let seen = seen(&page).await?;
-        assert_eq!(seen.fetched.len(), 1, "{:?}", seen.fetched);
-        ensure!(seen.fetched[0].ends_with(".wasm"), "{:?}", seen.fetched);
-        assert_eq!(names.iter().filter(|name| name.ends_with(".wasm")).count(), 1, "{names:?}");
+        assert_eq!(seen.fetched.len(), 2, "{:?}", seen.fetched);
+        ensure!(seen.fetched.iter().all(|name| name.ends_with(".wasm")), "{:?}", seen.fetched);
+        ensure!(!seen.fetched[0].contains("pkg-tools"), "{:?}", seen.fetched);
+        page.click("#study").await?;
+        page.until("document.querySelector('.study-panel td') !== null").await?;
+        assert_eq!(seen_fetches(&page).await?, 2, "the study uses the module that is there");
         Ok(())
     })
 }
@@ -59,7 +68,7 @@ fn a_link_loads_no_view_that_is_not_on_show() -> Result<()> {
             page.eval("performance.getEntriesByType('resource').map(({ name }) => name)").await?;
         for name in &names {
             ensure!(
-                !name.contains("/views/motor/motor.js") && !name.contains("pkg-study"),
+                !name.contains("/views/motor/motor.js") && !name.contains("study_worker"),
                 "{name} is loaded"
             );
         }

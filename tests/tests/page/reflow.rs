@@ -103,6 +103,18 @@ async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()
     Ok(())
 }
 
+/// Shows each progress line as it looks during long work, which most runs of this test are too fast to see.
+const SHOW_PROGRESS: &str = "
+    for (const job of document.querySelectorAll('.study-job')) {
+        const [text, bar, button] = job.children;
+        job.hidden = bar.hidden = false;
+        text.textContent = '100 of 1000 rows';
+        button.textContent = 'Cancel';
+    }
+    return null;";
+const HIDE_PROGRESS: &str =
+    "for (const job of document.querySelectorAll('.study-job')) job.hidden = true; return null;";
+
 /// Looks at the whole page: on a narrow screen at every tab, and at the form.
 async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Result<()> {
     let tabs: Vec<String> = page
@@ -120,6 +132,9 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
         page.click(&format!("#study-tab-{tab}")).await?;
         page.until("[...document.querySelectorAll('.study-job')].every((job) => job.hidden)").await?;
         look(page, &format!("{what}, study, {tab}"), wrong).await?;
+        page.js::<()>(SHOW_PROGRESS, vec![]).await?;
+        look(page, &format!("{what}, study, {tab}, with progress"), wrong).await?;
+        page.js::<()>(HIDE_PROGRESS, vec![]).await?;
     }
     if tabs.is_empty() {
         return page.click("#study").await;

@@ -186,14 +186,14 @@ fn only_an_earlier_build_is_cleared_away() {
 #[test]
 fn what_a_page_names_for_later_is_made_and_listed_but_not_among_what_opening_it_loads() {
     let page = "<html data-build=\"development\"><head>\
-                <script type=\"module\" src=\"main.js\" data-study-worker=\"engine/w.js\" data-study-core=\"pkg/x.wasm\"></script></head>\
+                <script type=\"module\" src=\"main.js\" data-study-worker=\"engine/w.js\" data-tools-core=\"pkg/x.wasm\"></script></head>\
                 <span id=\"version\">development</span>";
     let site = site(&[("index.html", page)]);
     let made = bundles("M");
     let built = site.built(&made, "1.2.3", Some("abc")).unwrap();
     assert!(
         built["index.html"]
-            .contains("data-study-worker=\"assets/w.W.js\" data-study-core=\"assets/x.X.wasm\"")
+            .contains("data-study-worker=\"assets/w.W.js\" data-tools-core=\"assets/x.X.wasm\"")
     );
     assert!(built["sw.js"].contains("assets/x.X.wasm"), "it is kept for use without a network");
     let parts = site.parts(&made);

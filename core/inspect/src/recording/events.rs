@@ -25,7 +25,6 @@ use super::{
 use alloc::vec::Vec;
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
-#[cfg(feature = "capture")]
 use stepscope_peripheral::{
     signal::{Levels, Record},
     trace::steps,
@@ -93,7 +92,6 @@ impl Events {
     }
 
     /// Those of a trace: the steps of a channel, or the bytes of RX at `baud`.
-    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of_records(records: &[Record], clock_hz: u32, kind: Kind, channel: u8, baud: u32) -> Self {
         match kind {

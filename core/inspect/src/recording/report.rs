@@ -12,7 +12,6 @@
 //! assert_eq!(report.lines[0].to_text(), "RX: 115200 baud (115187 measured), 200 bytes, raw packets of 1 byte");
 //! ```
 
-#[cfg(feature = "capture")]
 use super::serial::{
     HeardByte, LineOptions, MEASURED_EDGES, edges, hear_among, is_text_of_seven, parity_of_seven,
 };
@@ -21,11 +20,9 @@ use super::{
     remedy::Remedy,
     serial::{Guess, Heard, Measured, guess, line_name},
 };
-#[cfg(feature = "capture")]
 use alloc::string::ToString;
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-#[cfg(feature = "capture")]
 use stepscope_capture::uart::{Edge, Format, NoRate, estimate};
 use stepscope_peripheral::{
     signal::{Levels, Record},
@@ -98,7 +95,6 @@ impl Survey {
 impl Report {
     /// Of records in cycles of `clock_hz`, of a bus of so many channels. Lines are decoded as 8N1 at `baud`, or at the rate
     /// that their pulses have.
-    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
         let all = records.iter().copied();
@@ -108,7 +104,6 @@ impl Report {
 
     /// The same of records that are gone through as often as it takes, and kept nowhere; `changing` has a bit for each
     /// signal that changes ([`Survey`]).
-    #[cfg(feature = "capture")]
     #[must_use]
     pub fn of_all(
         records: impl Iterator<Item = Record> + Clone,
@@ -148,7 +143,6 @@ impl Report {
 
 /// The steps of a channel, one after the other, as [`stepscope_peripheral::trace::steps_in`] has them of records that
 /// lie together.
-#[cfg(feature = "capture")]
 pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
     // A level that is there from the first record on has not risen.
@@ -168,7 +162,6 @@ pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl 
 const EIGHT_N_ONE: &str = "8N1";
 
 /// Why no rate was found, and what would help.
-#[cfg(feature = "capture")]
 fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
     if let NoRate::Ambiguous(rates) = why {
         let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
@@ -181,7 +174,6 @@ fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
 }
 
 /// What would fit.
-#[cfg(feature = "capture")]
 fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     match why {
         NoRate::Format(format) => {
@@ -201,7 +193,6 @@ fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
 }
 
 /// What would show bytes of seven bits that were decoded with eight.
-#[cfg(feature = "capture")]
 fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
     if is_text_of_seven(bytes) {
         let text = "all bytes look like text of 7 data bits with 2 stop bits, or 1 and pauses";
@@ -216,7 +207,6 @@ fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
 
 impl LineReport {
     /// Of a line that changes.
-    #[cfg(feature = "capture")]
     fn of(
         records: impl Iterator<Item = Record> + Clone,
         mask: u64,

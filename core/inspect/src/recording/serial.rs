@@ -17,12 +17,9 @@
 //! assert!(matches!(guess(&heard.bytes, 139), Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }));
 //! ```
 
-#[cfg(feature = "capture")]
 use alloc::collections::BTreeSet;
 use alloc::{vec, vec::Vec};
-#[cfg(feature = "capture")]
 use stepscope_capture::uart::{Edge, Estimate, Fault, Format, decode, estimate};
-#[cfg(feature = "capture")]
 use stepscope_peripheral::signal::Record;
 use stepscope_peripheral::{
     protocol::Kind,
@@ -32,7 +29,6 @@ use stepscope_peripheral::{
 };
 
 /// Edges that the rate is measured by.
-#[cfg(feature = "capture")]
 pub(super) const MEASURED_EDGES: usize = 4000;
 /// Bit times after which a gap ends a raw packet (DESIGN A5).
 pub(super) const GAP_BITS: u64 = 45;
@@ -47,7 +43,6 @@ pub struct Measured {
 }
 
 impl Measured {
-    #[cfg(feature = "capture")]
     pub(super) fn of(found: Estimate, clock_hz: u32) -> Self {
         Self { baud: f64::from(clock_hz) / found.measured, usual: found.usual }
     }
@@ -60,7 +55,6 @@ impl Measured {
 }
 
 /// How a line is decoded.
-#[cfg(feature = "capture")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineOptions {
     /// Bit rate; measured without it.
@@ -70,7 +64,6 @@ pub struct LineOptions {
 }
 
 /// The rate of the 8N1 line of `mask` (RX or TX); `None` where no rate fits, or several do.
-#[cfg(feature = "capture")]
 #[must_use]
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
     let edges: Vec<Edge> = edges(records.iter().copied(), mask).take(MEASURED_EDGES).collect();
@@ -79,7 +72,6 @@ pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Mea
 }
 
 /// The edges of a line.
-#[cfg(feature = "capture")]
 pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl Iterator<Item = Edge> {
     let mut before = None;
     records.filter_map(move |record| {
@@ -91,14 +83,11 @@ pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl It
 
 /// Words that are read under another format, so that it shows, and how many of them are different: as many have one parity
 /// by chance once in 32.
-#[cfg(feature = "capture")]
 const FORMAT_WORDS: usize = 8;
-#[cfg(feature = "capture")]
 const PARITY_WORDS: u32 = 6;
 
 /// The parity that eight bits of each byte have, seven of data and the parity bit: `E` or `O`. `None` where they have none, or
 /// too few of them are different.
-#[cfg(feature = "capture")]
 pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
     let mut seen = [0_u64; 4];
     let (mut even, mut odd) = (true, true);
@@ -117,7 +106,6 @@ pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
 
 /// Whether bytes look like text of seven bits, with a stop bit or a pause where the eighth one is. Other bytes with their
 /// top bit set may well have eight.
-#[cfg(feature = "capture")]
 pub(super) fn is_text_of_seven(bytes: &[HeardByte]) -> bool {
     let is_text = |heard: &&HeardByte| matches!(heard.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
     // Packets of a few such bytes are no text.
@@ -148,7 +136,6 @@ pub struct Heard {
 }
 
 /// The bytes of the 8N1 line of `mask` at a rate.
-#[cfg(feature = "capture")]
 #[must_use]
 pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
     let bit = f64::from(clock_hz) / f64::from(baud.max(1));
@@ -156,7 +143,6 @@ pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
 }
 
 /// The same of records that are nowhere together; a bit lasts so many cycles.
-#[cfg(feature = "capture")]
 pub(super) fn hear_among(
     records: impl Iterator<Item = Record>,
     mask: u64,

@@ -2,12 +2,9 @@
 
 use crate::torque::moment::Moment;
 use core::f64::consts::{PI, SQRT_2};
-#[cfg(feature = "plant")]
 use stepscope_motion::mechanics::{Mechanics, Rotary};
 use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
-#[cfg(feature = "plant")]
 use stepscope_scenario::{PlantMotor, PlantSettings, Scenario};
-#[cfg(feature = "plant")]
 use stepscope_sim::axes_of;
 
 /// mN*m in a N*m.
@@ -56,7 +53,6 @@ impl Machine {
     }
 
     /// Of a motor of a plant on its supply.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
         Self {
@@ -75,7 +71,6 @@ impl Machine {
 
     /// Of a channel: of its axis, where that has a motor, else what the scenario's plant has there (F9); `None` where it has
     /// neither.
-    #[cfg(feature = "plant")]
     #[must_use]
     pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
         let axis = axes_of(scenario, controller).get(channel);

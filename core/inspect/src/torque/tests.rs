@@ -439,7 +439,6 @@ fn a_stated_rate_and_steps_in_one_cycle_are_judged_too() {
     assert_eq!(found.least.map(|least| least.needed_mn_m), Some(10.0));
 }
 
-#[cfg(feature = "plant")]
 #[test]
 fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
     use stepscope_plant::{parameters::MotorModel, stability::Natural};

@@ -33,7 +33,6 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
     match ty {
         Type::Whole { .. } => "whole".into(),
         Type::Number => "number".into(),
-        #[cfg(feature = "plant")]
         Type::Bool => "bool".into(),
         Type::Text => "text".into(),
         Type::Hex => "hex".into(),

@@ -1,6 +1,5 @@
 //! The experiment itself, and what is looked at in it.
 
-#[cfg(feature = "plant")]
 use crate::schema::PlantSettings;
 use crate::{
     END_OF_TIME, MAX_CONTROLLERS, VERSION,
@@ -55,8 +54,7 @@ settings! {
         /// The driver that the pulses are checked against; it changes nothing in a run.
         pub driver_timing: Option<DriverTiming> = None => label("Driver timing").empty("not checked"),
         /// What the edges drive: motors with their drivers, a supply, sensors.
-        #[cfg(feature = "plant")]
-        pub plant: Option<PlantSettings> = None => label("Motors and supply").empty("none: a run ends at the bus"),
+        pub plant: Option<PlantSettings> = None => label("Motors and supply").only_if_set().empty("none: a run ends at the bus"),
     }
 }
 

@@ -32,38 +32,30 @@ pub(crate) mod rows;
 
 mod bus;
 mod controller;
-#[cfg(feature = "descriptions")]
 mod describe;
 mod driver;
 mod experiment;
 pub(crate) mod judge;
 mod line;
-#[cfg(feature = "descriptions")]
 mod markdown;
 mod mechanics;
 mod motor;
 mod moves;
-#[cfg(feature = "plant")]
 mod plant;
 mod segments;
 mod source;
-#[cfg(feature = "controller")]
 mod standalone;
 mod types;
 
 pub use controller::Controller;
-#[cfg(feature = "descriptions")]
 pub use describe::describe;
 pub use driver::{DriverModel, DriverTiming, TimingRules};
 pub use experiment::{Analysis, Scenario};
 pub use line::{Glitch, Host, Line, Noise};
-#[cfg(feature = "descriptions")]
 pub use markdown::markdown;
-#[cfg(feature = "plant")]
 pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 pub use source::{LineScript, Motion, MotionEngine, Packets, ScriptedSend, Source};
-#[cfg(feature = "controller")]
 pub use standalone::{
     Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
     ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,

@@ -1,12 +1,9 @@
 //! The motor of an axis, its driver's supply and its load, which motion owns.
 
 use crate::schema::{OWN, SONG, label, rows::fields};
-#[cfg(feature = "plant")]
 use crate::schema::{SHEETS, rows::words};
-#[cfg(feature = "plant")]
 use stepscope_motion::motor::{Decay, Drive, Regulator};
 use stepscope_motion::{limits, motor::Motor};
-#[cfg(feature = "plant")]
 use stepscope_plant::limits as plant;
 
 fields! {
@@ -81,42 +78,30 @@ fields! {
             .term("Working rate", "Highest rate at which the motor is known to work with its load, f_s. The document states 19200 Hz for its motor and does not derive it.")
             .from(SONG),
         /// Coulomb friction of the rotor.
-        #[cfg(feature = "plant")]
-        friction_mn_m: f64 => label("Friction").unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        friction_mn_m: f64 => label("Friction").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
         /// What has to be overcome at rest.
-        #[cfg(feature = "plant")]
-        stiction_mn_m: Option<f64> => label("Stiction").unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
+        stiction_mn_m: Option<f64> => label("Stiction").only_if_set().unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
         /// Friction that grows with the speed.
-        #[cfg(feature = "plant")]
-        viscous_un_m_s: f64 => label("Viscous friction").unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        viscous_un_m_s: f64 => label("Viscous friction").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// Amplitude of the torque with which the unpowered rotor holds its full steps.
-        #[cfg(feature = "plant")]
-        detent_torque_mn_m: f64 => label("Detent torque").unit("mN·m").follows("0 to half the holding torque").from(OWN),
+        detent_torque_mn_m: f64 => label("Detent torque").only_if_set().unit("mN·m").follows("0 to half the holding torque").from(OWN),
         /// A constant torque to the left.
-        #[cfg(feature = "plant")]
-        gravity_torque_mn_m: f64 => label("Gravity").unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
+        gravity_torque_mn_m: f64 => label("Gravity").only_if_set().unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
         /// Amplitude of a torque that goes round with the load.
-        #[cfg(feature = "plant")]
-        sine_torque_mn_m: f64 => label("Turning torque").unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        sine_torque_mn_m: f64 => label("Turning torque").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
         /// Its periods in a turn of the load.
-        #[cfg(feature = "plant")]
-        sine_per_turn: f64 => label("Its periods a turn").number(plant::SINE_PER_TURN).from(OWN),
+        sine_per_turn: f64 => label("Its periods a turn").only_if_set().number(plant::SINE_PER_TURN).from(OWN),
         /// Its phase.
-        #[cfg(feature = "plant")]
-        sine_phase_deg: f64 => label("Its phase").unit("°").number(plant::SINE_PHASE_DEG).from(OWN),
+        sine_phase_deg: f64 => label("Its phase").only_if_set().unit("°").number(plant::SINE_PHASE_DEG).from(OWN),
         /// Stiffness of a coupling between rotor and load, which then are two masses.
-        #[cfg(feature = "plant")]
-        coupling_n_m_rad: Option<f64> => label("Coupling").unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
+        coupling_n_m_rad: Option<f64> => label("Coupling").only_if_set().unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
         /// Damping of the coupling.
-        #[cfg(feature = "plant")]
-        coupling_un_m_s: f64 => label("Its damping").unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        coupling_un_m_s: f64 => label("Its damping").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// How its driver holds the currents.
-        #[cfg(feature = "plant")]
-        drive: Drive => label("Driver"),
+        drive: Drive => label("Driver").only_if_set(),
     }
 }
 
-#[cfg(feature = "plant")]
 fields! {
     /// Of effect in a plant only.
     Drive {
@@ -139,7 +124,6 @@ fields! {
     }
 }
 
-#[cfg(feature = "plant")]
 words! {
     Regulator {
         /// the mean of an ideal chopper

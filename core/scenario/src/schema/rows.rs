@@ -4,22 +4,22 @@
 /// Declares a struct of the scenario: a row a field, with its default.
 macro_rules! settings {
     ($(#[doc = $doc:literal])* pub struct $name:ident {
-        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
     }) => {
         $(#[doc = $doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $name {
-            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? pub $field: $ty,)*
+            $($(#[doc = $field_doc])* pub $field: $ty,)*
         }
 
         impl Default for $name {
             fn default() -> Self {
-                Self { $($(#[cfg($cfg)])? $field: $default,)* }
+                Self { $($field: $default,)* }
             }
         }
 
         $crate::schema::rows::rows! { false; $(#[doc = $doc])* $name {
-            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? $field: $ty => $row,)*
+            $($(#[doc = $field_doc])* $field: $ty => $row,)*
         } }
     };
 }
@@ -27,10 +27,10 @@ macro_rules! settings {
 /// Names the fields of a struct that another crate owns; it has its defaults from there.
 macro_rules! fields {
     ($($(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? $field:ident: $ty:ty => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
     })*) => {$(
         $crate::schema::rows::rows! { true; $(#[doc = $doc])* $name {
-            $($(#[doc = $field_doc])* $(#[cfg($cfg)])? $field: $ty => $row,)*
+            $($(#[doc = $field_doc])* $field: $ty => $row,)*
         } }
     )*};
 }
@@ -38,20 +38,19 @@ macro_rules! fields {
 /// A struct's rows, its reader and its writer.
 macro_rules! rows {
     ($foreign:literal; $(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $field_doc:literal])* $(#[cfg($cfg:meta)])? $field:ident: $ty:ty => $row:expr,)*
+        $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
     }) => {
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const FIELDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
+                const FIELDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
                     name: $crate::schema::rows::plain(stringify!($field)),
-                    doc: $crate::schema::rows::said(concat!($($field_doc),*)),
+                    doc: concat!($($field_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
-                    only_if_set: !concat!("", $(stringify!($cfg))?).is_empty(),
                     ..$row
                 }),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
-                    doc: $crate::schema::rows::said(concat!($($doc, "\n"),*)),
+                    doc: concat!($($doc, "\n"),*),
                     fields: FIELDS,
                     is_choice: false,
                     is_external: $foreign,
@@ -66,15 +65,12 @@ macro_rules! rows {
                 let default = Self::default();
                 // A struct without fields compares nothing.
                 let _ = &default;
-                // All of them: a field without a row does not compile. Without the feature `plant` some have none.
-                #[cfg(feature = "plant")]
+                // A field without a row does not compile.
                 let Self { $($field,)* } = self;
-                #[cfg(not(feature = "plant"))]
-                let Self { $($(#[cfg($cfg)])? $field,)* .. } = self;
                 $crate::schema::Parts::Fields(
                     $crate::schema::rows::group::<Self>(),
                     <[_]>::into_vec(alloc::boxed::Box::new([
-                        $($(#[cfg($cfg)])? ($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*
+                        $(($field as &dyn $crate::schema::ToParts, *$field != default.$field),)*
                     ])),
                 )
             }
@@ -85,7 +81,7 @@ macro_rules! rows {
                 reader.fields(
                     value,
                     $crate::schema::rows::group::<Self>(),
-                    &mut [$($(#[cfg($cfg)])? ($crate::schema::rows::plain(stringify!($field)), &mut self.$field),)*],
+                    &mut [$(($crate::schema::rows::plain(stringify!($field)), &mut self.$field),)*],
                 )
             }
 
@@ -99,16 +95,16 @@ macro_rules! rows {
 /// Declares an enum of the scenario: one of several kinds, a row each.
 macro_rules! choices {
     ($(#[doc = $doc:literal])* pub enum $name:ident {
-        $($(#[doc = $kind_doc:literal])* $(#[cfg($cfg:meta)])? $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
     }) => {
         $(#[doc = $doc])*
         #[derive(Clone, Debug, PartialEq)]
         pub enum $name {
-            $($(#[doc = $kind_doc])* $(#[cfg($cfg)])? $variant($ty),)*
+            $($(#[doc = $kind_doc])* $variant($ty),)*
         }
 
         $crate::schema::rows::kinds! { $(#[doc = $doc])* $name {
-            $($(#[doc = $kind_doc])* $(#[cfg($cfg)])? $variant($ty) = $key => $row,)*
+            $($(#[doc = $kind_doc])* $variant($ty) = $key => $row,)*
         } }
     };
 }
@@ -116,23 +112,23 @@ macro_rules! choices {
 /// Names the kinds of an enum; JSON has a map of one key.
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $name:ident {
-        $($(#[doc = $kind_doc:literal])* $(#[cfg($cfg:meta)])? $variant:ident($ty:ty) = $key:literal => $row:expr,)*
+        $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
     })*) => {$(
         impl $crate::Kinds for $name {
-            const KINDS: &'static [&'static str] = &[$($(#[cfg($cfg)])? $key),*];
+            const KINDS: &'static [&'static str] = &[$($key),*];
         }
 
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const KINDS: &[$crate::schema::Field] = &[$($(#[cfg($cfg)])? $crate::schema::Field {
+                const KINDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
                     name: $key,
-                    doc: $crate::schema::rows::said(concat!($($kind_doc),*)),
+                    doc: concat!($($kind_doc),*),
                     ty: <$ty as $crate::schema::Typed>::TYPE,
                     ..$row
                 }),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
-                    doc: $crate::schema::rows::said(concat!($($doc, "\n"),*)),
+                    doc: concat!($($doc, "\n"),*),
                     fields: KINDS,
                     is_choice: true,
                     is_external: false,
@@ -145,7 +141,7 @@ macro_rules! kinds {
         impl $crate::schema::ToParts for $name {
             fn parts(&self) -> $crate::schema::Parts<'_> {
                 match self {
-                    $($(#[cfg($cfg)])? Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
+                    $(Self::$variant(inner) => $crate::schema::Parts::Kind($key, inner),)*
                 }
             }
         }
@@ -155,7 +151,7 @@ macro_rules! kinds {
                 let kinds = $crate::schema::rows::group::<Self>();
                 let Some((kind, content)) = reader.choice(value, kinds) else { return false };
                 match kind.name {
-                    $($(#[cfg($cfg)])? $key => {
+                    $($key => {
                         let mut inner = <$ty as $crate::Read>::blank();
                         let taken = reader.below(Some(kind), kind.name, content, &mut inner);
                         if taken {
@@ -191,7 +187,7 @@ macro_rules! words {
         impl $crate::schema::Typed for $ty {
             const TYPE: $crate::schema::Type = {
                 const WORDS: &[$crate::schema::Word] =
-                    &[$($crate::schema::Word { name: $word, label: $label, doc: $crate::schema::rows::said(concat!($($doc),*)) }),*];
+                    &[$($crate::schema::Word { name: $word, label: $label, doc: concat!($($doc),*) }),*];
                 $crate::schema::Type::Word(WORDS)
             };
         }
@@ -222,11 +218,6 @@ macro_rules! words {
 }
 
 use crate::schema::{Group, Type, Typed};
-
-/// What is said of a field, which a build without the feature `descriptions` leaves out.
-pub(crate) const fn said(doc: &'static str) -> &'static str {
-    if cfg!(feature = "descriptions") { doc } else { "" }
-}
 
 /// A field's name without the mark of a name that is Rust's own word.
 pub(crate) const fn plain(name: &'static str) -> &'static str {

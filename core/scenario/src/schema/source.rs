@@ -7,7 +7,6 @@ use crate::{
         rows::{choices, settings, words},
     },
 };
-#[cfg(feature = "controller")]
 use crate::{StandAlone, schema::ZHANG};
 use alloc::{vec, vec::Vec};
 use stepscope_motion::moves::Axis;
@@ -26,7 +25,6 @@ choices! {
         /// Bytes at cycles: what was recorded of a real line can be replayed.
         Line(LineScript) = "line" => label("Line script").from(OWN),
         /// Controllers with buttons, a program and a memory; nothing is sent.
-        #[cfg(feature = "controller")]
         Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
         /// Tables that a controller runs by itself; nothing is sent.
         Segments(SegmentLists) = "segments" => label("Lists of segments").from(SONOBE),
@@ -133,7 +131,6 @@ impl Source {
     /// Whether nothing is sent: segments run it, or controllers of their own.
     #[must_use]
     pub const fn runs_alone(&self) -> bool {
-        #[cfg(feature = "controller")]
         if let Self::Standalone(_) = self {
             return true;
         }

@@ -69,7 +69,6 @@ pub enum Type {
     /// A number.
     Number,
     /// Yes or no: true or false.
-    #[cfg(feature = "plant")]
     Bool,
     /// A text.
     Text,
@@ -229,7 +228,6 @@ impl Field {
     }
 
     /// A whole number of a range that may be below 0.
-    #[cfg(feature = "controller")]
     pub(crate) const fn signed(self, range: RangeInclusive<i64>) -> Self {
         Self { limit: Limit::Signed(*range.start(), *range.end()), ..self }
     }
@@ -247,6 +245,11 @@ impl Field {
     /// Its range in words, where it follows from other fields.
     pub(crate) const fn follows(self, range: &'static str) -> Self {
         Self { limit: Limit::Follows(range), ..self }
+    }
+
+    /// Written to a file only where it differs from its default.
+    pub(crate) const fn only_if_set(self) -> Self {
+        Self { only_if_set: true, ..self }
     }
 
     /// What nothing (null) means.
@@ -300,7 +303,6 @@ impl Typed for f64 {
     const TYPE: Type = Type::Number;
 }
 
-#[cfg(feature = "plant")]
 impl Typed for bool {
     const TYPE: Type = Type::Bool;
 }

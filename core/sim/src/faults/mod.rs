@@ -1,5 +1,4 @@
 //! Runs in which something goes wrong: line faults and power cuts.
 
 pub mod fault_sweep;
-#[cfg(feature = "controller")]
 pub mod power_cut;

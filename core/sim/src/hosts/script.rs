@@ -8,7 +8,6 @@ use stepscope_scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend,
 /// no line and keep their source. The result may have more forced levels than are valid.
 #[must_use]
 pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
-    #[cfg(feature = "controller")]
     if run.stand_alone().is_some() {
         return scenario;
     }

@@ -67,7 +67,6 @@ impl Bus {
         self.nodes.iter().map(|node| &node.device)
     }
 
-    #[cfg(feature = "plant")]
     pub(crate) fn device_mut(&mut self, index: usize) -> Option<&mut Device> {
         self.nodes.get_mut(index).map(|node| &mut node.device)
     }

@@ -33,20 +33,17 @@
 
 mod clock;
 mod input;
-#[cfg(feature = "controller")]
 mod panel;
 #[cfg(test)]
 mod tests;
 
 pub use clock::{Pace, SessionClock, Setbacks};
 pub use input::Input;
-#[cfg(feature = "controller")]
 pub use panel::MAX_RECORDED_INPUTS;
 
 use crate::{Experiment, Run, replayed};
 use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
 use core::fmt;
-#[cfg(feature = "controller")]
 use stepscope_controller::{
     NotEntered, StandAlone,
     input::{Change, Signal},
@@ -104,17 +101,14 @@ pub struct Session {
     digests: Vec<Digest>,
     /// What was recorded until the limit.
     cut: Option<Rc<Recording>>,
-    #[cfg(feature = "controller")]
     presses: panel::Presses,
 }
 
 fn blank(scenario: &Scenario) -> Scenario {
     let mut blank = match &scenario.source {
-        #[cfg(feature = "controller")]
         Source::Standalone(_) => scenario.clone(),
         _ => replayed(scenario.clone(), LineScript::default()),
     };
-    #[cfg(feature = "controller")]
     if let Source::Standalone(controllers) = &mut blank.source {
         controllers.iter_mut().for_each(|controller| controller.inputs = Vec::new());
     }
@@ -153,7 +147,6 @@ impl Session {
             digests: vec![Digest::default(); experiment.controllers()],
             experiment: Rc::new(experiment),
             cut: None,
-            #[cfg(feature = "controller")]
             presses: panel::Presses::default(),
         };
         session.advance::<Digest>(Instant::RESET, &mut []);
@@ -193,7 +186,6 @@ impl Session {
     /// Whether nothing changes without further input, and no reply waits.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        #[cfg(feature = "controller")]
         if !self.presses.are_done() {
             return false;
         }
@@ -201,7 +193,6 @@ impl Session {
     }
 
     /// Whether a stand-alone controller jogs without end.
-    #[cfg(feature = "controller")]
     #[must_use]
     pub fn jogs_without_end(&self) -> bool {
         self.presses.are_done() && self.run.stand_alone().is_some_and(StandAlone::jogs_without_end)
@@ -291,7 +282,6 @@ impl Session {
     /// the next one, or where the same input changes there the one after it. A level that was still to come of that input
     /// does not come any more.
     /// Errors: what a script would be refused for, and that a line has no buttons.
-    #[cfg(feature = "controller")]
     pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
         if self.cut.is_none() && !self.presses.has_room() {
             self.cut_recording();
@@ -305,7 +295,6 @@ impl Session {
 
     /// The same for a level that lasts `held`, unless the input changes before.
     /// Errors: those of [`Self::enter`].
-    #[cfg(feature = "controller")]
     pub fn enter_for(
         &mut self,
         controller: usize,
@@ -324,7 +313,6 @@ impl Session {
 
     /// Runs up to and with cycle `to`, with a sink per controller; nothing comes after the end of time.
     pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
-        #[cfg(feature = "controller")]
         while let Some(due) = self.presses.due(to) {
             self.run_on(Instant(due.0.saturating_sub(1)), sinks);
             while let Some((controller, change)) = self.presses.take(due) {
@@ -333,7 +321,6 @@ impl Session {
             }
         }
         self.run_on(to, sinks);
-        #[cfg(feature = "controller")]
         if self.cut.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
             self.cut_recording();
         }
@@ -387,7 +374,6 @@ impl Session {
     }
 
     fn source_to_now(&self) -> Source {
-        #[cfg(feature = "controller")]
         if let Source::Standalone(controllers) = &self.blank.source {
             let mut controllers = controllers.clone();
             for (index, controller) in controllers.iter_mut().enumerate() {
@@ -445,14 +431,8 @@ pub struct Recording {
     pub panel_digest: Option<u64>,
 }
 
-#[cfg(feature = "controller")]
 fn panel_digest(run: &Run) -> Option<u64> {
     run.stand_alone().map(stepscope_controller::StandAlone::panel_digest)
-}
-
-#[cfg(not(feature = "controller"))]
-const fn panel_digest(_: &Run) -> Option<u64> {
-    None
 }
 
 /// Why a recording does not replay the session.

@@ -1,6 +1,6 @@
 //! The timing check of a run, as the page shows it, and the drivers that it may choose from.
 
-use crate::{convert::object, judged::config, simulation::Simulation};
+use crate::{convert::object, judged::config, view::simulation::Simulation};
 use serde::Serialize;
 use stepscope_core::{
     inspect::{

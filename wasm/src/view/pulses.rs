@@ -2,7 +2,7 @@
 
 use crate::{
     convert::{object, words},
-    simulation::Simulation,
+    view::simulation::Simulation,
 };
 use js_sys::Object;
 use stepscope_core::inspect::{changes::Edge, edges::Signals};

@@ -2,7 +2,7 @@
 
 use crate::{
     convert::{field, object},
-    simulation::Simulation,
+    view::simulation::Simulation,
 };
 use js_sys::{Object, Uint8Array};
 use serde::Serialize;

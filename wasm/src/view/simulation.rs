@@ -2,9 +2,12 @@
 //! controller at a time.
 
 use crate::{
-    advance::{advance, progress},
     convert::records,
     judged::{Judged, listed},
+    view::{
+        advance::{advance, progress},
+        panel::PanelLog,
+    },
 };
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
@@ -14,8 +17,9 @@ use stepscope_core::{
     },
     peripheral::{
         config::Config,
-        signal::{Levels, Record, Sink},
+        signal::{Event, Levels, Record, Sink},
         trace::{Digest, Recording, Step, steps},
+        units::Instant,
     },
     scenario::Scenario,
     sim::{Experiment, Run},
@@ -41,12 +45,32 @@ pub struct Simulation {
     pub(crate) recorded: Option<Vec<Record>>,
     /// How many records of it are taken in.
     taken_in: usize,
-    /// And that was this scenario's run.
-    pub(crate) is_own: bool,
+    /// The panels of stand-alone controllers.
+    pub(crate) panels: PanelLog,
     /// Replies that were recorded, as [`replies::put`] takes them; none of them left once they are in their place.
     pub(crate) replies: Option<Vec<u8>>,
     /// The run is at its end; what was recorded is taken in, or has been.
     is_made: bool,
+}
+
+/// Records a run, and what is switched at the panels of stand-alone controllers.
+struct Watched {
+    run: RunSink,
+    inputs: Vec<(Instant, Event)>,
+}
+
+impl Sink for Watched {
+    fn record(&mut self, record: Record) {
+        self.run.record(record);
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        if let Event::Input { .. } = event {
+            self.inputs.push((at, event));
+        } else {
+            self.run.event(at, event);
+        }
+    }
 }
 
 /// What is kept of one controller.
@@ -161,12 +185,6 @@ impl Simulation {
         self.replies = Some(bytes);
     }
 
-    /// Records of a run that another module made, looked at in the same way: they are this scenario's own, and no recording.
-    pub fn take_records(&mut self, bytes: &[u8]) {
-        self.record(bytes, 0);
-        self.is_own = true;
-    }
-
     /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it
     /// is.
     pub fn select(&mut self, controller: u32) {
@@ -180,14 +198,17 @@ impl Simulation {
 impl Simulation {
     /// Runs on.
     fn make(&mut self, max_records: u32) {
-        let watched = |one: &mut ControllerRecording| RunSink {
-            recording: take(&mut one.recording),
-            timing: one.timing.take(),
+        self.panels.save_stop(self.run.stand_alone());
+        let watched = |one: &mut ControllerRecording| Watched {
+            run: RunSink { recording: take(&mut one.recording), timing: one.timing.take() },
+            inputs: Vec::new(),
         };
-        let mut watched: Vec<RunSink> = self.recordings.iter_mut().map(watched).collect();
+        let mut watched: Vec<Watched> = self.recordings.iter_mut().map(watched).collect();
         let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
         let done = advance(&self.experiment, &mut self.run, max_records, &mut watched, &mut logs);
-        for (one, RunSink { recording, timing }) in self.recordings.iter_mut().zip(watched) {
+        for (one, watched) in self.recordings.iter_mut().zip(watched) {
+            let Watched { run: RunSink { recording, timing }, inputs } = watched;
+            self.panels.inputs.extend(inputs);
             one.changes.extend(&recording.trace);
             (one.recording, one.timing) = (recording, timing);
         }
@@ -249,7 +270,7 @@ impl Simulation {
             filter: Filter::default(),
             recorded: None,
             taken_in: 0,
-            is_own: false,
+            panels: PanelLog::default(),
             replies: None,
             is_made: false,
         }

@@ -4,7 +4,7 @@
 use crate::{
     convert::{field, numbers, object},
     judged::config,
-    simulation::Simulation,
+    view::simulation::Simulation,
 };
 use js_sys::Object;
 use serde::Serialize;

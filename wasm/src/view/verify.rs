@@ -1,6 +1,6 @@
 //! A run held against another one: what a link's sender saw.
 
-use crate::{convert::object, simulation::Simulation};
+use crate::{convert::object, view::simulation::Simulation};
 use serde::Serialize;
 use stepscope_core::inspect::{
     fingerprint::{Fingerprint, Mark, Shorter},

@@ -1,7 +1,7 @@
 //! Ticks of an axis: where they stand, and their labels: numbers with an SI prefix, a unit, and no
 //! more digits than the ticks need.
 
-use crate::charts::axis::Axis;
+use crate::view::charts::axis::Axis;
 
 /// The ticks of one axis, 1, 2 or 5 times a power of ten apart, with one prefix and one number of
 /// digits for all labels; or those that the axis brings.

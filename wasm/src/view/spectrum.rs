@@ -2,7 +2,7 @@
 
 use crate::{
     convert::{field, numbers, object},
-    simulation::Simulation,
+    view::simulation::Simulation,
 };
 use js_sys::Object;
 use serde::Serialize;

@@ -3,7 +3,7 @@
 //! A piece is asked for by where it begins. Nothing is kept between two pieces, so leaving off is nothing
 //! but not asking for the next one.
 
-use crate::{convert::field, judged::config, simulation::Simulation};
+use crate::{convert::field, judged::config, view::simulation::Simulation};
 use js_sys::{Object, Uint8Array};
 use std::{fmt, io};
 use stepscope_core::{

@@ -2,7 +2,7 @@
 
 use crate::{
     convert::object,
-    simulation::{ControllerRecording, Simulation},
+    view::simulation::{ControllerRecording, Simulation},
 };
 use serde::Serialize;
 use stepscope_core::{
@@ -97,7 +97,7 @@ impl Simulation {
             first.positions = shown.positions();
         }
         object(&Summary {
-            recorded: (self.recorded.is_some() || self.replies.is_some()) && !self.is_own,
+            recorded: self.recorded.is_some() || self.replies.is_some(),
             framed: run.framed,
             end_cycle: run.cycles.0,
             end_s: run.cycles.0 as f64 / f64::from(run.clock_hz),

@@ -1,0 +1,121 @@
+//! The panels of stand-alone controllers as the view Panel shows them (CONTROLLER.md G8): what each showed
+//! when, what was switched, and its state in any cycle.
+
+use crate::{convert::numbers, view::simulation::Simulation};
+use js_sys::Object;
+use stepscope_core::{
+    controller::{StandAlone, panel::PanelRecord},
+    peripheral::{
+        signal::{Event, Record, Sink},
+        units::Instant,
+    },
+};
+use wasm_bindgen::prelude::*;
+
+/// Maximum number of saved states, so that few questions have to begin at cycle 0.
+const STOPS: usize = 64;
+
+/// Discards everything.
+struct Nowhere;
+
+impl Sink for Nowhere {
+    fn record(&mut self, _: Record) {}
+}
+
+/// What is saved of the panels during a run.
+pub(crate) struct PanelLog {
+    /// What was switched at the panels.
+    pub(crate) inputs: Vec<(Instant, Event)>,
+    /// The controllers at some cycles of the run, at equal numbers of slices.
+    stops: Vec<StandAlone>,
+    /// Slices from one of them to the next, and those since the last one.
+    apart: usize,
+    since: usize,
+}
+
+impl Default for PanelLog {
+    fn default() -> Self {
+        Self { inputs: Vec::new(), stops: Vec::new(), apart: 1, since: 0 }
+    }
+}
+
+#[wasm_bindgen]
+impl Simulation {
+    /// What became of a panel: `records` (cycle, word, position, display of each), `inputs` (cycle, number, raw level of each
+    /// change), `ignored` (cycle, number, state of each press that did nothing), `writes` (of each cell of its memory);
+    /// undefined where there is no such controller.
+    #[must_use]
+    pub fn panel(&self, controller: usize) -> Option<Object> {
+        let machine = self.run.stand_alone().filter(|machine| controller < machine.controllers())?;
+        let record = |&PanelRecord { cycle, word, position, display }: &PanelRecord| {
+            [cycle.0 as f64, word.0 as f64, position as f64, display as f64]
+        };
+        let result = Object::new();
+        numbers(&result, "records", &machine.panel(controller).iter().flat_map(record).collect::<Vec<_>>());
+        let ignored = machine.ignored(controller).iter();
+        let ignored = ignored
+            .flat_map(|press| [press.cycle.0, press.button as u64, press.state as u64].map(|x| x as f64));
+        numbers(&result, "ignored", &ignored.collect::<Vec<_>>());
+        let writes = machine.writes(controller).iter().copied().map(f64::from);
+        numbers(&result, "writes", &writes.collect::<Vec<_>>());
+        let mut inputs = Vec::new();
+        for &(at, event) in &self.panels.inputs {
+            if let Event::Input { controller: whose, input, level } = event
+                && usize::from(whose) == controller
+            {
+                inputs.extend([at.0 as f64, f64::from(input), f64::from(u8::from(level))]);
+            }
+        }
+        numbers(&result, "inputs", &inputs);
+        Some(result)
+    }
+
+    /// How a controller stands at the beginning of a cycle: word, position, display, place and error
+    /// of its axis, pulses a unit, decimals, whether its windings are powered, loops and groups of its program.
+    #[must_use]
+    pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
+        let cycle = Instant(cycle.max(0.0) as u64);
+        let mut machine = self.panels.stops.iter().rfind(|stop| stop.now() <= cycle)?.clone();
+        machine.run(cycle, &mut Nowhere);
+        let numbers = machine.numbers(controller);
+        Some(vec![
+            machine.word(controller)?.0 as f64,
+            f64::from(machine.position(controller)?),
+            machine.display(controller)? as f64,
+            machine.axis_place(controller)? as f64,
+            machine.axis_error(controller)? as f64,
+            f64::from(*numbers.first()?),
+            f64::from(*numbers.get(1)?),
+            f64::from(u8::from(machine.enabled(controller)?)),
+            f64::from(*numbers.get(6)?),
+            f64::from(*numbers.get(7)?),
+        ])
+    }
+}
+
+impl PanelLog {
+    /// Saves the controllers' state if the run has come far enough since the last one.
+    pub(crate) fn save_stop(&mut self, machine: Option<&StandAlone>) {
+        let Some(machine) = machine else { return };
+        self.since += 1;
+        if !self.stops.is_empty() && self.since < self.apart {
+            return;
+        }
+        self.since = 0;
+        let mut stop = machine.clone();
+        // The run itself has what its panel has shown.
+        for index in 0..stop.controllers() {
+            stop.take_panel(index);
+        }
+        self.stops.push(stop);
+        if self.stops.len() > STOPS {
+            // Every other one goes, and new ones are half as frequent.
+            let mut index = 0;
+            self.stops.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.apart *= 2;
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What a run's motors, supply and sensors did, as the view Motor shows it.
+
+use crate::{
+    convert::{field, numbers, object},
+    view::simulation::Simulation,
+};
+use js_sys::Object;
+use stepscope_core::inspect::{
+    plant_log::{MOTOR, PlantLog, SUPPLY, Stretch},
+    plant_report::PlantReport,
+};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+impl Simulation {
+    /// The report of the selected controller's plant ([`PlantReport`]); null where it has none.
+    ///
+    /// # Errors
+    /// Never in practice.
+    pub fn plant(&self) -> Result<JsValue, JsError> {
+        object(&PlantReport::of(&self.experiment, &self.run, self.selected))
+    }
+
+    /// Values of the supply and of a motor over a range of cycles, by their names ([`SUPPLY`], [`MOTOR`]): `x` in s, `min`
+    /// and `max`; undefined where there is no such motor.
+    #[must_use]
+    pub fn plant_curves(&self, channel: usize, from: f64, to: f64, columns: usize) -> Option<Object> {
+        let (log, values, names) = self.plant_values(channel)?;
+        let stretch = Stretch { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
+        let hz = f64::from(self.experiment.config().clock_hz());
+        let result = Object::new();
+        let bands = log.curves(&self.selected().recording.trace, stretch, &values);
+        for (name, band) in names.zip(bands) {
+            let one = Object::new();
+            let seconds: Vec<f64> = band.cycle.iter().map(|cycle| cycle / hz).collect();
+            numbers(&one, "x", &seconds);
+            numbers(&one, "min", &band.least);
+            numbers(&one, "max", &band.greatest);
+            field(&result, name, &one);
+        }
+        Some(result)
+    }
+
+    /// The same values at the last point of the plant's grid up to a cycle.
+    #[must_use]
+    pub fn plant_at(&self, channel: usize, cycle: f64) -> Option<Object> {
+        let (log, values, names) = self.plant_values(channel)?;
+        let all = log.at(&self.selected().recording.trace, cycle.max(0.0) as u64);
+        let result = Object::new();
+        for (name, value) in names.zip(values) {
+            field(&result, name, &all.get(value).copied().into());
+        }
+        Some(result)
+    }
+}
+
+impl Simulation {
+    /// The log, and indices and names of the values of its supply and of one motor.
+    fn plant_values(
+        &self,
+        channel: usize,
+    ) -> Option<(&PlantLog, Vec<usize>, impl Iterator<Item = &'static str>)> {
+        let log = self.selected().plant.as_ref()?;
+        let first = PlantLog::of_motor(channel);
+        let has_motor = self.run.plant(self.selected).is_some_and(|plant| channel < plant.motors());
+        let values = (0..SUPPLY.len()).chain(first..first + MOTOR.len()).collect();
+        has_motor.then(|| (log, values, SUPPLY.into_iter().chain(MOTOR)))
+    }
+}

@@ -1,0 +1,31 @@
+//! The presets of the page's menu.
+
+use crate::convert::object;
+use serde::Serialize;
+use stepscope_core::scenario::presets::{
+    CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset,
+};
+use wasm_bindgen::prelude::*;
+
+#[derive(Serialize)]
+struct Listed {
+    id: &'static str,
+    document: &'static str,
+    title: String,
+    scenario: String,
+}
+
+/// All presets: `{id, document, title, scenario}`, the scenario as JSON with every field written.
+///
+/// # Errors
+/// Never in practice: the presets are tested.
+#[wasm_bindgen]
+pub fn presets() -> Result<JsValue, JsError> {
+    let listed = |preset: &Preset| {
+        let scenario = preset.scenario();
+        let (id, document, title) = (preset.id, preset.document, scenario.title.clone());
+        Listed { id, document, title, scenario: scenario.to_json() }
+    };
+    let lists = [PRESETS, PLANT_PRESETS, CONTROLLER_PRESETS, CONTROLLER_PLANT_PRESETS];
+    object(&lists.into_iter().flatten().map(listed).collect::<Vec<_>>())
+}
