@@ -46,10 +46,6 @@ import { createTiming } from "./views/timing.js";
 /** @typedef {import("./state/types.js").State} State */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} View */
 
-/** A module with one operation on two numbers at once, as the core has them: browsers before 2023 refuse it. */
-const TWO_AT_ONCE = [
-  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
-];
 
 /** @type {State} */
 let state = initial({});
@@ -171,7 +167,7 @@ async function start() {
   createTheme();
   createCard();
   offerGuide();
-  if (typeof WebAssembly !== "object" || !WebAssembly.validate(Uint8Array.from(TWO_AT_ONCE))) {
+  if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
     byId("status").textContent = "no engine";
     return;

@@ -24,12 +24,6 @@ pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
     field(object, name, &Float64Array::from(values));
 }
 
-/// Adds an array of 64-bit words to an object, each as its low and its high half.
-pub(crate) fn words(object: &Object, name: &str, values: &[u64]) {
-    let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
-    field(object, name, &js_sys::Uint32Array::from(halves.as_slice()));
-}
-
 /// Records as they go from one worker to another: 16 bytes each, cycle and levels, little-endian.
 pub(crate) fn records(bytes: &[u8]) -> impl Iterator<Item = Record> {
     let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);

@@ -3,7 +3,7 @@
 use stepscope_core::{
     peripheral::config::Config,
     scenario::Problem,
-    sim::{self, Experiment, SelectedAxis},
+    sim::{self, Experiment},
 };
 use wasm_bindgen::prelude::*;
 
@@ -21,12 +21,13 @@ impl Judged {
     }
 }
 
+#[cfg(feature = "tools")]
 impl Judged {
     /// Axis `axis` of controller `controller`.
     ///
     /// # Errors
     /// If the scenario has problems, or no such axis.
-    pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<SelectedAxis<'_>, JsError> {
+    pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<sim::SelectedAxis<'_>, JsError> {
         self.0.experiment().map_err(listed)?;
         self.0.axis(controller, axis).ok_or_else(|| JsError::new("there is no such axis"))
     }

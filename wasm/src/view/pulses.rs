@@ -1,7 +1,7 @@
 //! The signals of a run for the logic view: pixel columns, edges, and the pulse at a cycle.
 
 use crate::{
-    convert::{object, words},
+    convert::{field, object},
     view::simulation::Simulation,
 };
 use js_sys::Object;
@@ -67,4 +67,10 @@ impl Simulation {
         let selected = self.selected();
         Signals { trace: &selected.recording.trace, changes: &selected.changes }
     }
+}
+
+/// Adds an array of 64-bit words to an object, each as its low and its high half.
+fn words(object: &Object, name: &str, values: &[u64]) {
+    let halves: Vec<u32> = values.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
+    field(object, name, &js_sys::Uint32Array::from(halves.as_slice()));
 }
