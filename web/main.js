@@ -46,7 +46,6 @@ import { createTiming } from "./views/timing.js";
 /** @typedef {import("./state/types.js").State} State */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} View */
 
-
 /** @type {State} */
 let state = initial({});
 /** @type {View[]} */
