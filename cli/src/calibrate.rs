@@ -7,7 +7,7 @@ use std::{
     io::{self, Write},
     path::PathBuf,
 };
-use stepscope_core::inspect::calibration::{Calibration, Fit, Pair};
+use stepscope_core::inspect::motion::calibration::{Calibration, Fit, Pair};
 
 /// Columns that a length may stand in, with mm in one of its units.
 const LENGTHS: [(&str, f64); 3] = [("length_mm", 1.0), ("length_cm", 10.0), ("length_m", 1000.0)];

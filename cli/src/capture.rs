@@ -32,7 +32,7 @@ use stepscope_core::{
         read::{self, Limits, Reading, Wanted},
         samples::sample,
     },
-    inspect::{recording::opened::Opened, timing::TimingCheck, torque::Machine},
+    inspect::{motion::torque::Machine, recording::opened::Opened, trace::timing::TimingCheck},
     peripheral::signal::Sink,
     scenario::{Scenario, SegmentLists, Source},
 };

@@ -7,7 +7,10 @@ use std::{
     process::ExitCode,
 };
 use stepscope_core::{
-    inspect::{recorded_run::TooLong, run_fingerprint::RunFingerprintError, vcd::TooCoarse},
+    inspect::{
+        export::vcd::TooCoarse,
+        trace::{recorded_run::TooLong, run_fingerprint::RunFingerprintError},
+    },
     scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError},
 };
 

@@ -7,11 +7,12 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        fingerprint::Fingerprinter,
-        packet_table::PacketTable,
-        tables::{write_edges_head, write_edges_row},
-        timing::TimingCheck,
-        vcd::{Timescale, VcdWriter},
+        export::{
+            tables::{write_edges_head, write_edges_row},
+            vcd::{Timescale, VcdWriter},
+        },
+        packets::packet_table::PacketTable,
+        trace::{fingerprint::Fingerprinter, timing::TimingCheck},
     },
     peripheral::{
         signal::{Event, Record, Sink},

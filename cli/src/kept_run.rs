@@ -2,7 +2,9 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use stepscope_core::{inspect::recorded_run::record_run, peripheral::trace::Recording, sim::Experiment};
+use stepscope_core::{
+    inspect::trace::recorded_run::record_run, peripheral::trace::Recording, sim::Experiment,
+};
 
 /// What the first controller of a scenario's run does.
 ///

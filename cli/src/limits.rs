@@ -18,7 +18,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::plant::settling as settling_of,
+    inspect::plant::outcome::settling as settling_of,
     plant::{
         Refused,
         parameters::{MotorModel, Setup},

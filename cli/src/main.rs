@@ -46,7 +46,7 @@ use std::{
     io::{self, Write},
     process::ExitCode,
 };
-use stepscope_core::inspect::plain_text::is_unsafe;
+use stepscope_core::inspect::export::plain_text::is_unsafe;
 
 /// Follows the help of each command.
 const EXIT_CODES: &str = "\

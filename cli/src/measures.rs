@@ -11,7 +11,7 @@ use arguments::Written;
 use distortion::Distortion;
 use std::io::{self, Write};
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         actual_motion::Pulses,
         measures::{Measures, within_bounds},
     },

@@ -15,7 +15,7 @@ use std::{
     rc::Rc,
 };
 use stepscope_core::{
-    inspect::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet},
+    inspect::plant::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet},
     scenario::{Compact, Scenario},
     sim::Experiment,
 };
@@ -59,7 +59,7 @@ impl Named {
 
     /// The scenario with it, from which the motor of each channel can be told ([`Machine::of_channel`]).
     ///
-    /// [`Machine::of_channel`]: stepscope_core::inspect::torque::Machine::of_channel
+    /// [`Machine::of_channel`]: stepscope_core::inspect::motion::torque::Machine::of_channel
     pub(crate) fn named<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
         if self.motor.is_none() {
             return Cow::Borrowed(scenario);

@@ -5,7 +5,7 @@ use crate::{files::Output, output::Out};
 use std::io::{self, Write};
 use stepscope_core::{
     controller::CheckedSetup,
-    inspect::{
+    inspect::export::{
         panel::{PANEL_HEAD, PanelSignals, write_panel_row},
         tables::{write_edges_head, write_edges_row},
         vcd::{Timescale, VcdWriter},

@@ -22,9 +22,11 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
-        plant::{energy_left_over, names, table_head, table_row, too_coarse, values, verdict},
-        plant_report::PlantReport,
-        vcd::{Timescale, VcdWriter},
+        export::vcd::{Timescale, VcdWriter},
+        plant::{
+            outcome::{energy_left_over, names, table_head, table_row, too_coarse, values, verdict},
+            report::PlantReport,
+        },
     },
     peripheral::{
         signal::{Record, Sink},

@@ -20,7 +20,10 @@ use std::{
 };
 use stepscope_core::{
     controller::{CheckedSetup, StandAlone},
-    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint, vcd::Timescale},
+    inspect::{
+        export::vcd::Timescale,
+        trace::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+    },
     peripheral::config::Config,
     scenario::{Cause, Problem, Scenario, Source, link},
     sim::{Experiment, Run, Summary},

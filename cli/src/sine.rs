@@ -16,7 +16,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
         sine_polyline::{self, Bounds, Distinct, Measure, Row, swept},
     },

@@ -18,7 +18,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::{
+    inspect::export::{
         source_code::{Language, Source, headline, is_name},
         step_tables::{scheduled, tolerance_cycles},
     },

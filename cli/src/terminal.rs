@@ -8,7 +8,7 @@ use std::{
     io::{self, StderrLock, StdoutLock, Write},
     path::Path,
 };
-use stepscope_core::inspect::plain_text::is_unsafe;
+use stepscope_core::inspect::export::plain_text::is_unsafe;
 
 /// Standard output for text.
 pub(crate) fn out() -> Text<StdoutLock<'static>> {

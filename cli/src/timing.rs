@@ -9,7 +9,7 @@ use std::{
 };
 use stepscope_core::{
     capture::timebase::Timebase,
-    inspect::{
+    inspect::trace::{
         drivers::{self, DRIVERS, DataSheet},
         timing::{Rule, RuleResult, TimingCheck},
     },

@@ -19,8 +19,8 @@ use driven::MotionSource;
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
-        model_agreement::{Agreement, FirstSlips, agreement},
-        torque::{Demand, Machine},
+        motion::torque::{Demand, Machine},
+        plant::model_agreement::{Agreement, FirstSlips, agreement},
     },
     motion::{moves::Axis, plan_lists},
     peripheral::{trace::Digest, units::Cycles},

@@ -3,7 +3,7 @@
 use crate::{failure::Failure, progress::Progress, terminal};
 use std::{io::Write, path::PathBuf};
 use stepscope_core::{
-    inspect::{
+    inspect::trace::{
         fingerprint::Shorter,
         run_fingerprint::{RunFingerprint, VERSION, Verification},
     },

@@ -6,7 +6,7 @@ use std::{
     path::PathBuf,
     process::{Command, Stdio},
 };
-use stepscope_core::{inspect::drivers::DRIVERS, sim::Experiment};
+use stepscope_core::{inspect::trace::drivers::DRIVERS, sim::Experiment};
 use stepscope_tests::golden::{CASES, Case};
 
 /// What a call gave.

@@ -2,9 +2,9 @@
 
 use stepscope_core::{
     inspect::{
-        packet_table::PacketTable,
-        tables::{write_edges_head, write_edges_row},
-        trace_diff::TraceDiff,
+        export::tables::{write_edges_head, write_edges_row},
+        packets::packet_table::PacketTable,
+        trace::diff::TraceDiff,
     },
     peripheral::{trace::Recording, units::Instant, wire::schedule::line_time},
     scenario::{LineScript, Scenario, ScriptedSend, presets::PRESETS},

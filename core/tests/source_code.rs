@@ -5,7 +5,7 @@
 use crate::moves::{CLOCK_HZ, plan};
 use std::{env, fmt::Write, fs, path::PathBuf, process::Command};
 use stepscope_core::{
-    inspect::source_code::{Language, Source},
+    inspect::export::source_code::{Language, Source},
     motion::{
         mechanics::{Distance, Speed},
         moves::{Constant, Cosine, Dwell, Move, SineSegments},

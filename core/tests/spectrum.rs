@@ -1,7 +1,7 @@
 //! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
 
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         actual_motion::Pulses,
         spectrum::{AnalysisWindow, Spectrum},
     },

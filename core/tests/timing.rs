@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use stepscope_core::{
-    inspect::{
+    inspect::trace::{
         drivers,
         timing::{Rule, TimingCheck},
     },

@@ -38,7 +38,7 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "sqrt",
         "IEEE 754 leaves a square root no choice of bits, and a test compares them",
     ),
-    ("core/inspect/src/vcd.rs", "io", "only the trait that bytes are written through"),
+    ("core/inspect/src/export/vcd.rs", "io", "only the trait that bytes are written through"),
     (
         "core/capture/src/read/mod.rs",
         "io",

@@ -5,7 +5,7 @@
 
 use std::{f64::consts::PI, fs, path::Path};
 use stepscope_core::{
-    inspect::spectrum::Spectrum,
+    inspect::motion::spectrum::Spectrum,
     motion::{
         Profile,
         mechanics::Distance,

@@ -6,7 +6,7 @@
 
 use std::{collections::BTreeSet, fmt::Write as _, fs, path::PathBuf};
 use stepscope_core::{
-    inspect::{
+    inspect::trace::{
         fingerprint::{FingerprintCheck, FingerprintMatch, Fingerprinter},
         run_fingerprint::RunFingerprint,
     },

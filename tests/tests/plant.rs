@@ -2,7 +2,7 @@
 //! sources of all kinds.
 
 use stepscope_core::{
-    inspect::plant::verdict,
+    inspect::plant::outcome::verdict,
     peripheral::{
         device::Faults,
         signal::{Levels, Record},

@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use stepscope_core::{
     capture::{read::Base, uart},
     inspect::{
+        export::vcd::Timescale,
         recording::opened::{Ask, OpenError},
-        vcd::Timescale,
     },
 };
 

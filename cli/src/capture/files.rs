@@ -13,9 +13,11 @@ use std::{
 };
 use stepscope_core::{
     inspect::{
+        export::{
+            tables::{write_edges_head, write_edges_row},
+            vcd::VcdWriter,
+        },
         recording::{opened::Opened, packets::Packets},
-        tables::{write_edges_head, write_edges_row},
-        vcd::VcdWriter,
     },
     peripheral::{
         signal::Sink,

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+    inspect::trace::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
     scenario::{Scenario, link},
     sim::{
         Experiment,

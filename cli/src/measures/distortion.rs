@@ -1,7 +1,7 @@
 //! The distortion that the table of measures has beside them.
 
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         actual_motion::Pulses,
         spectrum::{AnalysisWindow, Harmonics, Spectrum},
     },

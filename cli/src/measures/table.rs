@@ -8,7 +8,7 @@
 use crate::{json::Tables, measures::distortion::Distortion};
 use serde_json::json;
 use std::io::{self, Write};
-use stepscope_core::inspect::measures::{CurveMetrics, Measures, PulseErrors};
+use stepscope_core::inspect::motion::measures::{CurveMetrics, Measures, PulseErrors};
 
 /// A figure of a group, with a value for each of its columns; `None` where there is none.
 struct Row {

@@ -6,10 +6,12 @@ use serde_json::{Map, Value};
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
-        actual_motion::Pulses,
+        motion::{
+            actual_motion::Pulses,
+            spectra::Spectra,
+            spectrum::{Harmonics, Spectrum},
+        },
         recording::figures::StepFigures,
-        spectra::Spectra,
-        spectrum::{Harmonics, Spectrum},
     },
     peripheral::trace::steps,
     scenario::{Problem, Scenario, ValueError},

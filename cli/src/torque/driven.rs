@@ -2,8 +2,8 @@
 
 use stepscope_core::{
     inspect::{
-        model_agreement::Agreement,
-        torque::{Demand, Machine},
+        motion::torque::{Demand, Machine},
+        plant::model_agreement::Agreement,
     },
     motion::AxisPlan,
     peripheral::trace::Step,

@@ -3,7 +3,7 @@
 use super::{arguments::Arguments, driven::Driven};
 use crate::{failure::Failure, kept_run};
 use stepscope_core::{
-    inspect::torque::Machine,
+    inspect::motion::torque::Machine,
     peripheral::trace::steps,
     scenario::{Problem, Scenario, ValueError},
     sim::Experiment,

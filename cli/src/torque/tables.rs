@@ -4,7 +4,7 @@ use super::driven::{Driven, MotionSource};
 use crate::json::Tables;
 use serde_json::{Value, json};
 use stepscope_core::{
-    inspect::torque::{Moment, Ramps},
+    inspect::motion::torque::{Moment, Ramps},
     motion::Curve,
 };
 

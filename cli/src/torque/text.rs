@@ -4,8 +4,8 @@ use super::driven::{Driven, MotionSource};
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
-        model_agreement::Agreement,
-        torque::{Demand, Machine, Moment, Ramps},
+        motion::torque::{Demand, Machine, Moment, Ramps},
+        plant::model_agreement::Agreement,
     },
     motion::{Curve, PlannedMove},
 };

@@ -3,7 +3,7 @@
 //! pulses and a motor the plan, and the files of all of it.
 //!
 //! ```
-//! use stepscope_inspect::{actual_motion::Pulses, measures::Measures};
+//! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
 //! use stepscope_peripheral::trace::{Recording, steps};
 //! use stepscope_sim::Experiment;
 //!
@@ -24,52 +24,16 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub mod actual_motion;
-#[cfg(feature = "std")]
-mod analysis_window;
-pub mod calibration;
-pub mod changes;
-pub mod columns;
-pub mod comparison;
-pub mod cursor_stats;
-pub mod curves;
-pub mod dissector;
-pub mod drivers;
-pub mod edges;
-pub mod fingerprint;
-#[cfg(feature = "std")]
-mod fourier;
-pub mod judgement;
-pub mod line_decoder;
-pub mod measures;
-pub mod model_agreement;
-pub mod motors;
-pub mod packet_table;
-pub mod panel;
-pub mod plain_text;
+/// Files of a run: value change dumps, CSV tables, step tables and source code.
+pub mod export;
+/// What a motion is and what the pulses make of it: curves, errors, spectra, distortion and torque.
+pub mod motion;
+/// Packets with their fields, outcomes and faults.
+pub mod packets;
+/// What drivers, motors and loads did.
 pub mod plant;
-pub mod plant_log;
-pub mod plant_report;
-pub mod position_error;
-pub mod recorded_run;
 #[cfg(feature = "std")]
 pub mod recording;
-pub mod remedies;
-pub mod run_fingerprint;
-pub mod run_sink;
-pub mod sine_optimum;
-pub mod sine_polyline;
-pub mod source_code;
-#[cfg(feature = "std")]
-pub mod spectra;
-#[cfg(feature = "std")]
-pub mod spectrum;
-pub mod step_acceleration;
-pub mod step_tables;
-pub mod tables;
-pub mod timing;
-pub mod torque;
-pub mod trace_diff;
-pub mod trace_window;
-#[cfg(feature = "std")]
-pub mod vcd;
+/// Signals over time: edges, views, timing checks, trace diffs and fingerprints.
+pub mod trace;
+pub mod validation;

@@ -1,7 +1,7 @@
 //! What is kept of a plant's run against every one of its points: least and greatest of a stretch, and values at a cycle.
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-use stepscope_inspect::plant_log::{MOTOR, PlantLog, SUPPLY, Stretch};
+use stepscope_inspect::plant::log::{MOTOR, PlantLog, SUPPLY, Stretch};
 use stepscope_peripheral::{trace::Recording, units::Instant};
 use stepscope_plant::{Observer, Plant};
 use stepscope_sim::Experiment;

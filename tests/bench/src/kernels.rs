@@ -3,7 +3,7 @@
 use core::{hint::black_box, num::NonZeroU32};
 
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         sine_optimum::{Freedom, optimum},
         sine_polyline::sweep,
     },

@@ -15,16 +15,20 @@ use stepscope_core::{
         read::{Limits, Reading, read},
     },
     inspect::{
-        actual_motion::Pulses,
-        curves::{Window, actual},
+        export::{
+            tables::{write_edges_head, write_edges_row},
+            vcd::VcdWriter,
+        },
+        motion::{
+            actual_motion::Pulses,
+            curves::{Window, actual},
+        },
         recording::{
             alignment::{Alignment, Side},
             opened::{Ask, Opened, Part},
             scenario::{Made, Steps, of_step_times, of_steps},
             tolerance::Tolerance,
         },
-        tables::{write_edges_head, write_edges_row},
-        vcd::VcdWriter,
     },
     peripheral::{
         signal::{Record, Sink},

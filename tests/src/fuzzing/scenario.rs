@@ -3,9 +3,9 @@
 
 use crate::equivalence::{self, Ways};
 use stepscope_core::{
-    inspect::{
+    inspect::plant::{
         model_agreement::FirstSlips,
-        plant::{table_head, table_row, too_coarse, verdict},
+        outcome::{table_head, table_row, too_coarse, verdict},
     },
     peripheral::{trace::Digest, units::Cycles},
     plant::State,

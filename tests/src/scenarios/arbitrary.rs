@@ -2,7 +2,7 @@
 
 use super::segmented;
 use proptest::prelude::*;
-use stepscope_core::inspect::drivers::DRIVERS;
+use stepscope_core::inspect::trace::drivers::DRIVERS;
 use stepscope_core::{
     motion::{
         mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Rotary, Screw, Speed, Wheel},

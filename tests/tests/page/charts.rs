@@ -5,7 +5,7 @@ use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, MouseActions, PointerAction};
 use serde_json::{Value, json};
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         actual_motion::Pulses,
         cursor_stats,
         position_error::{self, Scaled},

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::{inspect::actual_motion::Pulses, peripheral::trace::steps};
+use stepscope_core::{inspect::motion::actual_motion::Pulses, peripheral::trace::steps};
 
 use crate::{
     bench::in_browser,

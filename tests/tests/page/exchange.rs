@@ -4,10 +4,9 @@ use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
     inspect::{
-        fingerprint::Fingerprint,
-        packet_table::PacketTable,
-        run_fingerprint::RunFingerprint,
-        tables::{write_edges_head, write_edges_row},
+        export::tables::{write_edges_head, write_edges_row},
+        packets::packet_table::PacketTable,
+        trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint},
     },
     peripheral::signal::Record,
     scenario::{link::with_part, presets::PRESETS},

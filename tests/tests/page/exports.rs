@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    inspect::{
+    inspect::export::{
         tables::{write_edges_head, write_edges_row},
         vcd::VcdWriter,
     },

@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::inspect::columns::columns;
+use stepscope_core::inspect::trace::columns::columns;
 
 use crate::{
     bench::in_browser,

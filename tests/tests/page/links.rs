@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
-    inspect::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint},
+    inspect::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint},
     scenario::{link::with_part, presets::PRESETS},
 };
 

@@ -5,10 +5,12 @@ use anyhow::{Result, ensure};
 use serde_json::json;
 use stepscope_core::{
     inspect::{
-        actual_motion::Pulses,
-        measures::Measures,
+        motion::{
+            actual_motion::Pulses,
+            measures::Measures,
+            spectrum::{AnalysisWindow, Spectrum},
+        },
         recording::figures::StepFigures,
-        spectrum::{AnalysisWindow, Spectrum},
     },
     peripheral::trace::steps,
     scenario::Source,

@@ -5,7 +5,7 @@
 use anyhow::{Result, ensure};
 use serde_json::json;
 use stepscope_core::{
-    inspect::{plant::settling, plant_report::PlantReport},
+    inspect::plant::{outcome::settling, report::PlantReport},
     plant::{
         rates::{RAMP_STEPS_S2, pulls, search, starts},
         settling::SHARE,

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    inspect::dissector::{Meaning, Reading},
+    inspect::packets::dissector::{Meaning, Reading},
     peripheral::{config::Protocol, protocol::FrameOutcome, trace::RowOutcome},
     scenario::presets::PRESETS,
 };

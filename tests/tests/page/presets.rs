@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::json;
 use stepscope_core::{
     capture::samples::SAMPLES,
-    inspect::spectrum::Spectrum,
+    inspect::motion::spectrum::Spectrum,
     scenario::{
         Source,
         presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},

@@ -9,9 +9,8 @@ use serde_json::{Value, json};
 use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
-        drivers,
         recording::opened::{Ask, Opened, Part},
-        timing::TimingCheck,
+        trace::{drivers, timing::TimingCheck},
     },
     peripheral::{
         signal::{Levels, Record, Sink as _},

@@ -8,9 +8,8 @@ use serde_json::json;
 use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
-        actual_motion::Pulses,
-        cursor_stats,
-        packet_table::PacketTable,
+        motion::{actual_motion::Pulses, cursor_stats},
+        packets::packet_table::PacketTable,
         recording::opened::{Ask, Opened, Part},
     },
     peripheral::{

@@ -4,11 +4,15 @@ use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
-        comparison::{Request, compare},
-        sine_optimum::{Freedom, optimum},
-        sine_polyline::{Distinct, Row, best, sweep},
-        source_code::{Language, Source, headline},
-        step_tables::scheduled,
+        export::{
+            source_code::{Language, Source, headline},
+            step_tables::scheduled,
+        },
+        motion::{
+            comparison::{Request, compare},
+            sine_optimum::{Freedom, optimum},
+            sine_polyline::{Distinct, Row, best, sweep},
+        },
     },
     motion::{
         motor::Motor,

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, ensure};
 use stepscope_core::{
-    inspect::{drivers, timing::TimingCheck},
+    inspect::trace::{drivers, timing::TimingCheck},
     scenario::presets::PRESETS,
 };
 

@@ -4,7 +4,7 @@
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
-    inspect::torque::{Demand, Machine},
+    inspect::motion::torque::{Demand, Machine},
     motion::moves::Axis,
     peripheral::trace::steps,
     scenario::{Scenario, Source},

@@ -11,7 +11,7 @@ use stepscope_core::{
         samples,
     },
     inspect::{
-        curves::Actual,
+        motion::curves::Actual,
         recording::{
             differences::Difference,
             events::{Beside, Events},

@@ -7,7 +7,7 @@ use crate::{
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         comparison::{Request, Row, compare},
         torque::Moment,
     },

@@ -6,10 +6,12 @@ use crate::{
 };
 use stepscope_core::{
     inspect::{
-        actual_motion::Pulses,
-        measures::{Measures, within_bounds},
-        recorded_run::record_run,
+        motion::{
+            actual_motion::Pulses,
+            measures::{Measures, within_bounds},
+        },
         recording::figures::StepFigures,
+        trace::recorded_run::record_run,
     },
     peripheral::trace::{steps, steps_in},
     sim::axes_of,

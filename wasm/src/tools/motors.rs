@@ -9,12 +9,14 @@ use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
     inspect::{
-        motors::{DRIVES, MOTORS},
-        plant::settling_with,
-        plant_log::{PlantLog, Stretch},
-        plant_report::PlantReport,
-        recorded_run::{RECORDS_PER_CHECK, check_records},
-        torque::{Machine, TorqueCurve},
+        motion::torque::{Machine, TorqueCurve},
+        plant::{
+            log::{PlantLog, Stretch},
+            motors::{DRIVES, MOTORS},
+            outcome::settling_with,
+            report::PlantReport,
+        },
+        trace::recorded_run::{RECORDS_PER_CHECK, check_records},
     },
     peripheral::{trace::Recording, units::Instant},
     plant::{
@@ -62,10 +64,10 @@ pub fn sheets() -> Result<JsValue, JsError> {
 pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
     let (mut scenario, _) = Scenario::from_json_lenient(json);
     scenario.plant.get_or_insert_default();
-    if let Some(sheet) = stepscope_core::inspect::motors::motor(motor) {
+    if let Some(sheet) = stepscope_core::inspect::plant::motors::motor(motor) {
         sheet.put_into(&mut scenario);
     }
-    if let Some(sheet) = stepscope_core::inspect::motors::drive(drive) {
+    if let Some(sheet) = stepscope_core::inspect::plant::motors::drive(drive) {
         sheet.put_into(&mut scenario);
     }
     to_json(&scenario)

@@ -1,7 +1,7 @@
 //! What a refused scenario could be changed to.
 
 use crate::{convert::object, judged::Judged};
-use stepscope_core::inspect::remedies::Remedies;
+use stepscope_core::inspect::validation::remedies::Remedies;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

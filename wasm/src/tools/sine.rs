@@ -8,7 +8,7 @@ use crate::{
 use js_sys::Object;
 use std::ops::Range;
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         sine_optimum::{Freedom, optimum},
         sine_polyline::{Bounds, Distinct, Measure, Row, best_of_each, swept},
     },

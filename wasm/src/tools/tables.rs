@@ -4,7 +4,7 @@ use crate::{
     convert::{object, records},
     judged::{Judged, listed},
 };
-use stepscope_core::{inspect::step_tables::StepTables, peripheral::trace::steps};
+use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

@@ -7,8 +7,8 @@ use crate::{
 use js_sys::Object;
 use stepscope_core::{
     inspect::{
-        motors,
-        torque::{Machine, TorqueReport},
+        motion::torque::{Machine, TorqueReport},
+        plant::motors,
     },
     peripheral::trace::steps,
 };

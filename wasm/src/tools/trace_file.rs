@@ -6,7 +6,7 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    inspect::{recorded_run::record_run, trace_diff::TraceDiff},
+    inspect::trace::{diff::TraceDiff, recorded_run::record_run},
     peripheral::{signal, trace::Recording},
 };
 use wasm_bindgen::prelude::*;

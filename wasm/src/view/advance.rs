@@ -3,7 +3,7 @@
 use crate::convert::object;
 use serde::Serialize;
 use stepscope_core::{
-    inspect::plant_log::PlantLog,
+    inspect::plant::log::PlantLog,
     peripheral::{signal::Sink, units::Instant},
     sim::{Experiment, Run},
 };

@@ -9,7 +9,7 @@ use crate::{
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::{
-    inspect::{
+    inspect::motion::{
         actual_motion::Pulses,
         cursor_stats::{self, CursorStats},
         curves::{self, Window},

@@ -8,12 +8,14 @@ use js_sys::{Object, Uint8Array};
 use std::{fmt, io};
 use stepscope_core::{
     inspect::{
-        tables::{
-            SEGMENTS_HEAD, write_edges_head, write_edges_row, write_segment_row, write_tick_row,
-            write_ticks_head,
+        export::{
+            tables::{
+                SEGMENTS_HEAD, write_edges_head, write_edges_row, write_segment_row, write_tick_row,
+                write_ticks_head,
+            },
+            vcd::VcdWriter,
         },
-        trace_window::TraceWindow,
-        vcd::VcdWriter,
+        trace::window::TraceWindow,
     },
     peripheral::{config::Config, signal::Sink, trace::write_record, units::Instant},
     scenario::Scenario,

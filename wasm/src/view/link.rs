@@ -3,7 +3,7 @@
 use crate::{convert::object, judged::Judged};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::judgement::RunCost,
+    inspect::validation::RunCost,
     scenario::{
         Scenario,
         link::{LinkError, Packed, pack, part, unpack, with_part},

@@ -8,7 +8,7 @@ use js_sys::{Object, Uint8Array};
 use serde::Serialize;
 use std::mem::take;
 use stepscope_core::{
-    inspect::{
+    inspect::packets::{
         line_decoder::LineDecoder,
         packet_table::{Filter, PacketTable, Request, Row},
     },

@@ -5,9 +5,9 @@ use crate::{
     view::simulation::Simulation,
 };
 use js_sys::Object;
-use stepscope_core::inspect::{
-    plant_log::{MOTOR, PlantLog, SUPPLY, Stretch},
-    plant_report::PlantReport,
+use stepscope_core::inspect::plant::{
+    log::{MOTOR, PlantLog, SUPPLY, Stretch},
+    report::PlantReport,
 };
 use wasm_bindgen::prelude::*;
 

@@ -5,7 +5,7 @@ use crate::{
     view::simulation::Simulation,
 };
 use js_sys::Object;
-use stepscope_core::inspect::{changes::Edge, edges::Signals};
+use stepscope_core::inspect::trace::{changes::Edge, edges::Signals};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

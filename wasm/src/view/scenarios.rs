@@ -1,7 +1,7 @@
 //! Scenarios on their way into the form and the run: what is to be said of one that was judged.
 
 use crate::{convert::object, judged::Judged};
-use stepscope_core::{inspect::judgement::Judgement, scenario::Scenario};
+use stepscope_core::{inspect::validation::Judgement, scenario::Scenario};
 use wasm_bindgen::prelude::*;
 
 /// Version of Stepscope.

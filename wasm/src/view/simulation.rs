@@ -12,8 +12,10 @@ use crate::{
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{
-        changes::Changes, drivers, packet_table::Filter, plant_log::PlantLog, recording::replies,
-        run_sink::RunSink, timing::TimingCheck,
+        packets::packet_table::Filter,
+        plant::log::PlantLog,
+        recording::replies,
+        trace::{changes::Changes, drivers, run_sink::RunSink, timing::TimingCheck},
     },
     peripheral::{
         config::Config,

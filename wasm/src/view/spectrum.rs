@@ -6,7 +6,7 @@ use crate::{
 };
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::inspect::{
+use stepscope_core::inspect::motion::{
     spectra::Spectra,
     spectrum::{Harmonics, Spectrum},
 };

@@ -6,7 +6,7 @@ use crate::{
 };
 use serde::Serialize;
 use stepscope_core::{
-    inspect::{edges, timing::TimingCheck},
+    inspect::trace::{edges, timing::TimingCheck},
     sim::{
         ControllerSummary, JobSummary, Summary as RunSummary,
         framed_host::{Counts, Progress},

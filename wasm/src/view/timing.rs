@@ -3,7 +3,7 @@
 use crate::{convert::object, judged::config, view::simulation::Simulation};
 use serde::Serialize;
 use stepscope_core::{
-    inspect::{
+    inspect::trace::{
         drivers::{self, DRIVERS},
         timing::{RuleResult, Violation},
     },

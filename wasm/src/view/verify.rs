@@ -2,7 +2,7 @@
 
 use crate::{convert::object, view::simulation::Simulation};
 use serde::Serialize;
-use stepscope_core::inspect::{
+use stepscope_core::inspect::trace::{
     fingerprint::{Fingerprint, Mark, Shorter},
     run_fingerprint::{RunFingerprint, VERSION, Verification},
 };

@@ -11,7 +11,7 @@
 //! assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
 //! ```
 
-use crate::step_acceleration::{self, HALF};
+use crate::motion::step_acceleration::{self, HALF};
 use alloc::collections::VecDeque;
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;

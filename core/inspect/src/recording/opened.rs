@@ -22,8 +22,8 @@ use super::{
     serial::{Heard, HeardByte, LineOptions},
 };
 use crate::{
-    curves::{Actual, Window},
-    timing::{Rule, TimingCheck},
+    motion::curves::{Actual, Window},
+    trace::timing::{Rule, TimingCheck},
 };
 use alloc::{
     borrow::ToOwned,

@@ -1,12 +1,12 @@
 //! All of a recording at a glance: least and greatest position and speed of a channel in each pixel column, made in one pass over
-//! steps that come one after the other and are kept nowhere. It is what [`crate::curves::actual`] makes of steps that lie together.
+//! steps that come one after the other and are kept nowhere. It is what [`crate::motion::curves::actual`] makes of steps that lie together.
 //!
 //! ```text
 //! changes, 2 to 4 bytes each  ->  steps, one at a time  ->  columns, 32 bytes each
 //! ```
 //!
 //! ```
-//! use stepscope_inspect::{curves::Window, recording::overview::Overview};
+//! use stepscope_inspect::{motion::curves::Window, recording::overview::Overview};
 //! use stepscope_peripheral::trace::Step;
 //!
 //! // A step every 10 ms in the second of two halves.
@@ -15,7 +15,7 @@
 //! assert_eq!((found.position.max, found.speed.max), (vec![0.0, 10.0], vec![0.0, 100.0]));
 //! ```
 
-use crate::curves::{Actual, Band, Window};
+use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
 
 /// The columns as far as the steps have come.
@@ -97,7 +97,7 @@ impl Overview {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{actual_motion::Pulses, curves::actual};
+    use crate::motion::{actual_motion::Pulses, curves::actual};
     use alloc::vec::Vec;
 
     /// Steps there and back, with a rest between, in cycles of 1 us.

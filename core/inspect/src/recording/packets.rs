@@ -20,7 +20,7 @@ use super::{
     report::{LineReport, Report},
     serial::{GAP_BITS, Guess, line_name},
 };
-use crate::{
+use crate::packets::{
     dissector::{Head, Reading},
     packet_table::write_fields,
 };

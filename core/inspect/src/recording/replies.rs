@@ -20,7 +20,7 @@ use super::{
     report::Report,
     serial::line_name,
 };
-use crate::{
+use crate::packets::{
     dissector::{Head, reply},
     packet_table::{PacketTable, RowKind},
 };
@@ -122,7 +122,7 @@ fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{packet_table::PacketTable, recording::report::Report};
+    use crate::{packets::packet_table::PacketTable, recording::report::Report};
     use stepscope_peripheral::trace::Recording;
     use stepscope_sim::Experiment;
 

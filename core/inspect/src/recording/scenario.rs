@@ -20,7 +20,7 @@
 //! ```
 
 use super::serial::{Guess, Heard};
-use crate::timing::{Rule, TimingCheck};
+use crate::trace::timing::{Rule, TimingCheck};
 use alloc::{format, string::String, vec::Vec};
 use core::fmt;
 use stepscope_motion::{

@@ -1,5 +1,5 @@
 //! The driver that the pulses are checked against: a model by name, or rules of one's own. The models' figures stand in
-//! `inspect::drivers`, the check in `inspect::timing`. A driver changes nothing in a run.
+//! `inspect::trace::drivers`, the check in `inspect::trace::timing`. A driver changes nothing in a run.
 
 use crate::schema::{
     SHEETS, label,

@@ -1,0 +1,503 @@
+//! Step tables as source code that a firmware is built with, and as CSV (DESIGN Part D).
+//!
+//! The entries go into three arrays, so that a table takes exactly the bytes of its numbers on every machine:
+//!
+//! ```text
+//! NAME_interval[]  NAME_count[]  NAME_add[]        of NAME_ENTRIES entries each
+//! ```
+//!
+//! What the numbers mean and how to walk them stands in the comment at the head of the file; CSV has a head line alone.
+//!
+//! ```
+//! use stepscope_inspect::export::source_code::{Language, Source, is_name};
+//! use stepscope_motion::{
+//!     moves::Axis,
+//!     plan_axis,
+//!     quantise::{EntryFormat, Form, stored},
+//! };
+//! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+//!
+//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+//! let table = stored(&plan, Form::Exact, EntryFormat::Q16, pulse, 16_000_000).expect("it fits");
+//! assert!(is_name("axis_0"));
+//! let source = Source { name: "axis_0", title: "one turn", clock_hz: 16_000_000, table: &table };
+//! let mut text = String::new();
+//! source.write(Language::C, &mut text).expect("a string takes it");
+//! assert!(text.contains("#define AXIS_0_STEPS 3200ull"));
+//! ```
+
+use crate::export::plain_text::is_unsafe;
+use alloc::{format, string::String, vec::Vec};
+use core::fmt::{self, Write};
+use stepscope_motion::quantise::{Entry, EntryFormat, Stored};
+use stepscope_motion::round_half_up;
+
+/// Numbers in a line.
+const IN_A_LINE: usize = 8;
+/// Most bytes of an array: what avr-gcc takes, whose sizes have 16 bits with a sign, and what every compiler of C99 has to.
+const MAX_AVR_BYTES: u64 = 32_767;
+const MAX_C_BYTES: u64 = 65_535;
+/// Bytes of program memory that an AVR reads by near pointers.
+const NEAR_BYTES: u64 = 65_536;
+/// Beginnings that C keeps for functions of its headers (C11 7.31): a small letter follows.
+const FUNCTIONS: [&str; 6] = ["is", "to", "str", "mem", "wcs", "e"];
+/// Beginnings that it keeps for types, and in capitals for macros; `e` and a digit is one of `errno.h`.
+const OTHERS: [&str; 13] =
+    ["int", "uint", "sig", "lc_", "fe_", "pri", "scn", "atomic_", "memory_", "cnd_", "mtx_", "thrd_", "tss_"];
+
+/// The language of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// C99.
+    C,
+    /// C for avr-gcc, the arrays in program memory.
+    Avr,
+    /// Rust without the standard library.
+    Rust,
+    /// Comma-separated values.
+    Csv,
+}
+
+/// A table and what its file says of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'s> {
+    /// Name of the table, an identifier in small letters such as `axis_0`; see [`is_name`].
+    pub name: &'s str,
+    /// What it is, in a line.
+    pub title: &'s str,
+    /// The clock whose cycles are counted, in Hz.
+    pub clock_hz: u32,
+    /// The table.
+    pub table: &'s Stored,
+}
+
+/// Whether a name can stand in the source code of every language: a small letter, then small letters, digits and
+/// underscores, at most 32, with a digit or an underscore among them, so that it is no keyword, and without a beginning that
+/// C keeps for itself.
+#[must_use]
+pub fn is_name(name: &str) -> bool {
+    let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.len() <= 32
+        && name.chars().all(fits)
+        && !name.chars().all(|c| c.is_ascii_lowercase())
+        && !is_reserved(name)
+}
+
+/// Whether C keeps the name for itself.
+fn is_reserved(name: &str) -> bool {
+    let follows = |start: &str, fits: fn(char) -> bool| {
+        name.strip_prefix(start).is_some_and(|rest| rest.starts_with(fits))
+    };
+    FUNCTIONS.iter().any(|start| follows(start, |c| c.is_ascii_lowercase()))
+        || follows("e", |c| c.is_ascii_digit())
+        || OTHERS.iter().any(|start| name.starts_with(start))
+}
+
+/// What a file says that it is: the scenario's title, if it has one, the axis and the form of its table.
+#[must_use]
+pub fn headline(title: &str, axis: usize, form: &str) -> String {
+    let separator = if title.is_empty() { "" } else { ": " };
+    format!("{title}{separator}axis {axis}, {form} step table")
+}
+
+impl Source<'_> {
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, language: Language, out: &mut impl Write) -> fmt::Result {
+        match language {
+            Language::C => self.c(out, false),
+            Language::Avr => self.c(out, true),
+            Language::Rust => self.rust(out),
+            Language::Csv => self.csv(out),
+        }
+    }
+
+    /// The comment at the head, each line after `mark`.
+    fn head(&self, out: &mut impl Write, mark: &str) -> fmt::Result {
+        let format = self.table.format;
+        let error = self.table.error;
+        // A comment in C must not end before its end, nor may a line be continued, or its order be changed for who reads it.
+        let plain = |c: char| {
+            if is_unsafe(c) || matches!(c, '*' | '\\') { ' ' } else { c }
+        };
+        write!(out, "{mark}")?;
+        self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;
+        let nanos = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(self.clock_hz.max(1)));
+        writeln!(out, "\n{}", mark.trim_end())?;
+        writeln!(
+            out,
+            "{mark}{} steps in {} entries of {} bytes ({}), {} bytes in all.",
+            error.steps,
+            self.table.entries.len(),
+            format.bytes(),
+            format.name,
+            self.table.bytes()
+        )?;
+        writeln!(
+            out,
+            "{mark}Largest timing error {} cycles ({} ns), r.m.s. {:.2} cycles ({} ns).",
+            error.greatest,
+            nanos(error.greatest as f64),
+            error.rms(),
+            nanos(error.rms())
+        )?;
+        writeln!(out, "{}", mark.trim_end())?;
+        writeln!(
+            out,
+            "{mark}Clock: {} Hz. Unit of interval and add: 1/{} cycle.",
+            self.clock_hz,
+            1_u32 << format.fraction_bits
+        )?;
+        writeln!(out, "{mark}To walk it, begin with time = 0 and DIR = 0, and for each entry")?;
+        writeln!(out, "{mark}  with count > 0, count times:")?;
+        writeln!(
+            out,
+            "{mark}    time += interval; make a step at cycle time >> {}; interval += add",
+            format.fraction_bits
+        )?;
+        writeln!(out, "{mark}  with count = 0: time += interval; DIR = add (0 left, 1 right)")?;
+        let Walk { time, interval } = self.walk();
+        let (time_bits, interval_bits) = (bits(time), bits(interval));
+        writeln!(
+            out,
+            "{mark}time comes to {time}: it needs {time_bits} bits, uint{}_t, or less where it is kept from step to step.",
+            width(time_bits)
+        )?;
+        writeln!(
+            out,
+            "{mark}interval comes to {interval}: it needs {interval_bits} bits, uint{}_t.",
+            width(interval_bits)
+        )
+    }
+
+    /// How far the running numbers come.
+    fn walk(&self) -> Walk {
+        let mut walk = Walk::default();
+        for entry in &self.table.entries {
+            let (count, first, add) =
+                (i128::from(entry.count), i128::from(entry.interval), i128::from(entry.add));
+            // Of a wait, `add` is a direction.
+            let (taken, last) = match count {
+                0 => (first, first),
+                _ => (first * count + add * (count * (count - 1) / 2), first + add * (count - 1)),
+            };
+            walk.time += u128::try_from(taken).unwrap_or(0);
+            walk.interval = walk.interval.max(u128::try_from(first.max(last)).unwrap_or(0));
+        }
+        walk
+    }
+
+    /// What a compiler or a chip may not take of this file, with the numbers and what to do.
+    #[must_use]
+    pub fn warnings(&self, language: Language) -> Vec<String> {
+        let format = self.table.format;
+        let entries = self.table.entries.len() as u64;
+        let (most, who) = match language {
+            Language::Avr => (MAX_AVR_BYTES, "avr-gcc takes"),
+            Language::C => (MAX_C_BYTES, "a compiler need take"),
+            Language::Rust | Language::Csv => return Vec::new(),
+        };
+        let remedy =
+            "allow a greater error, choose narrower entries, or make a table of each part of the motion";
+        let mut warnings = Vec::new();
+        for column in Column::ALL {
+            let bytes = entries * u64::from(column.bits(&format) / 8);
+            if bytes > most {
+                warnings.push(format!(
+                    "{}_{} has {bytes} bytes, and {who} at most {most} in an array: {remedy}",
+                    self.name,
+                    column.name()
+                ));
+            }
+        }
+        if language == Language::Avr && self.table.bytes() > NEAR_BYTES {
+            warnings.push(format!(
+                "the table has {} bytes, and pgm_read_byte and its like reach the first {NEAR_BYTES} of program memory: read it by pgm_read_byte_far, or {remedy}",
+                self.table.bytes()
+            ));
+        }
+        warnings
+    }
+
+    fn c(&self, out: &mut impl Write, avr: bool) -> fmt::Result {
+        let (name, format) = (self.name, self.table.format);
+        let capitals = Capitals(name);
+        writeln!(out, "/*")?;
+        self.head(out, " * ")?;
+        for warning in self.warnings(if avr { Language::Avr } else { Language::C }) {
+            writeln!(out, " *\n * WARNING: {warning}.")?;
+        }
+        writeln!(out, " */\n#ifndef {capitals}_H\n#define {capitals}_H\n\n#include <stdint.h>")?;
+        if avr {
+            writeln!(out, "#include <avr/pgmspace.h>")?;
+        }
+        writeln!(out)?;
+        writeln!(out, "#define {capitals}_ENTRIES {}ul", self.table.entries.len())?;
+        writeln!(out, "#define {capitals}_STEPS {}ull", self.table.error.steps)?;
+        writeln!(out, "#define {capitals}_FRACTION_BITS {}", format.fraction_bits)?;
+        writeln!(out, "#define {capitals}_CLOCK_HZ {}ul", self.clock_hz)?;
+        // An array has an element in C.
+        let length = self.table.entries.len().max(1);
+        let memory = if avr { " PROGMEM" } else { "" };
+        for column in Column::ALL {
+            let sign = if matches!(column, Column::Add) { "" } else { "u" };
+            let kind = format!("{sign}int{}_t", column.bits(&format));
+            writeln!(out, "\nstatic const {kind} {name}_{}[{length}]{memory} = {{", column.name())?;
+            if self.table.entries.is_empty() {
+                writeln!(out, "0")?;
+            }
+            // Literals are as wide as the array's type: an int has 16 bits on an AVR, a long 32.
+            let bits = column.bits(&format);
+            let suffix = match bits {
+                ..=16 => "",
+                17..=32 => "l",
+                _ => "ll",
+            };
+            let least = -1_i64 << (bits - 1);
+            self.numbers(out, |out, entry| match column {
+                Column::Interval => write!(out, "{}u{suffix}", entry.interval),
+                Column::Count => write!(out, "{}u{suffix}", entry.count),
+                // The least number of a type has no literal.
+                Column::Add if entry.add == least => write!(out, "{}{suffix} - 1", entry.add + 1),
+                Column::Add => write!(out, "{}{suffix}", entry.add),
+            })?;
+            writeln!(out, "}};")?;
+        }
+        writeln!(out, "\n#endif")
+    }
+
+    fn rust(&self, out: &mut impl Write) -> fmt::Result {
+        let (capitals, format) = (Capitals(self.name), self.table.format);
+        self.head(out, "// ")?;
+        writeln!(out, "\n/// Steps of the table.")?;
+        writeln!(out, "pub const {capitals}_STEPS: u64 = {};", self.table.error.steps)?;
+        writeln!(out, "/// Bits of a cycle's fraction in interval and add.")?;
+        writeln!(out, "pub const {capitals}_FRACTION_BITS: u32 = {};", format.fraction_bits)?;
+        writeln!(out, "/// The clock whose cycles are counted, in Hz.")?;
+        writeln!(out, "pub const {capitals}_CLOCK_HZ: u32 = {};", self.clock_hz)?;
+        for column in Column::ALL {
+            let (kind, about) = match column {
+                Column::Interval => (
+                    format!("u{}", format.interval_bits),
+                    "Time before an entry's first step, or of its wait.",
+                ),
+                Column::Count => (format!("u{}", format.count_bits), "Steps; 0 for a wait."),
+                Column::Add => (
+                    format!("i{}", format.add_bits),
+                    "What each next interval is longer; of a wait the level of DIR after it.",
+                ),
+            };
+            let (array, length) = (Capitals(column.name()), self.table.entries.len());
+            writeln!(out, "\n/// {about}\npub static {capitals}_{array}: [{kind}; {length}] = [")?;
+            self.numbers(out, |out, entry| match column {
+                Column::Interval => write!(out, "{}", entry.interval),
+                Column::Count => write!(out, "{}", entry.count),
+                Column::Add => write!(out, "{}", entry.add),
+            })?;
+            writeln!(out, "];")?;
+        }
+        Ok(())
+    }
+
+    fn csv(&self, out: &mut impl Write) -> fmt::Result {
+        let bits = self.table.format.fraction_bits;
+        writeln!(out, "interval_q{bits},count,add_q{bits}")?;
+        let mut rows = self.table.entries.iter();
+        rows.try_for_each(|entry| writeln!(out, "{},{},{}", entry.interval, entry.count, entry.add))
+    }
+
+    /// One number of every entry, some in a line.
+    fn numbers<W: Write>(&self, out: &mut W, one: impl Fn(&mut W, &Entry) -> fmt::Result) -> fmt::Result {
+        for line in self.table.entries.chunks(IN_A_LINE) {
+            write!(out, "   ")?;
+            for entry in line {
+                write!(out, " ")?;
+                one(out, entry)?;
+                write!(out, ",")?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// One of the arrays.
+#[derive(Clone, Copy)]
+enum Column {
+    Interval,
+    Count,
+    Add,
+}
+
+impl Column {
+    const ALL: [Self; 3] = [Self::Interval, Self::Count, Self::Add];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Interval => "interval",
+            Self::Count => "count",
+            Self::Add => "add",
+        }
+    }
+
+    /// Bits of a number in it.
+    const fn bits(self, format: &EntryFormat) -> u32 {
+        match self {
+            Self::Interval => format.interval_bits,
+            Self::Count => format.count_bits,
+            Self::Add => format.add_bits,
+        }
+    }
+}
+
+/// How far the running numbers of a table come while it is walked.
+#[derive(Default)]
+struct Walk {
+    time: u128,
+    interval: u128,
+}
+
+/// Bits that a number needs.
+const fn bits(number: u128) -> u32 {
+    u128::BITS - number.leading_zeros()
+}
+
+/// Bits of the least type of C that has so many.
+const fn width(bits: u32) -> u32 {
+    match bits {
+        ..=16 => 16,
+        17..=32 => 32,
+        33..=64 => 64,
+        _ => 128,
+    }
+}
+
+/// A name in capitals.
+struct Capitals<'n>(&'n str);
+
+impl fmt::Display for Capitals<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.chars().try_for_each(|c| f.write_char(c.to_ascii_uppercase()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{string::String, vec, vec::Vec};
+    use stepscope_motion::quantise::{EntryFormat, TimingError};
+    use stepscope_peripheral::{segment::SegmentList, units::Instant};
+
+    fn table(entries: Vec<Entry>, format: EntryFormat) -> Stored {
+        let list = SegmentList { start: Instant(1), segments: Vec::new() };
+        Stored { list, format, entries, document_bytes: None, error: TimingError::default(), surplus: None }
+    }
+
+    fn source<'s>(table: &'s Stored, title: &'s str) -> Source<'s> {
+        Source { name: "axis_0", title, clock_hz: 16_000_000, table }
+    }
+
+    fn written(entries: Vec<Entry>, title: &str, language: Language) -> String {
+        let mut out = String::new();
+        source(&table(entries, EntryFormat::Q16), title).write(language, &mut out).unwrap();
+        out
+    }
+
+    #[test]
+    fn literals_are_as_wide_as_their_arrays() {
+        let entry = Entry { interval: 887_218, count: 3, add: i64::from(i16::MIN) };
+        let mut c = String::new();
+        source(&table(vec![entry], EntryFormat::TICKS), "").write(Language::Avr, &mut c).unwrap();
+        for line in [" 887218ul,", " 3u,", " -32767 - 1,"] {
+            assert!(c.lines().any(|found| found.trim_start() == line.trim_start()), "{line} in {c}");
+        }
+    }
+
+    #[test]
+    fn the_comment_says_how_wide_the_running_numbers_come() {
+        // 3 steps after 10, 15 and 20 cycles, and a wait of 100: 145 cycles.
+        let entries = vec![
+            Entry { interval: 10 << 16, count: 3, add: 5 << 16 },
+            Entry { interval: 100 << 16, count: 0, add: 1 },
+        ];
+        let c = written(entries, "", Language::C);
+        let (time, interval) = (145 << 16, 100 << 16);
+        for line in [
+            format!(
+                " * time comes to {time}: it needs 24 bits, uint32_t, or less where it is kept from step to step."
+            ),
+            format!(" * interval comes to {interval}: it needs 23 bits, uint32_t."),
+        ] {
+            assert!(c.lines().any(|found| found == line), "{line} in {c}");
+        }
+        assert!(c.contains("#ifndef AXIS_0_H\n#define AXIS_0_H\n") && c.ends_with("\n#endif\n"), "{c}");
+    }
+
+    #[test]
+    fn an_array_that_is_too_long_is_told_with_its_bytes() {
+        let entry = Entry { interval: 1, count: 1, add: 0 };
+        let warnings = |entries: usize, language| {
+            let table = table(vec![entry; entries], EntryFormat::Q16);
+            source(&table, "").warnings(language).len()
+        };
+        // 8, 4 and 8 bytes a row: of 4095 rows none has more than 32767 bytes, of 4096 two arrays.
+        assert_eq!((warnings(4095, Language::Avr), warnings(4096, Language::Avr)), (1, 3));
+        assert_eq!((warnings(3276, Language::Avr), warnings(3277, Language::Avr)), (0, 1));
+        assert_eq!((warnings(8191, Language::C), warnings(8192, Language::C)), (0, 2));
+        assert_eq!(warnings(100_000, Language::Rust), 0);
+        let long = vec![entry; 8192];
+        let c = written(long, "", Language::C);
+        assert!(
+            c.contains(" * WARNING: axis_0_interval has 65536 bytes, and a compiler need take at most 65535"),
+            "{}",
+            &c[..1500]
+        );
+    }
+
+    #[test]
+    fn a_title_cannot_end_the_comment_that_it_stands_in() {
+        for title in ["*/ int main", "two\nlines", "back\\", "\u{2028}"] {
+            let c = written(Vec::new(), title, Language::C);
+            assert_eq!(c.matches("*/").count(), 1, "{c}");
+            let rust = written(Vec::new(), title, Language::Rust);
+            assert!(!rust.contains("\nlines"), "{rust}");
+        }
+    }
+
+    #[test]
+    fn the_least_and_the_greatest_numbers_have_their_literals() {
+        let entry = Entry { interval: u64::MAX, count: u32::MAX, add: i64::MIN };
+        let c = written(vec![entry], "", Language::C);
+        for literal in ["18446744073709551615ull", "4294967295ul", "-9223372036854775807ll - 1"] {
+            assert!(c.contains(literal), "{c}");
+        }
+        let csv = written(vec![entry], "", Language::Csv);
+        let row = "18446744073709551615,4294967295,-9223372036854775808";
+        assert_eq!(csv, format!("interval_q16,count,add_q16\n{row}\n"));
+    }
+
+    #[test]
+    fn a_name_is_an_identifier_and_no_keyword() {
+        for (name, expected) in [
+            ("axis_0", true),
+            ("x1", true),
+            ("e_1", true),
+            ("is_1", true),
+            ("total_1", false),
+            ("memory_1", false),
+            ("e1_x", false),
+            ("uint32_t", false),
+            ("sigma_1", false),
+            ("int", false),
+            ("", false),
+            ("a-1", false),
+            ("_a", false),
+        ] {
+            assert_eq!(is_name(name), expected, "{name}");
+        }
+    }
+}

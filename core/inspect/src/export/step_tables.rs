@@ -1,0 +1,210 @@
+//! The step times of a selected axis, or of a run, as tables for a firmware: what each form costs, and its source code
+//! (DESIGN B8).
+//!
+//! ```
+//! use stepscope_inspect::export::step_tables::StepTables;
+//! use stepscope_sim::ValidatedScenario;
+//!
+//! let judged = ValidatedScenario::from_json("{}");
+//! let tables = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
+//! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
+//! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
+//! assert!(compressed.bytes < exact.bytes / 4);
+//! ```
+
+use crate::export::source_code::{Language, Source, headline};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use serde::Serialize;
+use stepscope_motion::{
+    AxisPlan, ScheduledStep,
+    quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
+};
+use stepscope_peripheral::{
+    config::{Bus, Config},
+    segment::PulseTimes,
+    trace::Step,
+    units::Cycles,
+};
+use stepscope_scenario::{Problem, Scenario, of_config};
+use stepscope_sim::SelectedAxis;
+
+/// The tables of one axis, or channel.
+#[derive(Clone, Debug)]
+pub struct StepTables<'a> {
+    scenario: &'a Scenario,
+    steps: Steps<'a>,
+    pulse: PulseTimes,
+}
+
+/// Where the steps are from.
+#[derive(Clone, Debug)]
+enum Steps<'a> {
+    /// A plan.
+    Planned(&'a AxisPlan),
+    /// A run, or a recording.
+    Made(Vec<ScheduledStep>),
+}
+
+/// Steps of a trace as a table has them, from cycle 1 on.
+#[must_use]
+pub fn scheduled(steps: &[Step]) -> Vec<ScheduledStep> {
+    let scheduled = |(index, step): (usize, &Step)| ScheduledStep {
+        cycle: step.cycle.saturating_sub(1),
+        right: Step::direction(steps, index) > 0,
+    };
+    steps.iter().enumerate().map(scheduled).collect()
+}
+
+/// What a table costs and how good it is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TableCost {
+    /// As many as the motion has: a list with another number is none.
+    pub steps: u64,
+    /// Entries of the table.
+    pub entries: usize,
+    /// Bytes of its entries.
+    pub bytes: u64,
+    /// As the motion's document keeps it.
+    pub document_bytes: Option<u64>,
+    /// Greatest error of a step.
+    pub largest_s: f64,
+    /// Root mean square of the errors.
+    pub rms_s: f64,
+    /// Why there is no such table.
+    pub why: Option<String>,
+}
+
+/// A greatest error in us as whole cycles.
+#[must_use]
+pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
+    // One division, so that 25 us of 16 MHz are 400 cycles and not 399.
+    Cycles((error_us * f64::from(clock_hz) / 1e6) as u64)
+}
+
+impl<'a> StepTables<'a> {
+    /// Of an axis, at the pulses of its bus.
+    ///
+    /// # Errors
+    /// If the bus cannot run segments.
+    pub fn new(selected: SelectedAxis<'a>) -> Result<Self, Vec<Problem>> {
+        Self::with(selected.scenario, selected.bus, Steps::Planned(selected.plan))
+    }
+
+    /// Of steps without a plan, in cycles of the scenario's clock, at the pulses of their bus.
+    ///
+    /// # Errors
+    /// If the bus cannot run segments.
+    pub fn of_steps(scenario: &'a Scenario, bus: &Bus, steps: &[Step]) -> Result<Self, Vec<Problem>> {
+        Self::with(scenario, bus, Steps::Made(scheduled(steps)))
+    }
+
+    fn with(scenario: &'a Scenario, bus: &Bus, steps: Steps<'a>) -> Result<Self, Vec<Problem>> {
+        let config = Config::of_segments(scenario.clock_hz, bus, &scenario.line.serial());
+        Ok(Self { pulse: PulseTimes::from(&config.map_err(of_config)?), scenario, steps })
+    }
+
+    /// A table; `form` is `exact`, `document` or `compressed` with no step off by more than `error_us`, `widths` the
+    /// name of an [`EntryFormat`]. A compressed one is made quickly, since it is made while one types; the command
+    /// searches for the fewest entries.
+    ///
+    /// # Errors
+    /// Why there is no such table.
+    pub fn stored(&self, form: &str, widths: &str, error_us: f64) -> Result<Stored, String> {
+        let clock_hz = self.scenario.clock_hz;
+        let form = match form {
+            "exact" => Form::Exact,
+            "document" => Form::Document,
+            _ => Form::Compressed(Tolerance::of(tolerance_cycles(error_us, clock_hz))),
+        };
+        let format = EntryFormat::ALL.into_iter().find(|format| format.name == widths);
+        let format = format.unwrap_or(EntryFormat::Q16);
+        let stored = match &self.steps {
+            Steps::Planned(plan) => stored_quickly(plan, form, format, self.pulse, clock_hz),
+            Steps::Made(steps) => stored_steps_quickly(steps, form, format, self.pulse),
+        };
+        stored.map_err(|cause| cause.to_string())
+    }
+
+    /// What a table costs, or why there is none.
+    #[must_use]
+    pub fn cost(&self, form: &str, widths: &str, error_us: f64) -> TableCost {
+        let seconds = |cycles: f64| cycles / f64::from(self.scenario.clock_hz);
+        match self.stored(form, widths, error_us) {
+            Ok(table) => TableCost {
+                steps: table.error.steps,
+                entries: table.entries.len(),
+                bytes: table.bytes(),
+                document_bytes: table.document_bytes,
+                largest_s: seconds(table.error.greatest as f64),
+                rms_s: seconds(table.error.rms()),
+                why: None,
+            },
+            Err(why) => {
+                let steps = match &self.steps {
+                    Steps::Planned(plan) => plan.step_count(),
+                    Steps::Made(steps) => steps.len() as u64,
+                };
+                TableCost { steps, why: Some(why), ..TableCost::default() }
+            }
+        }
+    }
+
+    /// A table of axis `axis` as source code, `language` being `c`, `avr`, `rust` or `csv`.
+    ///
+    /// # Errors
+    /// Why there is no such table.
+    pub fn source(
+        &self,
+        axis: usize,
+        (form, widths, error_us): (&str, &str, f64),
+        language: &str,
+    ) -> Result<String, String> {
+        let table = self.stored(form, widths, error_us)?;
+        let language = match language {
+            "avr" => Language::Avr,
+            "rust" => Language::Rust,
+            "csv" => Language::Csv,
+            _ => Language::C,
+        };
+        let title = headline(&self.scenario.title, axis, form);
+        let (name, clock_hz) = (format!("axis_{axis}"), self.scenario.clock_hz);
+        let mut text = String::new();
+        let source = Source { name: &name, title: &title, clock_hz, table: &table };
+        source.write(language, &mut text).map_err(|error| error.to_string())?;
+        Ok(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::trace::{Recording, steps};
+    use stepscope_sim::ValidatedScenario;
+
+    #[test]
+    fn the_steps_of_a_run_are_kept_as_their_plan_is_but_have_no_documents_table() {
+        let judged =
+            ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
+        let experiment = judged.experiment().expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let made = steps(&recording.trace, 0);
+        let scenario = judged.scenario();
+        let of_run = StepTables::of_steps(scenario, &scenario.bus, &made).expect("its pulses fit");
+        let of_plan = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
+        for (form, widths) in [("exact", "ticks"), ("compressed", "q16")] {
+            let [run, plan] = [&of_run, &of_plan].map(|tables| tables.cost(form, widths, 25.0));
+            assert_eq!((run.steps, run.why.as_deref()), (3200, None), "{form}");
+            // They come some cycles later, so an entry more or less may be needed.
+            assert!(run.entries.abs_diff(plan.entries) <= plan.entries / 20, "{form}: {run:?} {plan:?}");
+        }
+        let none = of_run.cost("document", "q16", 25.0);
+        assert!(none.steps == 3200 && none.why.is_some_and(|why| why.contains("no table of its own")));
+        let source = of_run.source(0, ("compressed", "q16", 25.0), "c").expect("a table");
+        assert!(source.contains("axis_0"), "{source}");
+    }
+}

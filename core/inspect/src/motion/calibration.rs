@@ -1,0 +1,282 @@
+//! Steps per unit of length by least squares over measured pairs (DESIGN B3, Zhang 2012).
+//!
+//! The document lets the axis make known numbers of steps, measures the lengths and fits N_opt:
+//!
+//! ```text
+//! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin, the document's
+//! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; beside it: an offset
+//!                                                                   tells of backlash or a misplaced zero
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::motion::calibration::{BadPairs, Calibration, Pair};
+//!
+//! let measured = [(10.0, 801.0), (20.0, 1601.0), (40.0, 3201.0)].map(|(length, steps)| Pair { length, steps });
+//! let fit = Calibration::of(&measured).expect("they have a line").with_offset;
+//! assert_eq!((fit.steps_per_unit.round(), fit.offset_steps.round()), (80.0, 1.0)); // one step of backlash
+//! assert_eq!(Calibration::of(&measured[..1]), Err(BadPairs::TooFew { given: 1 }));
+//! ```
+
+use alloc::vec::Vec;
+use core::fmt;
+
+/// Greatest length or number of steps of a pair, and the least but for 0: squares and sums of them are finite, and
+/// above 0.
+const MOST: f64 = 1e12;
+const LEAST: f64 = 1e-12;
+
+/// A measured length, in any unit, and the steps that made it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The length; with a sign where steps have one.
+    pub length: f64,
+    /// The steps.
+    pub steps: f64,
+}
+
+/// A line through the pairs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// k, in steps a unit; above 0.
+    pub steps_per_unit: f64,
+    /// Steps at length 0; 0 through the origin.
+    pub offset_steps: f64,
+    /// Steps of each pair less those of the line.
+    pub residuals: Vec<f64>,
+}
+
+impl Fit {
+    fn new(pairs: &[Pair], steps_per_unit: f64, offset_steps: f64) -> Self {
+        let residual = |pair: &Pair| pair.steps - (steps_per_unit * pair.length + offset_steps);
+        Self { steps_per_unit, offset_steps, residuals: pairs.iter().map(residual).collect() }
+    }
+
+    /// Root of the mean square of the residuals, in steps.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        let sum: f64 = self.residuals.iter().map(|residual| residual * residual).sum();
+        libm::sqrt(sum / self.residuals.len().max(1) as f64)
+    }
+
+    /// Index and steps of the residual furthest from 0, the first of several.
+    #[must_use]
+    pub fn largest(&self) -> Option<(usize, f64)> {
+        let mut found: Option<(usize, f64)> = None;
+        for (index, residual) in self.residuals.iter().enumerate() {
+            if found.is_none_or(|(_, largest)| libm::fabs(*residual) > libm::fabs(largest)) {
+                found = Some((index, *residual));
+            }
+        }
+        found
+    }
+}
+
+/// Both lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The document's: no length, no steps.
+    pub through_origin: Fit,
+    /// With an offset.
+    pub with_offset: Fit,
+}
+
+/// Why pairs have no line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BadPairs {
+    /// Fewer than two.
+    TooFew {
+        /// How many.
+        given: usize,
+    },
+    /// Not a number, beyond 10^12, or nearer to 0 than 10^-12 and not 0.
+    Number {
+        /// Which pair, from 0.
+        index: usize,
+        /// The pair.
+        pair: Pair,
+    },
+    /// All lengths are the same.
+    OneLength {
+        /// The length.
+        length: f64,
+    },
+    /// More length does not come with more steps.
+    NotRising {
+        /// The k that comes out, of the line through the origin or of the other.
+        steps_per_unit: f64,
+    },
+}
+
+impl fmt::Display for BadPairs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFew { given } => write!(
+                f,
+                "{given} pair{} of length and steps; give at least 2, of different lengths",
+                if *given == 1 { "" } else { "s" }
+            ),
+            Self::Number { index, pair } => write!(
+                f,
+                "pair {} has length {:?} and {:?} steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+                index + 1,
+                pair.length,
+                pair.steps
+            ),
+            Self::OneLength { length } => {
+                write!(f, "all pairs have length {length}; measure at least one of another length")
+            }
+            Self::NotRising { steps_per_unit } => write!(
+                f,
+                "{steps_per_unit:?} steps a unit: more length should come with more steps; give both the same sign, and check the columns"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for BadPairs {}
+
+impl Calibration {
+    /// The lines through the pairs; they are summed up in the order given, so the same pairs in the same order give
+    /// the same bits everywhere.
+    ///
+    /// # Errors
+    /// [`BadPairs`] for fewer than two pairs, for numbers that are none, beyond 10^12 or under 10^-12 in size (but
+    /// for 0), for equal lengths, and where the steps do not grow with the length.
+    pub fn of(pairs: &[Pair]) -> Result<Self, BadPairs> {
+        if pairs.len() < 2 {
+            return Err(BadPairs::TooFew { given: pairs.len() });
+        }
+        let good = |value: f64| value == 0.0 || (LEAST..=MOST).contains(&libm::fabs(value));
+        if let Some((index, pair)) =
+            pairs.iter().enumerate().find(|(_, pair)| !good(pair.length) || !good(pair.steps))
+        {
+            return Err(BadPairs::Number { index, pair: *pair });
+        }
+        let length = pairs.first().map_or(0.0, |pair| pair.length);
+        if pairs.iter().all(|pair| pair.length == length) {
+            return Err(BadPairs::OneLength { length });
+        }
+        let slope = |length_0: f64, steps_0: f64| {
+            let (mut product, mut square) = (0.0, 0.0);
+            for pair in pairs {
+                let length = pair.length - length_0;
+                product += length * (pair.steps - steps_0);
+                square += length * length;
+            }
+            let steps_per_unit = product / square;
+            let rises = steps_per_unit.is_finite() && steps_per_unit > 0.0;
+            if rises { Ok(steps_per_unit) } else { Err(BadPairs::NotRising { steps_per_unit }) }
+        };
+        let mean = |of: fn(&Pair) -> f64| pairs.iter().map(of).sum::<f64>() / pairs.len() as f64;
+        let (length_mean, steps_mean) = (mean(|pair| pair.length), mean(|pair| pair.steps));
+        let (through, beside) = (slope(0.0, 0.0)?, slope(length_mean, steps_mean)?);
+        Ok(Self {
+            through_origin: Fit::new(pairs, through, 0.0),
+            with_offset: Fit::new(pairs, beside, steps_mean - beside * length_mean),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    fn pairs(rows: &[(f64, f64)]) -> Vec<Pair> {
+        rows.iter().map(|&(length, steps)| Pair { length, steps }).collect()
+    }
+
+    #[test]
+    fn exact_pairs_give_their_own_line() {
+        // Zhang's 565 pulses a cm, and the same from a zero 2 cm off.
+        let found = Calibration::of(&pairs(&[(10.0, 5650.0), (30.5, 17_232.5), (45.0, 25_425.0)])).unwrap();
+        assert!((found.through_origin.steps_per_unit - 565.0).abs() < 1e-10, "{found:?}");
+        assert!(found.through_origin.rms() < 1e-9 && found.with_offset.offset_steps.abs() < 1e-9);
+        let found = Calibration::of(&pairs(&[(12.0, 5650.0), (32.0, 16_950.0), (47.0, 25_425.0)])).unwrap();
+        assert!((found.with_offset.steps_per_unit - 565.0).abs() < 1e-10, "{found:?}");
+        assert!((found.with_offset.offset_steps + 1130.0).abs() < 1e-8);
+        assert!(found.with_offset.rms() < 1e-9 && found.through_origin.rms() > 100.0);
+    }
+
+    /// By hand: sum(l*s) = 1*3 + 2*5 + 4*8 = 45, sum(l*l) = 21; means 7/3 and 16/3; 23/14 and 3/2.
+    #[test]
+    fn the_lines_are_those_of_least_squares_by_hand() {
+        let given = pairs(&[(1.0, 3.0), (2.0, 5.0), (4.0, 8.0)]);
+        let Calibration { through_origin, with_offset } = Calibration::of(&given).unwrap();
+        assert!((through_origin.steps_per_unit - 45.0 / 21.0).abs() < 1e-15);
+        assert_eq!(through_origin.offset_steps, 0.0);
+        assert!((with_offset.steps_per_unit - 23.0 / 14.0).abs() < 1e-14, "{with_offset:?}");
+        assert!((with_offset.offset_steps - 1.5).abs() < 1e-14);
+        let (index, largest) = through_origin.largest().unwrap();
+        assert_eq!(index, 0);
+        assert!((largest - 6.0 / 7.0).abs() < 1e-14, "{largest}");
+        let squares = [6.0_f64 / 7.0, 5.0 / 7.0, -4.0 / 7.0].map(|residual| residual * residual);
+        assert!((through_origin.rms() - (squares.iter().sum::<f64>() / 3.0).sqrt()).abs() < 1e-14);
+    }
+
+    /// A least-squares line has a smaller sum of squares than its neighbours.
+    #[test]
+    fn no_line_beside_it_is_better() {
+        let given: Vec<Pair> = (1..40)
+            .map(|i| Pair {
+                length: f64::from(i * i % 37),
+                steps: f64::from(i * i % 37) * 56.5 + f64::from(i * 7 % 11),
+            })
+            .collect();
+        let found = Calibration::of(&given).unwrap();
+        for (k, offset) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-2), (0.0, -1e-2)] {
+            let fit = &found.with_offset;
+            let moved = Fit::new(&given, fit.steps_per_unit + k, fit.offset_steps + offset);
+            assert!(moved.rms() > fit.rms());
+            if k != 0.0 {
+                let fit = &found.through_origin;
+                assert!(Fit::new(&given, fit.steps_per_unit + k, 0.0).rms() > fit.rms());
+            }
+        }
+    }
+
+    #[test]
+    fn the_least_and_the_greatest_numbers_have_a_line() {
+        for (length, steps) in [(1e-12, 1e12), (1e12, 1e-12)] {
+            let found = Calibration::of(&pairs(&[(0.0, 0.0), (length, steps)])).unwrap();
+            for fit in [&found.through_origin, &found.with_offset] {
+                assert!((fit.steps_per_unit / (steps / length) - 1.0).abs() < 1e-12, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn pairs_without_a_line_are_refused_with_their_numbers() {
+        let rows: [(&[(f64, f64)], &str); 8] = [
+            (&[], "0 pairs of length and steps; give at least 2, of different lengths"),
+            (&[(1.0, 2.0)], "1 pair of length and steps; give at least 2, of different lengths"),
+            (
+                &[(1.0, 2.0), (f64::NAN, 2.0)],
+                "pair 2 has length NaN and 2.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+            ),
+            // Their squares are 0.
+            (
+                &[(1e-200, 1.0), (2e-200, 2.0)],
+                "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+            ),
+            (
+                &[(1.0, f64::INFINITY), (2.0, 2.0)],
+                "pair 1 has length 1.0 and inf steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+            ),
+            (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; measure at least one of another length"),
+            (
+                &[(1.0, -2.0), (2.0, -4.0)],
+                "-2.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+            ),
+            (
+                &[(1.0, 5.0), (2.0, 5.0)],
+                "0.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+            ),
+        ];
+        for (given, expected) in rows {
+            let found = Calibration::of(&pairs(given)).err().map(|error| error.to_string());
+            assert_eq!(found.as_deref(), Some(expected), "{given:?}");
+        }
+    }
+}

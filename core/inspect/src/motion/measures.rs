@@ -1,0 +1,254 @@
+//! How good a run is, in numbers: the curve that was asked for, the steps that B1 makes of it, and the pulses as
+//! they really come, each held against the one before (SWorldJournal issue 11's list of measures).
+//!
+//! ```text
+//! ideal   s(t)                                             DESIGN B1
+//!   | step quantisation: whole steps at whole cycles       `steps`   ideal against steps
+//! steps   cycle = floor(t*clock_hz + 1/2)
+//!   | tick quantisation, the queue and the link            `ticks`   steps against pulses
+//! pulses  rising STEP edges of the run                     `pulses`  ideal against pulses
+//! ```
+//!
+//! Times are on the motion's own axis: 0 is the start of the first tick, or of the list of segments. A comparison
+//! goes from 0 until all has come to rest. Areas and means are integrals of the curves themselves; Euclidean
+//! distance and sum of squares belong to a number of points, which is stated.
+//!
+//! ```
+//! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! # let made = steps(&recording.trace, 0);
+//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
+//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+//! assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
+//! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
+//! ```
+
+mod curve_metrics;
+mod pulse_errors;
+
+pub use curve_metrics::{CurveMetrics, POINTS};
+pub use pulse_errors::PulseErrors;
+
+use crate::motion::{
+    actual_motion::Pulses,
+    sine_polyline::{cosines, differences},
+};
+use alloc::vec::Vec;
+use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
+use pulse_errors::{due_steps, placed};
+use serde::Serialize;
+use stepscope_motion::ValueError;
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, moves::Axis, sine_segments};
+use stepscope_peripheral::trace::Step;
+
+/// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
+pub const MAX_STEPS: u64 = 20_000_000;
+
+/// Whether the steps of these plans can be measured, which is known before any of them is made.
+///
+/// # Errors
+/// More than [`MAX_STEPS`] of all of them together.
+pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Result<(), ValueError> {
+    let steps = plans.into_iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
+    if steps > MAX_STEPS {
+        return Err(ValueError::TooMuch {
+            given: steps as f64,
+            most: MAX_STEPS as f64,
+            of: "steps to be measured",
+        });
+    }
+    Ok(())
+}
+
+/// All measures of one axis of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measures {
+    /// From the motion's time 0 until all has come to rest, in s: what the comparisons are taken over.
+    pub length_s: f64,
+    /// Step quantisation: the ideal curve, and the steps that B1 makes of it.
+    pub steps: CurveMetrics,
+    /// Tick quantisation, queue and link: those steps, and the pulses as they come.
+    pub ticks: CurveMetrics,
+    /// Both together: the ideal curve, and the pulses.
+    pub pulses: CurveMetrics,
+    /// Steps at whole cycles against their ideal instants.
+    pub step_errors: PulseErrors,
+    /// Pulses against the steps at whole cycles.
+    pub tick_errors: PulseErrors,
+    /// How much of each there is.
+    pub counts: Counts,
+    /// What the ideal curve asks of a motor.
+    pub peaks: Extremes,
+    /// When it ends, and when it was to.
+    pub duration: Duration,
+    /// Of the first sine by segments: its polyline against the exact sine.
+    pub sine: Option<SineMeasures>,
+}
+
+/// Steps that were due and pulses that came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Steps of the motion, there and back.
+    pub due: u64,
+    /// Pulses that came. Steps to and fro within one tick cancel and are not made.
+    pub actual: u64,
+    /// Pulses at a place, or in a direction, in which no step was due near that time.
+    pub stray: u64,
+}
+
+/// The greatest magnitudes of the ideal curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Extremes {
+    /// Speed in steps/s.
+    pub speed_steps_s: f64,
+    /// Acceleration in steps/s^2 where the speed has no jump.
+    pub acceleration_steps_s2: f64,
+    /// Jerk in steps/s^3 where the acceleration has no jump.
+    pub jerk_steps_s3: f64,
+    /// Jump of speed in steps/s.
+    pub speed_jump_steps_s: f64,
+    /// Jump of acceleration in steps/s^2.
+    pub acceleration_jump_steps_s2: f64,
+    /// Start-stop rate in steps/s: the greatest speed that is taken up from rest, or left for rest, at once. A turn
+    /// is a stop and a start.
+    pub start_stop_steps_s: f64,
+}
+
+/// When a motion ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Duration {
+    /// Of the plan, in s.
+    pub planned_s: f64,
+    /// As it was asked for, in s; `None` where no move names a time. Moves that name none count as planned.
+    pub requested_s: Option<f64>,
+    /// Planned less asked, in s.
+    pub plan_error_s: Option<f64>,
+    /// When the last step is due, in s.
+    pub last_due_s: Option<f64>,
+    /// When the last pulse comes, in s.
+    pub last_pulse_s: Option<f64>,
+    /// How much later than due that is, in s; `None` without a pulse.
+    pub end_error_s: Option<f64>,
+}
+
+/// A polyline against the exact sine, at the document's points of a quarter.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SineMeasures {
+    /// Segments of a quarter.
+    pub segments: usize,
+    /// The document's Ev: Euclidean distance in parts of the amplitude.
+    pub euclidean: f64,
+    /// Exact sine and polyline over a quarter, in steps; all of it from the points, which are its vertices too.
+    pub quarter: CurveMetrics,
+}
+
+impl Measures {
+    /// Of an axis: its plan, what the run made of it, and the moves that were asked for, where they are known.
+    ///
+    /// The time grows with the steps, some microseconds each, and the memory too: [`within_bounds`] says whether
+    /// there are too many.
+    #[must_use]
+    pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, asked: Option<&Axis>) -> Self {
+        let (zero, hz) = (pulses.zero(), pulses.hz());
+        let shifted = |step: &Step| Step { cycle: step.cycle.saturating_sub(zero), ..*step };
+        let made: Vec<Step> = pulses.steps.iter().map(shifted).collect();
+        let (due, step_errors) = due_steps(plan, pulses.clock_hz());
+        let (tick_errors, stray) = placed(plan, &due, &made, hz);
+        let last = |steps: &[Step]| steps.last().map(|step| step.cycle as f64 / hz);
+        let (last_due_s, last_pulse_s) = (last(&due), last(&made));
+        // One cycle at least, so that there is something to look at.
+        let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
+        let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
+        let breakpoints = Breakpoints::of(plan);
+        let requested_s = asked.and_then(|axis| requested_s(axis, plan));
+        Self {
+            length_s,
+            steps: curve_and_steps(plan, &breakpoints, &due, hz, length_s),
+            ticks: steps_and_steps(&due, &made, hz, length_s),
+            pulses: curve_and_steps(plan, &breakpoints, &made, hz, length_s),
+            step_errors,
+            tick_errors,
+            counts: Counts { due: due.len() as u64, actual: made.len() as u64, stray },
+            peaks: extremes(plan, &breakpoints),
+            duration: Duration {
+                planned_s: plan.duration_s(),
+                requested_s,
+                plan_error_s: requested_s.map(|requested_s| plan.duration_s() - requested_s),
+                last_due_s,
+                last_pulse_s,
+                end_error_s: last_pulse_s.zip(last_due_s).map(|(pulse, due)| pulse - due),
+            },
+            sine: plan.moves().iter().find_map(|planned| match &planned.profile {
+                Profile::SineSegments(sine) => Some(polyline(sine)),
+                _ => None,
+            }),
+        }
+    }
+}
+
+/// The time that the moves name, those that name none as planned; `None` where none does.
+fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
+    let names_one = axis.moves.iter().any(|asked| asked.requested_s().is_some());
+    let times = axis.moves.iter().zip(plan.moves());
+    // In the order in which the plan adds them, so that equal times give equal sums.
+    let sum = times.fold(0.0, |sum, (asked, planned)| {
+        sum + asked.requested_s().unwrap_or_else(|| planned.profile.duration_s())
+    });
+    names_one.then_some(sum)
+}
+
+fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
+    let peaks = plan.peaks();
+    let (mut before, mut start_stop) = (0.0, 0.0);
+    let mut meets = |before: f64, after: f64| {
+        if before * after <= 0.0 {
+            start_stop = libm::fmax(start_stop, libm::fmax(libm::fabs(before), libm::fabs(after)));
+        }
+    };
+    breakpoints.intervals(0.0, plan.duration_s(), &mut |interval| {
+        // Just inside, for at a joint the speed is that of one side; and from there to the joint itself.
+        let inset = (interval.to_s - interval.from_s) * 1e-9;
+        let speed = |t: f64, by: f64| plan.speed(t) + plan.acceleration(t) * by;
+        meets(before, speed(interval.from_s + inset, -inset));
+        before = speed(interval.to_s - inset, inset);
+    });
+    meets(before, 0.0);
+    Extremes {
+        speed_steps_s: peaks.speed,
+        acceleration_steps_s2: peaks.acceleration,
+        jerk_steps_s3: peaks.jerk,
+        speed_jump_steps_s: peaks.jump,
+        acceleration_jump_steps_s2: peaks.acceleration_jump,
+        // What is left of a curve that begins at rest is rounding.
+        start_stop_steps_s: if start_stop > 1e-9 * peaks.speed { start_stop } else { 0.0 },
+    }
+}
+
+fn polyline(sine: &sine_segments::SineSegments) -> SineMeasures {
+    let segments = sine.segments();
+    let amplitude = segments.iter().map(|segment| segment.steps).sum::<u64>() as f64;
+    let points: Vec<u16> = segments
+        .iter()
+        .map(|segment| segment.from)
+        .chain(segments.last().map(|segment| segment.to))
+        .collect();
+    let mut sums = Sums::default();
+    for (point, (cosine, off)) in differences(&points, &cosines()).enumerate() {
+        let (cosine, off) = (cosine * amplitude, off * amplitude);
+        let at_s = point as f64 * sine.point_s();
+        sums.look(at_s, off);
+        sums.sample(off);
+        // Line and cosine meet at both ends, so a sum over the points is the rule of trapezoids.
+        sums.interval(&[(cosine, off, sine.point_s())]);
+    }
+    let quarter = sums.ended();
+    SineMeasures { segments: segments.len(), euclidean: quarter.euclidean_steps / amplitude, quarter }
+}
+
+#[cfg(test)]
+mod tests;

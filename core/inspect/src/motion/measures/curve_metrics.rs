@@ -1,0 +1,225 @@
+//! Two curves of positions compared: distance, correlation, deviation, area.
+//!
+//! ```text
+//! off = second - first        integrals from joint to joint and from step to step, cut where off changes its
+//!                             sign, by three points of Gauss and Legendre: exact for what is straight or bent
+//! area = | |off| dt           once, for cosines to the last digits
+//! ```
+
+use crate::motion::{
+    cursor_stats::POINTS as GAUSS,
+    position_error::{Difference, Scaled},
+};
+use serde::Serialize;
+use stepscope_motion::{AxisPlan, Breakpoints, Interval};
+use stepscope_peripheral::trace::Step;
+
+/// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
+pub const POINTS: u32 = 2048;
+
+/// How far the second of two curves is from the first, in steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CurveMetrics {
+    /// The deviation of greatest magnitude, second less first, in steps.
+    pub largest_steps: f64,
+    /// When it first is so, in s from the motion's start.
+    pub largest_at_s: f64,
+    /// Root of the mean square of the deviation over the time, in steps.
+    pub rms_steps: f64,
+    /// Area between the two: the integral of |second - first|, in steps times s.
+    pub area_steps_s: f64,
+    /// Difference of their areas: the integral of second - first, in steps times s; 0 where only the rounding of
+    /// areas that cancel is left.
+    pub area_difference_steps_s: f64,
+    /// Points at which both are sampled, evenly from the start on, for the two figures that follow.
+    pub points: u32,
+    /// Sum of the squares of the deviations at the points, in steps^2.
+    pub sum_of_squares_steps2: f64,
+    /// Euclidean distance: its root, in steps.
+    pub euclidean_steps: f64,
+    /// Correlation coefficient over the time, -1 to 1; `None` where one of the two stands still.
+    pub correlation: Option<f64>,
+    /// 1 less the correlation, which has digits where the correlation is all nines.
+    pub uncorrelated: Option<f64>,
+}
+
+/// What is summed up of two curves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sums {
+    seconds: f64,
+    first: f64,
+    first_square: f64,
+    product: f64,
+    off: f64,
+    off_square: f64,
+    area: f64,
+    largest: f64,
+    largest_at_s: f64,
+    points: u32,
+    sampled_square: f64,
+}
+
+impl Sums {
+    /// A stretch in which the deviation keeps its sign, as (first, deviation, seconds).
+    pub(super) fn interval(&mut self, looks: &[(f64, f64, f64)]) {
+        let mut off_sum = 0.0;
+        for &(first, off, seconds) in looks {
+            self.seconds += seconds;
+            self.first += first * seconds;
+            self.first_square += first * first * seconds;
+            self.product += first * off * seconds;
+            self.off_square += off * off * seconds;
+            off_sum += off * seconds;
+        }
+        self.off += off_sum;
+        self.area += libm::fabs(off_sum);
+    }
+
+    /// A deviation that may be the largest.
+    pub(super) fn look(&mut self, at_s: f64, off: f64) {
+        if libm::fabs(off) > libm::fabs(self.largest) {
+            (self.largest, self.largest_at_s) = (off, at_s);
+        }
+    }
+
+    /// The deviation at the next of the points.
+    pub(super) fn sample(&mut self, off: f64) {
+        self.points += 1;
+        self.sampled_square += off * off;
+    }
+
+    pub(super) fn ended(self) -> CurveMetrics {
+        let mean = |sum: f64| if self.seconds > 0.0 { sum / self.seconds } else { 0.0 };
+        let (first, off) = (mean(self.first), mean(self.off));
+        let of_first = mean(self.first_square) - first * first;
+        let of_off = mean(self.off_square) - off * off;
+        let of_both = mean(self.product) - first * off;
+        let of_second = of_first + 2.0 * of_both + of_off;
+        // Of a curve that stands still only rounding is left.
+        let least = 1e-12 * mean(self.first_square);
+        let correlation = (of_first > least && of_second > least)
+            .then(|| (of_first + of_both) / libm::sqrt(of_first * of_second));
+        let uncorrelated = correlation.map(|correlation| {
+            // 1 - r^2 = (1 - r)*(1 + r), without the digits that 1 - r loses.
+            let rest = (of_first * of_off - of_both * of_both) / (of_first * of_second);
+            if correlation > 0.0 { libm::fmax(0.0, rest / (1.0 + correlation)) } else { 1.0 - correlation }
+        });
+        CurveMetrics {
+            largest_steps: self.largest,
+            largest_at_s: self.largest_at_s,
+            rms_steps: libm::sqrt(mean(self.off_square)),
+            area_steps_s: self.area,
+            area_difference_steps_s: if libm::fabs(self.off) > 1e-12 * self.area { self.off } else { 0.0 },
+            points: self.points,
+            sum_of_squares_steps2: self.sampled_square,
+            euclidean_steps: libm::sqrt(self.sampled_square),
+            correlation: correlation.map(|correlation| correlation.clamp(-1.0, 1.0)),
+            uncorrelated,
+        }
+    }
+}
+
+/// The ideal curve, and steps in cycles from the motion's start.
+pub(super) fn curve_and_steps(
+    plan: &AxisPlan,
+    breakpoints: &Breakpoints,
+    steps: &[Step],
+    hz: f64,
+    length_s: f64,
+) -> CurveMetrics {
+    let mut sums = Sums::default();
+    let (mut since_s, mut place) = (0.0, 0.0);
+    let mut stay = |since_s: f64, to_s: f64, place: f64| {
+        breakpoints
+            .intervals(since_s, to_s, &mut |interval| curve_and_place(plan, interval, place, hz, &mut sums));
+    };
+    for step in steps {
+        let at_s = step.cycle as f64 / hz;
+        stay(since_s, at_s, place);
+        (since_s, place) = (at_s, f64::from(step.position));
+    }
+    stay(since_s, length_s, place);
+    sample(&mut sums, length_s, |t| place_at(steps, hz, t) - plan.position(t));
+    sums.ended()
+}
+
+/// A smooth interval of the ideal curve, and a place at which the steps stay.
+fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sums: &mut Sums) {
+    let off = |t: f64| place - plan.position(t);
+    // Just inside: a table's curve ends with half a step at once.
+    let inset = (interval.to_s - interval.from_s) * 1e-9;
+    let ends = [interval.from_s + inset, interval.to_s - inset].map(|t| (t, off(t)));
+    // What lasts less than a cycle is the rounding of the step's time.
+    if (interval.to_s - interval.from_s) * hz > 0.75 {
+        ends.into_iter().for_each(|(t, off)| sums.look(t, off));
+    }
+    let middle_s = if ends[0].1 * ends[1].1 < 0.0 { crossing(ends, off) } else { interval.to_s };
+    for (from_s, to_s) in [(interval.from_s, middle_s), (middle_s, interval.to_s)] {
+        let (middle, half) = ((from_s + to_s) / 2.0, (to_s - from_s) / 2.0);
+        if half > 0.0 {
+            sums.interval(&GAUSS.map(|(point, weight)| {
+                let position = plan.position(middle + half * point);
+                (position, place - position, 2.0 * half * weight * interval.times)
+            }));
+        }
+    }
+}
+
+/// Where a deviation that only rises or only falls is 0, between two ends of different sign: by false position, the
+/// end that stays counting half (Illinois).
+fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f64 {
+    let mut kept_low = None;
+    for _ in 0..50 {
+        let t = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+        let value = off(t);
+        // The area that is put on the wrong side is of second order.
+        if libm::fabs(value) < 1e-9 {
+            return t;
+        }
+        if (value < 0.0) == (low.1 < 0.0) {
+            low = (t, value);
+            if kept_low == Some(false) {
+                high.1 /= 2.0;
+            }
+            kept_low = Some(false);
+        } else {
+            high = (t, value);
+            if kept_low == Some(true) {
+                low.1 /= 2.0;
+            }
+            kept_low = Some(true);
+        }
+    }
+    (low.0 + high.0) / 2.0
+}
+
+/// Steps, and other steps, both in cycles from the motion's start.
+pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s: f64) -> CurveMetrics {
+    let mut sums = Sums::default();
+    // From before the start, so that a step in cycle 0 is a change like any other.
+    let mut walk = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);
+    let (mut since_s, mut places) = (0.0, [0.0; 2]);
+    let mut stay = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
+        if to_s > since_s {
+            sums.look(since_s, second - first);
+            sums.interval(&[(first, second - first, to_s - since_s)]);
+        }
+    };
+    walk.changes(length_s, &mut |time_s, now| {
+        stay(since_s, time_s, places);
+        (since_s, places) = (time_s, now);
+    });
+    stay(since_s, length_s, places);
+    sample(&mut sums, length_s, |t| place_at(second, hz, t) - place_at(first, hz, t));
+    sums.ended()
+}
+
+fn sample(sums: &mut Sums, length_s: f64, off: impl Fn(f64) -> f64) {
+    (0..POINTS).for_each(|point| sums.sample(off(length_s * (f64::from(point) / f64::from(POINTS)))));
+}
+
+/// Position after all steps up to a time.
+fn place_at(steps: &[Step], hz: f64, time_s: f64) -> f64 {
+    let after = steps.partition_point(|step| step.cycle as f64 / hz <= time_s);
+    after.checked_sub(1).and_then(|last| steps.get(last)).map_or(0.0, |step| f64::from(step.position))
+}

@@ -1,0 +1,201 @@
+//! Two runs over one time: the difference of the positions that their pulses make.
+//!
+//! ```text
+//! first        ____|‾‾‾     positions stay from step to step, so the difference changes only at
+//! second     __|‾‾‾‾‾‾‾     steps; both stand at 0 before their first and stay where the last
+//! difference ‾‾|___|‾‾‾     brought them
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::motion::position_error::{Scaled, apart};
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // Two runs that part at their second step.
+//! let steps = |second| [(100, 1), (second, 2)].map(|(cycle, position)| Step { cycle, position });
+//! let (one, other) = (steps(200), steps(300));
+//! let scaled = |steps| Scaled { steps, hz: 1000.0, unit: 1.0 };
+//! let apart = apart(scaled(&one), scaled(&other), 1.0);
+//! assert_eq!((apart.largest, apart.at_s), (1.0, 0.2));
+//! ```
+
+use crate::motion::curves::{Band, Window};
+use stepscope_peripheral::trace::Step;
+
+/// A run's steps in a unit that two of them share.
+#[derive(Clone, Copy, Debug)]
+pub struct Scaled<'a> {
+    /// Steps of the run's channel.
+    pub steps: &'a [Step],
+    /// Cycles a second.
+    pub hz: f64,
+    /// What a step is in that unit.
+    pub unit: f64,
+}
+
+impl Scaled<'_> {
+    fn time_s(&self, index: usize) -> Option<f64> {
+        self.steps.get(index).map(|step| step.cycle as f64 / self.hz)
+    }
+
+    fn place(&self, steps: usize) -> f64 {
+        let last = steps.checked_sub(1).and_then(|last| self.steps.get(last));
+        last.map_or(0.0, |step| f64::from(step.position)) * self.unit
+    }
+}
+
+/// The first run's position less the second's, from change to change.
+pub(crate) struct Difference<'a> {
+    runs: [Scaled<'a>; 2],
+    /// Steps of each that have come.
+    next: [usize; 2],
+}
+
+impl<'a> Difference<'a> {
+    /// From a time on: what happened before is in [`Self::now`].
+    pub(crate) fn from(runs: [Scaled<'a>; 2], from_s: f64) -> Self {
+        let next = runs.map(|run| run.steps.partition_point(|step| step.cycle as f64 / run.hz <= from_s));
+        Self { runs, next }
+    }
+
+    /// The difference as it stands.
+    fn now(&self) -> f64 {
+        let [a, b] = self.places();
+        a - b
+    }
+
+    /// Both positions as they stand.
+    pub(crate) fn places(&self) -> [f64; 2] {
+        let [a, b] = self.runs;
+        let [after_a, after_b] = self.next;
+        [a.place(after_a), b.place(after_b)]
+    }
+
+    /// The changes up to a time, that time left out: when, and both positions then.
+    pub(crate) fn changes(&mut self, to_s: f64, each: &mut dyn FnMut(f64, [f64; 2])) {
+        loop {
+            let [a, b] = self.runs;
+            let times = [a.time_s(self.next[0]), b.time_s(self.next[1])].map(|t| t.unwrap_or(f64::INFINITY));
+            let at = if times[1] < times[0] { times[1] } else { times[0] };
+            if at >= to_s || at == f64::INFINITY {
+                return;
+            }
+            for (next, time) in self.next.iter_mut().zip(times) {
+                *next += usize::from(time == at);
+            }
+            each(at, self.places());
+        }
+    }
+}
+
+/// The least and greatest difference in each column of a window, that with which it is entered among
+/// them; NaN where no time is common.
+#[must_use]
+pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: Window) -> Band {
+    let mut band = Band::new(window.columns);
+    let mut walk = Difference::from([first, second], window.start_s);
+    for column in 0..window.columns {
+        if window.edge_s(column) >= common_s {
+            break;
+        }
+        band.take(column, walk.now());
+        walk.changes(window.edge_s(column + 1), &mut |_, [a, b]| band.take(column, a - b));
+    }
+    band
+}
+
+/// How far two runs' positions lie apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// The difference of the greatest magnitude, with its sign.
+    pub largest: f64,
+    /// When it first is so, in s.
+    pub at_s: f64,
+    /// Root of the mean square over the common time.
+    pub rms: f64,
+}
+
+/// How far apart they are from 0 to `common_s`, which is above 0.
+#[must_use]
+pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
+    let mut walk = Difference::from([first, second], 0.0);
+    let (mut since_s, mut difference) = (0.0, walk.now());
+    let (mut largest, mut at_s, mut square) = (difference, 0.0, 0.0);
+    walk.changes(common_s, &mut |time_s, [a, b]| {
+        let now = a - b;
+        square += difference * difference * (time_s - since_s);
+        (since_s, difference) = (time_s, now);
+        if libm::fabs(now) > libm::fabs(largest) {
+            (largest, at_s) = (now, time_s);
+        }
+    });
+    square += difference * difference * (common_s - since_s);
+    Apart { largest, at_s, rms: libm::sqrt(square / common_s) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    type Rows = &'static [(u64, i32)];
+
+    fn steps(rows: &[(u64, i32)]) -> Vec<Step> {
+        rows.iter().map(|&(cycle, position)| Step { cycle, position }).collect()
+    }
+
+    /// The position after all steps up to a time.
+    fn position(run: Scaled<'_>, time_s: f64) -> f64 {
+        let last = run.steps.iter().rev().find(|step| step.cycle as f64 / run.hz <= time_s);
+        last.map_or(0.0, |step| f64::from(step.position)) * run.unit
+    }
+
+    #[test]
+    fn columns_and_the_whole_are_those_of_a_look_at_every_cycle() {
+        // Clocks of 1024 Hz and 4096 Hz, so that all times are exact; a step at the same time in both, one a run's only step.
+        let rows: [(Rows, Rows); 4] = [
+            (&[(1, 1), (5, 2), (9, 1), (30, 2)], &[(4, 1), (22, 2), (23, 1), (36, 2), (80, 3)]),
+            (&[], &[(40, -1)]),
+            (&[(7, 1)], &[]),
+            (&[], &[]),
+        ];
+        for (first, second) in rows {
+            let (first, second) = (steps(first), steps(second));
+            let first = Scaled { steps: &first, hz: 1024.0, unit: 0.5 };
+            let second = Scaled { steps: &second, hz: 4096.0, unit: 2.0 };
+            let common_s = 36.0 / 1024.0;
+            let looks: Vec<(f64, f64)> = (0..36 * 4)
+                .map(|cycle| {
+                    let time_s = f64::from(cycle) / 4096.0;
+                    (time_s, position(first, time_s) - position(second, time_s))
+                })
+                .collect();
+            let window = Window { start_s: 2.0 / 1024.0, end_s: 42.0 / 1024.0, columns: 10 };
+            let band = difference(first, second, common_s, window);
+            for column in 0..window.columns {
+                let (from, to) = (window.edge_s(column), window.edge_s(column + 1));
+                let before = looks.iter().rev().find(|(t, _)| *t < from);
+                let inside = looks.iter().filter(|(t, _)| *t >= from && *t < to);
+                let inside = before.into_iter().chain(inside).map(|look| look.1);
+                if from >= common_s {
+                    assert!(band.min[column].is_nan() && band.max[column].is_nan());
+                    continue;
+                }
+                let (least, most) = inside.fold((f64::MAX, f64::MIN), |(a, b), d| (a.min(d), b.max(d)));
+                assert_eq!(
+                    (band.min[column], band.max[column]),
+                    (least, most),
+                    "{first:?} {second:?} {column}"
+                );
+            }
+            let found = apart(first, second, common_s);
+            let (at_s, largest) = looks
+                .iter()
+                .copied()
+                .fold((0.0, looks[0].1), |most, look| if look.1.abs() > most.1.abs() { look } else { most });
+            let square: f64 = looks.iter().map(|look| look.1 * look.1).sum();
+            let rms = (square / looks.len() as f64).sqrt();
+            assert_eq!((found.largest, found.at_s), (largest, at_s));
+            assert!((found.rms - rms).abs() < 1e-12, "{} {rms}", found.rms);
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! The polyline of so many segments that makes a sine with least distortion (DESIGN B5, beyond the document).
+//!
+//! The vertices are free to move: along the curve, or in angle and height. What is to be least is the sum of squares of
+//! r_k = a_k/a_1 over the odd harmonics k = 3, 5, …, so each step is one of Levenberg and Marquardt's,
+//!
+//! ```text
+//! (J'J + damping*diag(J'J))*step = -J'r          J  the derivatives of r, in closed form
+//! ```
+//!
+//! from several first guesses, of which the best end counts. Sums go in one order and functions come from `libm`, so the
+//! result has the same bits on every target. That no other place is better is not proven; the tests hold it against
+//! optima that were found otherwise.
+//!
+//! ```
+//! use stepscope_inspect::motion::sine_optimum::{Freedom, optimum};
+//!
+//! let on_curve = optimum(4, Freedom::OnCurve, 40).expect("there is one");
+//! let free = optimum(4, Freedom::Free, 40).expect("there is one");
+//! assert_eq!(free.vertices.len(), 5);
+//! assert!(free.distortion.position < on_curve.distortion.position);
+//! ```
+
+use crate::motion::sine_polyline::{Distortion, OddCosines, Vertex, distortion, scale};
+use alloc::{vec, vec::Vec};
+use core::f64::consts::FRAC_PI_2;
+
+/// Most segments of a quarter.
+pub const MAX_SEGMENTS: usize = 32;
+/// Steps from one first guess, at most.
+const MAX_STEPS: u32 = 200;
+/// First guesses: the density of breakpoints is cos(angle) to this power.
+const GUESSES: [f64; 4] = [0.4, 0.0, 0.7, 1.0];
+
+/// Where vertices may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// On the curve: only their angles are free.
+    OnCurve,
+    /// Anywhere.
+    Free,
+}
+
+/// The best polyline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Optimum {
+    /// Vertices of the quarter, the first at angle 0, the last at pi/2 and height 0, scaled so that the first harmonic
+    /// is 1 where they are free.
+    pub vertices: Vec<Vertex>,
+    /// Its distortion.
+    pub distortion: Distortion,
+}
+
+/// The polyline of `segments` (1 to [`MAX_SEGMENTS`]) a quarter with least distortion of position up to harmonic
+/// `order`; None for another number of segments.
+#[must_use]
+pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum> {
+    if !(1..=MAX_SEGMENTS).contains(&segments) {
+        return None;
+    }
+    let found = GUESSES.iter().map(|power| Search::new(segments, freedom, order, *power).run());
+    let best = found.reduce(|best, other| if other.cost < best.cost { other } else { best })?;
+    let mut vertices = best.vertices;
+    if freedom == Freedom::Free {
+        let first = harmonics(&vertices, 1).first().copied().unwrap_or(1.0);
+        for vertex in &mut vertices {
+            vertex.height /= first;
+        }
+    }
+    Some(Optimum { distortion: distortion(&vertices, order), vertices })
+}
+
+fn harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
+    super::sine_polyline::odd_harmonics(vertices, order)
+}
+
+/// A search from one first guess.
+struct Search {
+    freedom: Freedom,
+    order: u16,
+    vertices: Vec<Vertex>,
+    /// Sum of the squares of all r_k.
+    cost: f64,
+}
+
+impl Search {
+    fn new(segments: usize, freedom: Freedom, order: u16, power: f64) -> Self {
+        let vertices = guess(segments, power);
+        let cost = cost(&vertices, order);
+        Self { freedom, order, vertices, cost }
+    }
+
+    fn run(mut self) -> Self {
+        let mut damping = 1e-3;
+        for _ in 0..MAX_STEPS {
+            let (matrix, slope) = self.normal_equations();
+            let before = self.cost;
+            // Ever shorter steps, until one goes down.
+            while damping < 1e12 {
+                let step = solve(damped(&matrix, damping), &slope);
+                if step.is_some_and(|step| self.go(&step)) {
+                    damping /= 10.0;
+                    break;
+                }
+                damping *= 4.0;
+            }
+            if before - self.cost <= 1e-12 * before {
+                break;
+            }
+        }
+        self
+    }
+
+    /// Takes a step if it leads to less.
+    fn go(&mut self, step: &[f64]) -> bool {
+        let inner = self.vertices.len() - 2;
+        let mut moved = self.vertices.clone();
+        for (index, vertex) in moved.iter_mut().skip(1).take(inner).enumerate() {
+            vertex.angle += step.get(index).copied().unwrap_or(0.0);
+            match self.freedom {
+                Freedom::OnCurve => vertex.height = libm::cos(vertex.angle),
+                Freedom::Free => vertex.height += step.get(inner + index).copied().unwrap_or(0.0),
+            }
+        }
+        let rises = moved.iter().zip(moved.iter().skip(1)).all(|(a, b)| b.angle - a.angle > 1e-6);
+        let cost = if rises { cost(&moved, self.order) } else { f64::INFINITY };
+        if cost < self.cost {
+            (self.vertices, self.cost) = (moved, cost);
+            true
+        } else {
+            false
+        }
+    }
+
+    /// J'J and -J'r.
+    fn normal_equations(&self) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let harmonics = harmonics(&self.vertices, self.order);
+        let first = harmonics.first().copied().unwrap_or(1.0);
+        let columns = self.derivatives();
+        // r_k = a_k/a_1, so dr_k = (da_k - r_k*da_1)/a_1; the first harmonic itself has none.
+        let ratios: Vec<f64> = harmonics.iter().skip(1).map(|a| a / first).collect();
+        let columns: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|column| {
+                let of_first = column.first().copied().unwrap_or(0.0);
+                column.iter().skip(1).zip(&ratios).map(|(d, r)| (d - r * of_first) / first).collect()
+            })
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let matrix = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+        let slope = columns.iter().map(|column| -dot(column, &ratios)).collect();
+        (matrix, slope)
+    }
+
+    /// Derivatives of all odd harmonics by each free number: the inner angles, then, if free, the inner heights.
+    fn derivatives(&self) -> Vec<Vec<f64>> {
+        let inner = self.vertices.len() - 2;
+        let by_angle = (1..=inner).map(|index| self.derivative(index, true));
+        let by_height = (1..=inner).map(|index| self.derivative(index, false));
+        match self.freedom {
+            Freedom::Free => by_angle.chain(by_height).collect(),
+            Freedom::OnCurve => by_angle
+                .zip(by_height)
+                .zip(self.vertices.iter().skip(1))
+                .map(|((angle, height), vertex)| {
+                    // Along the curve the height falls with sin(angle).
+                    let falls = libm::sin(vertex.angle);
+                    angle.iter().zip(&height).map(|(a, h)| a - falls * h).collect()
+                })
+                .collect(),
+        }
+    }
+
+    /// Derivatives of all odd harmonics by the angle or the height of an inner vertex.
+    fn derivative(&self, index: usize, by_angle: bool) -> Vec<f64> {
+        let at =
+            |index: usize| self.vertices.get(index).copied().unwrap_or(Vertex { angle: 0.0, height: 0.0 });
+        let (before, this, after) = (at(index - 1), at(index), at(index + 1));
+        let (left, right) = (this.angle - before.angle, after.angle - this.angle);
+        let (slope_left, slope_right) =
+            ((this.height - before.height) / left, (after.height - this.height) / right);
+        // What the slopes on both sides gain.
+        let (gain_left, gain_right) =
+            if by_angle { (-slope_left / left, slope_right / right) } else { (1.0 / left, -1.0 / right) };
+        let bend = slope_left - slope_right;
+        let cosines =
+            OddCosines::of(before.angle).zip(OddCosines::of(this.angle)).zip(OddCosines::of(after.angle));
+        let count = usize::from(self.order).div_ceil(2);
+        // The last vertex's cosine is 0 for every odd k, but not after rounding.
+        let last = index + 2 == self.vertices.len();
+        cosines
+            .take(count)
+            .zip(OddSines::of(this.angle))
+            .enumerate()
+            .map(|(harmonic, (((before, this), after), sine))| {
+                let after = if last { 0.0 } else { after };
+                let k = (2 * harmonic + 1) as f64;
+                let turn = if by_angle { bend * k * sine } else { 0.0 };
+                scale(harmonic)
+                    * (-gain_left * before + (gain_left - gain_right) * this + gain_right * after - turn)
+            })
+            .collect()
+    }
+}
+
+/// sin(k*angle) for k = 1, 3, 5, …
+struct OddSines {
+    now: f64,
+    before: f64,
+    twice: f64,
+}
+
+impl OddSines {
+    fn of(angle: f64) -> Self {
+        let now = libm::sin(angle);
+        Self { now, before: -now, twice: 2.0 * libm::cos(2.0 * angle) }
+    }
+}
+
+impl Iterator for OddSines {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        let now = self.now;
+        (self.now, self.before) = (self.twice * now - self.before, now);
+        Some(now)
+    }
+}
+
+/// Breakpoints on the curve whose density is cos(angle)^power.
+fn guess(segments: usize, power: f64) -> Vec<Vertex> {
+    const PARTS: u16 = 4096;
+    let angle = |part: u16| f64::from(part) * FRAC_PI_2 / f64::from(PARTS);
+    let weight = |part: u16| libm::pow(libm::cos(angle(part) + FRAC_PI_2 / f64::from(2 * PARTS)), power);
+    let all: f64 = (0..PARTS).map(weight).sum();
+    let (mut vertices, mut sum) = (vec![Vertex { angle: 0.0, height: 1.0 }], 0.0);
+    for part in 0..PARTS {
+        if vertices.len() < segments && sum >= all * vertices.len() as f64 / segments as f64 {
+            vertices.push(Vertex { angle: angle(part), height: libm::cos(angle(part)) });
+        }
+        sum += weight(part);
+    }
+    vertices.push(Vertex { angle: FRAC_PI_2, height: 0.0 });
+    vertices
+}
+
+/// Sum of the squares of all r_k.
+fn cost(vertices: &[Vertex], order: u16) -> f64 {
+    let position = distortion(vertices, order).position;
+    position * position
+}
+
+fn damped(matrix: &[Vec<f64>], damping: f64) -> Vec<Vec<f64>> {
+    let mut matrix = matrix.to_vec();
+    for (index, row) in matrix.iter_mut().enumerate() {
+        if let Some(diagonal) = row.get_mut(index) {
+            *diagonal *= 1.0 + damping;
+        }
+    }
+    matrix
+}
+
+/// Solves a symmetric positive definite system by elimination; None where it is none.
+fn solve(mut rows: Vec<Vec<f64>>, right: &[f64]) -> Option<Vec<f64>> {
+    for (row, value) in rows.iter_mut().zip(right) {
+        row.push(*value);
+    }
+    let count = rows.len();
+    for pivot in 0..count {
+        let (done, below) = rows.split_at_mut(pivot + 1);
+        let row = done.last()?;
+        let head = *row.get(pivot)?;
+        if head.is_nan() || head <= 0.0 {
+            return None;
+        }
+        for other in below {
+            let factor = *other.get(pivot)? / head;
+            for (a, b) in other.iter_mut().zip(row).skip(pivot) {
+                *a -= factor * b;
+            }
+        }
+    }
+    let mut found = vec![0.0; count];
+    for pivot in (0..count).rev() {
+        let row = rows.get(pivot)?;
+        let known: f64 = row.iter().zip(&found).skip(pivot + 1).map(|(a, x)| a * x).sum();
+        let value = (row.get(count)? - known) / row.get(pivot)?;
+        *found.get_mut(pivot)? = value;
+    }
+    Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_known_optima_of_3_to_6_segments_are_reached() {
+        let rows = [
+            (3, Freedom::Free, 0.951),
+            (4, Freedom::Free, 0.515),
+            (5, Freedom::Free, 0.322),
+            (6, Freedom::Free, 0.221),
+            (3, Freedom::OnCurve, 0.977),
+            (4, Freedom::OnCurve, 0.535),
+            (5, Freedom::OnCurve, 0.338),
+            (6, Freedom::OnCurve, 0.233),
+        ];
+        for (segments, freedom, percent) in rows {
+            let found = optimum(segments, freedom, 399).unwrap();
+            assert_eq!(found.vertices.len(), segments + 1);
+            let reached = found.distortion.position * 100.0;
+            // Their last digit is rounded.
+            assert!(
+                reached <= percent * 1.01 && reached >= percent - 0.001,
+                "{segments} {freedom:?}: {reached}"
+            );
+        }
+    }
+
+    #[test]
+    fn more_segments_and_more_freedom_never_distort_more() {
+        let mut before = [f64::INFINITY; 2];
+        for segments in 1..=12 {
+            let found = [Freedom::OnCurve, Freedom::Free].map(|freedom| {
+                let optimum = optimum(segments, freedom, 399).unwrap();
+                let rises = optimum.vertices.windows(2).all(|pair| pair[0].angle < pair[1].angle);
+                assert!(rises, "{optimum:?}");
+                optimum.distortion.position
+            });
+            assert!(found[1] <= found[0] * (1.0 + 1e-9), "{segments}: {found:?}");
+            assert!(found[0] < before[0] && found[1] < before[1], "{segments}: {found:?}");
+            before = found;
+        }
+        assert_eq!((optimum(0, Freedom::Free, 399), optimum(33, Freedom::Free, 399)), (None, None));
+    }
+
+    #[test]
+    fn an_optimum_is_better_than_all_its_neighbours() {
+        for freedom in [Freedom::OnCurve, Freedom::Free] {
+            let found = optimum(5, freedom, 399).unwrap();
+            let least = found.distortion.position;
+            for index in 1..5 {
+                for (turn, lift) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3)] {
+                    let mut vertices = found.vertices.clone();
+                    vertices[index].angle += turn;
+                    if freedom == Freedom::OnCurve {
+                        vertices[index].height = libm::cos(vertices[index].angle);
+                    } else {
+                        vertices[index].height += lift;
+                    }
+                    let other = distortion(&vertices, 399).position;
+                    assert!(other >= least, "{freedom:?} {index} {turn} {lift}: {other} {least}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The spectra of an axis side by side: of the ideal motion, and of the pulses as they come.
+//!
+//! ```
+//! use stepscope_inspect::motion::{actual_motion::Pulses, spectra::Spectra};
+//! use stepscope_scenario::Scenario;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # experiment.run(&mut recording);
+//! # let made = steps(&recording.trace, 0);
+//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
+//! let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
+//! let lines = |spectrum: Option<stepscope_inspect::motion::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
+//! assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
+//! ```
+
+use crate::motion::{
+    actual_motion::Pulses,
+    spectrum::{AnalysisWindow, Spectrum},
+};
+use alloc::{borrow::ToOwned, format, string::String};
+use stepscope_motion::AxisPlan;
+use stepscope_scenario::{Scenario, Source};
+
+/// So many samples a harmonic bring the acceleration of a curve with corners to a part in a hundred or so.
+const FOLDING: u32 = 16;
+
+/// Both spectra, and what has to be said of them.
+#[derive(Clone, Debug, Default)]
+pub struct Spectra {
+    /// Of the ideal curve.
+    pub ideal: Option<Spectrum>,
+    /// Of the pulses.
+    pub actual: Option<Spectrum>,
+    /// Why there is none, or what it is not; empty for nothing.
+    pub note: String,
+}
+
+impl Spectra {
+    /// Of the axis that a scenario's analysis names, with its plan, if it has one, and its pulses. Without a plan only what
+    /// the pulses make is known.
+    #[must_use]
+    pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
+        let analysis = &scenario.analysis;
+        let window = plan.and_then(AnalysisWindow::of);
+        let (Some(plan), Some(window)) = (plan, window) else {
+            if let Source::Motion(_) = &scenario.source {
+                let note = format!("This controller has no axis {}.", analysis.axis);
+                return Self { note, ..Self::default() };
+            }
+            return Self::of_steps(scenario, run);
+        };
+        let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
+        let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
+        let note = if !window.periodic {
+            "The motion is not periodic: no harmonics, no THD.".to_owned()
+        } else if u32::from(analysis.order) * FOLDING > analysis.fft_length {
+            format!(
+                "Of {} samples a period the ideal curve's harmonics up to {} fold back, in the acceleration most: more samples, or a lower order, come nearer to the truth.",
+                analysis.fft_length, analysis.order
+            )
+        } else {
+            String::new()
+        };
+        Self {
+            ideal: ideal.map(|ideal| ideal.filtered_by(analysis.sensor_hz)),
+            actual: Some(actual.filtered_by(analysis.sensor_hz)),
+            note,
+        }
+    }
+
+    /// Of steps of which no plan is known: those of packets, line scripts, lists of segments, recordings.
+    fn of_steps(scenario: &Scenario, run: &Pulses<'_>) -> Self {
+        let analysis = &scenario.analysis;
+        let Some(window) = AnalysisWindow::of_steps(run.steps, run.hz()) else {
+            let note = format!("Channel {} makes less than two steps.", run.channel);
+            return Self { note, ..Self::default() };
+        };
+        let actual = Spectrum::of_pulses(&window.steps_within(run.steps, run.hz()), window, analysis.order);
+        let note = if window.periodic {
+            format!("Taken over {} periods, from turn to turn: no plan is known.", window.periods)
+        } else {
+            "The steps do not go to and fro evenly: no harmonics, no THD.".to_owned()
+        };
+        Self { ideal: None, actual: Some(actual.filtered_by(analysis.sensor_hz)), note }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::trace::{Recording, steps};
+    use stepscope_sim::Experiment;
+
+    #[test]
+    fn a_recorded_sine_has_the_distortion_of_the_planned_one() {
+        let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[
+            {"sine":{"amplitude":{"steps":800},"period_s":0.5,"periods":6}}]}]}}}"#;
+        let scenario = Scenario::from_json(json).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("no problems");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let made = steps(&recording.trace, 0);
+        let list = experiment.segments().and_then(|all| all.lists().first());
+        let planned = Pulses::of_run(0, &made, &recording.packets, list, experiment.config());
+        let known = Spectra::of(&scenario, experiment.plans().first(), &planned).actual.expect("pulses");
+        let recorded = Pulses::recorded(0, &made, 16_000_000);
+        let other = Scenario { source: Source::Segments(Default::default()), ..scenario };
+        let Spectra { ideal, actual, note } = Spectra::of(&other, None, &recorded);
+        let found = actual.expect("pulses");
+        assert!(ideal.is_none() && note.contains("5 periods"), "{note}");
+        assert!((found.window.period_s - 0.5).abs() < 1e-6, "{:?}", found.window);
+        let thd = |spectrum: &Spectrum| spectrum.speed.distortion.expect("a sine");
+        assert!((thd(&found) / thd(&known) - 1.0).abs() < 0.01, "{} {}", thd(&found), thd(&known));
+        let amplitude = found.position.amplitudes[0];
+        assert!((amplitude / known.position.amplitudes[0] - 1.0).abs() < 1e-3, "{amplitude}");
+        let still = Spectra::of(&other, None, &Pulses::recorded(0, &made[..1], 16_000_000));
+        assert!(still.actual.is_none() && still.note.contains("less than two steps"));
+    }
+}

@@ -1,0 +1,42 @@
+//! The acceleration of steps that no plan is known of: from each eight steps in one direction to the next eight, since from
+//! step to step the rounding to cycles alone would make it.
+//!
+//! ```text
+//!       |<-- eight steps -->|<------ eight steps ------>|
+//!  STEP '  ' ' ' '' ' ' ' ' '   '    '   '   '    '   '  '     rate: 8 by the time of each half;
+//!      from               middle                        to     acceleration, at the middle: what the rate changes by,
+//!                                                              by the mean of both times
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::motion::step_acceleration::of;
+//! use stepscope_peripheral::trace::Step;
+//!
+//! // 8 steps at 100 steps/s, then 8 at 200 steps/s, in cycles of 1 ms.
+//! let at = |k: i32| if k <= 8 { 10 * k } else { 40 + 5 * k };
+//! let steps: Vec<Step> = (0..17).map(|k| Step { cycle: at(k) as u64, position: k }).collect();
+//! assert!((of(&steps, 8, 1000.0).unwrap() - 100.0 / 0.06).abs() < 1e-9);
+//! assert_eq!(of(&steps, 7, 1000.0), None); // too near to the beginning
+//! ```
+
+use stepscope_peripheral::trace::Step;
+
+/// Steps of each half.
+pub(crate) const HALF: usize = 8;
+
+/// At a step, in steps/s^2, with sign; `None` where there are no eight steps in one direction on either side, or where all of
+/// a half share a cycle.
+#[must_use]
+#[inline(never)]
+pub fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
+    let [from, at, to] =
+        [middle.checked_sub(HALF)?, middle, middle.checked_add(HALF)?].map(|index| steps.get(index));
+    let (from, at, to) = (from?, at?, to?);
+    let way = to.position.wrapping_sub(from.position);
+    if way.unsigned_abs() as usize != 2 * HALF || from.cycle == at.cycle || at.cycle == to.cycle {
+        return None;
+    }
+    let [first_s, second_s] = [(from, at), (at, to)].map(|(a, b)| (b.cycle - a.cycle) as f64 / hz);
+    let change = HALF as f64 / second_s - HALF as f64 / first_s;
+    Some(libm::copysign(1.0, f64::from(way)) * change / ((first_s + second_s) / 2.0))
+}

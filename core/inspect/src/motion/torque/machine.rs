@@ -1,0 +1,235 @@
+//! The motor with its load as numbers of the phasor model, and what it can at a rate.
+
+use crate::motion::torque::moment::Moment;
+use core::f64::consts::{PI, SQRT_2};
+use stepscope_motion::mechanics::{Mechanics, Rotary};
+use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
+use stepscope_scenario::{PlantMotor, PlantSettings, Scenario};
+use stepscope_sim::axes_of;
+
+/// mN*m in a N*m.
+const MILLI: f64 = 1000.0;
+/// kg*m^2 in a g*cm^2.
+const GRAM_CM2: f64 = 1e-7;
+/// Shortest natural period in s.
+const MIN_PERIOD_S: f64 = 1e-6;
+
+/// An axis' motor, its driver and its load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Machine {
+    /// k in N*m/A, of a phase.
+    constant: f64,
+    /// Peak of the regulated phase current in A.
+    current_a: f64,
+    supply_v: f64,
+    resistance_ohm: f64,
+    inductance_h: f64,
+    pole_pairs: f64,
+    /// Angle of the shaft in one step, in rad.
+    step_rad: f64,
+    inertia_kg_m2: f64,
+    load_n_m: f64,
+    working_rate: Option<f64>,
+}
+
+impl Machine {
+    /// Of an axis; `None` where it has no motor, or mechanics without an angle.
+    #[must_use]
+    pub fn of(axis: &Axis) -> Option<Self> {
+        let motor = axis.motor.as_ref()?;
+        let (full_step_deg, step_deg) = (axis.mechanics.full_step_deg()?, axis.mechanics.step_deg()?);
+        Some(Self {
+            constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
+            current_a: motor.peak_current_a.unwrap_or(motor.rated_current_a),
+            supply_v: motor.supply_v,
+            resistance_ohm: motor.resistance_ohm,
+            inductance_h: motor.inductance_mh / 1000.0,
+            pole_pairs: 90.0 / full_step_deg,
+            step_rad: step_deg * PI / 180.0,
+            inertia_kg_m2: (motor.rotor_inertia_g_cm2 + motor.load_inertia_g_cm2) * GRAM_CM2,
+            load_n_m: motor.load_torque_mn_m / MILLI,
+            working_rate: motor.working_rate_hz,
+        })
+    }
+
+    /// Of a motor of a plant on its supply.
+    #[must_use]
+    pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
+        Self {
+            constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
+            current_a: motor.peak_current_a,
+            supply_v,
+            resistance_ohm: motor.resistance_ohm,
+            inductance_h: motor.inductance_mh / 1000.0,
+            pole_pairs: 90.0 / motor.full_step_deg,
+            step_rad: motor.full_step_deg / f64::from(motor.microsteps) * PI / 180.0,
+            inertia_kg_m2: (motor.rotor_inertia_g_cm2 + motor.load_inertia_g_cm2) * GRAM_CM2,
+            load_n_m: motor.load_torque_mn_m / MILLI,
+            working_rate: None,
+        }
+    }
+
+    /// Of a channel: of its axis, where that has a motor, else what the scenario's plant has there (F9); `None` where it has
+    /// neither.
+    #[must_use]
+    pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
+        let axis = axes_of(scenario, controller).get(channel);
+        if let Some(machine) = axis.and_then(Self::of) {
+            return Some(machine);
+        }
+        let PlantSettings { motors, .. } = scenario.plant.as_ref()?;
+        let PlantMotor { full_step_deg, microsteps, motor } =
+            motors.get(channel).or(motors.last()).cloned().unwrap_or_default();
+        let mechanics = axis.map(|axis| axis.mechanics.clone()).filter(|_| motors.is_empty());
+        let rotary = || Mechanics::Rotary(Rotary { full_step_deg, microsteps });
+        let mechanics = mechanics.filter(|m| m.full_step_deg().is_some()).unwrap_or_else(rotary);
+        Self::of(&Axis { mechanics, motor: Some(motor), ..Axis::default() })
+    }
+
+    /// How long the rotor with its load takes to swing to and fro once, in s, held by the regulated peak of its currents:
+    /// 2*pi*sqrt(J/(p*k*I)); 1 us where there is hardly any inertia.
+    #[must_use]
+    pub fn natural_period_s(&self) -> f64 {
+        let stiffness = self.pole_pairs * self.constant * self.current_a;
+        libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), MIN_PERIOD_S)
+    }
+
+    /// Microsteps of half a full step, at least 1.
+    pub(super) fn microsteps_of_half_a_step(&self) -> usize {
+        libm::fmax(1.0, libm::round(PI / (4.0 * self.pole_pairs * self.step_rad))) as usize
+    }
+
+    /// The stated highest rate in steps/s, if there is one.
+    #[must_use]
+    pub fn working_rate(&self) -> Option<f64> {
+        self.working_rate
+    }
+
+    /// The torque in mN*m that the load opposes to the motion.
+    #[must_use]
+    pub fn load_mn_m(&self) -> f64 {
+        self.load_n_m * MILLI
+    }
+
+    /// The most torque in mN*m that the driver can make at `rate` steps/s. Below 0 the motor brakes
+    /// whatever the driver does: no current that the supply leaves it drives, so it cannot stay in step, not even
+    /// without a load.
+    #[must_use]
+    pub fn available_mn_m(&self, rate: f64) -> f64 {
+        let speed = libm::fabs(rate) * self.step_rad;
+        let back_emf = self.constant * speed;
+        let (r, x) = (self.resistance_ohm, self.pole_pairs * speed * self.inductance_h);
+        let square = r * r + x * x;
+        // The voltage's disc: around -E/Z = -E*(R - j*X)/|Z|^2.
+        let centre = (-back_emf * r / square, back_emf * x / square);
+        let radius = self.supply_v / libm::sqrt(square);
+        MILLI * self.constant * most_real(self.current_a, centre, radius)
+    }
+
+    /// The torque in mN*m in the direction of the motion that `speed` steps/s and `acceleration` steps/s^2,
+    /// both with sign, need; negative where the motor brakes.
+    #[must_use]
+    pub fn needed_mn_m(&self, speed: f64, acceleration: f64) -> f64 {
+        // From standstill it sets off in the direction of the acceleration.
+        let ahead = if speed == 0.0 { acceleration } else { speed };
+        if ahead == 0.0 {
+            return 0.0;
+        }
+        let turning = self.inertia_kg_m2 * self.step_rad * acceleration * libm::copysign(1.0, ahead);
+        MILLI * (turning + self.load_n_m)
+    }
+
+    /// Both at `at_s` of a plan.
+    pub(super) fn at(&self, plan: &AxisPlan, at_s: f64) -> Moment {
+        self.moment(at_s, plan.speed(at_s), plan.acceleration(at_s))
+    }
+
+    /// Both at a speed in steps/s and an acceleration in steps/s^2.
+    pub(super) fn moment(&self, at_s: f64, speed: f64, acceleration: f64) -> Moment {
+        Moment {
+            at_s,
+            rate: libm::fabs(speed),
+            needed_mn_m: self.needed_mn_m(speed, acceleration),
+            available_mn_m: self.available_mn_m(speed),
+        }
+    }
+
+    /// The greatest rate in steps/s with the whole regulated current, above which the voltage limits;
+    /// 0 where it limits at standstill already, `None` where it never does up to 10^7 steps/s.
+    #[must_use]
+    pub fn corner_rate(&self) -> Option<f64> {
+        greatest(|rate| {
+            let speed = rate * self.step_rad;
+            let real = self.constant * speed + self.resistance_ohm * self.current_a;
+            let imaginary = self.pole_pairs * speed * self.inductance_h * self.current_a;
+            real * real + imaginary * imaginary <= self.supply_v * self.supply_v
+        })
+    }
+
+    /// The greatest rate in steps/s at which there is enough torque for the load at constant speed; 0 where
+    /// there is none, `None` where there is enough up to 10^7 steps/s.
+    #[must_use]
+    pub fn torque_rate(&self) -> Option<f64> {
+        greatest(|rate| self.available_mn_m(rate) >= self.load_mn_m())
+    }
+
+    /// B4's f_s: the greatest rate in steps/s that the motor can do with its load, the lower of
+    /// [`Self::torque_rate`] and [`Self::working_rate`]; `None` where neither limits it.
+    #[must_use]
+    pub fn greatest_rate(&self) -> Option<f64> {
+        match (self.torque_rate(), self.working_rate) {
+            (Some(by_torque), Some(stated)) => Some(libm::fmin(by_torque, stated)),
+            (by_torque, stated) => by_torque.or(stated),
+        }
+    }
+
+    /// The curve: (rate in steps/s, available torque in mN*m) at `points` rates, from 0 to `most_rate` evenly.
+    pub fn curve(&self, most_rate: f64, points: u32) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let last = f64::from(points.saturating_sub(1).max(1));
+        (0..points).map(move |point| {
+            let rate = most_rate * f64::from(point) / last;
+            (rate, self.available_mn_m(rate))
+        })
+    }
+
+    /// A rate in steps/s up to which a curve shows what matters: all of `used`, the corner, and the greatest
+    /// rate, or twice the corner.
+    #[must_use]
+    pub fn shown_rate(&self, used: f64) -> f64 {
+        let corner = self.corner_rate().unwrap_or(0.0);
+        let greatest = self.greatest_rate().unwrap_or(0.0);
+        let most = libm::fmax(libm::fmax(used, greatest), 2.0 * corner);
+        libm::fmin(libm::fmax(1.1 * most, 1.0), MAX_SPEED)
+    }
+}
+
+/// The greatest real part of the points that the disc of radius `own` around 0 and that of `radius` around
+/// `centre` have in common; where they have none, that of the second's point nearest to the first: the
+/// back-EMF drives more current than the driver would regulate, at least so much.
+fn most_real(own: f64, centre: (f64, f64), radius: f64) -> f64 {
+    let (re, im) = centre;
+    let distance = libm::sqrt(re * re + im * im);
+    let far = |x: f64, y: f64| libm::sqrt(x * x + y * y);
+    if far(own - re, im) <= radius {
+        return own;
+    }
+    if far(re + radius, im) <= own {
+        return re + radius;
+    }
+    if distance > own + radius {
+        return re * (1.0 - radius / distance);
+    }
+    // Both circles' crossing whose real part is the greater.
+    let along = (own * own - radius * radius + distance * distance) / (2.0 * distance);
+    let across = libm::sqrt(libm::fmax(own * own - along * along, 0.0));
+    (along * re + across * libm::fabs(im)) / distance
+}
+
+/// The greatest rate that `holds`, which it does up to some rate and not above; 0 where it never does,
+/// `None` where it does up to the highest rate that a plan may have.
+fn greatest(holds: impl Fn(f64) -> bool) -> Option<f64> {
+    if holds(MAX_SPEED) {
+        return None;
+    }
+    Some(border(0.0, MAX_SPEED, holds).0)
+}

@@ -1,0 +1,377 @@
+//! What each byte of a packet, a frame or a reply means (DESIGN A5, A6): its fields, in the order of
+//! the line, each with its place among the bytes; and the whole of it in one line (`summary`).
+//!
+//! ```text
+//! raw    [address]  ch0  ch1  …                                        no check
+//! wire   COBS  address  kind  body …  check x 4  end mark
+//! ```
+//!
+//! COBS writes the distance to the next zero where a zero stood, so a decoded byte has one place on the
+//! wire, and what COBS adds (the first byte, and one after each 254 bytes without a zero) is its own field.
+//!
+//! ```
+//! use stepscope_inspect::packets::dissector::Reading;
+//! use stepscope_peripheral::{
+//!     config::Protocol,
+//!     signal::PacketOutcome,
+//!     trace::RowOutcome,
+//! };
+//!
+//! // A raw packet for controller 7, two channels.
+//! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
+//! let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
+//! assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
+//! assert_eq!(meaning.fields[0].bytes, 0..1);
+//! ```
+
+mod summary;
+
+pub use summary::write_steps;
+
+use alloc::{borrow::Cow, format, string::String, vec::Vec};
+use core::ops::Range;
+use stepscope_peripheral::{
+    config::Protocol,
+    device::Faults,
+    protocol::{FrameOutcome, Kind, Reason, Reply},
+    signal::Positions,
+    trace::RowOutcome,
+    wire::{
+        cobs::CobsDecoder,
+        frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks},
+        packet::{ALL, ChannelCommand},
+    },
+};
+
+/// One field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// What it is called, such as `seq`, `ch3` or `tick 0 ch3`.
+    pub name: Cow<'static, str>,
+    /// Its bytes, counted from the row's first, 0.
+    pub bytes: Range<usize>,
+    /// What stands there, in words.
+    pub value: String,
+}
+
+/// The check of a row's bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Check {
+    /// Raw packets have none.
+    None,
+    /// The bytes are no frame, or not a whole one.
+    Missing,
+    /// CRC-32/ISCSI.
+    Compared {
+        /// The check that came.
+        found: u32,
+        /// The check of what came before it.
+        expected: u32,
+    },
+}
+
+/// What the bytes of a row mean.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Meaning {
+    /// The fields, rising in their places; they do not overlap.
+    pub fields: Vec<Field>,
+    /// Its check.
+    pub check: Check,
+}
+
+/// What has to be known of a line to read its bytes.
+#[derive(Clone, Copy)]
+pub struct Reading<'a> {
+    /// How packets are framed.
+    pub protocol: Protocol,
+    /// Whether raw packets begin with an address.
+    pub addressed: bool,
+    /// Channels of the controller with an address.
+    pub channels: &'a dyn Fn(u8) -> u8,
+}
+
+/// Address and kind of a frame whose check holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// Where it goes to, or comes from.
+    pub address: u8,
+    /// What it is, as it stands on the wire.
+    pub kind: u8,
+}
+
+impl Head {
+    /// Of a row with these bytes; `None` where there is none that can be trusted.
+    #[must_use]
+    pub fn of(bytes: &[u8], outcome: RowOutcome) -> Option<Self> {
+        let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
+        match outcome {
+            RowOutcome::Reply(reply) => {
+                let kind = reply.answer.map_or(NAK, |kind| kind as u8 | ACK);
+                return Some(Self { address: reply.address, kind });
+            }
+            RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => return None,
+            RowOutcome::Frame(outcome) if !untrusted.contains(&outcome) => {}
+            _ => return None,
+        }
+        let mut reader = CobsDecoder::default();
+        let mut content =
+            bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| reader.byte(byte).content(byte));
+        Some(Self { address: content.next()?, kind: content.next()? })
+    }
+
+    /// Whether a controller sends such frames.
+    #[must_use]
+    pub const fn is_reply(self) -> bool {
+        self.kind & ACK != 0
+    }
+
+    /// Name of its kind, the same for a frame and the reply that acknowledges it; `NAK` for a refusal.
+    #[must_use]
+    pub fn name(self) -> Option<&'static str> {
+        if self.kind == NAK { Some("NAK") } else { Kind::parse(self.kind & !ACK).map(Kind::name) }
+    }
+}
+
+/// Where the frame stands among the bytes of its row: after the delimiter before it, without its own.
+fn last_frame(bytes: &[u8]) -> Range<usize> {
+    let end = bytes.len() - usize::from(bytes.last() == Some(&DELIMITER));
+    let before = bytes.get(..end).and_then(|bytes| bytes.iter().rposition(|&byte| byte == DELIMITER));
+    before.map_or(0, |mark| mark + 1)..end
+}
+
+impl Reading<'_> {
+    /// The fields of a row with these bytes. A frame whose check fails is read as if it held.
+    #[must_use]
+    pub fn of(&self, bytes: &[u8], outcome: RowOutcome) -> Meaning {
+        match (self.protocol, outcome) {
+            (_, RowOutcome::Ignored) => {
+                let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
+                Meaning { fields: ignored.into_iter().collect(), check: Check::None }
+            }
+            // On a raw line a reply was recorded, of a device that answers.
+            (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
+            (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
+            (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
+        }
+    }
+
+    fn framed(&self, bytes: &[u8]) -> Meaning {
+        let place = last_frame(bytes);
+        let mut fields = Vec::new();
+        if place.start > 0 {
+            fields.push(field("before it", 0..place.start, "no part of the frame"));
+        }
+        let content = Content::of(bytes, place.clone());
+        let check = content.check();
+        let mut meant = content.fields(check, self.channels);
+        for &(at, code) in &content.overhead {
+            // What COBS adds within a body goes with the body.
+            if !meant.iter().any(|field| field.bytes.contains(&at)) {
+                let place = meant.partition_point(|field| field.bytes.start < at);
+                meant.insert(place, field("COBS", at..at + 1, cobs_to_text(code)));
+            }
+        }
+        fields.extend(meant);
+        if place.end < bytes.len() {
+            fields.push(field("end mark", place.end..bytes.len(), "00"));
+        }
+        Meaning { fields, check }
+    }
+}
+
+/// The reply that the frame of a row is, if its check holds.
+pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
+    let content = Content::of(bytes, last_frame(bytes));
+    let check @ Check::Compared { found, expected } = content.check() else { return None };
+    let [address, kind, body @ ..] = content.without(check) else { return None };
+    if found == expected { Reply::parse(Frame { address: *address, kind: *kind, body }) } else { None }
+}
+
+/// What the frame of a row carries, and whether it is whole COBS.
+pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
+    let Content { decoded, whole, .. } = Content::of(bytes, last_frame(bytes));
+    (decoded, whole)
+}
+
+/// What COBS holds, and where on the wire.
+struct Content {
+    decoded: Vec<u8>,
+    /// Of each decoded byte, and of the end.
+    places: Vec<usize>,
+    /// What COBS added: where, and what stands there.
+    overhead: Vec<(usize, u8)>,
+    /// Whether the last run is as long as COBS says.
+    whole: bool,
+}
+
+impl Content {
+    /// Reads the bytes in `range`, of which none is a zero.
+    fn of(bytes: &[u8], range: Range<usize>) -> Self {
+        let mut content = Self { decoded: Vec::new(), places: Vec::new(), overhead: Vec::new(), whole: true };
+        let mut reader = CobsDecoder::default();
+        for at in range.clone() {
+            let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
+            match reader.byte(byte).content(byte) {
+                Some(decoded) => {
+                    content.decoded.push(decoded);
+                    content.places.push(at);
+                }
+                None => content.overhead.push((at, byte)),
+            }
+        }
+        content.whole = range.is_empty() || reader.is_whole();
+        content.places.push(range.end);
+        content
+    }
+
+    /// The check of the bytes before it.
+    fn check(&self) -> Check {
+        match self.decoded.split_last_chunk::<CRC_LEN>() {
+            Some((frame, sum)) if self.whole && frame.len() >= 2 => {
+                Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
+            }
+            _ => Check::Missing,
+        }
+    }
+
+    /// Address, kind and body, as far as they are there, without the check.
+    fn without(&self, check: Check) -> &[u8] {
+        let checked = if check == Check::Missing { 0 } else { CRC_LEN };
+        self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
+    }
+
+    /// Places on the wire of some decoded bytes.
+    fn at(&self, decoded: Range<usize>) -> Range<usize> {
+        let last = decoded.end.checked_sub(1).and_then(|last| self.places.get(last));
+        let first = self.places.get(decoded.start).copied().unwrap_or_default();
+        first..last.map_or(first, |last| last + 1)
+    }
+
+    /// The fields but COBS and the end mark.
+    fn fields(&self, check: Check, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
+        let content = self.without(check);
+        let end = content.len();
+        let mut fields = Vec::new();
+        let mut add = |name: Cow<'static, str>, place: Range<usize>, value: String| {
+            fields.push(Field { name, bytes: self.at(place), value });
+        };
+        if let Some(&address) = content.first() {
+            add("address".into(), 0..1, address_to_text(address));
+        }
+        if let [address, kind, body @ ..] = content {
+            add("kind".into(), 1..2, kind_to_text(*kind));
+            let frame = Frame { address: *address, kind: *kind, body };
+            match (Reply::parse(frame), Ticks::parse(body, channels(*address))) {
+                (Some(reply), _) => reply_fields(&reply, frame.positions().as_ref(), &mut add),
+                (None, Some(ticks)) if Kind::parse(*kind) == Some(Kind::Ticks) => {
+                    ticks_fields(&ticks, channels(*address), &mut add);
+                }
+                _ if body.is_empty() => {}
+                _ => add("body".into(), 2..end, format!("{} bytes", body.len())),
+            }
+        }
+        if let Check::Compared { found, expected } = check {
+            let value = if found == expected {
+                format!("{found:08x}, holds")
+            } else {
+                format!("{found:08x} found, {expected:08x} expected")
+            };
+            add("check".into(), end..end + CRC_LEN, value);
+        }
+        fields
+    }
+}
+
+type Add<'a> = dyn FnMut(Cow<'static, str>, Range<usize>, String) + 'a;
+
+fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
+    add("seq".into(), 2..3, format!("{}", ticks.seq));
+    add("count".into(), 3..4, format!("{}", ticks.count()));
+    let channels = usize::from(channels.max(1));
+    for (place, &byte) in ticks.commands().iter().enumerate() {
+        let (tick, channel) = (place / channels, place % channels);
+        let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
+        add(name.into(), 4 + place..5 + place, command_to_text(byte));
+    }
+}
+
+fn reply_fields(reply: &Reply, positions: Option<&Positions>, add: &mut Add<'_>) {
+    let mut at = 2;
+    if let Err(reason) = reply.answer {
+        add("reason".into(), 2..3, reason_to_text(reason));
+        at = 3;
+    }
+    let status = reply.status;
+    add("state".into(), at..at + 1, status.state.name().into());
+    add("free".into(), at + 1..at + 2, format!("{}", status.free));
+    add("expected seq".into(), at + 2..at + 3, format!("{}", status.expected_seq));
+    let names: Vec<&str> = Faults::from_bits(status.faults).names().collect();
+    let faults = if names.is_empty() { "none".into() } else { names.join(", ") };
+    add("faults".into(), at + 3..at + 5, faults);
+    add("ticks done".into(), at + 5..at + 9, format!("{}", status.ticks_done));
+    let counters = positions.map(Positions::as_slice).unwrap_or_default();
+    for (channel, &counter) in counters.iter().enumerate() {
+        let from = at + STATUS_LEN + channel * POSITION_LEN;
+        let name = if counters.len() == 1 { "position".into() } else { format!("position ch{channel}") };
+        add(name.into(), from..from + POSITION_LEN, position_to_text(counter));
+    }
+}
+
+fn raw(bytes: &[u8], addressed: bool) -> Vec<Field> {
+    let first = usize::from(addressed);
+    let each = |(at, &byte): (usize, &u8)| match at.checked_sub(first) {
+        None => field("address", 0..1, address_to_text(byte)),
+        Some(channel) => field(format!("ch{channel}"), at..at + 1, command_to_text(byte)),
+    };
+    bytes.iter().enumerate().map(each).collect()
+}
+
+fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl Into<String>) -> Field {
+    Field { name: name.into(), bytes, value: value.into() }
+}
+
+fn cobs_to_text(code: u8) -> String {
+    match code {
+        1..=254 => format!("{} bytes to the next zero or the end", code - 1),
+        _ => "254 bytes without a zero".into(),
+    }
+}
+
+fn address_to_text(address: u8) -> String {
+    if address == ALL { "255, all".into() } else { format!("{address}") }
+}
+
+fn kind_to_text(kind: u8) -> String {
+    match (kind, Kind::parse(kind & !ACK)) {
+        (NAK, _) => "NAK".into(),
+        (_, Some(known)) if kind & ACK != 0 => format!("ACK {}", known.name()),
+        (_, Some(known)) => known.name().into(),
+        _ => format!("{kind:02x}, unknown"),
+    }
+}
+
+fn reason_to_text(reason: Reason) -> String {
+    format!("{}, {}", reason as u8, reason.name())
+}
+
+/// A position counter with its sign; right is plus.
+fn position_to_text(counter: i32) -> String {
+    match counter {
+        0 => "0".into(),
+        1.. => format!("+{counter}"),
+        _ => format!("\u{2212}{}", counter.unsigned_abs()),
+    }
+}
+
+/// Steps with their direction; right is plus.
+fn command_to_text(byte: u8) -> String {
+    match ChannelCommand::parse(byte) {
+        ChannelCommand { right: true, steps: 0 } => "0, right".into(),
+        ChannelCommand { right: false, steps: 0 } => "0, left".into(),
+        ChannelCommand { right: true, steps } => format!("+{steps}"),
+        ChannelCommand { right: false, steps } => format!("\u{2212}{steps}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,360 @@
+//! The packet table: what went over the line as one controller heard it, and what became of it, a row each. The command's
+//! files and the page's table, search and files are made of it (DESIGN Part D).
+//!
+//! ```text
+//! number  kind   start  gap  bytes  summary            outcome        tick
+//! 2       frame  1.204  …    0b 01  to 1: TICKS seq 0  8 ticks queued  0 to 256000
+//! ```
+//!
+//! A row is what the controller took for one packet or frame, and each of its own replies. The bytes of another
+//! controller's reply look like a frame's; whose they are says the schedule of what the host sent.
+//!
+//! ```
+//! use stepscope_inspect::packets::packet_table::PacketTable;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+//! let row = table.row(0).expect("there are packets");
+//! assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
+//! ```
+
+mod csv;
+mod detail;
+mod faults;
+mod filter;
+mod format;
+mod places;
+
+pub(crate) use csv::write_fields;
+pub use detail::{Detail, FieldRow};
+pub use faults::FaultPlace;
+pub use filter::{Filter, Request};
+pub use format::{Mark, TimeScale};
+pub use places::PlacedByte;
+
+use crate::packets::dissector::{Head, Meaning, Reading, write_steps};
+use alloc::{string::String, vec::Vec};
+use serde::Serialize;
+use stepscope_peripheral::{
+    config::{Config, Protocol},
+    trace::{LoggedPacket, LoggedTick, PacketLog, RowOutcome},
+    units::Instant,
+    wire::BitTimes,
+};
+use stepscope_sim::{Experiment, Run};
+
+/// What a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowKind {
+    /// A raw packet of the host, or a part of one.
+    Packet,
+    /// A frame of the host, or what was none.
+    Frame,
+    /// What a controller answered: this one, or another one that it heard.
+    Reply,
+    /// Two drove the line at once.
+    Collision,
+}
+
+impl RowKind {
+    /// Its name in tables, searches and files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Packet => "packet",
+            Self::Frame => "frame",
+            Self::Reply => "reply",
+            Self::Collision => "collision",
+        }
+    }
+}
+
+/// A row for the eye.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Row {
+    /// Its number, from 0 on.
+    pub index: usize,
+    /// [`RowKind::name`].
+    pub kind: &'static str,
+    /// Where the start bit of its first byte was seen.
+    pub start_cycle: u64,
+    /// Where it was complete or given up.
+    pub end_cycle: u64,
+    /// First cycle after its last byte on the line.
+    pub line_end_cycle: u64,
+    /// When it starts, in the table's unit.
+    pub start: String,
+    /// Time since the end of what was on the line before; empty for the first.
+    pub gap: String,
+    /// Its bytes, two digits each, with a space between.
+    pub hex: String,
+    /// What they mean, in one line.
+    pub fields: String,
+    /// What became of it.
+    pub outcome: String,
+    /// The outcome for a narrow column.
+    pub short: String,
+    /// [`PacketTable::why`].
+    pub why: String,
+    /// [`Mark::name`].
+    pub mark: &'static str,
+    /// First cycle of the first tick that it brought, if that has begun.
+    pub tick_start_cycle: Option<u64>,
+    /// First cycle after the last of them that has ended.
+    pub tick_end_cycle: Option<u64>,
+}
+
+/// A tick that a row, or firmware, brought.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct TickRow {
+    /// Its first cycle.
+    pub start_cycle: u64,
+    /// First cycle after it.
+    pub end_cycle: u64,
+    /// Row that brought it.
+    pub row: Option<usize>,
+    /// Its steps.
+    pub fields: String,
+}
+
+/// What there is to choose from, rising, each of them on some row.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Choices {
+    /// Addresses.
+    pub addresses: Vec<u8>,
+    /// [`RowKind::name`], kinds of DESIGN A6, `NAK`.
+    pub kinds: Vec<&'static str>,
+}
+
+/// The table of one controller's finished log.
+#[derive(Clone, Copy)]
+pub struct PacketTable<'a> {
+    experiment: &'a Experiment,
+    run: &'a Run,
+    /// The controller that heard it.
+    own: &'a Config,
+    log: &'a PacketLog,
+}
+
+impl<'a> PacketTable<'a> {
+    /// The table of what controller `controller` heard in a run; `log` is its finished log. A controller that there is
+    /// not counts as the first.
+    #[must_use]
+    pub fn new(experiment: &'a Experiment, run: &'a Run, controller: usize, log: &'a PacketLog) -> Self {
+        let own = experiment.configs().nth(controller).unwrap_or_else(|| experiment.config());
+        Self { experiment, run, own, log }
+    }
+
+    /// How many rows there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.log.rows().len()
+    }
+
+    /// Whether nothing was heard.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.log.rows().is_empty()
+    }
+
+    /// Bytes of a row.
+    #[must_use]
+    pub fn bytes(&self, index: usize) -> &'a [u8] {
+        self.log.bytes(index)
+    }
+
+    /// The unit and digits of the table's times.
+    #[must_use]
+    pub fn scale(&self) -> TimeScale {
+        TimeScale::of(self.run.cycles(), self.own.clock_hz())
+    }
+
+    /// What a row is; `None` past the last.
+    #[must_use]
+    pub fn kind(&self, index: usize) -> Option<RowKind> {
+        let row = self.logged(index)?;
+        Some(match row.outcome {
+            RowOutcome::Collision => RowKind::Collision,
+            RowOutcome::Reply(_) | RowOutcome::Recorded => RowKind::Reply,
+            _ if self.own.protocol() == Protocol::Raw => RowKind::Packet,
+            _ if self.is_of_another_controller(index, row) => RowKind::Reply,
+            _ => RowKind::Frame,
+        })
+    }
+
+    /// Whether a row on a framed line is what another controller sent. One that is spoiled says so by nothing but its
+    /// time: neither the host nor a forced level began it.
+    fn is_of_another_controller(&self, index: usize, row: &LoggedPacket) -> bool {
+        let first = self.log.seen(index).first().copied().unwrap_or(row.start);
+        let of_host = self.run.schedule().last_until(first + self.own.bit()).is_some_and(|send| {
+            let sent = self.host_times().bytes(send.bytes.len() as u64);
+            first <= send.start + sent
+        });
+        if of_host {
+            return false;
+        }
+        match self.head(index) {
+            Some(head) => head.is_reply(),
+            None => {
+                let forced = self.run.forced();
+                let forced = forced.get(..forced.partition_point(|forced| forced.start <= first));
+                let is_forced =
+                    forced.unwrap_or_default().iter().any(|forced| !forced.level && first < forced.end);
+                self.experiment.controllers() > 1 && !is_forced
+            }
+        }
+    }
+
+    /// Address that a row goes to or comes from, where its bytes have one that can be trusted.
+    #[must_use]
+    pub fn address(&self, index: usize) -> Option<u8> {
+        match (self.own.protocol(), self.logged(index)?.outcome) {
+            (Protocol::Raw, RowOutcome::Packet(_)) => {
+                self.own.packet_address().and_then(|_| self.bytes(index).first().copied())
+            }
+            (Protocol::Raw, _) => None,
+            (Protocol::Framed, _) => self.head(index).map(|head| head.address),
+        }
+    }
+
+    /// A row for the eye; `None` past the last.
+    #[must_use]
+    pub fn row(&self, index: usize) -> Option<Row> {
+        let logged = self.logged(index)?;
+        let (mut start, mut gap) = (String::new(), String::new());
+        self.scale().write(logged.start.0, &mut start);
+        if let Some(cycles) = self.gap(index) {
+            self.scale().write(cycles, &mut gap);
+        }
+        let (mut hex, mut fields) = (String::new(), String::new());
+        format::write_hex(self.bytes(index), " ", &mut hex);
+        self.write_summary(index, &mut fields);
+        Some(Row {
+            index,
+            kind: self.kind(index)?.name(),
+            start_cycle: logged.start.0,
+            end_cycle: logged.end.0,
+            line_end_cycle: self.line_end(index),
+            start,
+            gap,
+            hex,
+            fields,
+            outcome: format::outcome(logged.outcome),
+            short: format::short(logged.outcome),
+            why: self.why(index),
+            mark: Mark::of(logged.outcome).name(),
+            tick_start_cycle: logged.tick_start.map(|at| at.0),
+            tick_end_cycle: logged.tick_end.map(|at| at.0),
+        })
+    }
+
+    /// Adds a row's bytes in hex to a text.
+    pub fn write_hex(&self, index: usize, text: &mut String) {
+        format::write_hex(self.bytes(index), " ", text);
+    }
+
+    /// What each byte of a row means.
+    #[must_use]
+    pub fn meaning(&self, index: usize) -> Option<Meaning> {
+        let outcome = self.logged(index)?.outcome;
+        Some(self.reading(&|address| self.channels(address)).of(self.bytes(index), outcome))
+    }
+
+    /// What there is to choose from.
+    #[must_use]
+    pub fn choices(&self) -> Choices {
+        let (mut addresses, mut kinds) = ([false; 256], Vec::new());
+        for index in 0..self.len() {
+            if let Some(address) = self.address(index) {
+                addresses[usize::from(address)] = true;
+            }
+            let name = self.head(index).and_then(Head::name);
+            for kind in [self.kind(index).map(RowKind::name), name].into_iter().flatten() {
+                if !kinds.contains(&kind) {
+                    kinds.push(kind);
+                }
+            }
+        }
+        Choices {
+            addresses: (0..=u8::MAX).filter(|&address| addresses[usize::from(address)]).collect(),
+            kinds,
+        }
+    }
+
+    /// The rows whose time on the line touches the cycles `start..=end`, rising.
+    pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> + use<'a> {
+        self.log.touching(start, end)
+    }
+
+    /// Whether a row has a byte on the line in the cycles `start..=end`.
+    #[must_use]
+    pub fn is_on_line(&self, index: usize, start: Instant, end: Instant) -> bool {
+        self.logged(index).is_some_and(|row| row.start <= end) && self.line_end(index) >= start.0
+    }
+
+    /// The ticks that touch the cycles `start..=end`, each with the row that brought it.
+    pub fn ticks_touching(
+        &self,
+        start: Instant,
+        end: Instant,
+    ) -> impl ExactSizeIterator<Item = TickRow> + use<'a> {
+        let (all, length, table) = (self.log.ticks(), self.own.tick(), *self);
+        let first = all.partition_point(|tick| tick.start + length <= start);
+        let until = all.partition_point(|tick| tick.start <= end).max(first);
+        all.get(first..until).unwrap_or_default().iter().map(move |tick| table.tick(tick))
+    }
+
+    fn tick(&self, tick: &LoggedTick) -> TickRow {
+        let mut fields = String::new();
+        write_steps(tick.commands.iter().take(usize::from(self.own.channels())).copied(), &mut fields);
+        TickRow {
+            start_cycle: tick.start.0,
+            end_cycle: self.log.tick_end(tick, self.own.tick()).0.min(self.run.cycles().0),
+            row: tick.row,
+            fields,
+        }
+    }
+
+    pub(crate) fn own(&self) -> &'a Config {
+        self.own
+    }
+
+    pub(crate) fn packets(&self) -> &'a PacketLog {
+        self.log
+    }
+
+    fn logged(&self, index: usize) -> Option<&'a LoggedPacket> {
+        self.log.rows().get(index)
+    }
+
+    fn head(&self, index: usize) -> Option<Head> {
+        Head::of(self.bytes(index), self.logged(index)?.outcome)
+    }
+
+    fn write_summary(&self, index: usize, text: &mut String) {
+        if let Some(row) = self.logged(index) {
+            let channels = |address| self.channels(address);
+            self.reading(&channels).summary(self.bytes(index), row.outcome, text);
+        }
+    }
+
+    fn reading<'b>(&self, channels: &'b dyn Fn(u8) -> u8) -> Reading<'b> {
+        let addressed = self.own.packet_address().is_some();
+        Reading { protocol: self.own.protocol(), addressed, channels }
+    }
+
+    /// Channels of the controller with an address; of the one that hears the line where there is none.
+    fn channels(&self, address: u8) -> u8 {
+        let known = self.experiment.configs().find(|config| config.address() == Some(address));
+        known.unwrap_or(self.own).channels()
+    }
+
+    /// When the host's bits and bytes begin.
+    fn host_times(&self) -> BitTimes {
+        BitTimes::new(self.own.clock_hz(), self.experiment.baud())
+    }
+}

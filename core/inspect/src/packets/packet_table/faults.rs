@@ -1,0 +1,275 @@
+//! Why a row came to nothing, in its own numbers, and where each fault flag comes from.
+
+use super::PacketTable;
+use crate::packets::dissector::decoded;
+use alloc::{format, string::String, vec::Vec};
+use serde::Serialize;
+use stepscope_peripheral::{
+    device::Faults,
+    protocol::{FrameOutcome, Reason, Reply},
+    signal::PacketOutcome,
+    trace::{LoggedPacket, RowOutcome},
+    wire::{
+        frame::{CRC_LEN, MAX_DECODED, MIN_DECODED, Ticks},
+        packet::{ChannelCommand, GAP_BITS},
+    },
+};
+
+/// Rows after a frame among which its reply is looked for: others may have driven the line meanwhile.
+const NEAR: usize = 64;
+
+/// Where a fault flag comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct FaultPlace {
+    /// Name of the flag (DESIGN A6).
+    pub name: &'static str,
+    /// How often it was raised.
+    pub times: u64,
+    /// Where it was raised first.
+    pub cycle: u64,
+    /// The row that raised it first, if one did.
+    pub row: Option<usize>,
+}
+
+impl PacketTable<'_> {
+    /// Why a row came to nothing, such as `3 of 4 bytes, then 45 bit times of silence`; empty where all is well, or where
+    /// [`Row::outcome`](super::Row::outcome) says all that is known.
+    #[must_use]
+    pub fn why(&self, index: usize) -> String {
+        let Some(row) = self.logged(index) else { return String::new() };
+        let bytes = self.bytes(index);
+        let of_packet = count(self.own.packet_len(), "byte");
+        match row.outcome {
+            RowOutcome::Short => {
+                format!("{} of {of_packet}, then {GAP_BITS} bit times of silence", bytes.len())
+            }
+            RowOutcome::Framing => format!(
+                "the stop bit of byte {} of {} was low; what follows is ignored until {GAP_BITS} bit times of silence",
+                bytes.len() + 1,
+                self.own.packet_len()
+            ),
+            RowOutcome::Ignored => format!(
+                "{} after a framing error, before {GAP_BITS} bit times of silence",
+                count(bytes.len(), "byte")
+            ),
+            RowOutcome::Packet(PacketOutcome::TooManySteps) => {
+                let first = usize::from(self.own.packet_address().is_some());
+                self.too_many(bytes.get(first..).unwrap_or_default())
+            }
+            RowOutcome::Packet(PacketOutcome::QueueFull) => match self.own.queue_depth() {
+                1 => "the one place of the queue was taken".into(),
+                places => format!("all {places} places of the queue were taken"),
+            },
+            RowOutcome::Packet(PacketOutcome::Booting) => "reset was not over yet".into(),
+            RowOutcome::Frame(FrameOutcome::Short) => short_frame(bytes),
+            RowOutcome::Frame(FrameOutcome::Overlong) => {
+                format!("more than {MAX_DECODED} bytes before an end mark")
+            }
+            RowOutcome::Frame(FrameOutcome::Refused(reason)) => self.why_refused(index, reason),
+            _ => String::new(),
+        }
+    }
+
+    /// The flags that were raised, in the order of their bits.
+    #[must_use]
+    pub fn fault_places(&self) -> Vec<FaultPlace> {
+        let mut places: Vec<FaultPlace> = Vec::new();
+        let mut raise = |fault: Faults, cycle: u64, row: Option<usize>| {
+            for name in fault.names() {
+                match places.iter_mut().find(|place| place.name == name) {
+                    Some(place) => {
+                        place.times += 1;
+                        if cycle < place.cycle {
+                            (place.cycle, place.row) = (cycle, row);
+                        }
+                    }
+                    None => places.push(FaultPlace { name, times: 1, cycle, row }),
+                }
+            }
+        };
+        for (index, row) in self.log.rows().iter().enumerate() {
+            raise(fault_of(row), row.end.0, Some(index));
+        }
+        for &seen in self.log.broken() {
+            let row = self.log.touching(seen, seen).next();
+            raise(Faults::FRAMING, seen.0, row);
+        }
+        for at in self.log.underruns() {
+            raise(Faults::UNDERRUN, at.0, None);
+        }
+        let place = |name| places.iter().find(|place| place.name == name).copied();
+        Faults::ALL.names().filter_map(place).collect()
+    }
+
+    /// The first order of a tick that is more than a tick has slots for.
+    fn too_many(&self, commands: &[u8]) -> String {
+        let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
+        let asked =
+            commands.iter().enumerate().map(|(place, &byte)| (place, ChannelCommand::parse(byte).steps));
+        let Some((place, steps)) = asked.into_iter().find(|(_, steps)| *steps > slots) else {
+            return String::new();
+        };
+        let tick = match place / channels {
+            0 if commands.len() <= channels => String::new(),
+            tick => format!("tick {tick}, "),
+        };
+        format!("{tick}channel {}: {steps} steps, and a tick has {slots} slots", place % channels)
+    }
+
+    fn why_refused(&self, index: usize, reason: Reason) -> String {
+        let (content, _) = decoded(self.bytes(index));
+        let body = content.get(2..content.len().saturating_sub(CRC_LEN)).unwrap_or_default();
+        let ticks = Ticks::parse(body, self.own.channels());
+        let status = self.reply_to(index).map(|reply| reply.status);
+        match (reason, ticks, status) {
+            (Reason::BadSeq, Some(ticks), Some(status)) => {
+                format!("sequence number {}, and {} was expected", ticks.seq, status.expected_seq)
+            }
+            (Reason::QueueFull, Some(ticks), Some(status)) => {
+                format!(
+                    "{}, and {} free in the queue",
+                    count(ticks.count(), "tick"),
+                    count(status.free.into(), "place")
+                )
+            }
+            (Reason::TooManySteps, Some(ticks), _) => self.too_many(ticks.commands()),
+            (Reason::Busy, _, Some(status)) => format!("the controller was {}", status.state.name()),
+            (Reason::Stopped, ..) => "after STOP only ENABLE lets it move again".into(),
+            (Reason::BadBody, ..) => {
+                format!("a body of {} is none of this kind's", count(body.len(), "byte"))
+            }
+            (Reason::UnknownKind, ..) => "there is no such kind of frame".into(),
+            _ => String::new(),
+        }
+    }
+
+    /// What this controller answered to a row.
+    fn reply_to(&self, index: usize) -> Option<Reply> {
+        (index + 1..index + NEAR).find_map(|after| match self.logged(after)?.outcome {
+            RowOutcome::Reply(reply) if self.answered(after) == Some(index) => Some(reply),
+            _ => None,
+        })
+    }
+}
+
+/// The flag that a row raised.
+fn fault_of(row: &LoggedPacket) -> Faults {
+    match row.outcome {
+        RowOutcome::Short | RowOutcome::Frame(FrameOutcome::Short) => Faults::SHORT_PACKET,
+        RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => Faults::CRC,
+        RowOutcome::Frame(FrameOutcome::Overlong) => Faults::OVERLONG,
+        RowOutcome::Packet(PacketOutcome::QueueFull)
+        | RowOutcome::Frame(FrameOutcome::Refused(Reason::QueueFull)) => Faults::QUEUE_OVERFLOW,
+        RowOutcome::Packet(PacketOutcome::TooManySteps)
+        | RowOutcome::Frame(FrameOutcome::Refused(Reason::TooManySteps)) => Faults::TOO_MANY_STEPS,
+        RowOutcome::Frame(FrameOutcome::Refused(Reason::BadSeq)) => Faults::BAD_SEQ,
+        _ => Faults::default(),
+    }
+}
+
+/// Why bytes before a delimiter are no frame.
+fn short_frame(bytes: &[u8]) -> String {
+    let (content, whole) = decoded(bytes);
+    let bytes = count(content.len(), "byte");
+    if whole {
+        format!("{bytes} without COBS, and a frame has at least {MIN_DECODED}")
+    } else {
+        format!("the end mark came after {bytes}, within what COBS announced")
+    }
+}
+
+/// So many of a thing.
+fn count(number: usize, one: &str) -> String {
+    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::{trace::Recording, wire::frame::emit};
+    use stepscope_sim::Experiment;
+
+    /// What is said of each row, and of the flags: name, times, row.
+    type Told = (Vec<String>, Vec<(&'static str, u64, Option<usize>)>);
+
+    fn told(json: &str) -> Told {
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let mut recording = Recording::default();
+        let run = experiment.run(&mut recording);
+        let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+        let places = table.fault_places();
+        let names: Vec<&str> = places.iter().map(|place| place.name).collect();
+        assert_eq!(names, run.faults().names().collect::<Vec<_>>(), "{json}");
+        let why = (0..table.len()).map(|index| table.why(index)).collect();
+        (why, places.iter().map(|place| (place.name, place.times, place.row)).collect())
+    }
+
+    fn raw(line: &str, sends: &[(u64, &str)]) -> Told {
+        let sends =
+            sends.iter().map(|(start, bytes)| format!(r#"{{"start_cycle":{start},"bytes":"{bytes}"}}"#));
+        let sends = sends.collect::<Vec<_>>().join(",");
+        told(&format!(
+            r#"{{"bus":{{"channels":2,"slots":10,"step_period_cycles":800,"queue_depth":1}},"line":{line},"source":{{"line":{{"sends":[{sends}]}}}}}}"#
+        ))
+    }
+
+    #[test]
+    fn raw_packets_that_came_to_nothing_tell_why_in_their_own_numbers() {
+        let address = r#"{"address":7}"#;
+        let (why, places) = raw(address, &[(2000, "078a05"), (12_000, "078b00"), (32_000, "0781")]);
+        let expected = [
+            "",
+            "channel 0: 11 steps, and a tick has 10 slots",
+            "2 of 3 bytes, then 45 bit times of silence",
+        ];
+        assert_eq!(why, expected);
+        assert_eq!(places, [("SHORT_PACKET", 1, Some(2)), ("TOO_MANY_STEPS", 1, Some(1))]);
+
+        let (why, places) = raw("{}", &[(2000, "8a8a8a8a8a8a8a8a")]);
+        assert_eq!(why, ["", "", "the one place of the queue was taken", ""]);
+        assert_eq!(places, [("QUEUE_OVERFLOW", 1, Some(2))]);
+
+        // The stop bit of the second byte is forced low: bit 19 of 139 cycles.
+        let glitch = r#"{"glitches":[{"start_cycle":4641,"length_cycles":139,"level":0}]}"#;
+        let (why, places) = raw(glitch, &[(2000, "8a8a"), (6000, "05")]);
+        let framing =
+            "the stop bit of byte 2 of 2 was low; what follows is ignored until 45 bit times of silence";
+        assert_eq!(why, [framing, "1 byte after a framing error, before 45 bit times of silence"]);
+        assert_eq!(places, [("FRAMING", 1, Some(0))]);
+    }
+
+    #[test]
+    fn frames_that_were_dropped_or_refused_tell_why() {
+        let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        let ticks = |seq, commands: &[u8]| emit(0, 1, &Ticks::emit(seq, 1, commands));
+        let frames = [
+            (vec![3, 1, 2, 0], "2 bytes without COBS, and a frame has at least 6"),
+            (vec![9, 1, 2, 0], "the end mark came after 2 bytes, within what COBS announced"),
+            (ticks(3, &[0x81]), "sequence number 3, and 0 was expected"),
+            (ticks(0, &[0x81; 20]), "20 ticks, and 4 places free in the queue"),
+            (ticks(0, &[0x81, 0x8b]), "tick 1, channel 0: 11 steps, and a tick has 10 slots"),
+            (emit(0, 1, &[0]), "a body of 1 byte is none of this kind's"),
+            (emit(0, 99, &[]), "there is no such kind of frame"),
+            (ticks(0, &[0x81]), ""),
+        ];
+        let sends: Vec<String> = (1..)
+            .zip(&frames)
+            .map(|(place, (bytes, _))| {
+                format!(r#"{{"start_cycle":{},"bytes":"{}"}}"#, place * 120_000, hex(bytes))
+            })
+            .collect();
+        let (why, places) = told(&format!(
+            r#"{{"bus":{{"channels":1,"slots":10,"step_period_cycles":800,"queue_depth":4}},"line":{{"protocol":"framed"}},"source":{{"line":{{"sends":[{}]}}}}}}"#,
+            sends.join(",")
+        ));
+        // Between them stand the replies, of which nothing is said.
+        let said: Vec<&str> = why.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
+        let expected: Vec<&str> =
+            frames.iter().map(|(_, text)| *text).filter(|text| !text.is_empty()).collect();
+        assert_eq!(said, expected);
+        let names: Vec<_> = places.iter().map(|(name, times, _)| (*name, *times)).collect();
+        let flags = ["SHORT_PACKET", "QUEUE_OVERFLOW", "TOO_MANY_STEPS", "BAD_SEQ"];
+        assert_eq!(names[..4], [(flags[0], 2), (flags[1], 1), (flags[2], 1), (flags[3], 1)]);
+        assert_eq!(names.get(4), Some(&("UNDERRUN", 1)), "the one tick has steps, and none follows");
+    }
+}

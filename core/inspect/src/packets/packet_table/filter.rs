@@ -1,0 +1,279 @@
+//! Which rows of packets the table shows, and which of them a search finds. Judged in slices, so that
+//! a million rows freeze nothing; the rows' indices stay here.
+
+use super::{Mark, PacketTable, RowKind, format};
+use crate::packets::dissector::Head;
+use alloc::vec;
+use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+
+/// Rows on show, and matches of the search among them.
+#[derive(Debug, Default)]
+pub struct Filter {
+    /// What is requested; without it all rows are shown.
+    request: Option<Request>,
+    /// Rows on show, rising.
+    shown: Vec<u32>,
+    /// Positions among the rows on show that the search finds, rising.
+    matches: Vec<u32>,
+    /// The row that is judged next.
+    next: usize,
+}
+
+/// What is requested.
+#[derive(Debug, Default)]
+pub struct Request {
+    needle: Option<Needle>,
+    /// A [`RowKind::name`], a kind of DESIGN A6 or `NAK`; empty for any.
+    kind: String,
+    address: Option<u8>,
+    /// A [`Mark::name`]; empty for any.
+    mark: String,
+    /// Whether rows that the search does not find are left out.
+    only: bool,
+}
+
+impl Request {
+    /// Rows of a kind (`packet`, `frame`, `reply`, `collision`, a kind of DESIGN A6 or `NAK`), an address and a mark
+    /// ([`Mark::name`]), each empty for any; the text is looked for in bytes (as hex), words and numbers, and `only`
+    /// leaves out what it does not find. Beside it what has to be said of the text, if anything.
+    #[must_use]
+    pub fn new(text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> (Self, String) {
+        let (needle, note) = Needle::parse(text);
+        (Self { needle, kind: kind.to_owned(), address, mark: mark.to_owned(), only }, note)
+    }
+
+    fn is_any(&self) -> bool {
+        self.needle.is_none() && self.kind.is_empty() && self.address.is_none() && self.mark.is_empty()
+    }
+
+    fn keeps(&self, table: &PacketTable<'_>, index: usize) -> bool {
+        let Some(row) = table.logged(index) else { return false };
+        let kind = match self.kind.as_str() {
+            "" => true,
+            "packet" | "frame" | "reply" | "collision" => {
+                table.kind(index).map(RowKind::name) == Some(self.kind.as_str())
+            }
+            name => table.head(index).and_then(Head::name) == Some(name),
+        };
+        kind && (self.mark.is_empty() || self.mark == Mark::of(row.outcome).name())
+            && (self.address.is_none() || self.address == table.address(index))
+    }
+}
+
+/// What is searched for.
+#[derive(Debug)]
+struct Needle {
+    /// In small letters; with a hyphen also with a minus sign.
+    words: Vec<String>,
+    /// Bytes that it spells in hex.
+    bytes: Vec<u8>,
+    number: Option<usize>,
+    /// `#12`: nothing but the number.
+    only_number: bool,
+}
+
+impl Needle {
+    /// Reads what was typed; none for nothing. Beside it what has to be said of it, if anything.
+    fn parse(typed: &str) -> (Option<Self>, String) {
+        let text = typed.trim().to_ascii_lowercase();
+        if text.is_empty() {
+            return (None, String::new());
+        }
+        let (number, only_number) = match text.strip_prefix('#') {
+            Some(rest) => (rest.trim().parse().ok(), true),
+            None => (text.parse().ok(), false),
+        };
+        let (bytes, note) = if only_number { Default::default() } else { spelled(&text) };
+        let mut words = vec![text.clone()];
+        if text.contains('-') {
+            words.push(text.replace('-', "\u{2212}"));
+        }
+        let note = match (only_number, number) {
+            (true, None) => {
+                format!("\u{201c}{}\u{201d} is no number of a row; give one, such as #12.", typed.trim())
+            }
+            _ => note,
+        };
+        (Some(Self { words, bytes, number, only_number }), note)
+    }
+
+    fn finds(&self, table: &PacketTable<'_>, index: usize, text: &mut String) -> bool {
+        if self.number == Some(index) || self.only_number {
+            return self.number == Some(index);
+        }
+        let Some(row) = table.logged(index) else { return false };
+        let bytes = table.bytes(index);
+        if !self.bytes.is_empty() && bytes.windows(self.bytes.len()).any(|part| part == self.bytes) {
+            return true;
+        }
+        text.clear();
+        text.push_str(table.kind(index).map_or("", RowKind::name));
+        text.push('\n');
+        table.write_summary(index, text);
+        text.push('\n');
+        text.push_str(&format::outcome(row.outcome));
+        text.push('\n');
+        table.scale().write(row.start.0, text);
+        text.make_ascii_lowercase();
+        self.words.iter().any(|word| text.contains(word))
+    }
+}
+
+/// Bytes that a text spells in hex: `81 05`, `8105`, `0x81 0x05`. What is meant as hex and is none is said.
+fn spelled(text: &str) -> (Vec<u8>, String) {
+    let meant = text.starts_with("0x");
+    let parts = text.split([' ', ',']).filter(|part| !part.is_empty());
+    let parts: Vec<&str> = parts.map(|part| part.strip_prefix("0x").unwrap_or(part)).collect();
+    let digits = |part: &&str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_hexdigit());
+    if !parts.iter().all(digits) {
+        let note = format!("\u{201c}{text}\u{201d} is no hex: give two digits a byte, such as 81 05.");
+        return (Vec::new(), if meant { note } else { String::new() });
+    }
+    if parts.iter().any(|part| part.len() % 2 != 0) {
+        // A plain number is looked for among the numbers.
+        let plain = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_digit());
+        let word = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_alphabetic());
+        let note =
+            format!("\u{201c}{text}\u{201d} ends within a byte: give two hex digits a byte, such as 81 05.");
+        return (Vec::new(), if plain || word { String::new() } else { note });
+    }
+    let pair = |pair: &[u8]| core::str::from_utf8(pair).ok().and_then(|two| u8::from_str_radix(two, 16).ok());
+    (parts.iter().flat_map(|part| part.as_bytes().chunks(2).filter_map(pair)).collect(), String::new())
+}
+
+impl Filter {
+    /// Requests other rows; nothing is judged yet.
+    #[must_use]
+    pub fn new(request: Request) -> Self {
+        Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
+    }
+
+    /// Judges up to `count` more rows; true if that was all of them.
+    pub fn advance(&mut self, table: &PacketTable<'_>, count: usize) -> bool {
+        let total = table.len();
+        let Some(request) = &self.request else {
+            self.next = total;
+            return true;
+        };
+        let mut text = String::new();
+        let until = total.min(self.next.saturating_add(count));
+        for index in self.next..until {
+            if !request.keeps(table, index) {
+                continue;
+            }
+            let found = request.needle.as_ref().is_some_and(|needle| needle.finds(table, index, &mut text));
+            if found {
+                self.matches.push(self.shown.len() as u32);
+            }
+            if found || !request.only || request.needle.is_none() {
+                self.shown.push(index as u32);
+            }
+        }
+        self.next = until;
+        until == total
+    }
+
+    /// How many of `total` rows are on show.
+    #[must_use]
+    pub fn shown(&self, total: usize) -> usize {
+        if self.request.is_some() { self.shown.len() } else { total }
+    }
+
+    /// How many of them the search finds.
+    #[must_use]
+    pub fn matches(&self) -> usize {
+        self.matches.len()
+    }
+
+    /// The row at a position among those on show.
+    #[must_use]
+    pub fn row(&self, position: usize) -> Option<usize> {
+        if self.request.is_none() {
+            return Some(position);
+        }
+        self.shown.get(position).map(|&row| row as usize)
+    }
+
+    /// Where a row stands among those on show, if it is one of them.
+    #[must_use]
+    pub fn position(&self, row: usize) -> Option<usize> {
+        if self.request.is_none() {
+            return Some(row);
+        }
+        self.shown.binary_search(&(row as u32)).ok()
+    }
+
+    /// Which of the matches the row at a position is, 0 the first.
+    #[must_use]
+    pub fn rank(&self, position: usize) -> Option<usize> {
+        self.matches.binary_search(&(position as u32)).ok()
+    }
+
+    /// Position of the next match after a position, or of the one before it; past the last comes the first.
+    #[must_use]
+    pub fn next_match(&self, position: Option<usize>, forward: bool) -> Option<usize> {
+        let found = match (position, forward) {
+            (Some(at), true) => {
+                let after = self.matches.partition_point(|&found| found as usize <= at);
+                self.matches.get(after).or(self.matches.first())
+            }
+            (Some(at), false) => {
+                let before = self.matches.partition_point(|&found| (found as usize) < at).checked_sub(1);
+                before.and_then(|last| self.matches.get(last)).or(self.matches.last())
+            }
+            (None, true) => self.matches.first(),
+            (None, false) => self.matches.last(),
+        };
+        found.map(|&position| position as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hex_is_read_with_and_without_spaces_and_what_is_none_is_said() {
+        let rows: [(&str, &[u8], bool); 11] = [
+            ("81 05", &[0x81, 5], false),
+            ("8105", &[0x81, 5], false),
+            ("0x81 0x05", &[0x81, 5], false),
+            ("81,05", &[0x81, 5], false),
+            ("17", &[0x17], false),
+            ("128", &[], false),
+            ("8 1", &[], true),
+            ("81a", &[], true),
+            ("0x1g", &[], true),
+            ("dec", &[], false),
+            ("ticks seq", &[], false),
+        ];
+        for (typed, bytes, said) in rows {
+            let (needle, note) = Needle::parse(typed);
+            let needle = needle.map(|needle| needle.bytes);
+            assert_eq!((needle.as_deref(), !note.is_empty()), (Some(bytes), said), "{typed}: {note}");
+        }
+        assert!(Needle::parse("  ").0.is_none());
+        assert!(!Needle::parse("#x").1.is_empty());
+    }
+
+    #[test]
+    fn matches_go_round_in_both_directions() {
+        let request = Request { mark: "bad".to_owned(), ..Request::default() };
+        let filter =
+            Filter { request: Some(request), shown: [2, 4, 6, 8].into(), matches: [1, 3].into(), next: 9 };
+        let rows = [
+            (None, true, 1),
+            (None, false, 3),
+            (Some(0), true, 1),
+            (Some(1), true, 3),
+            (Some(3), true, 1),
+            (Some(3), false, 1),
+            (Some(1), false, 3),
+        ];
+        for (from, forward, expected) in rows {
+            assert_eq!(filter.next_match(from, forward), Some(expected), "{from:?} {forward}");
+        }
+        assert_eq!((filter.row(1), filter.position(4), filter.position(5)), (Some(4), Some(1), None));
+        assert_eq!((filter.rank(3), filter.rank(2)), (Some(1), None));
+    }
+}

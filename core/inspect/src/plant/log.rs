@@ -1,0 +1,301 @@
+//! A plant's run for the eye: the least and greatest of each value in equal stretches of time, and the plant itself every now
+//! and then, from which a shorter stretch is worked out again, to the same bits.
+//!
+//! ```text
+//! points   . . . . . . . . . . . . . . . .     one each grid step, of which there may be 10^8
+//! bins     [   ][   ][   ][   ][   ][         least and greatest of so many points; when they are too many, two become one
+//! kept     ^                   ^              the plant and how many records it had heard
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::plant::log::{PlantLog, Stretch};
+//! use stepscope_peripheral::{signal::Record, trace::Recording, units::Instant};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+//! let mut run = experiment.start();
+//! let mut recording = Recording::default();
+//! let mut log = PlantLog::new(run.plant(0).expect("it has one"));
+//! while !run.advance_observed((Instant(run.cycles().0 + 100_000), u64::MAX), &mut [&mut recording], &mut [&mut log]) {
+//!     log.keep(run.plant(0).expect("it has one"), recording.trace.len());
+//! }
+//! let records: &[Record] = &recording.trace;
+//! let all = log.curves(records, Stretch { from: 0, to: run.cycles().0, columns: 600 }, &[PlantLog::of_motor(0) + 1]);
+//! assert!((all[0].greatest.last().expect("columns") - 200.0).abs() < 0.1);
+//! let end = log.at(records, run.cycles().0);
+//! assert!((end[PlantLog::of_motor(0) + 1] - 200.0).abs() < 0.1);
+//! ```
+
+use alloc::{vec, vec::Vec};
+use stepscope_peripheral::signal::Record;
+use stepscope_plant::{Observer, Plant};
+
+/// Values of the whole plant: the bus' voltage in V, the supply current and its sensor's reading in A.
+pub const SUPPLY: [&str; 3] = ["bus_v", "load_a", "sensor_a"];
+/// Values of each motor: what it is told and where it is in full steps, the difference, full steps/s, phase currents in A, the
+/// encoder's code.
+pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a", "phase_b_a", "encoder"];
+
+/// Bins that there may be; there are never fewer than half as many, once there were so many points.
+const BINS: usize = 8192;
+/// Stretches of fewer bins are worked out again.
+const ENOUGH: u64 = 512;
+/// Plants that are kept, at most.
+const KEPT: usize = 64;
+/// Points of a stretch that is not drawn from bins are all told up to so many a column.
+const POINTS_A_COLUMN: u64 = 2;
+
+/// What a run's plant did.
+#[derive(Clone, Debug)]
+pub struct PlantLog {
+    /// Cycles of a grid step.
+    step_cycles: u64,
+    /// Points of a bin, and those in the one that is being filled.
+    points_a_bin: u64,
+    in_last: u64,
+    /// Least and greatest of each value, bin after bin.
+    least: Vec<f64>,
+    greatest: Vec<f64>,
+    /// The values of the latest point.
+    latest: Vec<f64>,
+    kept: Vec<Kept>,
+    /// Plants are kept at least so many points from each other.
+    apart: u64,
+}
+
+/// A plant at a point, and how many of the records it had been told by then.
+#[derive(Clone, Debug)]
+struct Kept {
+    plant: Plant,
+    records: usize,
+}
+
+/// A stretch of time and how finely it is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// Its first cycle.
+    pub from: u64,
+    /// Its last one.
+    pub to: u64,
+    /// Columns of pixels, at least 1.
+    pub columns: usize,
+}
+
+/// A value over time: where least and greatest are equal everywhere it is a line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Cycles of its places: of points, or of the middles of stretches.
+    pub cycle: Vec<f64>,
+    /// The least at or around each.
+    pub least: Vec<f64>,
+    /// The greatest.
+    pub greatest: Vec<f64>,
+}
+
+impl Observer for PlantLog {
+    #[inline]
+    fn point(&mut self, plant: &Plant) {
+        read(plant, &mut self.latest);
+        if self.in_last == self.points_a_bin || self.least.is_empty() {
+            if self.least.len() == BINS * self.values() {
+                self.halve();
+            }
+            self.in_last = 0;
+            self.least.extend_from_slice(&self.latest);
+            self.greatest.extend_from_slice(&self.latest);
+        } else {
+            let last = self.least.len() - self.latest.len();
+            let bins = self.least[last..].iter_mut().zip(&mut self.greatest[last..]);
+            for ((least, greatest), &value) in bins.zip(&self.latest) {
+                *least = least.min(value);
+                *greatest = greatest.max(value);
+            }
+        }
+        self.in_last += 1;
+    }
+}
+
+/// The values of a plant at its point, in the order of [`SUPPLY`] and, of each motor, [`MOTOR`].
+fn read(plant: &Plant, values: &mut [f64]) {
+    let (supply, motors) = values.split_at_mut(SUPPLY.len());
+    supply.copy_from_slice(&[plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()]);
+    for (channel, values) in motors.chunks_exact_mut(MOTOR.len()).enumerate() {
+        let Some(state) = plant.state(channel) else { continue };
+        let (command, code) = (plant.command(channel), f64::from(plant.encoder(channel)));
+        values.copy_from_slice(&[command, state.x, command - state.x, state.w, state.i_a, state.i_b, code]);
+    }
+}
+
+impl PlantLog {
+    /// A log that begins with this plant, which has been told nothing yet.
+    #[must_use]
+    pub fn new(plant: &Plant) -> Self {
+        Self {
+            step_cycles: plant.step_cycles(),
+            points_a_bin: 1,
+            in_last: 0,
+            least: Vec::new(),
+            greatest: Vec::new(),
+            latest: vec![0.0; SUPPLY.len() + plant.motors() * MOTOR.len()],
+            kept: vec![Kept { plant: plant.clone(), records: 0 }],
+            apart: 1,
+        }
+    }
+
+    /// Keeps a plant that has been told the first `records` of the run's records; between two slices of a run, never in one.
+    pub fn keep(&mut self, plant: &Plant, records: usize) {
+        let step = plant.step_cycles();
+        let last = self.kept.last().map_or(0, |kept| kept.plant.cycle());
+        if plant.cycle() >= last + self.apart * step {
+            self.kept.push(Kept { plant: plant.clone(), records });
+        }
+        if self.kept.len() > KEPT {
+            // Every other one goes, and the next come half as often.
+            let mut index = 0;
+            self.kept.retain(|_| {
+                index += 1;
+                index % 2 == 1
+            });
+            self.apart = (plant.cycle() / step / KEPT as u64).max(1) * 2;
+        }
+    }
+
+    /// Index of the first value of a motor, in the order of [`MOTOR`].
+    #[must_use]
+    pub const fn of_motor(channel: usize) -> usize {
+        SUPPLY.len() + channel * MOTOR.len()
+    }
+
+    const fn values(&self) -> usize {
+        self.latest.len()
+    }
+
+    fn halve(&mut self) {
+        let values = self.values();
+        for (bins, take) in
+            [(&mut self.least, f64::min as fn(f64, f64) -> f64), (&mut self.greatest, f64::max)]
+        {
+            for at in 0..BINS / 2 * values {
+                let (bin, value) = (at / values, at % values);
+                bins[at] = take(bins[2 * bin * values + value], bins[(2 * bin + 1) * values + value]);
+            }
+            bins.truncate(BINS / 2 * values);
+        }
+        self.points_a_bin *= 2;
+    }
+
+    /// Some values over a stretch of time, by their indices: at most two places a column; every point where there are no more,
+    /// and one more at each end.
+    #[must_use]
+    pub fn curves(&self, records: &[Record], stretch: Stretch, values: &[usize]) -> Vec<Band> {
+        let mut bands = vec![Band::default(); values.len()];
+        if self.least.is_empty() || stretch.to < stretch.from {
+            return bands;
+        }
+        let bin_cycles = self.points_a_bin * self.step_cycles;
+        let points = (stretch.to - stretch.from) / self.step_cycles;
+        let few = POINTS_A_COLUMN * stretch.columns.max(1) as u64;
+        if self.points_a_bin > 1 && points / self.points_a_bin >= ENOUGH {
+            let bins = self.least.len() / self.values();
+            // A bin ends with the point in the cycle of its edge.
+            let (first, last) = (stretch.from.saturating_sub(1) / bin_cycles, stretch.to / bin_cycles + 1);
+            let mut columns = Columns::new(&mut bands, (last - first).div_ceil(few));
+            for bin in first as usize..(last as usize).min(bins) {
+                // The first bin begins with the point after cycle 0.
+                let cycle = (bin as f64 + 0.5) * bin_cycles as f64;
+                let row = bin * self.values();
+                columns.add(
+                    cycle,
+                    values.iter().map(|&value| (self.least[row + value], self.greatest[row + value])),
+                );
+            }
+            return bands;
+        }
+        let mut columns = Columns::new(&mut bands, points.div_ceil(few));
+        let mut watched = Watched {
+            from: stretch.from.saturating_sub(self.step_cycles),
+            values,
+            columns: &mut columns,
+            point: self.latest.clone(),
+        };
+        self.again(records, stretch.from, stretch.to.saturating_add(self.step_cycles), &mut watched);
+        bands
+    }
+
+    /// All values at the last point up to a cycle.
+    #[must_use]
+    pub fn at(&self, records: &[Record], cycle: u64) -> Vec<f64> {
+        let mut values = vec![0.0; self.values()];
+        if let Some(plant) = self.again(records, cycle, cycle, &mut ()) {
+            read(&plant, &mut values);
+        }
+        values
+    }
+
+    /// Runs the plant once more from the last one that was kept before `from`, to `to`.
+    fn again(&self, records: &[Record], from: u64, to: u64, observer: &mut dyn Observer) -> Option<Plant> {
+        // One that is kept has its point behind it already.
+        let before = from.saturating_sub(2 * self.step_cycles);
+        let kept = self.kept.iter().rev().find(|kept| kept.plant.cycle() <= before).or(self.kept.first())?;
+        let mut plant = kept.plant.clone();
+        for &record in records.iter().skip(kept.records).take_while(|record| record.cycle.0 <= to) {
+            plant.record(record, observer);
+        }
+        plant.advance(to, observer);
+        Some(plant)
+    }
+}
+
+/// Joins so many places to one.
+struct Columns<'a> {
+    bands: &'a mut [Band],
+    join: u64,
+    joined: u64,
+    first: f64,
+}
+
+impl<'a> Columns<'a> {
+    fn new(bands: &'a mut [Band], join: u64) -> Self {
+        Self { bands, join: join.max(1), joined: 0, first: 0.0 }
+    }
+
+    fn add(&mut self, cycle: f64, values: impl Iterator<Item = (f64, f64)>) {
+        let is_new = self.joined == 0;
+        if is_new {
+            self.first = cycle;
+        }
+        for (band, (low, high)) in self.bands.iter_mut().zip(values) {
+            match (band.least.last_mut(), band.greatest.last_mut(), band.cycle.last_mut()) {
+                (Some(least), Some(greatest), Some(middle)) if !is_new => {
+                    *least = least.min(low);
+                    *greatest = greatest.max(high);
+                    *middle = 0.5 * (self.first + cycle);
+                }
+                _ => {
+                    band.least.push(low);
+                    band.greatest.push(high);
+                    band.cycle.push(cycle);
+                }
+            }
+        }
+        self.joined = (self.joined + 1) % self.join;
+    }
+}
+
+struct Watched<'a, 'b> {
+    from: u64,
+    values: &'a [usize],
+    columns: &'a mut Columns<'b>,
+    point: Vec<f64>,
+}
+
+impl Observer for Watched<'_, '_> {
+    fn point(&mut self, plant: &Plant) {
+        if plant.cycle() < self.from {
+            return;
+        }
+        read(plant, &mut self.point);
+        let point = &self.point;
+        self.columns.add(plant.cycle() as f64, self.values.iter().map(|&value| (point[value], point[value])));
+    }
+}

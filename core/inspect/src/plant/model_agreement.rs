@@ -1,0 +1,285 @@
+//! Do the torque-speed curve and the plant say the same of a motor, and if not, why?
+//!
+//! The curve ([`torque`](crate::motion::torque)) asks whether there is enough torque at each moment of a plan; the plant runs the
+//! rotor. They leave out different things: the curve knows no friction, ringing or jumps of speed, and gives the driver a
+//! sine, of which a driver out of voltage makes a square wave. docs/plant.md, "How sure the figures are", has the sizes.
+//!
+//! ```
+//! use stepscope_inspect::{motion::torque::{Demand, Machine}, plant::model_agreement::{FirstSlips, agreement}};
+//! use stepscope_peripheral::trace::Digest;
+//! use stepscope_sim::{Experiment, plant_run::PlantRun};
+//!
+//! let json = r#"{ "plant": {}, "source": { "motion": { "axes": [ { "motor": {} } ] } } }"#;
+//! let experiment = Experiment::from_json(json).expect("no problem");
+//! let mut run = PlantRun::new(&experiment, vec![(Digest::default(), FirstSlips::default())]).expect("a plant");
+//! run.finish();
+//! let machine = Machine::of(&stepscope_motion::moves::Axis { motor: Some(Default::default()), ..Default::default() });
+//! let machine = machine.expect("it has a motor");
+//! let demand = Demand::of(&machine, &experiment.plans()[0]);
+//! let setup = &experiment.plants().expect("a plant").setups[0];
+//! let found = agreement(&machine, &demand, setup, 0, &run.results()[0], None, &FirstSlips::default());
+//! assert_eq!((found.plant.as_str(), found.agrees), ("follows", Some(true)));
+//! ```
+
+use crate::{
+    motion::torque::{Demand, Machine},
+    plant::outcome::verdict,
+};
+use alloc::{format, string::String};
+use stepscope_motion::grouped;
+use stepscope_peripheral::signal::MAX_CHANNELS;
+use stepscope_plant::{
+    Observer, Plant, Slip,
+    measures::{MotorResult, PlantResult},
+    parameters::{MotorModel, Setup},
+    stability::Natural,
+};
+
+/// Steps over which the rate at a slip is taken.
+const STEPS: usize = 16;
+/// What the driver's square wave has over the curve's sine above the corner, at most.
+const SQUARE_WAVE: f64 = 1.28;
+/// Up to this multiple of the natural frequency, in full steps/s, ...
+const RESONANCE: f64 = 1.5;
+/// ... and up to so many microsteps a full step, a rate can make the rotor swing out of its field.
+const RESONANT_MICROSTEPS: u16 = 4;
+/// A slip at a rate up to this multiple of the greatest jump of speed is the jump's.
+const JUMPED: f64 = 2.0;
+/// A bus below this part of the supply has sagged.
+const SAG: f64 = 0.95;
+
+/// The rate at which STEP came when a motor slipped first, by channel.
+#[derive(Clone, Debug, Default)]
+pub struct FirstSlips {
+    channels: [Steps; MAX_CHANNELS],
+}
+
+/// The latest steps of a channel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steps {
+    cycles: [u64; STEPS],
+    count: usize,
+    /// Cycles of a step when it slipped first.
+    interval: Option<f64>,
+}
+
+impl FirstSlips {
+    /// Steps/s at the first slip of a channel; `None` where it did not slip, or before its second step.
+    #[must_use]
+    pub fn rate(&self, channel: usize, clock_hz: u32) -> Option<f64> {
+        self.channels.get(channel)?.interval.map(|cycles| f64::from(clock_hz) / cycles)
+    }
+}
+
+impl Observer for FirstSlips {
+    #[inline(always)]
+    fn point(&mut self, _: &Plant) {}
+
+    fn slip(&mut self, channel: usize, _: Slip) {
+        let Some(steps) = self.channels.get_mut(channel) else { return };
+        let kept = steps.count.min(STEPS);
+        if steps.interval.is_some() || kept < 2 {
+            return;
+        }
+        let at = |step: usize| steps.cycles.get(step % STEPS).copied().unwrap_or_default();
+        let cycles = at(steps.count - 1) - at(steps.count - kept);
+        steps.interval = Some(cycles as f64 / (kept - 1) as f64);
+    }
+
+    fn steps(&mut self, cycle: u64, rises: u16, _: u16) {
+        for (channel, steps) in self.channels.iter_mut().enumerate() {
+            if rises >> channel & 1 != 0 {
+                if let Some(place) = steps.cycles.get_mut(steps.count % STEPS) {
+                    *place = cycle;
+                }
+                steps.count += 1;
+            }
+        }
+    }
+}
+
+/// What both models say of a motor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Agreement {
+    /// What the plant's motor does, in words.
+    pub plant: String,
+    /// Whether the curve has torque enough exactly where the plant's motor follows; `None` where the run does not tell.
+    pub agrees: Option<bool>,
+    /// Why they differ, or why the run does not tell.
+    pub why: Option<String>,
+}
+
+/// Holds the plant's motor of `channel` against what the curve says of the axis of that channel. `overload` is the cycle in
+/// which a protection stopped the controller.
+#[must_use]
+pub fn agreement(
+    machine: &Machine,
+    demand: &Demand,
+    setup: &Setup,
+    channel: usize,
+    result: &PlantResult,
+    overload: Option<u64>,
+    slips: &FirstSlips,
+) -> Agreement {
+    let (Some(motor), Some(found)) = (setup.motors.get(channel), result.motors.get(channel)) else {
+        let why = format!("the controller has no channel {channel}");
+        return Agreement { plant: "not run".into(), agrees: None, why: Some(why) };
+    };
+    let clock_hz = setup.clock_hz;
+    let plant = verdict(found, clock_hz);
+    if let Some(cycle) = overload {
+        let ms = cycle as f64 / f64::from(clock_hz) * 1e3;
+        let why = format!("an overload stops the controller at {ms:.2} ms, which the curve does not know");
+        return Agreement { plant, agrees: None, why: Some(why) };
+    }
+    let (enough, follows) = (demand.total == 0, found.slip_count == 0);
+    let why = match (enough, follows) {
+        (true, true) | (false, false) => None,
+        (true, false) => {
+            let rate = slips.rate(channel, clock_hz);
+            Some(why_it_slips(machine, demand, motor, rate, (result.bus_v.least, setup.supply.supply_v)))
+        }
+        (false, true) => Some(why_it_follows(machine, demand, found)),
+    };
+    Agreement { plant, agrees: Some(enough == follows), why }
+}
+
+/// The curve has enough torque, and the plant's motor slips at `rate`.
+fn why_it_slips(
+    machine: &Machine,
+    demand: &Demand,
+    motor: &MotorModel,
+    rate: Option<f64>,
+    (least_v, supply_v): (f64, f64),
+) -> String {
+    let rate = rate.unwrap_or(demand.jump);
+    let full_steps = rate / f64::from(motor.microsteps);
+    let natural = Natural::of(motor).frequency_hz;
+    if motor.microsteps <= RESONANT_MICROSTEPS && full_steps <= RESONANCE * natural {
+        return format!(
+            "{full_steps:.0} full steps/s are near the rotor's natural frequency of {natural:.0} Hz: it resonates, which the curve \
+             leaves out; give more microsteps or another rate"
+        );
+    }
+    if rate <= JUMPED * demand.jump {
+        return format!(
+            "the speed jumps by {} steps/s at once, of which the curve says nothing: hold it against the start-stop rate \
+             (stepscope limits)",
+            grouped(demand.jump)
+        );
+    }
+    if least_v < SAG * supply_v {
+        return format!("the bus falls to {least_v:.1} V, where the curve has {supply_v} V throughout");
+    }
+    if machine.corner_rate().is_some_and(|corner| rate > corner) {
+        return format!(
+            "at {} steps/s, above the corner rate, the rotor's ringing is hardly damped and it falls out below the curve, which \
+             knows none",
+            grouped(rate)
+        );
+    }
+    format!(
+        "the curve leaves out friction ({} mN*m and {} uN*m*s), detent torque, the bridge and the rotor's ringing, and least \
+         margin is {:.1} mN*m",
+        motor.friction_mn_m,
+        motor.viscous_un_m_s,
+        demand.least.map_or(0.0, |least| least.margin_mn_m())
+    )
+}
+
+/// The curve has too little torque, and the plant's motor follows.
+fn why_it_follows(machine: &Machine, demand: &Demand, found: &MotorResult) -> String {
+    let Some(worst) = demand.least else { return String::new() };
+    let needed = worst.needed_mn_m;
+    let above = machine.corner_rate().is_some_and(|corner| worst.rate > corner);
+    if above && needed.abs() <= SQUARE_WAVE * worst.available_mn_m {
+        return format!(
+            "above the corner rate the driver's square wave gives 5 to 28 % more torque than the curve's sine, and only {:.0} % \
+             are missing",
+            100.0 * (needed.abs() / worst.available_mn_m - 1.0)
+        );
+    }
+    if needed < 0.0 {
+        return "most is missing where the motor brakes, and there friction and losses help, which the curve leaves out"
+            .into();
+    }
+    let lasts: f64 = demand.shortages.iter().map(|short| (short.to_s - short.from_s) * short.times).sum();
+    format!(
+        "the shortage lasts {:.2} ms in all; the rotor falls behind, by {:.2} full steps at most, and catches up before it loses \
+         any",
+        1e3 * lasts,
+        found.following_error.0.abs()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+    use super::*;
+    use stepscope_peripheral::trace::Digest;
+    use stepscope_scenario::{Scenario, Source};
+    use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+    /// What both models say of axis 0.
+    fn of(json: &str) -> Agreement {
+        let scenario = Scenario::from_json(json).expect("reads");
+        let experiment = Experiment::new(&scenario).unwrap_or_else(|problems| panic!("{problems:?}"));
+        let Source::Motion(motion) = &scenario.source else { panic!("no motion") };
+        let machine = Machine::of(&motion.axes[0]).expect("a motor");
+        let demand = Demand::of(&machine, &experiment.plans()[0]);
+        let mut run =
+            PlantRun::new(&experiment, vec![(Digest::default(), FirstSlips::default())]).expect("a plant");
+        run.finish();
+        let (results, overload) = (run.results(), run.overload(0));
+        let slips = run.into_parts().remove(0).1;
+        let setup = &experiment.plants().expect("a plant").setups[0];
+        agreement(&machine, &demand, setup, 0, &results[0], overload, &slips)
+    }
+
+    fn moved(moves: &str, motor: &str) -> String {
+        format!(
+            r#"{{"plant":{{}},"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{moves}],"motor":{motor}}}]}}}}}}"#
+        )
+    }
+
+    #[test]
+    fn where_the_models_differ_the_reason_is_told() {
+        let preset = |id: &str| -> String {
+            let all = stepscope_scenario::presets::PLANT_PRESETS;
+            all.iter().find(|preset| preset.id == id).expect("it is there").json.into()
+        };
+        let ramp = |top: u32, distance: u32| {
+            format!(
+                r#"{{"trapezoid":{{"distance":{{"steps":{distance}}},"start_speed":{{"steps_s":1000}},"method":"exact","top_speed":{{"steps_s":{top}}},"acceleration":{{"steps_s2":200000}}}}}}"#
+            )
+        };
+        let rows: &[(String, Option<bool>, &str)] = &[
+            (preset("song-2021-motor"), Some(true), ""),
+            (preset("song-2021-stall"), Some(false), "at once, of which the curve says nothing"),
+            (
+                preset("resonance-full-steps"),
+                Some(false),
+                "232 full steps/s are near the rotor's natural frequency",
+            ),
+            // Both lack torque.
+            (moved(&ramp(60_000, 60_000), r#"{"load_torque_mn_m":250}"#), Some(true), ""),
+            // Above the corner: for a moment a little over the curve, and unloaded far below it.
+            (
+                moved(
+                    &ramp(60_000, 12_000),
+                    r#"{"load_torque_mn_m":225,"friction_mn_m":0,"viscous_un_m_s":0}"#,
+                ),
+                Some(false),
+                "above the corner rate the driver's",
+            ),
+            (moved(&ramp(128_000, 200_000), "{}"), Some(false), "above the corner rate, the rotor's ringing"),
+        ];
+        for (json, agrees, why) in rows {
+            let found = of(json);
+            let told = found.why.clone().unwrap_or_default();
+            assert_eq!((found.agrees, told.is_empty()), (*agrees, why.is_empty()), "{json}\n{found:?}");
+            assert!(told.contains(why), "{told}");
+        }
+    }
+}

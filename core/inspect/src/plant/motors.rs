@@ -1,0 +1,363 @@
+//! Motors and drivers to choose from, for who has no data sheet at hand: figures that a plant asks for, and where each comes
+//! from.
+//!
+//! No sheet tells friction. Every motor has the default motor's in parts of its holding torque, 1/80 of it, and
+//! 0.75 uN*m*s for each mN*m; these are guesses of the size, so [`MotorSheet::typical`] names them. So it does with every
+//! other figure that its document does not give, or that no text at hand confirmed. Supply and load are the scenario's.
+//!
+//! ```
+//! use stepscope_inspect::plant::motors::{drive, motor};
+//! use stepscope_scenario::Scenario;
+//! use stepscope_sim::Experiment;
+//!
+//! let mut scenario = Scenario::from_json(r#"{ "plant": {} }"#).expect("it reads");
+//! motor("17hs4401").expect("it is listed").put_into(&mut scenario);
+//! drive("a4988").expect("it is listed").put_into(&mut scenario);
+//! let experiment = Experiment::new(&scenario).expect("it holds");
+//! assert_eq!(experiment.plants().expect("it has one").setups[0].motors[0].rotor_inertia_g_cm2, 54.0);
+//! ```
+
+use crate::motion::torque::Machine;
+use alloc::vec::Vec;
+use stepscope_motion::{
+    mechanics::{Mechanics, Rotary},
+    motor::{Decay, Drive, Motor, Regulator},
+    moves::Axis,
+};
+use stepscope_scenario::{PlantMotor, Scenario, Source};
+
+/// A motor's figures, and where they come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorSheet {
+    /// Its word on the command line.
+    pub id: &'static str,
+    /// Size, maker and type.
+    pub name: &'static str,
+    /// Its full step in degrees.
+    pub full_step_deg: f64,
+    /// Rated current of a phase in A, both phases on.
+    pub rated_current_a: f64,
+    /// Resistance of a phase in ohm.
+    pub resistance_ohm: f64,
+    /// Inductance of a phase in mH.
+    pub inductance_mh: f64,
+    /// Holding torque in mN*m, both phases at the rated current.
+    pub holding_torque_mn_m: f64,
+    /// Inertia of the rotor in g*cm^2.
+    pub rotor_inertia_g_cm2: f64,
+    /// Amplitude of the detent torque in mN*m; 0 where no document tells it.
+    pub detent_torque_mn_m: f64,
+    /// Coulomb friction in mN*m.
+    pub friction_mn_m: f64,
+    /// Viscous friction in uN*m*s.
+    pub viscous_un_m_s: f64,
+    /// The document, and what in it the figures rest on.
+    pub source: &'static str,
+    /// Fields of the scenario's motor that the document does not give: figures of the usual size.
+    pub typical: &'static [&'static str],
+}
+
+/// A driver's figures, and where they come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriveSheet {
+    /// Its word on the command line.
+    pub id: &'static str,
+    /// Maker and type.
+    pub name: &'static str,
+    /// The figures.
+    pub drive: Drive,
+    /// The document, what in it the figures rest on, and what of the driver the model leaves out.
+    pub source: &'static str,
+    /// Fields of the scenario's driver that the document does not give, or that no text at hand confirmed.
+    pub typical: &'static [&'static str],
+}
+
+/// What no data sheet of a motor tells.
+const FRICTIONS: &[&str] = &["friction_mn_m", "viscous_un_m_s"];
+/// What many leave out, too.
+const FRICTIONS_AND_DETENT: &[&str] = &["detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
+
+/// What drawings of windings leave out.
+const INERTIA_AND_FRICTIONS: &[&str] =
+    &["rotor_inertia_g_cm2", "detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
+/// Of a motor without a document.
+const ALL: &[&str] = &[
+    "rated_current_a",
+    "resistance_ohm",
+    "inductance_mh",
+    "holding_torque_mn_m",
+    "rotor_inertia_g_cm2",
+    "detent_torque_mn_m",
+    "friction_mn_m",
+    "viscous_un_m_s",
+];
+
+/// A motor of 1.8 degrees with friction as the default motor's, in parts of its holding torque.
+const fn usual(
+    [rated_current_a, resistance_ohm, inductance_mh]: [f64; 3],
+    [holding_torque_mn_m, rotor_inertia_g_cm2, detent_torque_mn_m]: [f64; 3],
+) -> MotorSheet {
+    MotorSheet {
+        id: "",
+        name: "",
+        full_step_deg: 1.8,
+        rated_current_a,
+        resistance_ohm,
+        inductance_mh,
+        holding_torque_mn_m,
+        rotor_inertia_g_cm2,
+        detent_torque_mn_m,
+        friction_mn_m: holding_torque_mn_m / 80.0,
+        viscous_un_m_s: holding_torque_mn_m * 0.75,
+        source: "",
+        typical: FRICTIONS_AND_DETENT,
+    }
+}
+
+/// All motors: the documents' own, then by size. Each row is A, ohm, mH; mN*m, g*cm^2, mN*m of detent torque.
+pub const MOTORS: &[MotorSheet] = &[
+    MotorSheet {
+        id: "song-2021",
+        name: "Song, Han and Lu 2021: 1.5 A, 400 mN·m (the default)",
+        source: "table 3 of the document; it gives no friction",
+        ..usual([1.5, 1.6, 4.3], [400.0, 45.0, 0.0])
+    },
+    MotorSheet {
+        id: "patent-2019",
+        name: "For RU 2704486, figure 1: 1.5 A, 300 mN·m",
+        friction_mn_m: 15.0,
+        viscous_un_m_s: 1000.0,
+        source: "ours: the patent names no motor. That of the preset patent-2019-figure-1, which adds a load of \
+                 100 g·cm², 27 V and a bridge of 1 Ω",
+        typical: ALL,
+        ..usual([1.5, 1.6, 5.3], [300.0, 45.0, 0.0])
+    },
+    MotorSheet {
+        id: "nema-8",
+        name: "NEMA 8, 30 mm long: 0.6 A, 18 mN·m",
+        source: "no data sheet: figures of the usual size",
+        typical: ALL,
+        ..usual([0.6, 6.5, 1.7], [18.0, 2.0, 0.0])
+    },
+    MotorSheet {
+        id: "sy28sth45",
+        name: "NEMA 11, Songyang SY28STH45-0674A: 0.67 A, 95 mN·m",
+        source: "the maker's drawing of 2012 (current, resistance, inductance, torque)",
+        typical: INERTIA_AND_FRICTIONS,
+        ..usual([0.67, 6.8, 4.9], [95.0, 12.0, 0.0])
+    },
+    MotorSheet {
+        id: "ms14hs5p4150",
+        name: "NEMA 14, MOONS' MS14HS5P4150: 1.5 A, 400 mN·m",
+        source: "the maker's figures as the motor list of klipper_tmc_autotune has them (current, resistance, inductance, \
+                 torque)",
+        typical: INERTIA_AND_FRICTIONS,
+        ..usual([1.5, 2.2, 3.6], [400.0, 24.0, 0.0])
+    },
+    MotorSheet {
+        id: "ss2422",
+        name: "NEMA 17 flat, Sanyo Denki SS2422-5041: 1 A, 186 mN·m",
+        source: "the maker's catalogue, page 60, thin 42 mm motors",
+        ..usual([1.0, 5.4, 2.9], [186.0, 28.0, 0.0])
+    },
+    MotorSheet {
+        id: "17hs4401",
+        name: "NEMA 17, MotionKing 17HS4401: 1.7 A, 400 mN·m",
+        source: "the maker's table of the series 17HS, row 17HS4401",
+        typical: FRICTIONS,
+        ..usual([1.7, 1.5, 2.8], [400.0, 54.0, 22.0])
+    },
+    MotorSheet {
+        id: "as1010",
+        name: "NEMA 17, Beckhoff AS1010: 1 A, 380 mN·m",
+        source: "the maker's documentation AS1000, technical data; cogging torque 14 to 16 mN·m",
+        typical: FRICTIONS,
+        ..usual([1.0, 4.1, 9.5], [380.0, 56.0, 15.0])
+    },
+    MotorSheet {
+        id: "qsh5718-55",
+        name: "NEMA 23, Trinamic QSH5718-55-30-098: 3 A, 980 mN·m",
+        source: "the maker's technical data of QSH5718, where the rated current is r.m.s.",
+        typical: FRICTIONS,
+        ..usual([3.0, 0.8, 2.1], [980.0, 209.0, 30.0])
+    },
+    MotorSheet {
+        id: "as1050",
+        name: "NEMA 23, Beckhoff AS1050: 5 A, 1200 mN·m",
+        source: "the maker's documentation AS1000, technical data; cogging torque 46 to 58 mN·m",
+        typical: FRICTIONS,
+        ..usual([5.0, 0.28, 0.86], [1200.0, 360.0, 52.0])
+    },
+    MotorSheet {
+        id: "as1060",
+        name: "NEMA 34, Beckhoff AS1060: 5 A, 5000 mN·m",
+        source: "the maker's documentation AS1000, technical data; cogging torque 147 to 215 mN·m",
+        typical: FRICTIONS,
+        ..usual([5.0, 0.36, 2.8], [5000.0, 3000.0, 181.0])
+    },
+];
+
+/// What the chips share: a chopper that decays slowly while the current rises and mixed while it falls.
+const CHIP: Drive = Drive {
+    regulator: Regulator::Chopper,
+    decay: Decay::Auto,
+    decay_share: 0.3125,
+    off_us: 30.0,
+    blank_us: 1.0,
+    dac_levels: None,
+    bridge_ohm: 0.64,
+    diode_v: 0.7,
+};
+
+/// All drivers; those that the timing check knows, too, have the same word there ([`drivers`](crate::trace::drivers)).
+pub const DRIVES: &[DriveSheet] = &[
+    DriveSheet {
+        id: "ideal",
+        name: "The mean of an ideal chopper (the default)",
+        drive: Drive {
+            regulator: Regulator::Averaged,
+            decay: Decay::Fast,
+            decay_share: 0.31,
+            off_us: 20.0,
+            blank_us: 1.0,
+            dac_levels: None,
+            bridge_ohm: 0.0,
+            diode_v: 0.7,
+        },
+        source: "no chip: what a good one comes to, five times as fast to work out",
+        typical: &["diode_v"],
+    },
+    DriveSheet {
+        id: "a4988",
+        name: "Allegro A4988",
+        drive: Drive { diode_v: 1.2, ..CHIP },
+        source: "data sheet 4988-DS: 0.32 Ω source and sink, off-time 30 µs, slow or mixed decay by itself, diodes at most \
+                 1.2 V",
+        typical: &["decay_share", "blank_us"],
+    },
+    DriveSheet {
+        id: "a4979",
+        name: "Allegro A4979",
+        drive: Drive { bridge_ohm: 1.0, ..CHIP },
+        source: "data sheet A4979-DS: 0.5 Ω source and sink, slow, mixed or automatic decay; times and shares are programmed, \
+                 here as the A4988's",
+        typical: &["decay_share", "off_us", "blank_us", "diode_v"],
+    },
+    DriveSheet {
+        id: "drv8825",
+        name: "Texas Instruments DRV8825",
+        drive: Drive { decay_share: 0.75, blank_us: 3.75, bridge_ohm: 0.4, ..CHIP },
+        source: "data sheet SLVSA73: mixed decay, fast up to 75 % of a period. The chip chops at a fixed frequency; the \
+                 model has a fixed off-time, here about what is left of a period",
+        typical: &["off_us", "blank_us", "bridge_ohm", "diode_v"],
+    },
+    DriveSheet {
+        id: "tmc2209",
+        name: "Trinamic TMC2209, as SpreadCycle",
+        drive: Drive {
+            decay: Decay::Mixed,
+            decay_share: 0.2,
+            off_us: 20.0,
+            blank_us: 2.0,
+            dac_levels: Some(255),
+            bridge_ohm: 0.34,
+            ..CHIP
+        },
+        source: "data sheet rev. 1.09: 0.17 Ω each side, sine table of 8 bits; TOFF = 3, its own \
+                 setting, is 9 to 10 µs at 12 MHz and comes twice a period. The hysteresis of SpreadCycle is not modelled, nor is StealthChop, which regulates a voltage",
+        typical: &["decay_share", "off_us", "blank_us", "diode_v"],
+    },
+];
+
+/// The motor of that word.
+#[must_use]
+pub fn motor(id: &str) -> Option<&'static MotorSheet> {
+    MOTORS.iter().find(|sheet| sheet.id == id)
+}
+
+/// The driver of that word.
+#[must_use]
+pub fn drive(id: &str) -> Option<&'static DriveSheet> {
+    DRIVES.iter().find(|sheet| sheet.id == id)
+}
+
+impl MotorSheet {
+    /// The motor with these figures, at its rated current; supply, load and driver are those of `place`, which it takes
+    /// the place of.
+    #[must_use]
+    pub fn in_place_of(&self, place: &Motor) -> Motor {
+        Motor {
+            rated_current_a: self.rated_current_a,
+            resistance_ohm: self.resistance_ohm,
+            inductance_mh: self.inductance_mh,
+            holding_torque_mn_m: self.holding_torque_mn_m,
+            rotor_inertia_g_cm2: self.rotor_inertia_g_cm2,
+            peak_current_a: None,
+            working_rate_hz: None,
+            friction_mn_m: self.friction_mn_m,
+            stiction_mn_m: None,
+            viscous_un_m_s: self.viscous_un_m_s,
+            detent_torque_mn_m: self.detent_torque_mn_m,
+            ..place.clone()
+        }
+    }
+
+    /// The motor by itself, for its torque: at its rated current, with the default motor's supply and microsteps, and no load.
+    #[must_use]
+    pub fn machine(&self) -> Option<Machine> {
+        let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
+        let motor = Some(self.in_place_of(&Motor::default()));
+        Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
+    }
+
+    /// Puts it in the place of every motor of a scenario, with its full step.
+    pub fn put_into(&self, scenario: &mut Scenario) {
+        each_motor(scenario, |full_step_deg, motor| {
+            *motor = self.in_place_of(motor);
+            if let Some(full_step_deg) = full_step_deg {
+                *full_step_deg = self.full_step_deg;
+            }
+        });
+    }
+}
+
+impl DriveSheet {
+    /// Puts it in the place of the driver of every motor of a scenario.
+    pub fn put_into(&self, scenario: &mut Scenario) {
+        each_motor(scenario, |_, motor| motor.drive = self.drive.clone());
+    }
+}
+
+/// Every motor of a scenario with its full step; those that stand there by default are written out before.
+fn each_motor(scenario: &mut Scenario, mut with: impl FnMut(Option<&mut f64>, &mut Motor)) {
+    let listed = scenario.plant.as_ref().is_some_and(|plant| !plant.motors.is_empty());
+    let first: Vec<&mut Axis> = match &mut scenario.source {
+        Source::Motion(motion) => motion.axes.iter_mut().collect(),
+        _ => Vec::new(),
+    };
+    let others = scenario.controllers.iter_mut().flat_map(|controller| controller.axes.iter_mut());
+    for axis in first.into_iter().chain(others) {
+        let full_step_deg = match &mut axis.mechanics {
+            Mechanics::Rotary(m) => Some(&mut m.full_step_deg),
+            Mechanics::Wheel(m) => Some(&mut m.full_step_deg),
+            Mechanics::Screw(m) => Some(&mut m.full_step_deg),
+            Mechanics::Direct(_) => None,
+        };
+        // Without one of its own an axis has that of the list, and without a list the default one.
+        if axis.motor.is_none() && (listed || full_step_deg.is_none()) {
+            continue;
+        }
+        with(full_step_deg, axis.motor.get_or_insert_default());
+    }
+    if let Some(plant) = &mut scenario.plant {
+        if plant.motors.is_empty() {
+            plant.motors.push(PlantMotor::default());
+        }
+        for entry in &mut plant.motors {
+            with(Some(&mut entry.full_step_deg), &mut entry.motor);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

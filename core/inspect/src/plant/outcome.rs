@@ -1,0 +1,211 @@
+//! What a plant did, in words and as series, and the settling time of a motor's supply current (PLANT F8).
+//!
+//! ```
+//! use stepscope_inspect::plant::outcome::{settling, verdict};
+//! use stepscope_sim::{Experiment, plant_run::PlantRun};
+//!
+//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+//! run.finish();
+//! assert_eq!(verdict(&run.results()[0].motors[0], 16_000_000), "follows");
+//! let setup = &experiment.plants().expect("a plant").setups[0];
+//! assert!(settling(setup, 0, 32_768, 0.2).expect("it is made").rest_a > 0.0);
+//! ```
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec,
+    vec::Vec,
+};
+use core::fmt::Write as _;
+use stepscope_peripheral::{
+    signal::{Levels, Record},
+    units::Instant,
+};
+use stepscope_plant::{
+    Plant, Refused,
+    measures::MotorResult,
+    parameters::Setup,
+    settling::{REST_STEPS, SensorLog, StepResponse},
+};
+
+/// Following errors from here on, in full steps, are more than a motor's own: the field hardly holds it.
+const FAR: f64 = 2.0;
+
+/// Half an electrical period, in full steps: a rotor that goes further in a grid step is thrown rather than turned.
+const HALF_PERIOD: f64 = 2.0;
+/// Degrees of a turn.
+const TURN_DEG: f64 = 360.0;
+
+/// What is to be said where the grid was too coarse for what the motor of `channel` did: at its greatest speed the rotor goes
+/// over half an electrical period, or the load over half a period of its turning torque, in one grid step. Then the result says
+/// nothing of a real motor. F3's limits look at the start alone.
+#[must_use]
+pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
+    let motor = setup.motors.get(channel)?;
+    let step_s = f64::from(setup.grid_cycles()) / f64::from(setup.clock_hz);
+    let (fastest, cycle) = found.fastest;
+    let (of_rotor, of_load) = (fastest * step_s, found.fastest_load * step_s);
+    let half_turning = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
+    let what = if of_rotor > HALF_PERIOD {
+        format!(
+            "the rotor goes {of_rotor:.1} full steps in one grid step, over half an electrical period (2)"
+        )
+    } else if motor.sine_torque_mn_m != 0.0 && of_load > half_turning {
+        format!(
+            "the load goes {of_load:.3} full steps in one grid step, over half a period of its turning torque ({half_turning:.3})"
+        )
+    } else {
+        return None;
+    };
+    let ms = cycle as f64 / f64::from(setup.clock_hz) * 1e3;
+    Some(format!(
+        "{what}, at {ms:.2} ms, so the result says nothing; give a smaller step_cycles than {}",
+        setup.grid_cycles()
+    ))
+}
+
+/// More of the energy than this must not be left over (F8).
+const MAX_ENERGY_ERROR: f64 = 1e-3;
+
+/// What is to be said where too much of the energy that went through a motor is left over: the grid is too coarse.
+#[must_use]
+pub fn energy_left_over(found: &MotorResult) -> Option<String> {
+    let error = found.energy.error();
+    (error > MAX_ENERGY_ERROR)
+        .then(|| format!("{:.2} % of the energy is left over; give a smaller step_cycles", 100.0 * error))
+}
+
+/// Whether a motor follows its pulses, in words.
+#[must_use]
+pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
+    let lost = motor.lost.unsigned_abs();
+    let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
+    let step = motor.first_slip_step.unwrap_or(0);
+    match motor.slips.first() {
+        Some(slip) if lost == 0 => {
+            format!("slips and comes back; first at {:.2} ms in step {step}", ms(slip.cycle))
+        }
+        Some(slip) => format!("loses {lost} full steps, first at {:.2} ms in step {step}", ms(slip.cycle)),
+        None if motor.following_error.0.abs() >= FAR => {
+            format!("follows, but by {:.2} full steps behind", motor.following_error.0.abs())
+        }
+        None => "follows".to_string(),
+    }
+}
+
+/// Names of the analogue values of a plant, in the order of [`values`]; units are in the names.
+#[must_use]
+pub fn names(plant: &Plant) -> Vec<String> {
+    let mut names: Vec<String> = ["bus_v", "load_a", "sensor_a", "sensor_code"].map(String::from).into();
+    for channel in 0..plant.motors() {
+        let of_motor = ["command", "rotor", "speed", "phase_a_a", "phase_b_a", "lost", "encoder"];
+        names.extend(of_motor.map(|name| format!("{name}{channel}")));
+    }
+    names
+}
+
+/// What a plant's values are at its point: V, A, codes, full steps and full steps/s.
+#[must_use]
+pub fn values(plant: &Plant) -> Vec<f64> {
+    let sensor = plant.current_sensor();
+    let mut values = vec![plant.bus_v(), plant.load_a(), sensor.filtered(), f64::from(sensor.code())];
+    for channel in 0..plant.motors() {
+        let Some(state) = plant.state(channel) else { continue };
+        let (command, lost) = (plant.command(channel), plant.lost(channel) as f64);
+        values.extend([command, state.x, state.w, state.i_a, state.i_b, lost, plant.encoder(channel).into()]);
+    }
+    values
+}
+
+/// The head of a table of points.
+#[must_use]
+pub fn table_head(plant: &Plant) -> String {
+    format!("cycle,time_s,{}\n", names(plant).join(","))
+}
+
+/// A row of it.
+#[must_use]
+pub fn table_row(plant: &Plant) -> String {
+    let cycle = plant.cycle();
+    let mut row = format!("{cycle},{}", cycle as f64 / plant.clock_hz());
+    for value in values(plant) {
+        // Writing to a text cannot fail.
+        let _ = write!(row, ",{value}");
+    }
+    row.push('\n');
+    row
+}
+
+/// The supply current around one step to the right of the motor of `channel` alone, which rested for ten `t_step` cycles.
+///
+/// # Errors
+/// Those of the plant; none at all where there is no such channel or no sample.
+pub fn settling(
+    setup: &Setup,
+    channel: usize,
+    t_step: u64,
+    share: f64,
+) -> Result<StepResponse, Vec<Refused>> {
+    settling_with(setup, channel, t_step, share).map(|(response, _)| response)
+}
+
+/// A reading of the current sensor: cycles after STEP's rise, and A.
+pub type CurrentAt = (f64, f64);
+
+/// The same, and what the sensor said from `t_step` cycles before the step on.
+///
+/// # Errors
+/// As [`settling`].
+pub fn settling_with(
+    setup: &Setup,
+    channel: usize,
+    t_step: u64,
+    share: f64,
+) -> Result<(StepResponse, Vec<CurrentAt>), Vec<Refused>> {
+    let mut plant = Plant::new(&setup.alone(channel).ok_or_else(Vec::new)?)?;
+    let mut log = SensorLog::default();
+    // As the self-test has it: S = 1.
+    let (from, rise) = (1, 1 + REST_STEPS * t_step);
+    let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
+    plant.record(Record { cycle: Instant(rise), levels }, &mut log);
+    plant.advance(rise + t_step, &mut log);
+    let response = StepResponse::of(&log.samples, from, rise, t_step, share).ok_or_else(Vec::new)?;
+    let shown = log.samples.iter().skip_while(|sample| sample.cycle + t_step < rise);
+    Ok((response, shown.map(|sample| (sample.cycle as f64 - rise as f64, sample.current)).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::expect_used, reason = "what is missing fails the test")]
+
+    use super::*;
+    use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+    /// What is said of the grid in a run with this plant and this motor.
+    fn warned(plant: &str, motor: &str) -> Option<String> {
+        let json = format!(
+            r#"{{"plant":{plant},"source":{{"motion":{{"engine":"segments","axes":[{{"motor":{motor}}}]}}}}}}"#
+        );
+        let experiment = Experiment::from_json(&json).expect("no problem");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+        run.finish();
+        too_coarse(&experiment.plants().expect("a plant").setups[0], 0, &run.results()[0].motors[0])
+    }
+
+    #[test]
+    fn a_rotor_that_is_thrown_is_told_with_the_remedy_and_a_finer_grid_holds_it() {
+        let thrown = r#"{"sine_torque_mn_m":1000000,"sine_per_turn":1000}"#;
+        let told = warned("{}", thrown).expect("it is thrown");
+        assert!(told.starts_with("the rotor goes 15.3 full steps in one grid step, over half an"), "{told}");
+        assert!(told.ends_with("so the result says nothing; give a smaller step_cycles than 80"), "{told}");
+        assert_eq!(warned(r#"{"step_cycles":8}"#, thrown), None);
+        // At about 1000 full steps/s half a period, 0.1 full steps, takes 0.1 ms; a grid step is 0.15 ms.
+        let fine = r#"{"sine_torque_mn_m":0.001,"sine_per_turn":1000}"#;
+        assert_eq!(warned("{}", fine), None);
+        let told = warned(r#"{"step_cycles":2000}"#, fine);
+        assert!(told.expect("too coarse").starts_with("the load goes 0.1"));
+        assert_eq!(warned("{}", "{}"), None);
+    }
+}

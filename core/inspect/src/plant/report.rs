@@ -1,0 +1,189 @@
+//! What a run's plant came to, as command and page tell it: numbers with their units in their names, and a sentence for each
+//! motor.
+//!
+//! ```
+//! use stepscope_inspect::plant::report::PlantReport;
+//! use stepscope_sim::{Experiment, plant_run::PlantRun};
+//!
+//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+//! run.finish();
+//! let report = PlantReport::of(&experiment, &run, 0).expect("it has one");
+//! assert_eq!(report.motors[0].verdict, "follows");
+//! ```
+
+use crate::plant::outcome::{energy_left_over, too_coarse, verdict};
+use alloc::{format, string::String, vec::Vec};
+use serde::Serialize;
+use stepscope_plant::{
+    measures::{MotorResult, PlantResult},
+    parameters::Setup,
+};
+use stepscope_sim::{Experiment, Run};
+
+/// All of it, of one controller.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlantReport {
+    /// Of the whole plant.
+    pub plant: Whole,
+    /// Of each channel's motor.
+    pub motors: Vec<Motor>,
+    /// Every slip, motor after motor.
+    pub slips: Vec<Slip>,
+    /// What the self-test found; empty where there is none.
+    pub self_test: Vec<SelfTest>,
+}
+
+/// Supply and sensors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Whole {
+    pub controller: usize,
+    /// XXH64, 16 hexadecimal digits.
+    pub digest: String,
+    /// The last point.
+    pub cycle: u64,
+    pub load_least_a: f64,
+    pub load_greatest_a: f64,
+    pub load_rms_a: f64,
+    /// How far the sensor's reading went from its rest, where enough steps were made.
+    pub deviation_above_a: Option<f64>,
+    pub deviation_below_a: Option<f64>,
+    pub bus_least_v: f64,
+    pub bus_greatest_v: f64,
+    pub collapsed_at_s: Option<f64>,
+    pub overload_cycle: Option<u64>,
+}
+
+/// One motor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Motor {
+    pub channel: usize,
+    /// Whether it follows, in words.
+    pub verdict: String,
+    pub command_full_steps: f64,
+    pub rotor_full_steps: f64,
+    /// Positive to the right.
+    pub lost_full_steps: i64,
+    pub slips: u64,
+    /// The greatest, with its sign.
+    pub following_error_full_steps: f64,
+    pub following_error_at_s: f64,
+    /// After the last step.
+    pub overshoot_full_steps: Option<f64>,
+    pub settling_s: Option<f64>,
+    pub phase_peak_a: f64,
+    pub phase_rms_a: f64,
+    pub bus_j: f64,
+    pub copper_j: f64,
+    pub friction_j: f64,
+    pub viscous_j: f64,
+    pub diodes_j: f64,
+    pub load_j: f64,
+    pub stored_j: f64,
+    /// What is left over, in parts of all that went through.
+    pub energy_error: f64,
+    /// The greatest speed, without sign.
+    pub fastest_full_steps_s: f64,
+    /// What is to be said where the grid was too coarse for it.
+    pub grid_too_coarse: Option<String>,
+    /// The same where too much of the energy is left over.
+    pub energy_left_over: Option<String>,
+}
+
+/// Four full steps lost at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Slip {
+    pub channel: usize,
+    pub cycle: u64,
+    /// Behind to the left of its command.
+    pub behind: bool,
+}
+
+/// What the self-test found on a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct SelfTest {
+    pub channel: usize,
+    /// None: it does not settle.
+    pub settling_cycles: Option<u64>,
+}
+
+impl PlantReport {
+    /// Of the plant behind a controller, as far as the run of the experiment has come; `None` where it has none.
+    #[must_use]
+    pub fn of(experiment: &Experiment, run: &Run, controller: usize) -> Option<Self> {
+        let setup = experiment.plants()?.setups.get(controller)?;
+        let clock_hz = f64::from(setup.clock_hz);
+        let result = run.results().into_iter().nth(controller)?;
+        let found = run.self_test(controller).iter().enumerate();
+        let motors = result.motors.iter().enumerate();
+        Some(Self {
+            plant: whole(&result, controller, clock_hz, run.overload(controller)),
+            motors: motors.clone().map(|(channel, motor)| one(channel, motor, setup)).collect(),
+            slips: motors
+                .flat_map(|(channel, motor)| {
+                    motor.slips.iter().map(move |slip| Slip {
+                        channel,
+                        cycle: slip.cycle,
+                        behind: slip.is_behind,
+                    })
+                })
+                .collect(),
+            self_test: found
+                .map(|(channel, &settling_cycles)| SelfTest { channel, settling_cycles })
+                .collect(),
+        })
+    }
+}
+
+fn whole(result: &PlantResult, controller: usize, clock_hz: f64, overload_cycle: Option<u64>) -> Whole {
+    let (load, bus) = (&result.load_a, &result.bus_v);
+    Whole {
+        controller,
+        digest: format!("{:016x}", result.digest),
+        cycle: result.cycle,
+        load_least_a: load.least,
+        load_greatest_a: load.greatest,
+        load_rms_a: load.rms(),
+        deviation_above_a: result.deviation.map(|found| found.above_a),
+        deviation_below_a: result.deviation.map(|found| found.below_a),
+        bus_least_v: bus.least,
+        bus_greatest_v: bus.greatest,
+        collapsed_at_s: result.collapsed.map(|cycle| cycle as f64 / clock_hz),
+        overload_cycle,
+    }
+}
+
+fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
+    let clock_hz = f64::from(setup.clock_hz);
+    let (error, at) = motor.following_error;
+    let energy = &motor.energy;
+    Motor {
+        channel,
+        verdict: verdict(motor, setup.clock_hz),
+        command_full_steps: motor.command,
+        rotor_full_steps: motor.state.x,
+        lost_full_steps: motor.lost,
+        slips: motor.slip_count,
+        following_error_full_steps: error,
+        following_error_at_s: at as f64 / clock_hz,
+        overshoot_full_steps: motor.overshoot,
+        settling_s: motor.settling.map(|cycles| cycles as f64 / clock_hz),
+        phase_peak_a: motor.phase_peak_a,
+        phase_rms_a: motor.phase_rms_a,
+        bus_j: energy.bus,
+        copper_j: energy.copper,
+        friction_j: energy.friction,
+        viscous_j: energy.viscous,
+        diodes_j: energy.diodes,
+        load_j: energy.load,
+        stored_j: energy.stored,
+        energy_error: energy.error(),
+        fastest_full_steps_s: motor.fastest.0,
+        grid_too_coarse: too_coarse(setup, channel, motor),
+        energy_left_over: energy_left_over(motor),
+    }
+}

@@ -1,0 +1,22 @@
+//! ```
+//! use stepscope_inspect::trace::{drivers::A4988, timing::TimingCheck};
+//! use stepscope_sim::Experiment;
+//!
+//! // Can an A4988 follow the default motion?
+//! let experiment = Experiment::from_json("{}").expect("every field has a default");
+//! let mut check = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 100);
+//! experiment.run(&mut check);
+//! assert_eq!(check.total(), 0);
+//! ```
+
+pub mod changes;
+pub mod columns;
+pub mod diff;
+pub mod drivers;
+pub mod edges;
+pub mod fingerprint;
+pub mod recorded_run;
+pub mod run_fingerprint;
+pub mod run_sink;
+pub mod timing;
+pub mod window;

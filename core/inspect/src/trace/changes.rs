@@ -1,0 +1,263 @@
+//! Where signals change in a long trace: a pyramid over its records, so that a view of millions of them
+//! costs no more than its pixels.
+//!
+//! ```text
+//! level 1   [ which were high, which were low in 1024 records ] [ … ]
+//! level 0   [ … in 64 records ] [ … ] [ … ]                          16 bytes each
+//! trace     r r r r r r r r r r r r r r r r r r r r r r r r r r      16 bytes each
+//! ```
+//!
+//! A block's two masks are exact, so a search steps over every block in which its signal stays as it is.
+//! All levels together take 16 / 64 * 16 / 15 of a byte more for a record: about a quarter of a byte.
+//!
+//! ```
+//! use stepscope_inspect::trace::changes::{Changes, Edge};
+//!
+//! // Of the trace of a run: the first rise of STEP0, bit 0.
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let mut changes = Changes::default();
+//! changes.extend(&recording.trace);
+//! let found = changes.next_edge(&recording.trace, 0, 0, Edge::Rise).expect("it steps");
+//! assert_eq!(recording.trace[found].cycle.0, steps(&recording.trace, 0)[0].cycle);
+//! ```
+
+use crate::trace::columns::Columns;
+use alloc::{vec, vec::Vec};
+use stepscope_peripheral::signal::Record;
+
+/// Records in a block of level 0.
+const BLOCK: usize = 64;
+/// Blocks of one level in a block of the next.
+const FAN: usize = 16;
+
+/// Which signals were high, and which were low, in some of a block's records.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Block {
+    high: u64,
+    low: u64,
+}
+
+impl Block {
+    fn of(levels: u64) -> Self {
+        Self { high: levels, low: !levels }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { high: self.high | other.high, low: self.low | other.low }
+    }
+
+    fn has(self, mask: u64, high: bool) -> bool {
+        mask & if high { self.high } else { self.low } != 0
+    }
+}
+
+/// Which edges are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// Rising and falling ones.
+    Any,
+    /// From low to high.
+    Rise,
+    /// From high to low.
+    Fall,
+}
+
+/// The pyramid over one trace. Every question is asked with the trace that it was made of.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    /// Whole blocks only; the records after the last one are looked at themselves.
+    levels: Vec<Vec<Block>>,
+}
+
+impl Changes {
+    /// Takes in the records that came since the last call.
+    pub fn extend(&mut self, trace: &[Record]) {
+        let first = self.level(0);
+        let known = first.len() * BLOCK;
+        let records = trace.get(known..).unwrap_or_default().chunks_exact(BLOCK);
+        first.extend(records.map(|block| {
+            block.iter().fold(Block::default(), |all, record| all.and(Block::of(record.levels.0)))
+        }));
+        for level in 1.. {
+            let known = self.level(level).len() * FAN;
+            let (lower, upper) = self.levels.split_at_mut(level);
+            let (Some(lower), Some(upper)) = (lower.last(), upper.first_mut()) else { return };
+            let blocks = lower.get(known..).unwrap_or_default().chunks_exact(FAN);
+            upper.extend(blocks.map(|block| block.iter().fold(Block::default(), |all, one| all.and(*one))));
+            if upper.len() < FAN {
+                return;
+            }
+        }
+    }
+
+    fn level(&mut self, index: usize) -> &mut Vec<Block> {
+        if self.levels.len() <= index {
+            self.levels.resize(index + 1, Vec::new());
+        }
+        &mut self.levels[index]
+    }
+
+    /// Bytes that it takes beside the trace.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(|level| level.capacity() * size_of::<Block>()).sum()
+    }
+
+    /// As [`super::columns`] of the same stretch, with `margin` further columns of the same width at each side; those
+    /// that end before cycle 0 have no levels at all.
+    #[must_use]
+    pub fn columns(&self, trace: &[Record], start: u64, end: u64, count: usize, margin: usize) -> Columns {
+        let span = i128::from(end.saturating_sub(start).max(1));
+        let total = count + 2 * margin;
+        let bound = |i: usize| {
+            let i = i as i128 - margin as i128;
+            i128::from(start) + (span * i).div_euclid(count.max(1) as i128)
+        };
+        let mut result = Columns { high: vec![0; total], low: vec![0; total], last: vec![0; total] };
+        let mut until = 0_usize;
+        for i in 0..total {
+            let (first, after) = (bound(i), bound(i + 1).max(bound(i) + 1));
+            let (Ok(after), first) = (u64::try_from(after), u64::try_from(first).unwrap_or(0)) else {
+                continue;
+            };
+            if after == 0 {
+                continue;
+            }
+            // Columns narrower than a cycle share it, so one may begin before the last one's end.
+            let back = trace.get(until.saturating_sub(1)).map_or(0, |record| record.cycle.0);
+            let from = if back > first { until.saturating_sub(1) } else { until };
+            let begin = from + gallop(trace.get(from..).unwrap_or_default(), first);
+            until = begin + gallop(trace.get(begin..).unwrap_or_default(), after - 1);
+            let level =
+                |index: usize| index.checked_sub(1).and_then(|i| trace.get(i)).map_or(0, |r| r.levels.0);
+            let seen = Block::of(level(begin)).and(self.between(trace, begin, until));
+            result.high[i] = seen.high;
+            result.low[i] = seen.low;
+            result.last[i] = level(until);
+        }
+        result
+    }
+
+    /// What the records `first..after` have of each signal.
+    fn between(&self, trace: &[Record], first: usize, after: usize) -> Block {
+        let mut all = Block::default();
+        let mut at = first;
+        while at < after {
+            let (mut whole, mut size) = (None, BLOCK);
+            for level in &self.levels {
+                if !at.is_multiple_of(size) || at + size > after {
+                    break;
+                }
+                let Some(block) = level.get(at / size) else { break };
+                whole = Some((*block, size));
+                size *= FAN;
+            }
+            let (block, size) = whole.unwrap_or_else(|| {
+                let until = (at / BLOCK * BLOCK + BLOCK).min(after);
+                let records = trace.get(at..until).unwrap_or_default();
+                (records.iter().fold(Block::default(), |all, r| all.and(Block::of(r.levels.0))), until - at)
+            });
+            all = all.and(block);
+            at += size;
+        }
+        all
+    }
+
+    /// Index of the record with the next edge of signal `bit` after cycle `at`. The levels that a trace begins
+    /// with are no edge.
+    #[must_use]
+    pub fn next_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
+        let mask = 1_u64.checked_shl(bit.into())?;
+        let first = trace.partition_point(|record| record.cycle.0 <= at).max(1);
+        let high = trace.get(first - 1)?.levels.has(mask);
+        let found = self.first_at(trace, first, mask, !high)?;
+        match edge {
+            Edge::Rise if high => self.first_at(trace, found, mask, true),
+            Edge::Fall if !high => self.first_at(trace, found, mask, false),
+            _ => Some(found),
+        }
+    }
+
+    /// Index of the record with the last edge of signal `bit` before cycle `at`.
+    #[must_use]
+    pub fn previous_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
+        let mask = 1_u64.checked_shl(bit.into())?;
+        let after = trace.partition_point(|record| record.cycle.0 < at);
+        let high = trace.get(after.checked_sub(1)?)?.levels.has(mask);
+        let before = self.last_at(trace, after, mask, !high)?;
+        match edge {
+            Edge::Rise if !high => Some(self.last_at(trace, before, mask, false)? + 1),
+            Edge::Fall if high => Some(self.last_at(trace, before, mask, true)? + 1),
+            _ => Some(before + 1),
+        }
+    }
+
+    /// The first record from index `at` on in which a signal of `mask` is at a level.
+    fn first_at(&self, trace: &[Record], at: usize, mask: u64, high: bool) -> Option<usize> {
+        let mut at = at;
+        loop {
+            let (mut over, mut size) = (0, BLOCK);
+            for level in &self.levels {
+                match level.get(at / size) {
+                    Some(block) if at.is_multiple_of(size) && !block.has(mask, high) => over = size,
+                    _ => break,
+                }
+                size *= FAN;
+            }
+            if over == 0 {
+                let until = at / BLOCK * BLOCK + BLOCK;
+                let rest = trace.get(at..until.min(trace.len())).filter(|rest| !rest.is_empty())?;
+                let found = rest.iter().position(|record| Block::of(record.levels.0).has(mask, high));
+                if let Some(found) = found {
+                    return Some(at + found);
+                }
+                over = until - at;
+            }
+            at += over;
+        }
+    }
+
+    /// The last record before index `end` in which a signal of `mask` is at a level.
+    fn last_at(&self, trace: &[Record], end: usize, mask: u64, high: bool) -> Option<usize> {
+        let mut end = end;
+        while end > 0 {
+            let (mut over, mut size) = (0, BLOCK);
+            for level in &self.levels {
+                match (end / size).checked_sub(1).and_then(|index| level.get(index)) {
+                    Some(block) if end.is_multiple_of(size) && !block.has(mask, high) => over = size,
+                    _ => break,
+                }
+                size *= FAN;
+            }
+            if over == 0 {
+                let from = (end - 1) / BLOCK * BLOCK;
+                let records = trace.get(from..end).unwrap_or_default();
+                let found = records.iter().rposition(|record| Block::of(record.levels.0).has(mask, high));
+                if let Some(found) = found {
+                    return Some(from + found);
+                }
+                over = end - from;
+            }
+            end -= over;
+        }
+        None
+    }
+}
+
+/// How many records stand at or before `cycle`, looked for in ever wider steps: what is near is found at once.
+fn gallop(trace: &[Record], cycle: u64) -> usize {
+    let mut reach = 1;
+    while trace.get(reach - 1).is_some_and(|record| record.cycle.0 <= cycle) {
+        reach *= 2;
+    }
+    let near = reach / 2;
+    let within = trace.get(near..reach.min(trace.len())).unwrap_or_default();
+    near + within.partition_point(|record| record.cycle.0 <= cycle)
+}
+
+#[cfg(test)]
+mod tests;

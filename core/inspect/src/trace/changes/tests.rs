@@ -1,0 +1,93 @@
+//! Every answer against one that looks at all records, or at all cycles.
+
+use super::*;
+use crate::trace::columns::columns;
+use proptest::{collection::vec, prelude::*};
+use stepscope_peripheral::{signal::Levels, units::Instant};
+
+/// A few signals over a trace of up to some thousand records, in stretches in which one of them rests.
+fn traces() -> impl Strategy<Value = Vec<Record>> {
+    let stretch = (1_u64..=9, 0_u64..16, 1_usize..600, any::<u64>());
+    (0_u64..16, vec(stretch, 0..8)).prop_map(|(reset, stretches)| {
+        let mut trace = Vec::from([record(0, reset)]);
+        for (pause, mask, count, seed) in stretches {
+            let mut seed = seed | 1;
+            for _ in 0..count {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                let last = trace[trace.len() - 1];
+                let cycle = last.cycle.0 + 1 + (seed >> 40) % pause;
+                trace.push(record(cycle, last.levels.0 ^ (seed >> 33) & mask));
+            }
+        }
+        trace
+    })
+}
+
+fn record(cycle: u64, levels: u64) -> Record {
+    Record { cycle: Instant(cycle), levels: Levels(levels) }
+}
+
+/// The pyramid as it grows in slices.
+fn changes(trace: &[Record], slice: usize) -> Changes {
+    let mut changes = Changes::default();
+    for end in (0..trace.len()).step_by(slice).chain([trace.len()]) {
+        changes.extend(&trace[..end]);
+    }
+    changes
+}
+
+proptest! {
+    #[test]
+    fn columns_are_those_of_every_record(
+        trace in traces(), slice in 1_usize..3000, window in (0_u64..9000, 1_u64..9000),
+        count in 1_usize..90, margin in 0_usize..40,
+    ) {
+        let changes = changes(&trace, slice);
+        let (start, end) = (window.0, window.0 + window.1);
+        let found = changes.columns(&trace, start, end, count, margin);
+        let expected = columns(&trace, start, end, count);
+        let middle = margin..margin + count;
+        prop_assert_eq!(&found.high[middle.clone()], &expected.high[..]);
+        prop_assert_eq!(&found.low[middle.clone()], &expected.low[..]);
+        prop_assert_eq!(&found.last[middle], &expected.last[..]);
+        // A margin column is a column of the stretch that begins with it.
+        for i in (0..margin).chain(margin + count..count + 2 * margin) {
+            let bound = |i: usize| i128::from(start) + (i128::from(window.1) * (i as i128 - margin as i128)).div_euclid(count as i128);
+            let (first, after) = (bound(i), bound(i + 1).max(bound(i) + 1));
+            let one = if after <= 0 { Columns { high: Vec::from([0]), low: Vec::from([0]), last: Vec::from([0]) } }
+                else { columns(&trace, first.max(0) as u64, after as u64, 1) };
+            prop_assert_eq!((found.high[i], found.low[i], found.last[i]), (one.high[0], one.low[0], one.last[0]), "column {}", i);
+        }
+    }
+
+    #[test]
+    fn edges_are_those_of_every_record(trace in traces(), bit in 0_u8..5, at in 0_u64..12_000, slice in 1_usize..3000) {
+        let changes = changes(&trace, slice);
+        let mask = 1 << bit;
+        for edge in [Edge::Any, Edge::Rise, Edge::Fall] {
+            let is_edge = |&index: &usize| {
+                let (before, now) = (trace[index - 1].levels.has(mask), trace[index].levels.has(mask));
+                before != now && match edge { Edge::Any => true, Edge::Rise => now, Edge::Fall => before }
+            };
+            let next = (1..trace.len()).filter(is_edge).find(|&index| trace[index].cycle.0 > at);
+            let previous = (1..trace.len()).rev().filter(is_edge).find(|&index| trace[index].cycle.0 < at);
+            prop_assert_eq!(changes.next_edge(&trace, bit, at, edge), next);
+            prop_assert_eq!(changes.previous_edge(&trace, bit, at, edge), previous);
+        }
+    }
+}
+
+#[test]
+fn an_empty_trace_has_no_edges_and_low_columns() {
+    let changes = changes(&[], 1);
+    assert_eq!(changes.next_edge(&[], 0, 0, Edge::Any), None);
+    assert_eq!(changes.previous_edge(&[], 0, 9, Edge::Any), None);
+    assert_eq!(changes.columns(&[], 0, 8, 4, 0), columns(&[], 0, 8, 4));
+}
+
+#[test]
+fn it_takes_little_beside_the_trace() {
+    let trace: Vec<Record> = (0..1 << 17).map(|cycle| record(cycle, cycle & 1)).collect();
+    let bytes = changes(&trace, 4096).bytes();
+    assert!(bytes < trace.len() * 6 / 10, "{bytes} bytes for {} records", trace.len());
+}

@@ -1,0 +1,281 @@
+//! A trace that was saved, held against a run: a table of edges ([`write_edges_row`](crate::export::tables::write_edges_row)) or a trace's
+//! text ([`write_record`](stepscope_peripheral::trace::write_record)), read in pieces of any size.
+//!
+//! A file may be a stretch of a run: its first row then stands for all the levels at its first cycle, and
+//! what the run does after the file's last row is not in question.
+//!
+//! ```
+//! use stepscope_inspect::trace::diff::TraceDiff;
+//! use stepscope_peripheral::trace::write_record;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let mut file = String::new(); // what `stepscope run --trace` writes
+//! recording.trace.iter().for_each(|&record| write_record(&mut file, record).expect("a string takes it"));
+//! let mut diff = TraceDiff::new(1);
+//! diff.feed(&recording.trace, file.as_bytes()).expect("it is a trace");
+//! let outcome = diff.finish(&recording.trace).expect("it has edges");
+//! assert_eq!((outcome.difference, outcome.same), (None, recording.trace.len() as u64));
+//! ```
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use core::fmt;
+use stepscope_peripheral::trace::{parse_line, shown_signals};
+use stepscope_peripheral::{
+    signal::{self, Levels, Record},
+    units::Instant,
+};
+
+/// Longest line of a file, in bytes: a row of 36 signals has less than 200.
+const MAX_LINE: usize = 1000;
+
+/// A line that cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadLine {
+    /// Which line, from 1.
+    pub line: u64,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+impl fmt::Display for BadLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.what)
+    }
+}
+
+impl core::error::Error for BadLine {}
+
+/// The first place where file and run are not the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Line of the file.
+    pub line: u64,
+    /// The earlier of the cycles in which the file and the run go on.
+    pub cycle: Instant,
+    /// Levels in the file in that cycle.
+    pub file: Levels,
+    /// Levels in the run.
+    pub run: Levels,
+}
+
+impl Difference {
+    /// Signals that are not the same; none where the run has ended.
+    #[must_use]
+    pub const fn signals(&self) -> u64 {
+        self.file.0 ^ self.run.0
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Records of the file that are the run's own.
+    pub same: u64,
+    /// First and last cycle of the file; of a file that differs, the last that was the same.
+    pub range: (Instant, Instant),
+    /// Where they part.
+    pub difference: Option<Difference>,
+    /// Whether the run has records after the file's last.
+    pub goes_on: bool,
+}
+
+/// What the lines are.
+#[derive(Clone, Debug)]
+enum Form {
+    /// Not known before the first line.
+    Unknown,
+    /// Cycle and levels in hexadecimal.
+    Trace,
+    /// The bit of each column after cycle and time.
+    Table(Vec<u32>),
+}
+
+/// Takes a file piece by piece. The run's trace is given with each piece and is always the same.
+#[derive(Clone, Debug)]
+pub struct TraceDiff {
+    channels: u8,
+    form: Form,
+    /// The part of a line that has come.
+    partial: Vec<u8>,
+    line: u64,
+    /// Index of the run's record that is next; none before the file's first.
+    next: Option<usize>,
+    first: Instant,
+    last: Record,
+    same: u64,
+    difference: Option<Difference>,
+}
+
+impl TraceDiff {
+    /// Before a file; `channels` are those of the controller that made the run.
+    #[must_use]
+    pub const fn new(channels: u8) -> Self {
+        Self {
+            channels,
+            form: Form::Unknown,
+            partial: Vec::new(),
+            line: 0,
+            next: None,
+            first: Instant::RESET,
+            last: Record { cycle: Instant::RESET, levels: Levels(0) },
+            same: 0,
+            difference: None,
+        }
+    }
+
+    /// Takes a piece of the file. True if the rest is not needed: a difference is found.
+    ///
+    /// # Errors
+    /// [`BadLine`] if a line cannot be read.
+    pub fn feed(&mut self, run: &[Record], piece: &[u8]) -> Result<bool, BadLine> {
+        for part in piece.split_inclusive(|byte| *byte == b'\n') {
+            if self.difference.is_some() {
+                return Ok(true);
+            }
+            self.partial.extend(part.iter().take(MAX_LINE + 1 - self.partial.len().min(MAX_LINE)));
+            if part.last() == Some(&b'\n') || self.partial.len() > MAX_LINE {
+                self.end_of_line(run)?;
+            }
+        }
+        Ok(self.difference.is_some())
+    }
+
+    /// The file is over.
+    ///
+    /// # Errors
+    /// [`BadLine`] if its last line cannot be read, or nothing was in it.
+    pub fn finish(mut self, run: &[Record]) -> Result<Outcome, BadLine> {
+        if !self.partial.is_empty() && self.difference.is_none() {
+            self.end_of_line(run)?;
+        }
+        if self.next.is_none() && self.difference.is_none() {
+            return Err(self.bad("the file has no edges".into()));
+        }
+        Ok(Outcome {
+            same: self.same,
+            range: (self.first, self.last.cycle),
+            difference: self.difference,
+            goes_on: self.next.is_some_and(|next| next < run.len()),
+        })
+    }
+
+    fn bad(&self, what: String) -> BadLine {
+        BadLine { line: self.line, what }
+    }
+
+    fn end_of_line(&mut self, run: &[Record]) -> Result<(), BadLine> {
+        self.line += 1;
+        let bytes = core::mem::take(&mut self.partial);
+        if bytes.len() > MAX_LINE {
+            return Err(self.bad(format!("longer than {MAX_LINE} characters; this is no file of edges")));
+        }
+        let text = core::str::from_utf8(&bytes).map_err(|_| self.bad("not UTF-8 text".into()))?;
+        let text = text.trim_start_matches('\u{feff}').trim();
+        if matches!(self.form, Form::Unknown) {
+            if text.starts_with("cycle,") {
+                self.form = Form::Table(self.columns(text)?);
+                return Ok(());
+            }
+            self.form = Form::Trace;
+        }
+        if text.is_empty() {
+            return Ok(());
+        }
+        let record = match &self.form {
+            Form::Table(bits) => row(text, bits).map_err(|what| self.bad(what))?,
+            _ => parse_line(text).map_err(|error| self.bad(error.to_string()))?,
+        };
+        if self.next.is_some() && record.cycle <= self.last.cycle {
+            let (given, before) = (record.cycle.0, self.last.cycle.0);
+            return Err(self.bad(format!("cycle {given} comes after cycle {before}; cycles must rise")));
+        }
+        self.take(run, record);
+        Ok(())
+    }
+
+    /// The bits of a table's columns.
+    fn columns(&self, head: &str) -> Result<Vec<u32>, BadLine> {
+        let expected: Vec<u32> = shown_signals(self.channels).collect();
+        let names = expected.iter().filter_map(|bit| signal::name(*bit));
+        if head.split(',').skip(2).eq(names) && head.split(',').nth(1) == Some("time_s") {
+            return Ok(expected);
+        }
+        let (given, own) = (head.split(',').count().saturating_sub(2), expected.len());
+        Err(self.bad(format!(
+            "the columns are not those of this controller, which has {} channels: cycle, time_s and {own} signals; the file has {given}",
+            self.channels
+        )))
+    }
+
+    fn take(&mut self, run: &[Record], record: Record) {
+        let next = match self.next {
+            Some(next) => next,
+            None => {
+                self.first = record.cycle;
+                let after = run.partition_point(|own| own.cycle <= record.cycle);
+                let Some(own) = after.checked_sub(1).and_then(|at| run.get(at)) else {
+                    // Nothing comes before a run's first record, in cycle 0.
+                    self.differ(record.cycle, record.levels, Levels(0));
+                    return;
+                };
+                if own.levels == record.levels {
+                    self.accept(after, record);
+                } else {
+                    self.differ(record.cycle, record.levels, own.levels);
+                }
+                return;
+            }
+        };
+        match run.get(next) {
+            Some(own) if *own == record => self.accept(next + 1, record),
+            Some(own) if own.cycle == record.cycle => self.differ(own.cycle, record.levels, own.levels),
+            Some(own) if own.cycle < record.cycle => self.differ(own.cycle, self.last.levels, own.levels),
+            _ => self.differ(record.cycle, record.levels, self.last.levels),
+        }
+    }
+
+    fn accept(&mut self, next: usize, record: Record) {
+        self.next = Some(next);
+        self.last = record;
+        self.same += 1;
+    }
+
+    fn differ(&mut self, cycle: Instant, file: Levels, run: Levels) {
+        self.difference = Some(Difference { line: self.line, cycle, file, run });
+    }
+}
+
+/// A row of a table of edges.
+fn row(text: &str, bits: &[u32]) -> Result<Record, String> {
+    let mut fields = text.split(',');
+    let cycle = fields.next().unwrap_or_default();
+    let cycle = cycle.parse().map_err(|_| format!("“{cycle}” is not a cycle; give a whole number from 0"))?;
+    // The time follows from the cycle.
+    let _ = fields.next();
+    let mut levels = 0;
+    for &bit in bits {
+        match fields.next() {
+            Some("0") => {}
+            Some("1") => levels |= 1 << bit,
+            given => {
+                let name = signal::name(bit).unwrap_or_default();
+                return Err(format!("{name} is “{}”; a level is 0 or 1", given.unwrap_or_default()));
+            }
+        }
+    }
+    match fields.next() {
+        None => Ok(Record { cycle: Instant(cycle), levels: Levels(levels) }),
+        Some(_) => Err("more fields than the head of the table names".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+//! Drivers and the times that their data sheets ask for.
+//!
+//! Figures are the sheets' minima in ns. Where a sheet counts its own clock, the slowest clock that
+//! it allows is taken. What no sheet's text confirmed is said at the driver, in [`DataSheet::source`]
+//! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
+//! who ties SLEEP to EN gives rules of his own.
+//!
+//! ```
+//! use stepscope_inspect::trace::drivers::DRIVERS;
+//!
+//! let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
+//! assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
+//! ```
+
+use crate::trace::timing::TimingCheck;
+use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
+
+/// A driver's figures, and where they come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DataSheet {
+    /// Which driver it is.
+    pub model: DriverModel,
+    /// Its word in a scenario and on the command line.
+    pub id: &'static str,
+    /// Maker and type.
+    pub name: &'static str,
+    /// The document, and what in it the figures rest on.
+    pub source: &'static str,
+    /// The figures.
+    pub rules: TimingRules,
+}
+
+/// All drivers, by maker.
+pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
+
+/// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A STEP high 1 us, t_B STEP low
+/// 1 us, t_C set-up and t_D hold of DIR and the step mode about the rise of STEP 200 ns each. It
+/// gives no time from ENABLE to STEP; 1 ms is its wake-up from SLEEP.
+pub const A4988: DataSheet = DataSheet {
+    model: DriverModel::A4988,
+    id: "a4988",
+    name: "Allegro A4988",
+    source: "data sheet 4988-DS: t_A, t_B, t_C, t_D; no time from ENABLE (1 ms from SLEEP)",
+    rules: TimingRules {
+        step_high_ns: 1000,
+        step_low_ns: 1000,
+        dir_setup_ns: 200,
+        dir_hold_ns: 200,
+        enable_wake_ns: 0,
+    },
+};
+
+/// Allegro A4979: STEP high at least 1 us (so Zephyr's binding of this driver, `step-width-ns`).
+/// The other times are the A4988's and are **not confirmed** by the A4979's own sheet.
+pub const A4979: DataSheet = DataSheet {
+    model: DriverModel::A4979,
+    id: "a4979",
+    name: "Allegro A4979",
+    source: "only STEP high is confirmed (Zephyr's binding); the rest are the A4988's: check your sheet",
+    rules: A4988.rules,
+};
+
+/// Texas Instruments DRV8825, SLVSA73, "Timing requirements": t_WH(STEP) 1.9 us, t_WL(STEP) 1.9 us,
+/// t_SU(STEP) and t_H(STEP), "command" before and after STEP rising, 650 ns each, t_ENBL from
+/// nENBL active to STEP 650 ns. t_WAKE, 1.7 ms, is from nSLEEP.
+pub const DRV8825: DataSheet = DataSheet {
+    model: DriverModel::Drv8825,
+    id: "drv8825",
+    name: "Texas Instruments DRV8825",
+    source: "data sheet SLVSA73: t_WH, t_WL, t_SU, t_H, t_ENBL (1.7 ms from nSLEEP)",
+    rules: TimingRules {
+        step_high_ns: 1900,
+        step_low_ns: 1900,
+        dir_setup_ns: 650,
+        dir_hold_ns: 650,
+        enable_wake_ns: 650,
+    },
+};
+
+/// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface", timing: t_SH and t_SL
+/// max(t_FILTSD, t_CLK + 20 ns) with a spike filter of 30 ns at most, t_DSU and t_DSH 20 ns. Its own
+/// oscillator has 11.5 MHz at least, so 87 + 20 ns; on an external clock of 4 MHz, the slowest, both
+/// are 270 ns. It gives no time from ENN.
+pub const TMC2209: DataSheet = DataSheet {
+    model: DriverModel::Tmc2209,
+    id: "tmc2209",
+    name: "Trinamic TMC2209",
+    source: "data sheet rev. 1.09: t_SH, t_SL = t_CLK + 20 ns at 11.5 MHz, its own oscillator's least; \
+             t_DSU, t_DSH; no time from ENN",
+    rules: TimingRules {
+        step_high_ns: 107,
+        step_low_ns: 107,
+        dir_setup_ns: 20,
+        dir_hold_ns: 20,
+        enable_wake_ns: 0,
+    },
+};
+
+/// Trinamic TMC262. The formula, t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns), t_DSU and t_DSH 20 ns,
+/// with a spike filter of 85 ns at most, is that of the TMC2100's data sheet, and the clock of
+/// 10 MHz, the slowest, that of boards with the sister TMC2660: **not confirmed** by the TMC262's
+/// own sheet.
+pub const TMC262: DataSheet = DataSheet {
+    model: DriverModel::Tmc262,
+    id: "tmc262",
+    name: "Trinamic TMC262",
+    source: "formula of the TMC2100's data sheet, t_CLK + 20 ns at 10 MHz, the TMC2660's least; not \
+             confirmed by the TMC262's own: check your sheet",
+    rules: TimingRules {
+        step_high_ns: 120,
+        step_low_ns: 120,
+        dir_setup_ns: 20,
+        dir_hold_ns: 20,
+        enable_wake_ns: 0,
+    },
+};
+
+/// Opto-isolated drivers in the class of the TB6600 boxes, DM542, DM556, AM882. The figures are the
+/// class's, as in the control signals' sequence chart of the Leadshine AM882 manual: pulse high
+/// 2.5 us, low 2.5 us, DIR 5 us ahead of the pulse's active edge, ENA 5 us ahead of DIR, which makes
+/// 10 us from ENA to the pulse. The chart has no hold time. Boxes differ (a DM556T wants 200 ms
+/// after ENA): **check your driver's sheet**.
+pub const TB6600_CLASS: DataSheet = DataSheet {
+    model: DriverModel::Tb6600Class,
+    id: "tb6600_class",
+    name: "Opto-isolated, class of TB6600, DM542, AM882",
+    source: "class figures (Leadshine AM882 manual, t1 to t4), ENA 5 us ahead of DIR and DIR 5 us \
+             ahead of PUL; boxes differ: check your driver's sheet",
+    rules: TimingRules {
+        step_high_ns: 2500,
+        step_low_ns: 2500,
+        dir_setup_ns: 5000,
+        dir_hold_ns: 0,
+        enable_wake_ns: 10_000,
+    },
+};
+
+/// The sheet of a driver.
+#[must_use]
+pub const fn sheet(model: DriverModel) -> &'static DataSheet {
+    match model {
+        DriverModel::A4988 => &A4988,
+        DriverModel::A4979 => &A4979,
+        DriverModel::Drv8825 => &DRV8825,
+        DriverModel::Tmc2209 => &TMC2209,
+        DriverModel::Tmc262 => &TMC262,
+        DriverModel::Tb6600Class => &TB6600_CLASS,
+    }
+}
+
+/// The check of a run that a scenario asks for, if it names a driver or rules; it lists `most` violations in full.
+#[must_use]
+pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
+    let rules = scenario.driver_timing.as_ref().map(rules)?;
+    Some(TimingCheck::new(&rules, scenario.clock_hz, most))
+}
+
+/// What a scenario's driver asks for.
+#[must_use]
+pub fn rules(driver: &DriverTiming) -> TimingRules {
+    match driver {
+        DriverTiming::Preset(model) => sheet(*model).rules.clone(),
+        DriverTiming::Rules(rules) => rules.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_scenario::{Compact, Scenario};
+
+    #[test]
+    fn every_driver_is_listed_under_its_own_word() {
+        for listed in DRIVERS {
+            assert_eq!(sheet(listed.model), listed);
+            assert_eq!(listed.model.compact(), listed.id);
+            let json = alloc::format!(r#"{{"driver":{{"preset":"{}"}}}}"#, listed.id);
+            let scenario = Scenario::from_json(&json).expect("reads");
+            assert_eq!(scenario.driver_timing.as_ref().map(rules), Some(listed.rules.clone()));
+            let own = Scenario {
+                driver_timing: Some(DriverTiming::Rules(listed.rules.clone())),
+                ..Scenario::default()
+            };
+            assert!(own.check().is_ok(), "{} asks for more than a rule may", listed.id);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The edges of a run's signals, as the logic view asks for them: the next one, the pulse at a cycle, lists, counts. No
+//! question looks at more records than its answer needs, however many there are.
+//!
+//! ```
+//! use stepscope_inspect::trace::{changes::Changes, edges::Signals};
+//!
+//! // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # experiment.run(&mut recording);
+//! let mut changes = Changes::default();
+//! changes.extend(&recording.trace);
+//! let signals = Signals { trace: &recording.trace, changes: &changes };
+//! let pulse = signals.pulse_at(0, steps(&recording.trace, 0)[0].cycle);
+//! assert!(pulse.high);
+//! assert_eq!(pulse.end.zip(pulse.begin).map(|(end, begin)| end - begin), Some(40));
+//! ```
+
+use crate::trace::changes::{Changes, Edge};
+use alloc::vec::Vec;
+use serde::Serialize;
+use stepscope_peripheral::{
+    signal::{Levels, Record},
+    trace::levels_at,
+    units::Instant,
+};
+
+/// Bits of a record that are signals (DESIGN A3).
+const SIGNALS: u32 = 36;
+
+/// One edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct EdgeRow {
+    /// When.
+    pub cycle: u64,
+    /// Which signal (DESIGN A3).
+    pub bit: u32,
+    /// To high.
+    pub high: bool,
+}
+
+/// Edges in the order of time.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct EdgeList {
+    /// The edges.
+    pub rows: Vec<EdgeRow>,
+    /// Whether there are more in the direction that was asked for.
+    pub more: bool,
+}
+
+/// What a signal does around a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Pulse {
+    /// Its level there.
+    pub high: bool,
+    /// The edge that began it.
+    pub begin: Option<u64>,
+    /// The edge that ends it.
+    pub end: Option<u64>,
+    /// The edge after that.
+    pub next: Option<u64>,
+}
+
+/// A trace with where its signals change.
+#[derive(Clone, Copy)]
+pub struct Signals<'a> {
+    /// The records.
+    pub trace: &'a [Record],
+    /// Their changes.
+    pub changes: &'a Changes,
+}
+
+impl Signals<'_> {
+    /// Level of a signal in a cycle.
+    #[must_use]
+    pub fn level(&self, bit: u8, cycle: u64) -> bool {
+        levels_at(self.trace, Instant(cycle)).has(1 << bit.min(63))
+    }
+
+    /// Cycle of a signal's first edge after `cycle`, or of the last one before.
+    #[must_use]
+    pub fn next(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<u64> {
+        let found = self.edge(bit, cycle, forward, edge);
+        found.and_then(|index| self.trace.get(index)).map(|record| record.cycle.0)
+    }
+
+    /// The pulse, or the pause, of a signal at a cycle.
+    #[must_use]
+    pub fn pulse_at(&self, bit: u8, cycle: u64) -> Pulse {
+        let end = self.next(bit, cycle, true, Edge::Any);
+        Pulse {
+            high: self.level(bit, cycle),
+            begin: self.next(bit, cycle.saturating_add(1), false, Edge::Any),
+            end,
+            next: end.and_then(|end| self.next(bit, end, true, Edge::Any)),
+        }
+    }
+
+    /// The first edges after `cycle` (`None`: from reset on), or with `forward` false the last ones before it, of one
+    /// signal or of all: at least `most` of them where there are so many, and with them all of their cycles.
+    #[must_use]
+    pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, most: usize) -> EdgeList {
+        let at = cycle.unwrap_or(0);
+        let mut index = match (forward, cycle) {
+            (true, None) => 1,
+            (true, Some(at)) => self.trace.partition_point(|record| record.cycle.0 <= at).max(1),
+            (false, _) => self.trace.partition_point(|record| record.cycle.0 < at),
+        };
+        let mut list = EdgeList::default();
+        while let Some(found) = self.changed_from(bit, index, forward) {
+            if list.rows.len() >= most {
+                list.more = true;
+                break;
+            }
+            let (before, now) = (self.levels(found - 1), self.levels(found));
+            let bits = (0..SIGNALS).filter(|place| (before ^ now) >> place & 1 == 1);
+            let shown = bits.filter(|&place| bit.is_none_or(|bit| u32::from(bit) == place));
+            let cycle = self.trace.get(found).map_or(0, |record| record.cycle.0);
+            let edge = |place| EdgeRow { cycle, bit: place, high: now >> place & 1 == 1 };
+            // Backwards the rows are reversed in the end, also those of one cycle.
+            if forward {
+                list.rows.extend(shown.map(edge));
+            } else {
+                list.rows.extend(shown.rev().map(edge));
+            }
+            index = if forward { found + 1 } else { found };
+        }
+        if !forward {
+            list.rows.reverse();
+        }
+        list
+    }
+
+    /// Index of the first record from `index` on, or of the last one before it, in which a signal, or any, changes.
+    fn changed_from(&self, bit: Option<u8>, index: usize, forward: bool) -> Option<usize> {
+        match (bit, forward) {
+            (Some(bit), true) => {
+                let before = self.trace.get(index.checked_sub(1)?)?.cycle.0;
+                self.edge(bit, before, true, Edge::Any)
+            }
+            (Some(bit), false) => {
+                let after = self.trace.get(index).map_or(u64::MAX, |record| record.cycle.0);
+                self.edge(bit, after, false, Edge::Any)
+            }
+            (None, true) => (index < self.trace.len()).then_some(index),
+            (None, false) => index.checked_sub(1).filter(|&index| index > 0),
+        }
+    }
+
+    fn edge(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<usize> {
+        if forward {
+            self.changes.next_edge(self.trace, bit, cycle, edge)
+        } else {
+            self.changes.previous_edge(self.trace, bit, cycle, edge)
+        }
+    }
+
+    fn levels(&self, index: usize) -> u64 {
+        self.trace.get(index).map_or(0, |record| record.levels.0)
+    }
+}
+
+/// How often single signals change in a trace.
+#[must_use]
+pub fn count(trace: &[Record]) -> u64 {
+    let pairs = trace.iter().zip(trace.iter().skip(1));
+    pairs.map(|(before, now)| u64::from((before.levels.0 ^ now.levels.0).count_ones())).sum()
+}
+
+/// Bits of the signals that are not the same in all records.
+#[must_use]
+pub fn changing(trace: &[Record]) -> Vec<u8> {
+    let Levels(first) = trace.first().map_or(Levels::RESET, |record| record.levels);
+    let mask = trace.iter().fold(0, |mask, record| mask | (record.levels.0 ^ first));
+    (0..64).filter(|bit| mask >> bit & 1 == 1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_are_listed_in_both_directions_with_all_of_their_cycle() {
+        let trace = [(0, 0b00), (5, 0b11), (9, 0b10), (12, 0b00)];
+        let trace = trace.map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+        let mut changes = Changes::default();
+        changes.extend(&trace);
+        let signals = Signals { trace: &trace, changes: &changes };
+        let list = |bit, cycle, forward, most| {
+            let found = signals.list(bit, cycle, forward, most);
+            (found.rows.iter().map(|row| (row.cycle, row.bit, row.high)).collect::<Vec<_>>(), found.more)
+        };
+        assert_eq!(list(None, None, true, 1), ([(5, 0, true), (5, 1, true)].to_vec(), true));
+        assert_eq!(
+            list(None, Some(12), false, 2),
+            ([(5, 0, true), (5, 1, true), (9, 0, false)].to_vec(), false)
+        );
+        assert_eq!(list(Some(1), Some(5), true, 9), ([(12, 1, false)].to_vec(), false));
+        assert_eq!(signals.pulse_at(1, 7), Pulse { high: true, begin: Some(5), end: Some(12), next: None });
+        assert_eq!((count(&trace), changing(&trace)), (4, [0, 1].to_vec()));
+    }
+}

@@ -1,0 +1,297 @@
+//! What tells whether two runs are the same without either's trace, and where they part if not: the
+//! digest of a trace, and the running digest at up to sixteen places on the way (PAGE "Share link").
+//!
+//! The places are a power of two of records apart: the least that makes at most sixteen of them. So they
+//! follow from the number of records alone, and one pass finds them without knowing that number before:
+//!
+//! ```text
+//! records    1 … 16    17 … 33    34 … 67    …    n
+//! spacing         1          2          4         least power of two s with n/s < 17
+//! ```
+//!
+//! ```
+//! use stepscope_inspect::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
+//! use stepscope_peripheral::signal::Sink;
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let sent = Fingerprint::of(&recording.trace); // what a link carries
+//! let mut check = FingerprintCheck::with(&sent);
+//! recording.trace.iter().for_each(|&record| check.record(record));
+//! assert!(matches!(check.finish(), FingerprintMatch::Same(_)));
+//! ```
+
+use alloc::vec::Vec;
+use stepscope_peripheral::trace::Digest;
+use stepscope_peripheral::{
+    signal::{Levels, Record, Sink},
+    units::Instant,
+};
+
+/// Most checkpoints of a fingerprint.
+pub(crate) const MAX_CHECKPOINTS: usize = 16;
+
+/// A trace, told by its digests.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fingerprint {
+    /// The digest of the whole trace (DESIGN A3).
+    pub digest: u64,
+    /// How many records it has; at least the one of cycle 0.
+    pub records: u64,
+    /// The high half of the digest of the first [`Self::spacing`] records, of twice as many, and so on.
+    pub checkpoints: Vec<u32>,
+}
+
+impl Fingerprint {
+    /// The fingerprint of a stored trace.
+    #[must_use]
+    pub fn of(trace: &[Record]) -> Self {
+        let mut fingerprinter = Fingerprinter::default();
+        for record in trace {
+            fingerprinter.record(*record);
+        }
+        fingerprinter.finish()
+    }
+
+    /// Records from one checkpoint to the next.
+    #[must_use]
+    pub const fn spacing(&self) -> u64 {
+        spacing(self.records)
+    }
+}
+
+/// Records from one checkpoint to the next in a trace of so many.
+#[must_use]
+pub(crate) const fn spacing(records: u64) -> u64 {
+    (records / (MAX_CHECKPOINTS as u64 + 1) + 1).next_power_of_two()
+}
+
+/// Takes a trace and gives its fingerprint.
+#[derive(Clone)]
+pub struct Fingerprinter {
+    digest: Digest,
+    checkpoints: Vec<u32>,
+    spacing: u64,
+    /// Records that the next checkpoint is taken after.
+    next: u64,
+}
+
+impl Default for Fingerprinter {
+    fn default() -> Self {
+        Self { digest: Digest::default(), checkpoints: Vec::new(), spacing: 1, next: 1 }
+    }
+}
+
+impl Fingerprinter {
+    /// The fingerprint of the records so far.
+    #[must_use]
+    pub fn finish(self) -> Fingerprint {
+        Fingerprint {
+            digest: self.digest.value(),
+            records: self.digest.records(),
+            checkpoints: self.checkpoints,
+        }
+    }
+}
+
+impl Sink for Fingerprinter {
+    fn record(&mut self, record: Record) {
+        self.digest.record(record);
+        if self.digest.records() == self.next {
+            self.checkpoints.push(high_half(&self.digest));
+            if self.checkpoints.len() > MAX_CHECKPOINTS {
+                // Every second one stays.
+                let mut index = 0;
+                self.checkpoints.retain(|_| {
+                    index += 1;
+                    index % 2 == 0
+                });
+                self.spacing *= 2;
+            }
+            self.next = (self.checkpoints.len() as u64 + 1) * self.spacing;
+        }
+    }
+}
+
+fn high_half(digest: &Digest) -> u32 {
+    (digest.value() >> 32) as u32
+}
+
+/// A place in a trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// Records up to here.
+    pub records: u64,
+    /// Changes of single signals up to here.
+    pub edges: u64,
+    /// Cycle of the last of these records.
+    pub cycle: Instant,
+}
+
+/// How a trace stands to another's fingerprint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FingerprintMatch {
+    /// They are the same, record by record.
+    Same(Mark),
+    /// The first difference comes after `after` and no later than `until`.
+    Differs {
+        /// As far as this both are the same.
+        after: Mark,
+        /// Here they are not.
+        until: Mark,
+        /// Which of the two ends first, if one is as far as it goes the same.
+        shorter: Option<Shorter>,
+    },
+}
+
+/// Which of two traces ends within the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shorter {
+    /// The one that was compared.
+    This,
+    /// The one that the fingerprint tells.
+    Other,
+}
+
+/// Takes a trace and holds it against another's fingerprint.
+pub struct FingerprintCheck<'a> {
+    other: &'a Fingerprint,
+    spacing: u64,
+    digest: Digest,
+    levels: Option<Levels>,
+    last: Mark,
+    /// As far as they are known to be the same.
+    same: Mark,
+    /// Where they first were not.
+    differs: Option<Mark>,
+}
+
+impl<'a> FingerprintCheck<'a> {
+    /// Before the first record.
+    #[must_use]
+    pub fn with(other: &'a Fingerprint) -> Self {
+        let none = Mark { records: 0, edges: 0, cycle: Instant::RESET };
+        Self {
+            other,
+            spacing: other.spacing(),
+            digest: Digest::default(),
+            levels: None,
+            last: none,
+            same: none,
+            differs: None,
+        }
+    }
+
+    /// The trace is over.
+    #[must_use]
+    pub fn finish(self) -> FingerprintMatch {
+        let Self { other, last, same, differs, .. } = self;
+        if let Some(until) = differs {
+            let shorter = (same.records == other.records).then_some(Shorter::Other);
+            return FingerprintMatch::Differs { after: same, until, shorter };
+        }
+        if last.records == other.records {
+            return FingerprintMatch::Same(last);
+        }
+        FingerprintMatch::Differs { after: same, until: last, shorter: Some(Shorter::This) }
+    }
+}
+
+impl Sink for FingerprintCheck<'_> {
+    fn record(&mut self, record: Record) {
+        let before = self.levels.replace(record.levels).unwrap_or(record.levels);
+        self.last.records += 1;
+        self.last.edges += u64::from((before.0 ^ record.levels.0).count_ones());
+        self.last.cycle = record.cycle;
+        if self.differs.is_some() {
+            return;
+        }
+        self.digest.record(record);
+        let records = self.last.records;
+        let same = if records == self.other.records {
+            self.digest.value() == self.other.digest
+        } else if records > self.other.records {
+            false
+        } else if records.is_multiple_of(self.spacing) {
+            let index = (records / self.spacing - 1) as usize;
+            self.other.checkpoints.get(index).is_none_or(|known| *known == high_half(&self.digest))
+        } else {
+            return;
+        };
+        if same {
+            self.same = self.last;
+        } else {
+            self.differs = Some(self.last);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A record every tenth cycle, in each one more edge.
+    fn trace(records: u64) -> Vec<Record> {
+        (0..records).map(|i| Record { cycle: Instant(10 * i), levels: Levels(i & 1) }).collect()
+    }
+
+    fn compare(trace: &[Record], other: &Fingerprint) -> FingerprintMatch {
+        let mut comparison = FingerprintCheck::with(other);
+        trace.iter().for_each(|record| comparison.record(*record));
+        comparison.finish()
+    }
+
+    #[test]
+    fn checkpoints_are_the_digests_of_beginnings_at_most_sixteen_of_them() {
+        for records in (1..=80).chain([127, 128, 543, 544, 545, 1000]) {
+            let trace = trace(records);
+            let Fingerprint { digest, records: counted, checkpoints } = Fingerprint::of(&trace);
+            assert_eq!((digest, counted), (Digest::of(&trace), records));
+            let spacing = spacing(records);
+            assert!(spacing.is_power_of_two() && records / spacing <= 16, "{records}");
+            assert!(spacing == 1 || records / (spacing / 2) > 16, "{records}: the least");
+            let expected: Vec<u32> = (1..=records / spacing)
+                .map(|k| (Digest::of(&trace[..(k * spacing) as usize]) >> 32) as u32)
+                .collect();
+            assert_eq!(checkpoints, expected, "{records}");
+        }
+    }
+
+    #[test]
+    fn the_first_difference_lies_where_the_comparison_says() {
+        for records in [1, 2, 16, 17, 100, 545] {
+            let sent = trace(records);
+            let other = Fingerprint::of(&sent);
+            let FingerprintMatch::Same(mark) = compare(&sent, &other) else { panic!("{records}: the same") };
+            assert_eq!((mark.records, mark.edges), (records, records - 1));
+            for changed in 0..records as usize {
+                let mut own = sent.clone();
+                own[changed].levels.0 ^= 1 << 35;
+                let FingerprintMatch::Differs { after, until, shorter: None } = compare(&own, &other) else {
+                    panic!("{records} {changed}: they differ")
+                };
+                let place = changed as u64 + 1;
+                assert!(after.records < place && place <= until.records, "{records} {changed}");
+                assert!(until.records - after.records <= spacing(records), "{records} {changed}");
+                assert_eq!(until.cycle, own[until.records as usize - 1].cycle);
+            }
+        }
+    }
+
+    #[test]
+    fn a_trace_that_ends_early_or_late_is_told_from_one_that_differs() {
+        let sent = trace(100);
+        let other = Fingerprint::of(&sent);
+        let FingerprintMatch::Differs { after, until, shorter } = compare(&trace(77), &other) else {
+            panic!("they differ")
+        };
+        assert_eq!((after.records, until.records, shorter), (72, 77, Some(Shorter::This)));
+        let FingerprintMatch::Differs { after, until, shorter } = compare(&trace(130), &other) else {
+            panic!("they differ")
+        };
+        assert_eq!((after.records, until.records, shorter), (100, 101, Some(Shorter::Other)));
+    }
+}

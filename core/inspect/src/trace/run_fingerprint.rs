@@ -1,0 +1,258 @@
+//! The part of a link that tells which run its sender saw, so that whoever opens it can tell whether the
+//! own run is the same one (PAGE "Share link").
+//!
+//! ```text
+//! d=<form>.<version>.<controller>….<check>        form 1
+//! <controller> = <digest>.<records>.<checkpoints>
+//! ```
+//!
+//! `version` is the sender's Stepscope, with `_` for its dots; of each controller, in the order of the
+//! scenario, the digest stands in 16 hexadecimal digits, the number of records in decimal, and the
+//! checkpoints ([`Fingerprint`]), four bytes each, big-endian, in base64url. The check is the CRC-32
+//! (ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits: a part that was changed on the
+//! way must not tell of a difference that there is not.
+//!
+//! ```
+//! use stepscope_inspect::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
+//!
+//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_sim::Experiment;
+//! # let experiment = Experiment::from_json("{}").expect("the default motion");
+//! # let mut recording = Recording::default();
+//! # let run = experiment.run(&mut recording);
+//! let sent = RunFingerprint::of(vec![Fingerprint::of(&recording.trace)]);
+//! assert_eq!(RunFingerprint::parse(&sent.emit()), Ok(sent)); // the part `d` of a link
+//! assert!(RunFingerprint::parse("no fingerprint").is_err());
+//! ```
+
+use crate::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter, spacing};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use base64ct::{Base64UrlUnpadded, Encoding};
+use core::fmt;
+use crc::{CRC_32_ISO_HDLC, Crc};
+
+/// The form that is written here.
+const FORM: u32 = 1;
+/// Most controllers of a scenario.
+const MAX_CONTROLLERS: usize = 32;
+const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// What a sender saw.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunFingerprint {
+    /// The version of Stepscope that made the run.
+    pub version: String,
+    /// The trace of each controller, in the order of the scenario.
+    pub controllers: Vec<Fingerprint>,
+}
+
+/// Why a proof cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RunFingerprintError {
+    /// Written in a newer form.
+    Newer {
+        /// The form.
+        given: u32,
+    },
+    /// The check fails, or the text is no proof.
+    Damaged,
+}
+
+impl fmt::Display for RunFingerprintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Newer { given } => write!(
+                f,
+                "the sender's digest in the link is from a newer version of Stepscope (form {given}, this one reads {FORM}); it is left out"
+            ),
+            Self::Damaged => f.write_str(
+                "the sender's digest in the link was cut short or changed on the way; it is left out",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for RunFingerprintError {}
+
+/// The version of Stepscope that this is.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+impl RunFingerprint {
+    /// What this version of Stepscope saw.
+    #[must_use]
+    pub fn of(controllers: Vec<Fingerprint>) -> Self {
+        Self { version: VERSION.to_string(), controllers }
+    }
+
+    /// The text of the part, without its `d=`.
+    #[must_use]
+    pub fn emit(&self) -> String {
+        let mut text = format!("{FORM}.{}", self.version.replace('.', "_"));
+        for Fingerprint { digest, records, checkpoints } in &self.controllers {
+            let bytes: Vec<u8> = checkpoints.iter().flat_map(|value| value.to_be_bytes()).collect();
+            text += &format!(".{digest:016x}.{records}.{}", Base64UrlUnpadded::encode_string(&bytes));
+        }
+        let check = CHECK.checksum(text.as_bytes());
+        text + &format!(".{check:08x}")
+    }
+
+    /// The version that made it, where it is another than this.
+    #[must_use]
+    pub fn other_version(&self) -> Option<&str> {
+        (self.version != VERSION).then_some(self.version.as_str())
+    }
+
+    /// What takes the trace of each of a run's `controllers` controllers, to be given to [`Verification::of`] after it.
+    ///
+    /// # Errors
+    /// With the number of controllers that the sender had, where it is another.
+    pub fn checks(&self, controllers: usize) -> Result<Vec<FingerprintCheck<'_>>, usize> {
+        if self.controllers.len() != controllers {
+            return Err(self.controllers.len());
+        }
+        Ok(self.controllers.iter().map(FingerprintCheck::with).collect())
+    }
+
+    /// Reads what [`Self::emit`] wrote.
+    ///
+    /// # Errors
+    /// What [`RunFingerprintError`] lists; the form is judged before the check.
+    pub fn parse(text: &str) -> Result<Self, RunFingerprintError> {
+        let (form, _) = text.split_once('.').ok_or(RunFingerprintError::Damaged)?;
+        match form.parse() {
+            Ok(FORM) => {}
+            Ok(given) if given > FORM => return Err(RunFingerprintError::Newer { given }),
+            _ => return Err(RunFingerprintError::Damaged),
+        }
+        let (checked, check) = text.rsplit_once('.').ok_or(RunFingerprintError::Damaged)?;
+        if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
+            return Err(RunFingerprintError::Damaged);
+        }
+        parsed(checked).ok_or(RunFingerprintError::Damaged)
+    }
+}
+
+/// How a run stands to the one that a sender saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verification {
+    /// It is the same, record by record.
+    Same {
+        /// Changes of single signals, of all controllers.
+        edges: u64,
+    },
+    /// The first difference of the first controller that has one comes after `after` and no later than `until`.
+    Differs {
+        /// The controller.
+        controller: usize,
+        /// As far as this both are the same.
+        after: Mark,
+        /// Here they are not.
+        until: Mark,
+        /// Which of the two ends first, if one is as far as it goes the same.
+        shorter: Option<Shorter>,
+    },
+}
+
+impl Verification {
+    /// Of checks that have taken the traces of all controllers.
+    #[must_use]
+    pub fn of<'a>(checks: impl IntoIterator<Item = FingerprintCheck<'a>>) -> Self {
+        let mut edges = 0;
+        for (controller, check) in checks.into_iter().enumerate() {
+            match check.finish() {
+                FingerprintMatch::Same(mark) => edges += mark.edges,
+                FingerprintMatch::Differs { after, until, shorter } => {
+                    return Self::Differs { controller, after, until, shorter };
+                }
+            }
+        }
+        Self::Same { edges }
+    }
+}
+
+fn parsed(checked: &str) -> Option<RunFingerprint> {
+    let mut parts = checked.split('.').skip(1);
+    let version = parts.next()?.replace('_', ".");
+    let mut controllers = Vec::new();
+    while let Some(digest) = parts.next() {
+        let records: u64 = parts.next()?.parse().ok()?;
+        let bytes = Base64UrlUnpadded::decode_vec(parts.next()?).ok()?;
+        let checkpoints: Vec<u32> = bytes
+            .chunks_exact(4)
+            .map(|four| four.iter().fold(0, |sum, byte| sum << 8 | u32::from(*byte)))
+            .collect();
+        let expected = usize::try_from(records / spacing(records)).ok()?;
+        if digest.len() != 16 || records == 0 || bytes.len() != 4 * expected {
+            return None;
+        }
+        let digest = u64::from_str_radix(digest, 16).ok()?;
+        controllers.push(Fingerprint { digest, records, checkpoints });
+    }
+    let some = (1..=MAX_CONTROLLERS).contains(&controllers.len());
+    some.then_some(RunFingerprint { version, controllers })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn proof(controllers: u64) -> RunFingerprint {
+        let one = |k: u64| Fingerprint {
+            digest: 0x0123_4567_89ab_cdef * (k + 1),
+            records: 10 + 7 * k,
+            checkpoints: (0..(10 + 7 * k) / spacing(10 + 7 * k)).map(|i| (i * 0x1234_5678) as u32).collect(),
+        };
+        RunFingerprint { version: "0.1.0-rc.2".into(), controllers: (0..controllers).map(one).collect() }
+    }
+
+    #[test]
+    fn reading_gives_back_what_was_written() {
+        for controllers in [1, 2, 32] {
+            let proof = proof(controllers);
+            assert_eq!(RunFingerprint::parse(&proof.emit()), Ok(proof));
+        }
+        assert!(proof(1).emit().starts_with("1.0_1_0-rc_2.0123456789abcdef.10."), "{}", proof(1).emit());
+        assert_eq!(RunFingerprint::parse(&proof(33).emit()), Err(RunFingerprintError::Damaged));
+        assert_eq!(RunFingerprint::parse(&proof(0).emit()), Err(RunFingerprintError::Damaged));
+    }
+
+    #[test]
+    fn every_truncation_and_every_changed_character_is_told() {
+        let text = proof(2).emit();
+        for length in 0..text.len() {
+            assert_eq!(RunFingerprint::parse(&text[..length]), Err(RunFingerprintError::Damaged), "{length}");
+        }
+        for at in 0..text.len() {
+            for with in ["A", "0", "9", "z", "_", ".", "-", "=", "%", " ", "\u{e9}"] {
+                if text[at..=at] != *with {
+                    let flipped = format!("{}{with}{}", &text[..at], &text[at + 1..]);
+                    RunFingerprint::parse(&flipped).expect_err(&flipped);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_form_is_judged_before_the_check_and_nonsense_with_a_good_check_is_refused() {
+        assert_eq!(RunFingerprint::parse("2.what.ever"), Err(RunFingerprintError::Newer { given: 2 }));
+        for text in [
+            "1",
+            "1.0_1_0",
+            "1.0_1_0.0123456789abcdef",
+            "1.0_1_0.0123456789abcdef.0.",
+            "1.0_1_0.0123456789abcdef.1.AAAA",
+            "1.0_1_0.0123456789abcdeg.1.AAAAAA",
+            "1.0_1_0.123456789abcdef.1.AAAAAA",
+            "1.0_1_0.0123456789abcdef.99999999999999999999.AAAAAA",
+            "1.0_1_0.0123456789abcdef.18446744073709551615.AAAAAA",
+        ] {
+            let text = format!("{text}.{:08x}", CHECK.checksum(text.as_bytes()));
+            assert_eq!(RunFingerprint::parse(&text), Err(RunFingerprintError::Damaged), "{text}");
+        }
+    }
+}

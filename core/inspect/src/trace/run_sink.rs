@@ -1,0 +1,41 @@
+//! A run as the page makes it: kept for its views, and the pulses checked on the way.
+//!
+//! ```
+//! use stepscope_inspect::trace::{drivers::A4988, run_sink::RunSink, timing::TimingCheck};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let timing = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 10);
+//! let mut watched = RunSink { timing: Some(timing), ..RunSink::default() };
+//! experiment.run(&mut watched);
+//! assert!(watched.recording.digest.records() > 6400);
+//! ```
+
+use crate::trace::timing::TimingCheck;
+use stepscope_peripheral::{
+    signal::{Event, Record, Sink},
+    trace::Recording,
+    units::Instant,
+};
+
+/// What becomes of one controller's signals.
+#[derive(Clone, Default)]
+pub struct RunSink {
+    /// They are kept.
+    pub recording: Recording,
+    /// The pulses against the scenario's driver, if it names one.
+    pub timing: Option<TimingCheck>,
+}
+
+impl Sink for RunSink {
+    fn record(&mut self, record: Record) {
+        self.recording.record(record);
+        if let Some(check) = &mut self.timing {
+            check.record(record);
+        }
+    }
+
+    fn event(&mut self, at: Instant, event: Event) {
+        self.recording.event(at, event);
+    }
+}

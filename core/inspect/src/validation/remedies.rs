@@ -1,0 +1,201 @@
+//! What would let a motion run that its bus is too slow for: each change of numbers is judged before it is offered.
+//!
+//! ```
+//! use stepscope_inspect::validation::remedies::Remedies;
+//! use stepscope_sim::ValidatedScenario;
+//!
+//! // 16 000 steps/s at the top, and slots of 2000 cycles at 16 MHz: 8000 steps/s at most.
+//! let slow = ValidatedScenario::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
+//! let remedies = Remedies::of(&slow).expect("it is refused for its speed");
+//! assert_eq!(remedies.wrong, "The motion needs up to 16000 steps/s, the bus gives at most 8000.");
+//! assert_eq!(remedies.offers[0].change, "slot 1000 cycles");
+//! ```
+
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use serde::Serialize;
+use stepscope_motion::{
+    moves::{Axis, Move},
+    plan_axis, problem,
+};
+use stepscope_scenario::{Cause, MotionEngine, Scenario, Source};
+use stepscope_sim::{ValidatedScenario, axes_of};
+
+/// A time is lengthened to a whole number of these, in s.
+const TIME_STEP_S: f64 = 1e-4;
+
+/// What is wrong with a motion's speed, and what would do.
+#[derive(Clone, Debug, Serialize)]
+pub struct Remedies {
+    /// The rate that is needed and the one that there is, in a sentence.
+    pub wrong: String,
+    /// Changes after which the scenario has no problem, the smallest first.
+    pub offers: Vec<Offer>,
+}
+
+/// One change that would do.
+#[derive(Clone, Debug, Serialize)]
+pub struct Offer {
+    /// What is changed, with the new numbers.
+    pub change: String,
+    /// The changed scenario, as JSON with every field written.
+    pub scenario: String,
+}
+
+impl Remedies {
+    /// Of a scenario that was judged; `None` where no motion is too fast for its bus.
+    #[must_use]
+    pub fn of(judged: &ValidatedScenario) -> Option<Self> {
+        let is_too_fast = |cause: &Cause| matches!(cause, Cause::Motion(problem::Cause::TooManySteps { .. }));
+        if !judged.problems().iter().any(|problem| is_too_fast(&problem.cause)) {
+            return None;
+        }
+        let scenario = &**judged.scenario();
+        let controllers = (0..=scenario.controllers.len()).map(|index| Rates::of(scenario, index));
+        let slow: Vec<Rates> = controllers.filter(|rates| rates.needed > rates.limit).collect();
+        let worst = slow
+            .iter()
+            .copied()
+            .reduce(|a, b| if a.needed * b.limit >= b.needed * a.limit { a } else { b })?;
+        let changes = [shorter_slots(scenario, &slow), longer_times(scenario, &slow), segments(scenario)];
+        let offers = changes.into_iter().flatten().filter_map(|(change, scenario)| {
+            let text = scenario.to_json();
+            ValidatedScenario::from(scenario)
+                .problems()
+                .is_empty()
+                .then_some(Offer { change, scenario: text })
+        });
+        let Rates { needed, limit, .. } = worst;
+        let wrong = format!(
+            "The motion needs up to {} steps/s, the bus gives at most {}.",
+            libm::ceil(needed),
+            libm::floor(limit)
+        );
+        Some(Self { wrong, offers: offers.collect() })
+    }
+}
+
+/// Steps/s that a controller's motion needs at its top, and those that its bus gives: one a slot.
+#[derive(Clone, Copy)]
+struct Rates {
+    controller: usize,
+    needed: f64,
+    limit: f64,
+}
+
+impl Rates {
+    fn of(scenario: &Scenario, controller: usize) -> Self {
+        let peak = |axis: &Axis| plan_axis(axis, "axis").map_or(0.0, |plan| plan.peaks().speed);
+        let needed = axes_of(scenario, controller).iter().map(peak).fold(0.0, libm::fmax);
+        let bus = controller.checked_sub(1).map_or(&scenario.bus, |index| &scenario.controllers[index].bus);
+        let limit = f64::from(scenario.clock_hz) / f64::from(bus.step_period_cycles.max(1));
+        Self { controller, needed, limit }
+    }
+}
+
+type Change = Option<(String, Scenario)>;
+
+/// Slots so short that there is one for each step at the top; all controllers keep ticks of one length.
+fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
+    let needed = slow.iter().map(|rates| rates.needed).fold(1.0, libm::fmax);
+    let period = libm::floor(f64::from(scenario.clock_hz) / needed) as u32;
+    let mut changed = scenario.clone();
+    let additional = changed.controllers.iter_mut().map(|controller| &mut controller.bus);
+    for bus in [&mut changed.bus].into_iter().chain(additional) {
+        bus.step_period_cycles = bus.step_period_cycles.min(period);
+    }
+    let whose = if scenario.controllers.is_empty() { "" } else { " on all controllers" };
+    Some((format!("slot {period} cycles{whose}"), changed))
+}
+
+/// More time for the moves that name theirs and are too fast in it.
+fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
+    let mut changed = scenario.clone();
+    let mut texts = Vec::new();
+    for rates in slow {
+        let axes = match (&mut changed.source, rates.controller.checked_sub(1)) {
+            (Source::Motion(motion), None) => &mut motion.axes,
+            (Source::Motion(_), Some(index)) => &mut changed.controllers[index].axes,
+            _ => return None,
+        };
+        for axis in axes {
+            let mechanics = axis.mechanics.clone();
+            for each in &mut axis.moves {
+                let alone = Axis { mechanics: mechanics.clone(), moves: [each.clone()].into(), motor: None };
+                let Ok(plan) = plan_axis(&alone, "axis") else { continue };
+                let factor = plan.peaks().speed / rates.limit;
+                if factor <= 1.0 {
+                    continue;
+                }
+                let time_s = match each {
+                    Move::Cosine(cosine) => &mut cosine.duration_s,
+                    Move::Ramps(ramps) => &mut ramps.duration_s,
+                    Move::Sine(sine) => &mut sine.period_s,
+                    Move::SineSegments(sine) => &mut sine.period_s,
+                    _ => return None,
+                };
+                *time_s = libm::ceil(*time_s * factor / TIME_STEP_S) * TIME_STEP_S;
+                texts.push(format!("{} s", shortest(*time_s)));
+            }
+        }
+    }
+    let times = texts.join(", ");
+    (!texts.is_empty()).then(|| (format!("more time for the move: {times}"), changed))
+}
+
+/// A multiple of the step as it is printed: without the last bits of its product.
+fn shortest(time_s: f64) -> String {
+    format!("{time_s:.4}").trim_end_matches('0').trim_end_matches('.').to_string()
+}
+
+/// Segments instead of ticks: each step has its own time, and no slot limits it.
+fn segments(scenario: &Scenario) -> Change {
+    let mut changed = scenario.clone();
+    let Source::Motion(motion) = &mut changed.source else { return None };
+    motion.engine = MotionEngine::Segments;
+    Some(("step generation by segments".to_string(), changed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offers(json: &str) -> Vec<String> {
+        let found = Remedies::of(&ValidatedScenario::from_json(json));
+        found.map_or_else(Vec::new, |found| found.offers.into_iter().map(|offer| offer.change).collect())
+    }
+
+    #[test]
+    fn each_offer_is_judged_and_has_no_problem() {
+        let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
+        let expected = ["slot 1000 cycles", "more time for the move: 0.8 s", "step generation by segments"];
+        assert_eq!(offers(slow), expected);
+        let found = Remedies::of(&ValidatedScenario::from_json(slow)).expect("too fast");
+        for Offer { change, scenario } in found.offers {
+            let again = ValidatedScenario::from_json(&scenario);
+            assert!(again.problems().is_empty(), "{change}: {:?}", again.problems());
+        }
+    }
+
+    #[test]
+    fn what_would_not_do_is_not_offered() {
+        // A pulse of 1500 cycles does not fit into a slot of 1000.
+        let long_pulse = r#"{"bus":{"step_period_cycles":2000,"slots":10,"pulse_width_cycles":1500}}"#;
+        assert_eq!(offers(long_pulse), ["more time for the move: 0.8 s"]);
+        // Segments run one controller alone.
+        let two = r#"{"bus":{"step_period_cycles":2000,"slots":10},"line":{"address":1},
+            "controllers":[{"address":2,"bus":{"step_period_cycles":2000,"slots":10},"axes":[]}],
+            "source":{"motion":{"axes":[{"moves":[{"cosine":{}}]}]}}}"#;
+        assert_eq!(offers(two), ["slot 1000 cycles on all controllers", "more time for the move: 0.8 s"]);
+    }
+
+    #[test]
+    fn other_problems_have_no_remedy_here() {
+        for json in ["{}", r#"{"bus":{"slots":0}}"#, "]", r#"{"source":{"line":{}}}"#] {
+            assert!(Remedies::of(&ValidatedScenario::from_json(json)).is_none(), "{json}");
+        }
+    }
+}
