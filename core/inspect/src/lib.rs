@@ -1,6 +1,4 @@
-//! What one looks at in a run and its plan: packets and their fields, changes of signals, curves for the eye, spectra and
-//! distortion, which segments make the best sine, what each shape of a ramp costs, whether a driver could follow the
-//! pulses and a motor the plan, and the files of all of it.
+//! Views and files of a run and its plan: packets, signals, curves, spectra, timing, torque, motors, recordings.
 //!
 //! ```
 //! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
@@ -17,6 +15,7 @@
 //! assert!(measures.pulses.largest_steps.abs() < 200.0);
 //! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

@@ -1,19 +1,4 @@
-//! A recording looked at like a run: what its steps come to, its bytes, itself beside the model, and the scenario that
-//! gives the same again.
-//!
-//! ```text
-//! records in cycles  ->  figures     steps, rates, turns, pulse widths of each channel
-//!                        serial      bytes of RX and TX, their rate and what they seem to be
-//!                        overview    all of it at a glance, a column a pixel
-//!                        packets     what RX and TX say, packet by packet
-//!                        remedy      what would help, for command and page to word
-//!                        replies     what TX says, for the table of packets
-//!                        matching    which recorded step is which planned step
-//!                        alignment   each step compared with the plan's
-//!                        differences what is missing, extra, late, ...
-//!                        drift       the clocks' line through how late they are
-//!                        scenario    a list of segments, or a line script
-//! ```
+//! Recordings analyzed like runs: figures, bytes, comparison with a plan, and a scenario that reproduces them.
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::{Alignment, Side}, report::Report, tolerance::Tolerance};

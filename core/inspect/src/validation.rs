@@ -1,4 +1,4 @@
-//! What is said of a scenario before it runs: every problem, what follows from its numbers, and what a run will cost.
+//! Validation of a scenario before it runs: problems, derived numbers and cost.
 //!
 //! ```
 //! use stepscope_inspect::validation::Judgement;
@@ -26,109 +26,78 @@ use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
-/// All that is said of a scenario.
 #[derive(Clone, Debug, Serialize)]
 pub struct Judgement {
-    /// What is wrong with it.
     pub problems: Vec<ProblemText>,
-    /// The scenario as JSON, as far as it could be read, every field written.
+    /// As JSON with every field written.
     pub scenario: String,
-    /// What holds, but may not be meant.
+    /// Valid, but perhaps not intended.
     pub warnings: Vec<ProblemText>,
-    /// What follows from it; nothing where it has problems.
+    /// `None` where there are problems.
     pub derived: Option<Derived>,
-    /// What a run costs.
     pub cost: Option<RunCost>,
 }
 
-/// A problem in words.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemText {
-    /// The field's path.
     pub path: String,
-    /// What was given, what is allowed, what to change.
     pub message: String,
 }
 
-/// What follows from a scenario's numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Derived {
-    /// Of the controller that has most.
+    /// Maximum of all controllers.
     pub ticks: u64,
-    /// Sends of the host.
     pub sends: u64,
-    /// The part of the line's time that is taken while all controllers move.
+    /// Part of the line's time in use while all controllers move.
     pub line_load: Option<f64>,
-    /// How long a run takes.
     pub duration_s: f64,
-    /// In the order of the scenario.
     pub controllers: Vec<DerivedController>,
 }
 
-/// Of one controller.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
-    /// Length of its tick.
     pub tick_s: f64,
-    /// The greatest rate that its ticks can order.
+    /// Maximum rate of its ticks.
     pub limit_steps_s: f64,
-    /// Ticks that it is sent.
     pub ticks: u64,
-    /// Its axes, where the source is a motion.
     pub axes: Vec<DerivedAxis>,
 }
 
-/// Of one axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedAxis {
-    /// From its first position to its last.
+    /// From its first to its last position.
     pub steps: i64,
-    /// Time of the ideal curve.
     pub duration_s: f64,
-    /// Greatest rate.
     pub peak_speed_steps_s: f64,
-    /// Greatest acceleration.
     pub peak_acceleration_steps_s2: f64,
-    /// Length of a step, where the mechanics have one.
     pub step_mm: Option<f64>,
-    /// Angle of a step, where the mechanics have one.
     pub step_deg: Option<f64>,
-    /// Its moves.
     pub moves: Vec<DerivedMove>,
 }
 
-/// Of one move.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedMove {
-    /// When it begins.
     pub start_s: f64,
-    /// How long it takes.
     pub duration_s: f64,
-    /// From its first position to its last.
     pub steps: i64,
-    /// What else is to be known of its curve, in words.
+    /// Details of its curve.
     pub detail: String,
-    /// What the axis' motor cannot do of it; empty where there is enough torque, or no motor.
+    /// What the axis' motor cannot do; empty where torque suffices.
     pub warning: String,
 }
 
-/// What a run costs, and whether that is more than runs unasked.
+/// The cost of a run, and whether it requires a confirmation.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunCost {
-    /// Records of the trace, at most.
     pub edges: u64,
-    /// Sends of the host.
     pub packets: u64,
-    /// Bytes that the host sends.
     pub bytes: u64,
-    /// Whether it is more than runs unasked.
     pub over_budget: bool,
-    /// That it is, in words; else empty.
     pub message: String,
 }
 
 impl Judgement {
-    /// Of a scenario that was judged.
     #[must_use]
     pub fn of(judged: &ValidatedScenario) -> Self {
         let text = |Problem { path, cause, .. }: &Problem| ProblemText {
@@ -146,7 +115,7 @@ impl Judgement {
     }
 }
 
-/// Of stand-alone controllers; the others have theirs where they belong, such as [`DerivedMove::warning`].
+/// Of controllers without a serial line; others have theirs next to their moves.
 fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
     let all = experiment.stand_alone().into_iter().flat_map(|controllers| controllers.warnings());
     all.map(|warned| ProblemText {
@@ -157,7 +126,6 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
 }
 
 impl RunCost {
-    /// In words.
     #[must_use]
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {

@@ -1,7 +1,4 @@
-//! Panels of stand-alone controllers as tables and as further signals of a dump (CONTROLLER.md G8).
-//!
-//! A run tells what a panel shows and what is switched in the cycle in which it changes ([`Event::Panel`],
-//! [`Event::Input`]); [`PanelSignals`] keeps the levels, beside those of the bus.
+//! Panels of controllers without a serial line, as CSV rows and as signals of a dump (CONTROLLER.md G8).
 //!
 //! ```
 //! use stepscope_inspect::export::panel::write_panel_row;
@@ -24,15 +21,10 @@ use stepscope_controller::{
 };
 use stepscope_peripheral::signal::Event;
 
-/// Names of the columns of [`write_panel_row`].
 pub const PANEL_HEAD: &str =
     "controller,cycle,time_s,word,position,display,state,alarm,trust,outputs,group,loop\n";
 
-/// What the panel of controller `index` shows from a cycle on, as a row: the record (cycle, word, position, display in digits,
-/// without its point), and what its word says; no alarm is an empty field.
-///
-/// # Errors
-/// Those of the writer.
+/// Writes one row: cycle, word, position, digits and text. Without an alarm that field is empty.
 pub fn write_panel_row(
     out: &mut impl Write,
     index: usize,
@@ -46,7 +38,6 @@ pub fn write_panel_row(
     writeln!(out, "{},{}", word.group(), word.loop_())
 }
 
-/// What stands in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum What {
     State,
@@ -58,7 +49,6 @@ enum What {
     Input(Signal),
 }
 
-/// Of each panel.
 const SHOWN: [(What, &str, u32); 6] = [
     (What::State, "state", 4),
     (What::Alarm, "alarm", 4),
@@ -68,35 +58,28 @@ const SHOWN: [(What, &str, u32); 6] = [
     (What::Loop, "loop", 16),
 ];
 
-/// The signals of all panels, in their order: what each shows, and the raw levels of the inputs that its script or its axis
-/// has.
+/// The signals of all panels: what each shows, and the raw levels of the inputs in use.
 #[derive(Clone, Debug)]
 pub struct PanelSignals {
     signals: Vec<PanelSignal>,
 }
 
-/// One of them.
 #[derive(Clone, Debug)]
 pub struct PanelSignal {
     controller: u8,
     what: What,
-    /// Its name, with the controller's number.
     pub name: String,
-    /// Bits that it takes.
     pub bits: u32,
-    /// Its level now.
     pub value: u64,
 }
 
 impl PanelSignals {
-    /// Those of checked controllers, before cycle 0.
     #[must_use]
     pub fn new(checked: &CheckedSetup) -> Self {
         let mut signals = Vec::new();
         for (index, parameters) in checked.controllers().iter().enumerate() {
             let controller = index as u8;
             for (what, name, bits) in SHOWN {
-                // As all are at reset (G1).
                 let value = if what == What::State { State::SelfTest as u64 } else { 0 };
                 signals.push(PanelSignal { controller, what, name: format!("{name}{index}"), bits, value });
             }
@@ -109,13 +92,12 @@ impl PanelSignals {
         Self { signals }
     }
 
-    /// All of them.
     #[must_use]
     pub fn signals(&self) -> &[PanelSignal] {
         &self.signals
     }
 
-    /// Takes what happened; whether it was a panel's.
+    /// Returns whether the event belonged to a panel.
     pub fn take(&mut self, event: Event) -> bool {
         match event {
             Event::Panel { controller, word, .. } => {
@@ -150,7 +132,7 @@ impl PanelSignals {
 }
 
 impl PanelSignal {
-    /// Its level as a table has it: a state, an alarm and a trust by their names.
+    /// The level as tables show it: states, alarms and trust by name.
     #[must_use]
     pub fn text(&self) -> String {
         let word = |shift: u32| Word(self.value << shift);

@@ -1,4 +1,4 @@
-//! Which characters of a name or a title are safe to show.
+//! Detects characters of a name or title that are not safe to show.
 //!
 //! ```
 //! use stepscope_inspect::export::plain_text::is_unsafe;
@@ -7,7 +7,7 @@
 //! assert!(!"µs, Zähler".chars().any(is_unsafe));
 //! ```
 
-/// Whether a character can steer a terminal, break a line, or change the order in which text is shown.
+/// Whether a character can steer a terminal, break a line, or reorder text.
 #[must_use]
 pub fn is_unsafe(c: char) -> bool {
     c.is_control()

@@ -1,12 +1,7 @@
-//! Step tables as source code that a firmware is built with, and as CSV (DESIGN Part D).
+//! Step tables as source code for firmware, and as CSV (DESIGN Part D).
 //!
-//! The entries go into three arrays, so that a table takes exactly the bytes of its numbers on every machine:
-//!
-//! ```text
-//! NAME_interval[]  NAME_count[]  NAME_add[]        of NAME_ENTRIES entries each
-//! ```
-//!
-//! What the numbers mean and how to walk them stands in the comment at the head of the file; CSV has a head line alone.
+//! Three arrays `NAME_interval`, `NAME_count` and `NAME_add` take exactly the bytes of their numbers on every
+//! machine. A comment at the head of the file explains them.
 //!
 //! ```
 //! use stepscope_inspect::export::source_code::{Language, Source, is_name};
@@ -33,48 +28,38 @@ use core::fmt::{self, Write};
 use stepscope_motion::quantise::{Entry, EntryFormat, Stored};
 use stepscope_motion::round_half_up;
 
-/// Numbers in a line.
 const IN_A_LINE: usize = 8;
-/// Most bytes of an array: what avr-gcc takes, whose sizes have 16 bits with a sign, and what every compiler of C99 has to.
+/// Maximum bytes of an array. avr-gcc has signed 16-bit sizes, and C99 requires no more.
 const MAX_AVR_BYTES: u64 = 32_767;
 const MAX_C_BYTES: u64 = 65_535;
 /// Bytes of program memory that an AVR reads by near pointers.
 const NEAR_BYTES: u64 = 65_536;
-/// Beginnings that C keeps for functions of its headers (C11 7.31): a small letter follows.
+/// Prefixes that C reserves for functions of its headers (C11 7.31), if a lowercase letter follows.
 const FUNCTIONS: [&str; 6] = ["is", "to", "str", "mem", "wcs", "e"];
-/// Beginnings that it keeps for types, and in capitals for macros; `e` and a digit is one of `errno.h`.
+/// Prefixes that C reserves for types and uppercase macros; `e` and a digit is one of `errno.h`.
 const OTHERS: [&str; 13] =
     ["int", "uint", "sig", "lc_", "fe_", "pri", "scn", "atomic_", "memory_", "cnd_", "mtx_", "thrd_", "tss_"];
 
-/// The language of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
-    /// C99.
     C,
-    /// C for avr-gcc, the arrays in program memory.
     Avr,
-    /// Rust without the standard library.
     Rust,
-    /// Comma-separated values.
     Csv,
 }
 
-/// A table and what its file says of it.
+/// A table and its description.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'s> {
-    /// Name of the table, an identifier in small letters such as `axis_0`; see [`is_name`].
+    /// An identifier such as `axis_0`; see [`is_name`].
     pub name: &'s str,
-    /// What it is, in a line.
     pub title: &'s str,
-    /// The clock whose cycles are counted, in Hz.
     pub clock_hz: u32,
-    /// The table.
     pub table: &'s Stored,
 }
 
-/// Whether a name can stand in the source code of every language: a small letter, then small letters, digits and
-/// underscores, at most 32, with a digit or an underscore among them, so that it is no keyword, and without a beginning that
-/// C keeps for itself.
+/// Whether a name is an identifier in every language: lowercase letters, digits and underscores, at most 32, starting
+/// with a letter. A digit or underscore is required, so that it is no keyword.
 #[must_use]
 pub fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -85,7 +70,6 @@ pub fn is_name(name: &str) -> bool {
         && !is_reserved(name)
 }
 
-/// Whether C keeps the name for itself.
 fn is_reserved(name: &str) -> bool {
     let follows = |start: &str, fits: fn(char) -> bool| {
         name.strip_prefix(start).is_some_and(|rest| rest.starts_with(fits))
@@ -95,7 +79,7 @@ fn is_reserved(name: &str) -> bool {
         || OTHERS.iter().any(|start| name.starts_with(start))
 }
 
-/// What a file says that it is: the scenario's title, if it has one, the axis and the form of its table.
+/// The file's first line: title, axis, form.
 #[must_use]
 pub fn headline(title: &str, axis: usize, form: &str) -> String {
     let separator = if title.is_empty() { "" } else { ": " };
@@ -103,10 +87,6 @@ pub fn headline(title: &str, axis: usize, form: &str) -> String {
 }
 
 impl Source<'_> {
-    /// Writes the file.
-    ///
-    /// # Errors
-    /// Those of `out`.
     pub fn write(&self, language: Language, out: &mut impl Write) -> fmt::Result {
         match language {
             Language::C => self.c(out, false),
@@ -116,11 +96,10 @@ impl Source<'_> {
         }
     }
 
-    /// The comment at the head, each line after `mark`.
     fn head(&self, out: &mut impl Write, mark: &str) -> fmt::Result {
         let format = self.table.format;
         let error = self.table.error;
-        // A comment in C must not end before its end, nor may a line be continued, or its order be changed for who reads it.
+        // Keeps the text from ending the comment, continuing the line, or reordering it.
         let plain = |c: char| {
             if is_unsafe(c) || matches!(c, '*' | '\\') { ' ' } else { c }
         };
@@ -174,13 +153,12 @@ impl Source<'_> {
         )
     }
 
-    /// How far the running numbers come.
     fn walk(&self) -> Walk {
         let mut walk = Walk::default();
         for entry in &self.table.entries {
             let (count, first, add) =
                 (i128::from(entry.count), i128::from(entry.interval), i128::from(entry.add));
-            // Of a wait, `add` is a direction.
+            // For a wait, `add` is a direction.
             let (taken, last) = match count {
                 0 => (first, first),
                 _ => (first * count + add * (count * (count - 1) / 2), first + add * (count - 1)),
@@ -191,7 +169,7 @@ impl Source<'_> {
         walk
     }
 
-    /// What a compiler or a chip may not take of this file, with the numbers and what to do.
+    /// What a compiler or chip may reject, with numbers and a fix.
     #[must_use]
     pub fn warnings(&self, language: Language) -> Vec<String> {
         let format = self.table.format;
@@ -240,7 +218,7 @@ impl Source<'_> {
         writeln!(out, "#define {capitals}_STEPS {}ull", self.table.error.steps)?;
         writeln!(out, "#define {capitals}_FRACTION_BITS {}", format.fraction_bits)?;
         writeln!(out, "#define {capitals}_CLOCK_HZ {}ul", self.clock_hz)?;
-        // An array has an element in C.
+        // C has no empty arrays.
         let length = self.table.entries.len().max(1);
         let memory = if avr { " PROGMEM" } else { "" };
         for column in Column::ALL {
@@ -250,7 +228,7 @@ impl Source<'_> {
             if self.table.entries.is_empty() {
                 writeln!(out, "0")?;
             }
-            // Literals are as wide as the array's type: an int has 16 bits on an AVR, a long 32.
+            // Literals are as wide as the array's type: `int` has 16 bits on an AVR.
             let bits = column.bits(&format);
             let suffix = match bits {
                 ..=16 => "",
@@ -261,7 +239,7 @@ impl Source<'_> {
             self.numbers(out, |out, entry| match column {
                 Column::Interval => write!(out, "{}u{suffix}", entry.interval),
                 Column::Count => write!(out, "{}u{suffix}", entry.count),
-                // The least number of a type has no literal.
+                // The minimum of a type has no literal.
                 Column::Add if entry.add == least => write!(out, "{}{suffix} - 1", entry.add + 1),
                 Column::Add => write!(out, "{}{suffix}", entry.add),
             })?;
@@ -310,7 +288,6 @@ impl Source<'_> {
         rows.try_for_each(|entry| writeln!(out, "{},{},{}", entry.interval, entry.count, entry.add))
     }
 
-    /// One number of every entry, some in a line.
     fn numbers<W: Write>(&self, out: &mut W, one: impl Fn(&mut W, &Entry) -> fmt::Result) -> fmt::Result {
         for line in self.table.entries.chunks(IN_A_LINE) {
             write!(out, "   ")?;
@@ -325,7 +302,6 @@ impl Source<'_> {
     }
 }
 
-/// One of the arrays.
 #[derive(Clone, Copy)]
 enum Column {
     Interval,
@@ -344,7 +320,6 @@ impl Column {
         }
     }
 
-    /// Bits of a number in it.
     const fn bits(self, format: &EntryFormat) -> u32 {
         match self {
             Self::Interval => format.interval_bits,
@@ -354,19 +329,16 @@ impl Column {
     }
 }
 
-/// How far the running numbers of a table come while it is walked.
 #[derive(Default)]
 struct Walk {
     time: u128,
     interval: u128,
 }
 
-/// Bits that a number needs.
 const fn bits(number: u128) -> u32 {
     u128::BITS - number.leading_zeros()
 }
 
-/// Bits of the least type of C that has so many.
 const fn width(bits: u32) -> u32 {
     match bits {
         ..=16 => 16,
@@ -376,7 +348,6 @@ const fn width(bits: u32) -> u32 {
     }
 }
 
-/// A name in capitals.
 struct Capitals<'n>(&'n str);
 
 impl fmt::Display for Capitals<'_> {

@@ -1,5 +1,4 @@
-//! The step times of a selected axis, or of a run, as tables for a firmware: what each form costs, and its source code
-//! (DESIGN B8).
+//! Step times of an axis or a run as firmware tables, with their cost and source code (DESIGN B8).
 //!
 //! ```
 //! use stepscope_inspect::export::step_tables::StepTables;
@@ -32,7 +31,6 @@ use stepscope_peripheral::{
 use stepscope_scenario::{Problem, Scenario, of_config};
 use stepscope_sim::SelectedAxis;
 
-/// The tables of one axis, or channel.
 #[derive(Clone, Debug)]
 pub struct StepTables<'a> {
     scenario: &'a Scenario,
@@ -40,16 +38,13 @@ pub struct StepTables<'a> {
     pulse: PulseTimes,
 }
 
-/// Where the steps are from.
 #[derive(Clone, Debug)]
 enum Steps<'a> {
-    /// A plan.
     Planned(&'a AxisPlan),
-    /// A run, or a recording.
     Made(Vec<ScheduledStep>),
 }
 
-/// Steps of a trace as a table has them, from cycle 1 on.
+/// Steps of a trace, from cycle 1 on.
 #[must_use]
 pub fn scheduled(steps: &[Step]) -> Vec<ScheduledStep> {
     let scheduled = |(index, step): (usize, &Step)| ScheduledStep {
@@ -59,45 +54,34 @@ pub fn scheduled(steps: &[Step]) -> Vec<ScheduledStep> {
     steps.iter().enumerate().map(scheduled).collect()
 }
 
-/// What a table costs and how good it is.
+/// What a table costs and how accurate it is. Errors are in s.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TableCost {
-    /// As many as the motion has: a list with another number is none.
     pub steps: u64,
-    /// Entries of the table.
     pub entries: usize,
-    /// Bytes of its entries.
     pub bytes: u64,
-    /// As the motion's document keeps it.
+    /// Bytes in the format of the paper on the motion.
     pub document_bytes: Option<u64>,
-    /// Greatest error of a step.
     pub largest_s: f64,
-    /// Root mean square of the errors.
     pub rms_s: f64,
     /// Why there is no such table.
     pub why: Option<String>,
 }
 
-/// A greatest error in us as whole cycles.
+/// A maximum error in us as whole cycles.
 #[must_use]
 pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
-    // One division, so that 25 us of 16 MHz are 400 cycles and not 399.
+    // One division, so that 25 us at 16 MHz are 400 cycles and not 399.
     Cycles((error_us * f64::from(clock_hz) / 1e6) as u64)
 }
 
 impl<'a> StepTables<'a> {
-    /// Of an axis, at the pulses of its bus.
-    ///
-    /// # Errors
-    /// If the bus cannot run segments.
+    /// Fails if the bus cannot run segments.
     pub fn new(selected: SelectedAxis<'a>) -> Result<Self, Vec<Problem>> {
         Self::with(selected.scenario, selected.bus, Steps::Planned(selected.plan))
     }
 
-    /// Of steps without a plan, in cycles of the scenario's clock, at the pulses of their bus.
-    ///
-    /// # Errors
-    /// If the bus cannot run segments.
+    /// Steps without a plan, in cycles of the scenario's clock. Fails if the bus cannot run segments.
     pub fn of_steps(scenario: &'a Scenario, bus: &Bus, steps: &[Step]) -> Result<Self, Vec<Problem>> {
         Self::with(scenario, bus, Steps::Made(scheduled(steps)))
     }
@@ -107,12 +91,8 @@ impl<'a> StepTables<'a> {
         Ok(Self { pulse: PulseTimes::from(&config.map_err(of_config)?), scenario, steps })
     }
 
-    /// A table; `form` is `exact`, `document` or `compressed` with no step off by more than `error_us`, `widths` the
-    /// name of an [`EntryFormat`]. A compressed one is made quickly, since it is made while one types; the command
-    /// searches for the fewest entries.
-    ///
-    /// # Errors
-    /// Why there is no such table.
+    /// A table; `form` is `exact`, `document`, or `compressed` with no step off by more than `error_us`. `widths`
+    /// names an [`EntryFormat`]. The compression is fast rather than minimal, because it runs on every keystroke.
     pub fn stored(&self, form: &str, widths: &str, error_us: f64) -> Result<Stored, String> {
         let clock_hz = self.scenario.clock_hz;
         let form = match form {
@@ -129,7 +109,6 @@ impl<'a> StepTables<'a> {
         stored.map_err(|cause| cause.to_string())
     }
 
-    /// What a table costs, or why there is none.
     #[must_use]
     pub fn cost(&self, form: &str, widths: &str, error_us: f64) -> TableCost {
         let seconds = |cycles: f64| cycles / f64::from(self.scenario.clock_hz);
@@ -153,10 +132,7 @@ impl<'a> StepTables<'a> {
         }
     }
 
-    /// A table of axis `axis` as source code, `language` being `c`, `avr`, `rust` or `csv`.
-    ///
-    /// # Errors
-    /// Why there is no such table.
+    /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`.
     pub fn source(
         &self,
         axis: usize,

@@ -1,5 +1,4 @@
-//! A run as tables: a row for each record of the signals, each tick, each segment. CSV as in RFC 4180, with a line feed
-//! at the end of a row. The table of packets is [`crate::packets::packet_table`].
+//! A run as CSV (RFC 4180): one row per record, tick or segment. Packets are in [`crate::packets::packet_table`].
 //!
 //! ```
 //! use stepscope_inspect::export::tables::{write_edges_head, write_edges_row};
@@ -23,11 +22,7 @@ use stepscope_peripheral::{
     wire::packet::ChannelCommand,
 };
 
-/// Names of the columns of [`write_edges_row`]: the cycle, its time in s, and the signals of `channels`
-/// channels and of the line.
-///
-/// # Errors
-/// Those of the writer.
+/// The header of [`write_edges_row`] for so many channels.
 pub fn write_edges_head(out: &mut impl Write, channels: u8) -> fmt::Result {
     out.write_str("cycle,time_s")?;
     for bit in shown_signals(channels) {
@@ -36,10 +31,7 @@ pub fn write_edges_head(out: &mut impl Write, channels: u8) -> fmt::Result {
     out.write_char('\n')
 }
 
-/// A record as a row: its cycle, its time, and the level of each signal, 0 or 1.
-///
-/// # Errors
-/// Those of the writer.
+/// One row: cycle, time in s, and the level of each signal.
 pub fn write_edges_row(out: &mut impl Write, record: Record, clock_hz: u32, channels: u8) -> fmt::Result {
     write!(out, "{},{}", record.cycle.0, record.cycle.seconds(clock_hz))?;
     for bit in shown_signals(channels) {
@@ -48,20 +40,14 @@ pub fn write_edges_row(out: &mut impl Write, record: Record, clock_hz: u32, chan
     out.write_char('\n')
 }
 
-/// Names of the columns of [`write_tick_row`].
-///
-/// # Errors
-/// Those of the writer.
+/// The header of [`write_tick_row`].
 pub fn write_ticks_head(out: &mut impl Write, channels: u8) -> fmt::Result {
     out.write_str("start_cycle,packet")?;
     (0..channels).try_for_each(|channel| write!(out, ",steps{channel}"))?;
     out.write_char('\n')
 }
 
-/// A tick as a row: when it began, the packet's row, and the steps of each channel, negative to the left.
-///
-/// # Errors
-/// Those of the writer.
+/// One row: start of the tick, row of its packet, and steps per channel, negative to the left.
 pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> fmt::Result {
     write!(out, "{},", tick.start.0)?;
     tick.row.map_or(Ok(()), |row| write!(out, "{row}"))?;
@@ -72,13 +58,10 @@ pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> 
     out.write_char('\n')
 }
 
-/// Names of the columns of [`write_segment_row`].
+/// The header of [`write_segment_row`].
 pub const SEGMENTS_HEAD: &str = "channel,start_cycle,kind,count,interval_q16,add_q16,dir,length_q16\n";
 
-/// A segment as a row: its channel, where the channel's list starts, and its numbers.
-///
-/// # Errors
-/// Those of the writer.
+/// One row: channel, start of its list, and the segment's numbers.
 pub fn write_segment_row(
     out: &mut impl Write,
     channel: usize,

@@ -1,13 +1,7 @@
-//! A trace as a Value Change Dump, which GTKWave, Surfer and PulseView open.
+//! A trace as a Value Change Dump for GTKWave, Surfer and PulseView.
 //!
-//! A cycle c stands at c*10^9/clock_hz ns, rounded half up; the clock stands in the head as a comment, so nothing is lost:
-//!
-//! ```text
-//! cycle = round(t*clock_hz)     as long as a cycle is not shorter than the unit of t
-//! ```
-//!
-//! That holds for every clock up to 1 GHz at 1 ns, which is also what programs for logic analysers expect: to them the unit
-//! is the sample rate, and a dump in ps is a recording at 1 THz. [`Timescale`] has the other units.
+//! Cycle c is at c*10^9/clock_hz ns, rounded half up; the clock is in a comment at the head, so that `cycle =
+//! round(t*clock_hz)` restores it exactly.
 //!
 //! ```
 //! use stepscope_inspect::export::vcd::VcdWriter;
@@ -27,10 +21,9 @@ use stepscope_peripheral::signal::{Levels, Record, Sink, name};
 use stepscope_peripheral::trace::shown_signals;
 use vcd::{IdCode, TimescaleUnit, Value, VarType, Writer};
 
-/// Femtoseconds of a second.
+/// Femtoseconds per second.
 const FEMTOS: u64 = 1_000_000_000_000_000;
 
-/// Units of a dump, each with its name and its femtoseconds.
 const UNITS: [(TimescaleUnit, &str, u64); 6] = [
     (TimescaleUnit::S, "s", FEMTOS),
     (TimescaleUnit::MS, "ms", FEMTOS / 1_000),
@@ -40,17 +33,14 @@ const UNITS: [(TimescaleUnit, &str, u64); 6] = [
     (TimescaleUnit::FS, "fs", 1),
 ];
 
-/// The time that a dump counts in: 1, 10 or 100 of s, ms, us, ns, ps or fs.
+/// The unit of a dump's times: 1, 10 or 100 of s, ms, us, ns, ps or fs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timescale {
-    /// 1, 10 or 100.
     count: u32,
-    /// Index in [`UNITS`].
     unit: usize,
 }
 
 impl Default for Timescale {
-    /// 1 ns.
     fn default() -> Self {
         Self { count: 1, unit: 3 }
     }
@@ -62,24 +52,19 @@ impl Timescale {
         UNITS.get(self.unit).copied().unwrap_or(last)
     }
 
-    /// All of them, the coarsest first.
     fn all() -> impl Iterator<Item = Self> {
         (0..UNITS.len()).flat_map(|unit| [100, 10, 1].map(|count| Self { count, unit }))
     }
 
-    /// In femtoseconds.
     fn femtos(self) -> u64 {
         self.parts().2 * u64::from(self.count)
     }
 
-    /// The timescale, if no two cycles of a clock fall together in it.
-    ///
-    /// # Errors
-    /// [`TooCoarse`] if a cycle is shorter.
+    /// Fails if two cycles of the clock could share a time.
     pub fn of_clock(self, clock_hz: u32) -> Result<Self, TooCoarse> {
         let fits =
             |scale: &Self| u128::from(scale.femtos()) * u128::from(clock_hz.max(1)) <= u128::from(FEMTOS);
-        // The finest fits every clock.
+        // The finest unit fits every clock.
         let coarsest = Self::all().find(fits).unwrap_or_default();
         if fits(&self) { Ok(self) } else { Err(TooCoarse { given: self, clock_hz, coarsest }) }
     }
@@ -94,7 +79,7 @@ impl fmt::Display for Timescale {
 impl FromStr for Timescale {
     type Err = &'static str;
 
-    /// Reads a text such as `10 ns`, with or without the blank.
+    /// Parses a text such as `10 ns`.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let joined =
             |scale: &Self| text.split_whitespace().collect::<String>() == scale.to_string().replace(' ', "");
@@ -102,14 +87,12 @@ impl FromStr for Timescale {
     }
 }
 
-/// A timescale in which edges of two cycles could fall together.
+/// Edges of two cycles could share a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooCoarse {
-    /// It.
     pub given: Timescale,
-    /// The clock, in Hz.
     pub clock_hz: u32,
-    /// The coarsest that would do.
+    /// The coarsest timescale that would do.
     pub coarsest: Timescale,
 }
 
@@ -125,45 +108,31 @@ impl fmt::Display for TooCoarse {
 
 impl std::error::Error for TooCoarse {}
 
-/// Writes records as they come. The first error ends the writing and is kept for
-/// [`VcdWriter::finish`].
+/// Writes records as they come. Reports the first error in [`VcdWriter::finish`].
 pub struct VcdWriter<W: io::Write> {
     out: Writer<W>,
     timescale: Timescale,
     clock_hz: u32,
-    /// Bit of the levels and the signal's code.
     signals: Vec<(u32, IdCode)>,
     levels: Option<Levels>,
-    /// Analogue values: their codes, and what was written last.
     reals: Vec<(IdCode, Option<u64>)>,
-    /// Signals of several bits, beside those of the bus: their codes and widths, and what was written last.
     words: Vec<(IdCode, u32, Option<u64>)>,
-    /// The last time that was written.
     stamped: Option<u64>,
     result: io::Result<()>,
 }
 
 impl<W: io::Write> VcdWriter<W> {
-    /// Writes the head, with times in ns: the signals of `channels` channels and of the line, in one module.
-    ///
-    /// # Errors
-    /// Those of the writer.
+    /// A dump in ns: the signals of `channels` channels and of the line.
     pub fn new(out: W, clock_hz: u32, channels: u8) -> io::Result<Self> {
         Self::with_timescale(out, Timescale::default(), clock_hz, channels)
     }
 
-    /// The same with times in another unit.
-    ///
-    /// # Errors
-    /// Those of the writer, and [`TooCoarse`] as an error of the input.
+    /// A dump in another unit; fails with [`TooCoarse`] if cycles would share a time.
     pub fn with_timescale(out: W, timescale: Timescale, clock_hz: u32, channels: u8) -> io::Result<Self> {
         Self::with_analogue(out, timescale, clock_hz, channels, &[])
     }
 
-    /// The same with further signals of these names and widths in bits, beside those of the bus.
-    ///
-    /// # Errors
-    /// As [`Self::with_timescale`].
+    /// Adds signals of these names and widths in bits.
     pub fn with_words<'n>(
         out: W,
         timescale: Timescale,
@@ -174,10 +143,7 @@ impl<W: io::Write> VcdWriter<W> {
         Self::begin(out, (timescale, clock_hz, channels), &[], words)
     }
 
-    /// The same with analogue values of these names, as real variables, beside the signals.
-    ///
-    /// # Errors
-    /// As [`Self::with_timescale`].
+    /// Adds real variables of these names.
     pub fn with_analogue(
         out: W,
         timescale: Timescale,
@@ -228,10 +194,7 @@ impl<W: io::Write> VcdWriter<W> {
         })
     }
 
-    /// Goes on with a file in ns, of which `levels` have been written last: so it is made in pieces.
-    ///
-    /// # Errors
-    /// Never: nothing is written yet.
+    /// Continues a file in ns after `levels`, so that it can be written in pieces.
     pub fn resume(out: W, clock_hz: u32, channels: u8, levels: Levels) -> io::Result<Self> {
         let VcdWriter { signals, timescale, clock_hz, .. } = VcdWriter::new(io::sink(), clock_hz, channels)?;
         let (out, reals, words) = (Writer::new(out), Vec::new(), Vec::new());
@@ -248,19 +211,13 @@ impl<W: io::Write> VcdWriter<W> {
         })
     }
 
-    /// Ends a piece, after which the file goes on.
-    ///
-    /// # Errors
-    /// The first error of the writer.
+    /// Ends a piece of a file that continues.
     pub fn pause(mut self) -> io::Result<()> {
         self.result?;
         self.out.flush()
     }
 
     /// Ends the file at cycle `end`, the first that was not run.
-    ///
-    /// # Errors
-    /// The first error of the writer.
     pub fn finish(mut self, end: u64) -> io::Result<()> {
         let stamp = self.stamp(end);
         self.result?;
@@ -268,13 +225,11 @@ impl<W: io::Write> VcdWriter<W> {
         self.out.flush()
     }
 
-    /// Whether the writing has ended by an error, which [`Self::finish`] gives.
     pub const fn has_failed(&self) -> bool {
         self.result.is_err()
     }
 
-    /// round(cycle*10^15/(clock_hz*femtoseconds of the unit)), half up: of two cycles never the same, as the unit is not
-    /// longer than a cycle.
+    /// Cycles never share a time, because the unit is not longer than a cycle.
     fn stamp(&self, cycle: u64) -> io::Result<u64> {
         let unit = u128::from(self.clock_hz) * u128::from(self.timescale.femtos());
         let stamp = (u128::from(cycle) * u128::from(FEMTOS) * 2 + unit) / (2 * unit);
@@ -286,7 +241,6 @@ impl<W: io::Write> VcdWriter<W> {
         })
     }
 
-    /// What follows is of this cycle.
     fn time(&mut self, cycle: u64) -> io::Result<()> {
         let stamp = self.stamp(cycle)?;
         if self.stamped.replace(stamp) != Some(stamp) {
@@ -295,7 +249,7 @@ impl<W: io::Write> VcdWriter<W> {
         Ok(())
     }
 
-    /// The analogue values from a cycle on, in the order of their names; cycles rise, those of records among them.
+    /// Writes the real variables, in the order of their names; cycles rise across all writes.
     pub fn analogue(&mut self, cycle: u64, values: &[f64]) {
         if self.result.is_ok() {
             self.result = self.write_analogue(cycle, values);
@@ -312,7 +266,7 @@ impl<W: io::Write> VcdWriter<W> {
         Ok(())
     }
 
-    /// The further signals from a cycle on, in the order of their names; cycles rise, those of records among them.
+    /// Writes the additional signals, in the order of their names; cycles rise across all writes.
     pub fn words(&mut self, cycle: u64, values: impl IntoIterator<Item = u64>) {
         if self.result.is_ok() {
             self.result = self.write_words(cycle, values);

@@ -1,16 +1,8 @@
-//! The motion that the pulses of one channel make: its position from edge to edge, its speed from tick to tick or, where
-//! segments run the channel, from interval to interval; of recorded pulses from step to step.
+//! The motion that the pulses of one channel make.
 //!
-//! ```text
-//!            _______                     ______
-//! speed     | tick  |_______      _____|  1/i  |          of a tick its steps by its length,
-//!        ___|       | tick  |___ | dwell|      |___       of a step of a segment 1 by its interval;
-//! STEP      ' |  | |'   |   '    '     '|   |  |'         where neither is, nothing moves
-//! ```
-//!
-//! Before the first step, and the first after a dwell, no more than a part of an interval may have passed: step 1 of a
-//! constant rate is due after half of one (DESIGN B1). Taken for a whole one it would make twice the speed, so it counts
-//! for no faster than the interval after it.
+//! With ticks the speed is steps per tick; with segments it is 1/interval per step; for recorded pulses it is taken
+//! from step to step. Step 1 of a constant rate is due after half an interval (DESIGN B1), so a first interval counts
+//! as no faster than the next one.
 //!
 //! ```
 //! use stepscope_inspect::motion::actual_motion::Pulses;
@@ -37,42 +29,33 @@ use stepscope_peripheral::{
     wire::packet::ChannelCommand,
 };
 
-/// What orders the steps of a channel, and with them its speed.
+/// What schedules the steps and so decides the speed.
 #[derive(Clone, Copy, Debug)]
 enum Order<'a> {
-    /// The ticks of a controller, of so many cycles.
     Ticks(&'a PacketLog, Cycles),
-    /// A list of segments.
     Segments(&'a SegmentList),
-    /// Nothing that is known: the steps were recorded.
     Recorded,
 }
 
-/// What one channel made: in a run, or as it was recorded.
+/// The steps of one channel of a run or recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulses<'a> {
-    /// The channel, 0 to 15.
     pub channel: u8,
-    /// All of its steps.
     pub steps: &'a [Step],
     order: Order<'a>,
     clock_hz: u32,
 }
 
-/// A stretch of time at one speed.
+/// A constant speed in steps/s, left negative, over a time in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// Its start in s.
     pub from_s: f64,
-    /// Its end in s.
     pub to_s: f64,
-    /// Steps/s, left negative.
     pub speed: f64,
 }
 
 impl<'a> Pulses<'a> {
-    /// Of a run: the steps of a channel, the log of its controller, the list that the channel runs by itself where segments
-    /// run it, and the controller's configuration.
+    /// The steps of a channel of a run. `list` is its segment list, if it runs one.
     #[must_use]
     pub const fn of_run(
         channel: u8,
@@ -88,25 +71,23 @@ impl<'a> Pulses<'a> {
         Self { channel, steps, order, clock_hz: config.clock_hz() }
     }
 
-    /// Steps that were recorded, in cycles of `clock_hz`. The speed is that from each step to the next.
+    /// Recorded steps in cycles of `clock_hz`, with the speed from step to step.
     #[must_use]
     pub const fn recorded(channel: u8, steps: &'a [Step], clock_hz: u32) -> Self {
         Self { channel, steps, order: Order::Recorded, clock_hz }
     }
 
-    /// Cycles a second.
     #[must_use]
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    /// Cycles a second, to compute with.
     #[must_use]
     pub fn hz(&self) -> f64 {
         f64::from(self.clock_hz)
     }
 
-    /// How long a tick is; `None` where none orders the steps, but each is known by itself.
+    /// `None` where steps are not grouped into ticks.
     #[cfg(feature = "std")]
     pub(crate) const fn tick(&self) -> Option<Cycles> {
         match self.order {
@@ -115,8 +96,7 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Cycle in which the motion's time 0 is: the start of the list of segments, or of the first tick; 0
-    /// where none began, and of what was recorded.
+    /// The cycle of the motion's time 0: the start of the segment list or of the first tick, otherwise 0.
     #[must_use]
     pub fn zero(&self) -> u64 {
         match self.order {
@@ -126,24 +106,23 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Position after all steps up to a time, that time included.
+    /// Position after all steps up to and including a time.
     #[must_use]
     pub fn position_at(&self, time_s: f64) -> i32 {
         let after = self.steps_until(time_s);
         after.checked_sub(1).and_then(|last| self.steps.get(last)).map_or(0, |step| step.position)
     }
 
-    /// How many steps have risen by a time.
     pub(crate) fn steps_until(&self, time_s: f64) -> usize {
         let hz = self.hz();
         self.steps.partition_point(|step| step.cycle as f64 / hz <= time_s)
     }
 
-    /// Speed at a time in steps/s.
+    /// Speed in steps/s.
     #[must_use]
     pub fn speed_at(&self, time_s: f64) -> f64 {
         let mut speed = 0.0;
-        // A stretch that begins now counts, one that ends now does not.
+        // An interval that begins now counts, one that ends now does not.
         self.rates(time_s, time_s, &mut |rate| {
             if rate.from_s <= time_s && time_s < rate.to_s {
                 speed = rate.speed;
@@ -152,8 +131,8 @@ impl<'a> Pulses<'a> {
         speed
     }
 
-    /// The acceleration of steps that no plan is known of ([`step_acceleration`]), from each step to the next, where that touches
-    /// `from_s..=to_s`: both their times in s, and it; nothing where it is not known.
+    /// Calls `each` with start, end (s) and acceleration between steps without a plan ([`step_acceleration`]), within
+    /// `from_s..=to_s`.
     pub fn accelerations(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(f64, f64, f64)) {
         let hz = self.hz();
         let seconds = |index: usize| self.steps.get(index).map(|step| step.cycle as f64 / hz);
@@ -169,13 +148,12 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// The same at a time; `None` where it is not known.
     #[must_use]
     pub fn acceleration_at(&self, time_s: f64) -> Option<f64> {
         step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())
     }
 
-    /// Every stretch of one speed that touches `from_s..=to_s`, in order; between them nothing moves.
+    /// Calls `each` for every constant speed within `from_s..=to_s`; gaps are at rest.
     pub fn rates(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
         match self.order {
             Order::Ticks(log, length) => self.orders((log, length), from_s, to_s, each),
@@ -184,7 +162,6 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Of the steps themselves.
     fn step_to_step(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
         let hz = self.hz();
         let first = self.steps.partition_point(|step| (step.cycle as f64 / hz) < from_s).max(1);
@@ -205,7 +182,6 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Of the ticks.
     fn orders(
         &self,
         (log, length): (&PacketLog, Cycles),
@@ -215,7 +191,7 @@ impl<'a> Pulses<'a> {
     ) {
         let hz = self.hz();
         let start = |tick: &LoggedTick| tick.start.0 as f64 / hz;
-        // STOP ends a tick before its time.
+        // STOP ends a tick early.
         let end = |tick: &LoggedTick| log.tick_end(tick, length).0 as f64 / hz;
         let ticks = log.ticks();
         let first = ticks.partition_point(|tick| end(tick) < from_s);
@@ -228,12 +204,10 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Of the intervals of a list of segments, each from one step to the next.
     fn intervals(&self, list: &SegmentList, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
         let (hz, one) = (self.hz(), (1_u64 << FRACTION_BITS) as f64);
         let seconds = |next: i128| next as f64 / one / hz;
         let mut next = i128::from(list.start.0) << FRACTION_BITS;
-        // Whether what comes next follows a step at once.
         let mut follows = false;
         for (place, segment) in list.segments.iter().enumerate() {
             if seconds(next) > to_s {
@@ -245,7 +219,7 @@ impl<'a> Pulses<'a> {
                     follows &= dwell == 0;
                 }
                 Segment::Steps { count, interval, add, right } => {
-                    // A8's next after k steps of this segment.
+                    // A8: the next step after k steps of this segment.
                     let start = next;
                     let after = |k: u32| {
                         let (k, add) = (i128::from(k), i128::from(add));
@@ -275,7 +249,7 @@ impl<'a> Pulses<'a> {
     }
 }
 
-/// The interval to the step that follows the segment at `place` at once, if one does.
+/// The interval to a step that follows the segment without a dwell.
 fn interval_after(list: &SegmentList, place: usize) -> Option<i128> {
     match list.segments.get(place + 1)? {
         Segment::Steps { count: 1.., interval, .. } => Some(i128::from(*interval)),
@@ -283,7 +257,7 @@ fn interval_after(list: &SegmentList, place: usize) -> Option<i128> {
     }
 }
 
-/// The first of `0..count` of which `before` does not hold, or `count`; it holds up to there.
+/// Partition point of `before` in `0..count`.
 fn first_not(count: u32, before: impl Fn(u32) -> bool) -> u32 {
     let (mut from, mut to) = (0, count);
     while from < to {

@@ -1,47 +1,30 @@
-//! The window of time that a spectrum is taken of: whole periods, or a whole motion.
+//! The time window of a spectrum: whole periods, or a whole motion.
 //!
-//! ```text
-//!        start_s    period_s        all whole periods of the sine: no window, no leakage
-//! _______|/\/\/\/\/\/\/\/\|______
-//!    |    '     '     '    |         ticks; a pulse comes somewhere in the tick that orders it
-//! ```
-//!
-//! The pulses that a move makes begin with the tick in which it starts and end with the tick in
-//! which it ends, so some come before the window and some after; taken on into the next period
-//! (whole periods later or earlier) they are the motion that repeats for ever. In a tick that two
-//! moves share the pulses of the move before come first: of the tick of its start a move has the
-//! last ones, of the tick of its end the first ones, as many as it asks for there. Where the two
-//! go opposite ways in such a tick, only the difference is made, and what cancels is no one's.
-//!
-//! Segments make every step in its own cycle, in the order of the moves, and nothing cancels: a move's
-//! pulses are as many as it has steps, after those of the moves before it.
+//! Pulses of a move run from the tick in which it starts to the tick in which it ends, so some lie outside the
+//! window; whole periods earlier or later they are the motion that repeats. In a tick shared by two moves, the pulses
+//! of the earlier move come first, and opposite steps cancel. Segments time each step, so nothing cancels there.
 
 use crate::motion::actual_motion::Pulses;
 use alloc::vec::Vec;
 use stepscope_motion::{AxisPlan, Curve, PlannedMove, quantise::TickClock};
 use stepscope_peripheral::trace::Step;
 
-/// Longest transform.
 const MAX_POINTS: usize = 1 << 20;
-/// By what part of a period recorded ones may differ.
+/// Maximum relative difference of recorded periods.
 const UNEVEN: f64 = 0.01;
 
-/// The window of time that a spectrum is taken of.
+/// The time window of a spectrum, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalysisWindow {
-    /// Its start in s.
     pub start_s: f64,
-    /// Time of one period in s, above 0.
     pub period_s: f64,
-    /// How many whole periods, at least 1.
     pub periods: u32,
-    /// Whether the motion repeats; otherwise the whole of it stands as one period.
+    /// Whether the motion repeats; otherwise all of it counts as one period.
     pub periodic: bool,
 }
 
 impl AnalysisWindow {
-    /// All periods of the first periodic move, or, where none is, the whole motion; `None` for a
-    /// motion that takes no time.
+    /// All periods of the first periodic move, or the whole motion; `None` if it takes no time.
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Option<Self> {
         let repeating = plan
@@ -55,8 +38,8 @@ impl AnalysisWindow {
         (window.period_s > 0.0).then_some(window)
     }
 
-    /// Of steps of which no plan is known: whole periods, where they go to and fro evenly, from the first turn on; else
-    /// from the first step to the last. `None` where that takes no time.
+    /// For steps without a plan: whole periods from the first turn on where they oscillate evenly, otherwise all
+    /// steps. `None` if that takes no time.
     #[must_use]
     pub fn of_steps(steps: &[Step], hz: f64) -> Option<Self> {
         let seconds = |cycles: u64| cycles as f64 / hz;
@@ -78,7 +61,7 @@ impl AnalysisWindow {
                     periodic: true,
                 }
             });
-        // Every turn is a period after the one before the last.
+        // Each turn is one period after the one before the last.
         let even = |window: &Self| {
             let pairs = turns.iter().zip(turns.iter().skip(2));
             pairs
@@ -88,10 +71,10 @@ impl AnalysisWindow {
         Some(repeating.filter(even).unwrap_or(whole)).filter(|window| window.period_s > 0.0)
     }
 
-    /// Of such steps those within the window, as (time in s, +1 right or -1 left).
+    /// Steps within the window, as (time in s, +1 right or -1 left).
     #[must_use]
     pub fn steps_within(&self, steps: &[Step], hz: f64) -> Vec<(f64, i8)> {
-        // To half a cycle: sums of rounded periods do not take a step more, or less.
+        // Half a cycle, so that rounded periods do not add or drop a step.
         let end_s = self.start_s + self.length_s() - if self.periodic { 0.5 / hz } else { -0.5 / hz };
         let pulse = |(index, step): (usize, &Step)| {
             (step.cycle as f64 / hz, Step::direction(steps, index).signum() as i8)
@@ -100,7 +83,6 @@ impl AnalysisWindow {
         steps.iter().enumerate().map(pulse).filter(own).collect()
     }
 
-    /// Its length in s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
         self.period_s * f64::from(self.periods)
@@ -112,8 +94,7 @@ impl AnalysisWindow {
         1.0 / self.period_s
     }
 
-    /// The pulses of a run that belong to the window, as (time in s, +1 right or -1 left): of a run by
-    /// ticks as [`Self::own_pulses`] tells them, of others those of the steps of its moves, one by one.
+    /// Pulses of the moves within the window, as (time in s, +1 right or -1 left).
     #[must_use]
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
         let zero = run.zero();
@@ -130,24 +111,21 @@ impl AnalysisWindow {
         self.own_pulses(plan, TickClock::new(tick.0, run.clock_hz()), &pulses)
     }
 
-    /// Of pulses that are the steps of `plan`, one by one, those of the moves within the window.
     fn own_steps<'p>(&self, plan: &AxisPlan, pulses: &'p [(u64, i8)]) -> &'p [(u64, i8)] {
-        // A move's middle, which no rounding of its ends takes into another.
+        // A move's middle is safe from rounding at its ends.
         let middle_s = |planned: &PlannedMove| planned.start_s + planned.profile.duration_s() / 2.0;
         let steps_before = |time_s: f64| {
             let before = plan.moves().iter().take_while(|planned| middle_s(planned) < time_s);
             let steps: u64 = before.map(|planned| planned.profile.step_count()).sum();
-            // A run that is cut short has fewer.
+            // A truncated run has fewer.
             usize::try_from(steps).map_or(pulses.len(), |steps| steps.min(pulses.len()))
         };
         let own = steps_before(self.start_s)..steps_before(self.start_s + self.length_s());
         pulses.get(own).unwrap_or_default()
     }
 
-    /// The pulses that belong to the window, see the module, as (time in s, +1 right or -1 left).
-    ///
-    /// `pulses` are all that the axis of `plan` makes, as (cycle from the start of its first tick
-    /// on, +1 right or -1 left), rising in time.
+    /// Pulses of moves within the window, as (time in s, +1 right or -1 left). `pulses` are all pulses of the axis by
+    /// cycle since its first tick.
     #[must_use]
     pub fn own_pulses(&self, plan: &AxisPlan, ticks: TickClock, pulses: &[(u64, i8)]) -> Vec<(f64, i8)> {
         let end_s = self.start_s + self.length_s();
@@ -159,7 +137,7 @@ impl AnalysisWindow {
         let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();
         let mut own: Vec<&(u64, i8)> = Vec::new();
         if first == last {
-            // Shorter than a tick: the tick's pulses are taken for the window's.
+            // Shorter than a tick: take the tick's pulses.
             own.extend(within(first, first + 1));
         } else {
             let asked = due_by_end(first) - begin;
@@ -180,7 +158,7 @@ impl AnalysisWindow {
     }
 }
 
-/// The ideal position over the window less its straight line, at equal steps of time.
+/// The ideal position over the window less its straight line, at equal time steps.
 pub(crate) fn sampled(plan: &AxisPlan, window: &AnalysisWindow, points: usize) -> Vec<f64> {
     let points = points.clamp(16, MAX_POINTS);
     let at = |part: f64| plan.position(window.start_s + window.length_s() * part);

@@ -1,7 +1,5 @@
 //! Steps per unit of length by least squares over measured pairs (DESIGN B3, Zhang 2012).
 //!
-//! The document lets the axis make known numbers of steps, measures the lengths and fits N_opt:
-//!
 //! ```text
 //! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin, the document's
 //! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; beside it: an offset
@@ -20,26 +18,22 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-/// Greatest length or number of steps of a pair, and the least but for 0: squares and sums of them are finite, and
-/// above 0.
+/// Maximum magnitude, and 1/minimum: sums of squares stay finite and above 0.
 const MOST: f64 = 1e12;
 const LEAST: f64 = 1e-12;
 
-/// A measured length, in any unit, and the steps that made it.
+/// A measured length in any unit, and the steps that made it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// The length; with a sign where steps have one.
     pub length: f64,
-    /// The steps.
     pub steps: f64,
 }
 
-/// A line through the pairs.
+/// A fitted line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// k, in steps a unit; above 0.
+    /// Steps per unit; above 0.
     pub steps_per_unit: f64,
-    /// Steps at length 0; 0 through the origin.
     pub offset_steps: f64,
     /// Steps of each pair less those of the line.
     pub residuals: Vec<f64>,
@@ -51,14 +45,14 @@ impl Fit {
         Self { steps_per_unit, offset_steps, residuals: pairs.iter().map(residual).collect() }
     }
 
-    /// Root of the mean square of the residuals, in steps.
+    /// Root mean square of the residuals, in steps.
     #[must_use]
     pub fn rms(&self) -> f64 {
         let sum: f64 = self.residuals.iter().map(|residual| residual * residual).sum();
         libm::sqrt(sum / self.residuals.len().max(1) as f64)
     }
 
-    /// Index and steps of the residual furthest from 0, the first of several.
+    /// Index and steps of the largest residual, the first of equals.
     #[must_use]
     pub fn largest(&self) -> Option<(usize, f64)> {
         let mut found: Option<(usize, f64)> = None;
@@ -71,39 +65,30 @@ impl Fit {
     }
 }
 
-/// Both lines.
+/// Both fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// The document's: no length, no steps.
     pub through_origin: Fit,
-    /// With an offset.
     pub with_offset: Fit,
 }
 
-/// Why pairs have no line.
+/// Why pairs have no fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BadPairs {
-    /// Fewer than two.
     TooFew {
-        /// How many.
         given: usize,
     },
-    /// Not a number, beyond 10^12, or nearer to 0 than 10^-12 and not 0.
+    /// Not a number, or out of range in magnitude.
     Number {
-        /// Which pair, from 0.
         index: usize,
-        /// The pair.
         pair: Pair,
     },
-    /// All lengths are the same.
     OneLength {
-        /// The length.
         length: f64,
     },
-    /// More length does not come with more steps.
+    /// Longer lengths do not have more steps.
     NotRising {
-        /// The k that comes out, of the line through the origin or of the other.
         steps_per_unit: f64,
     },
 }
@@ -137,12 +122,7 @@ impl fmt::Display for BadPairs {
 impl core::error::Error for BadPairs {}
 
 impl Calibration {
-    /// The lines through the pairs; they are summed up in the order given, so the same pairs in the same order give
-    /// the same bits everywhere.
-    ///
-    /// # Errors
-    /// [`BadPairs`] for fewer than two pairs, for numbers that are none, beyond 10^12 or under 10^-12 in size (but
-    /// for 0), for equal lengths, and where the steps do not grow with the length.
+    /// Fits both lines. Sums go in the given order, so equal input gives equal bits on every machine.
     pub fn of(pairs: &[Pair]) -> Result<Self, BadPairs> {
         if pairs.len() < 2 {
             return Err(BadPairs::TooFew { given: pairs.len() });

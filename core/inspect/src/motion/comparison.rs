@@ -1,13 +1,6 @@
-//! So many steps in so much time: what each kind of motion costs (DESIGN B4, "so that a user can compare
-//! them side by side").
+//! Compares what each kind of motion costs for the same steps, time and ramps (DESIGN B4).
 //!
-//! ```text
-//! the same n, t_i, t_s ->  cosine exact | cosine sliced | sigmoid | Bezier | straight | exponential |
-//!                          trapezoid by table | exact | staircase | jerk-limited | points | constant
-//!                          peak rate, acceleration, jerk, jumps; torque; time error; time of the last step
-//! ```
-//!
-//! The numbers that a kind takes in place of n, t_i and t_s follow from them, v being the speed of the plateau:
+//! Kinds with other parameters get them from n, t_i and t_s; v is the speed of the plateau:
 //!
 //! ```text
 //! trapezoid      v = (n - t_s*v_0)/(t_i - t_s),  a = (v - v_0)/t_s
@@ -17,9 +10,8 @@
 //! constant       v = n/t_i
 //! ```
 //!
-//! A table's or a staircase's rates are whole numbers, so it comes early or late. A sine ends where it begins and a dwell
-//! goes nowhere: neither makes n steps. The peaks are those of the axis: a move from rest to rest, with what it jumps by
-//! at its start and end.
+//! Rates of a table or staircase are whole numbers, so the move ends early or late. Peaks include the jumps at start
+//! and end.
 //!
 //! ```
 //! use stepscope_inspect::motion::comparison::{Request, compare};
@@ -44,38 +36,30 @@ use stepscope_motion::{
     plan_axis,
 };
 
-/// Acceleration of the first level of a staircase in steps/s^2; the others are its multiples (B3).
+/// Acceleration of a staircase's first level in steps/s^2; others are multiples (B3).
 const LEVEL_STEPS_S2: f64 = 1000.0;
-/// Levels of a staircase.
 const LEVELS: u8 = 5;
 
-/// What is compared: n steps in t_i with ramps of t_s, and what only some of the kinds need.
+/// The move to compare: n steps in t_i with ramps of t_s, and parameters of some kinds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// What a step is.
     pub mechanics: Mechanics,
-    /// The motor that has to follow, if it is known.
     pub motor: Option<Motor>,
-    /// Steps, left negative.
     pub steps: i64,
-    /// t_i in s.
     pub duration_s: f64,
-    /// t_s in s.
     pub ramp_s: f64,
     /// Slice of the sliced cosine in s.
     pub slice_s: f64,
-    /// Range of the sigmoid.
     pub sigmoid_range: f64,
-    /// Time constants of the exponential.
     pub time_constants: f64,
-    /// First rate of trapezoid and staircase in steps/s, where the move's average is at least twice that.
+    /// First rate of trapezoid and staircase in steps/s, if the average rate is at least twice that.
     pub start_speed: f64,
     /// Clock of the trapezoid's table in Hz.
     pub timer_hz: u32,
 }
 
 impl Request {
-    /// So many steps in so much time, all else as a scenario has it by default.
+    /// Other parameters get a scenario's defaults.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         let (Cosine { slice_s, .. }, Ramps { sigmoid_range, time_constants, .. }) =
@@ -95,8 +79,7 @@ impl Request {
         }
     }
 
-    /// What move `index` of an axis does, with ramps of `ramp_s`; `None` where there is no such move, or it ends where it
-    /// begins.
+    /// The request for move `index` of an axis; `None` if it ends where it begins.
     #[must_use]
     pub fn of(axis: &Axis, plan: &AxisPlan, index: usize, ramp_s: f64) -> Option<Self> {
         let (asked, planned) = (axis.moves.get(index)?, plan.moves().get(index)?);
@@ -124,7 +107,7 @@ impl Request {
         (steps != 0).then_some(request)
     }
 
-    /// The move of a candidate, as a scenario asks for it.
+    /// The candidate's move, as a scenario has it.
     #[must_use]
     pub fn ask(&self, candidate: Candidate) -> Move {
         let Self { duration_s, ramp_s, slice_s, sigmoid_range, time_constants, timer_hz, .. } = *self;
@@ -181,8 +164,8 @@ impl Request {
         }
     }
 
-    /// Level of a staircase and its top speed: of those that make the steps in time the one whose ramps are nearest to
-    /// what is asked, else the steepest, without a plateau.
+    /// Level and top speed of a staircase: the level whose ramps are nearest to t_s, otherwise the steepest, without
+    /// a plateau.
     fn level(&self, rate: f64, start: f64) -> (u8, f64) {
         let top = |level: u8| {
             // n + (v - f_1)^2/a = t_i*v as v^2 - 2*half*v + product = 0.
@@ -201,27 +184,19 @@ impl Request {
     }
 }
 
-/// Who takes part in the comparison.
+/// A kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
-    /// The cosine S-curve.
     Cosine(CosineMethod),
-    /// Ramps of another shape.
     Ramps(RampShape),
-    /// Uniform acceleration from a start speed.
     Trapezoid(TrapezoidMethod),
-    /// The fixed-length controller's rates.
     Staircase,
-    /// Seven phases under limits.
     JerkLimited,
-    /// A smooth curve from point to point.
     Points,
-    /// One rate.
     Constant,
 }
 
 impl Candidate {
-    /// What it is called.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -241,7 +216,7 @@ impl Candidate {
     }
 }
 
-/// All that take part, in the order of the rows.
+/// All candidates, in the order of the rows.
 pub const CANDIDATES: [Candidate; 12] = [
     Candidate::Cosine(CosineMethod::Exact),
     Candidate::Cosine(CosineMethod::Sliced),
@@ -257,46 +232,39 @@ pub const CANDIDATES: [Candidate; 12] = [
     Candidate::Constant,
 ];
 
-/// What a candidate costs.
+/// What a candidate costs. Peaks are in steps and s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// The greatest values of the axis, in steps and s.
     pub peaks: Peaks,
-    /// End of the move less t_i, in s; negative is early. Of slices, tables and staircases.
+    /// End of the move less t_i, in s; negative is early.
     pub time_error_s: f64,
-    /// The same in parts of t_i.
     pub time_error: f64,
-    /// When the last step falls due, in s, not rounded to a clock.
+    /// Time of the last step in s, not rounded to a clock.
     pub last_step_s: f64,
-    /// What it asks of the motor, where there is one.
     pub torque: Option<Torque>,
 }
 
-/// What a candidate asks of a motor.
+/// What a candidate requires of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque {
-    /// Whether there is enough throughout, at rates that the motor is stated to work at. Jumps of speed are not judged.
+    /// Whether torque and rate suffice; jumps of speed are not checked.
     pub is_met: bool,
-    /// The moment with the least margin.
+    /// The moment with the minimum margin.
     pub least: Option<Moment>,
 }
 
 /// A row of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Who.
     pub candidate: Candidate,
-    /// Its move, as a scenario has it.
     pub wanted: Move,
-    /// Its curve, where it can be.
+    /// Its curve, if it is possible.
     pub plan: Option<AxisPlan>,
-    /// What it costs, or why it cannot be; paths begin with `comparison.moves[0]`.
+    /// The cost, or the problems, with paths from `comparison.moves[0]`.
     pub cost: Result<Cost, Vec<Problem>>,
 }
 
-/// A row for each of [`CANDIDATES`], in their order.
-///
-/// Each is planned as a scenario's move, with its ranges; one that cannot be says why in its row.
+/// One row for each of [`CANDIDATES`]. Each is planned as a scenario's move, within its ranges.
 #[must_use]
 pub fn compare(request: &Request) -> Vec<Row> {
     CANDIDATES.iter().map(|&candidate| row(request, candidate)).collect()

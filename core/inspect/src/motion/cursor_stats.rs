@@ -1,16 +1,7 @@
-//! What lies between two cursors: mean and root mean square of position, speed and acceleration,
-//! of the ideal motion and of the one that the pulses make.
+//! Mean and root mean square of position, speed and acceleration between two cursors.
 //!
-//! Both are integrals of the curves themselves, never of a picture's columns:
-//!
-//! ```text
-//!          B                 ideal  from joint to joint by three points of Gauss and Legendre: exact
-//!   mean = | x dt / (B - A)         for the polynomials, and for cosines to the last digits
-//!          A                 made   from step to step and from tick to tick, sums of rectangles
-//! ```
-//!
-//! Of steps that no plan is known of there is an acceleration, too ([`crate::motion::step_acceleration`]); its means are those of the
-//! time between the cursors in which it is known.
+//! Both are integrals over the curves, not over pixel columns: three-point Gauss-Legendre between breakpoints for the
+//! ideal motion, sums of rectangles for the pulses.
 //!
 //! ```
 //! use stepscope_inspect::motion::cursor_stats::ideal;
@@ -26,28 +17,21 @@
 use crate::motion::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};
 
-/// Mean and root mean square over a stretch of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
-    /// Mean.
     pub mean: f64,
-    /// Root of the mean square, about 0.
     pub rms: f64,
 }
 
-/// Of the three quantities, in steps, steps/s and steps/s^2.
+/// Position in steps, speed in steps/s, acceleration in steps/s^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CursorStats {
-    /// Position from the start of the run.
     pub position: Moments,
-    /// Speed.
     pub speed: Moments,
-    /// Acceleration where the speed has no jump; `None` of pulses, whose speed only jumps ([`actual_acceleration`] has what can be
-    /// told of it).
+    /// `None` for pulses ([`actual_acceleration`] estimates it).
     pub acceleration: Option<Moments>,
 }
 
-/// A sum over time of a quantity and of its square.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     of_value: f64,
@@ -65,11 +49,11 @@ impl Sums {
     }
 }
 
-/// The points of Gauss and Legendre in -1..1 and their weights.
+/// Gauss-Legendre points in -1..1 and their weights.
 pub(crate) const POINTS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
 
-/// Of the ideal motion, whose time 0 is at `zero_s`, from one time to a later one, in s.
+/// Statistics of the ideal motion, which starts at `zero_s`, from one time to a later one, in s.
 #[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStats {
     let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
@@ -87,7 +71,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStat
     CursorStats { position, speed, acceleration: Some(acceleration) }
 }
 
-/// Of the motion that the pulses make, from one time to a later one, in s.
+/// Statistics of the pulses, from one time to a later one, in s.
 #[must_use]
 pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
@@ -111,8 +95,7 @@ pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     CursorStats { position, speed, acceleration: None }
 }
 
-/// Acceleration of steps that no plan is known of ([`Pulses::accelerations`]), from one time to a later one, in s, over the time in
-/// which it is known; `None` where it is nowhere.
+/// Acceleration of steps without a plan, over the time in which it is known.
 #[must_use]
 pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Option<Moments> {
     let (mut sums, mut known_s) = (Sums::default(), 0.0);

@@ -1,5 +1,4 @@
-//! Position, speed and acceleration over a stretch of time, as the least and greatest value in
-//! each pixel column: of the ideal motion, and of the one that the simulated pulses make.
+//! Position, speed and acceleration as minimum and maximum per pixel column, for the ideal motion and for the pulses.
 //!
 //! ```
 //! use stepscope_inspect::motion::curves::{Window, ideal};
@@ -16,20 +15,17 @@ use alloc::{vec, vec::Vec};
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
-/// Smooth intervals of a column that are all looked at; of more, every 16th and the last. Only a table
-/// of some hundred thousand rows has as many, and its speed rises from row to row.
+/// Maximum intervals of a column that are all evaluated; of more, every 16th and the last.
 const MAX_INTERVALS: usize = 256;
-/// Smooth intervals of a column that a line follows one by one; of more it goes from the least to the greatest value.
+/// Maximum intervals of a column that a line follows; of more it connects minimum and maximum.
 const MAX_FOLLOWED: usize = 32;
-/// Points of a line in a column without breakpoints.
+/// Points per column of a line without breakpoints.
 const POINTS: usize = 4;
 
-/// The least and greatest value in each column; NaN where there is none.
+/// Minimum and maximum per column; NaN where there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// Least values.
     pub min: Vec<f64>,
-    /// Greatest values.
     pub max: Vec<f64>,
 }
 
@@ -47,7 +43,6 @@ impl Band {
 }
 
 impl Band {
-    /// Nothing moves from one time to another.
     pub(crate) fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
         if to_s > from_s {
             window.columns(from_s, to_s).for_each(|column| self.take(column, 0.0));
@@ -55,14 +50,11 @@ impl Band {
     }
 }
 
-/// A stretch of time in columns.
+/// A time window in s, divided into columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Its start in s.
     pub start_s: f64,
-    /// Its end in s.
     pub end_s: f64,
-    /// Columns.
     pub columns: usize,
 }
 
@@ -71,7 +63,6 @@ impl Window {
         (self.end_s - self.start_s) / self.columns as f64
     }
 
-    /// The middle of a column in s.
     #[must_use]
     pub fn centre_s(&self, column: usize) -> f64 {
         self.start_s + (column as f64 + 0.5) * self.width_s()
@@ -82,13 +73,11 @@ impl Window {
         libm::floor((time_s - self.start_s) / self.width_s()) as i64
     }
 
-    /// The start of a column in s; the end of the one before.
     pub(crate) fn edge_s(&self, column: usize) -> f64 {
         self.start_s + column as f64 * self.width_s()
     }
 
-    /// The columns that a stretch of time has a part in. One of no length has one, unless it lies
-    /// outside.
+    /// The columns that a time range touches. An empty range has one, unless it lies outside.
     pub(crate) fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
         let inside = |column: i64| column.clamp(0, self.columns as i64) as usize;
         let after = libm::ceil((to_s - self.start_s) / self.width_s()) as i64;
@@ -96,21 +85,18 @@ impl Window {
     }
 }
 
-/// Position in steps, speed in steps/s, acceleration in steps/s^2 of the ideal motion.
+/// The ideal motion in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ideal {
-    /// Position in steps from the start.
     pub position: Band,
-    /// Speed in steps/s.
     pub speed: Band,
-    /// Acceleration in steps/s^2.
     pub acceleration: Band,
 }
 
-/// The ideal motion of an axis whose time 0 is at `zero_s`.
+/// The ideal motion of an axis that starts at `zero_s`.
 ///
-/// Between two breakpoints every curve rises, falls or stays, so a column's extremes are at its own ends
-/// and at either side of the breakpoints in it.
+/// Curves are monotonic between breakpoints, so a column's extremes are at its ends and at both sides of the
+/// breakpoints in it.
 #[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
@@ -120,7 +106,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     for column in 0..n {
         let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
         let extremes = match breakpoints.period_within(from, to) {
-            // Thousands of periods over a few columns are one period's work.
+            // Many periods per column are evaluated as one.
             Some(bounds) => match period {
                 Some((known, extremes)) if known == bounds => extremes,
                 _ => {
@@ -142,13 +128,10 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
 /// Points on the ideal motion, to be joined by straight lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IdealLine {
-    /// Times in s, of the window; at a breakpoint two points stand at one time.
+    /// Times in s; a breakpoint has two points.
     pub time_s: Vec<f64>,
-    /// Position in steps from the start.
     pub position: Vec<f64>,
-    /// Speed in steps/s.
     pub speed: Vec<f64>,
-    /// Acceleration in steps/s^2.
     pub acceleration: Vec<f64>,
 }
 
@@ -161,10 +144,8 @@ impl IdealLine {
     }
 }
 
-/// The ideal motion of an axis whose time 0 is at `zero_s`, as the lines that a chart of so many columns draws: each
-/// smooth interval is followed from end to end, several points to a column, so that on a chart a hundred columns high
-/// no corner can be seen. Where a column holds more intervals than that shows, the line visits its least and its
-/// greatest values.
+/// The ideal motion as lines for a chart: each smooth interval is followed with several points per column. A column
+/// with too many intervals gets its minimum and maximum.
 #[must_use]
 pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
     let breakpoints = Breakpoints::of(plan);
@@ -195,7 +176,6 @@ pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
     line
 }
 
-/// Points on an interval, from just inside its start to just inside its end.
 fn follow(plan: &AxisPlan, zero_s: f64, interval: Interval, column_s: f64, line: &mut IdealLine) {
     let length_s = interval.to_s - interval.from_s;
     let parts = libm::fmax(1.0, libm::ceil(POINTS as f64 * length_s / column_s)) as usize;
@@ -207,11 +187,10 @@ fn follow(plan: &AxisPlan, zero_s: f64, interval: Interval, column_s: f64, line:
     }
 }
 
-/// Least and greatest position, speed and acceleration of a stretch.
 fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
     let mut found = [[f64::NAN; 2]; 3];
     let mut look = |interval: Interval| {
-        // Just inside: at a joint itself the value may be that of the other side.
+        // Just inside: at a breakpoint itself the value may be that of the other side.
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         for t in [interval.from_s + inset, interval.to_s - inset] {
             let values = [plan.position(t), plan.speed(t), plan.acceleration(t)];
@@ -235,13 +214,10 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) 
     found
 }
 
-/// What the pulses really do.
+/// The motion of the pulses, in steps and steps/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Actual {
-    /// Position in steps from the start.
     pub position: Band,
-    /// Speed in steps/s: of a tick its steps by its length, of a segment's step 1 by its interval,
-    /// and 0 where neither is.
     pub speed: Band,
 }
 
@@ -277,7 +253,7 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     bands
 }
 
-/// The acceleration of steps that no plan is known of ([`Pulses::accelerations`]); nothing where it is not known.
+/// The acceleration of steps without a plan; NaN where it is unknown.
 #[must_use]
 pub fn actual_acceleration(pulses: &Pulses<'_>, window: Window) -> Band {
     let mut band = Band::new(window.columns);

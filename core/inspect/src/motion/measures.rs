@@ -1,5 +1,4 @@
-//! How good a run is, in numbers: the curve that was asked for, the steps that B1 makes of it, and the pulses as
-//! they really come, each held against the one before (SWorldJournal issue 11's list of measures).
+//! Measures of a run: ideal curve, scheduled steps and pulses, each compared with the one before.
 //!
 //! ```text
 //! ideal   s(t)                                             DESIGN B1
@@ -9,9 +8,8 @@
 //! pulses  rising STEP edges of the run                     `pulses`  ideal against pulses
 //! ```
 //!
-//! Times are on the motion's own axis: 0 is the start of the first tick, or of the list of segments. A comparison
-//! goes from 0 until all has come to rest. Areas and means are integrals of the curves themselves; Euclidean
-//! distance and sum of squares belong to a number of points, which is stated.
+//! Times start with the first tick or the segment list, and a comparison ends when all has come to rest. Areas and
+//! means are integrals of the curves.
 //!
 //! ```
 //! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
@@ -46,13 +44,10 @@ use stepscope_motion::ValueError;
 use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, moves::Axis, sine_segments};
 use stepscope_peripheral::trace::Step;
 
-/// Most steps of a run that is measured: all of them are kept, those due beside those made, some 82 bytes each.
+/// Maximum steps of a measured run; each takes about 82 bytes.
 pub const MAX_STEPS: u64 = 20_000_000;
 
-/// Whether the steps of these plans can be measured, which is known before any of them is made.
-///
-/// # Errors
-/// More than [`MAX_STEPS`] of all of them together.
+/// Whether plans have at most [`MAX_STEPS`] steps together.
 pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Result<(), ValueError> {
     let steps = plans.into_iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
     if steps > MAX_STEPS {
@@ -68,90 +63,68 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
 /// All measures of one axis of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
-    /// From the motion's time 0 until all has come to rest, in s: what the comparisons are taken over.
     pub length_s: f64,
-    /// Step quantisation: the ideal curve, and the steps that B1 makes of it.
+    /// Quantization to steps: the ideal curve against B1's steps.
     pub steps: CurveMetrics,
-    /// Tick quantisation, queue and link: those steps, and the pulses as they come.
+    /// Quantization to ticks, queue and link: those steps against the pulses.
     pub ticks: CurveMetrics,
-    /// Both together: the ideal curve, and the pulses.
+    /// The ideal curve against the pulses.
     pub pulses: CurveMetrics,
-    /// Steps at whole cycles against their ideal instants.
     pub step_errors: PulseErrors,
-    /// Pulses against the steps at whole cycles.
     pub tick_errors: PulseErrors,
-    /// How much of each there is.
     pub counts: Counts,
-    /// What the ideal curve asks of a motor.
+    /// Peaks of the ideal curve.
     pub peaks: Extremes,
-    /// When it ends, and when it was to.
     pub duration: Duration,
-    /// Of the first sine by segments: its polyline against the exact sine.
+    /// The first sine by segments: its polyline against the exact sine.
     pub sine: Option<SineMeasures>,
 }
 
-/// Steps that were due and pulses that came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// Steps of the motion, there and back.
     pub due: u64,
-    /// Pulses that came. Steps to and fro within one tick cancel and are not made.
+    /// Opposite steps within one tick cancel and are not counted.
     pub actual: u64,
-    /// Pulses at a place, or in a direction, in which no step was due near that time.
+    /// Pulses without a step of that position and direction near that time.
     pub stray: u64,
 }
 
-/// The greatest magnitudes of the ideal curve.
+/// Maximum magnitudes of the ideal curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extremes {
-    /// Speed in steps/s.
     pub speed_steps_s: f64,
-    /// Acceleration in steps/s^2 where the speed has no jump.
     pub acceleration_steps_s2: f64,
-    /// Jerk in steps/s^3 where the acceleration has no jump.
     pub jerk_steps_s3: f64,
-    /// Jump of speed in steps/s.
     pub speed_jump_steps_s: f64,
-    /// Jump of acceleration in steps/s^2.
     pub acceleration_jump_steps_s2: f64,
-    /// Start-stop rate in steps/s: the greatest speed that is taken up from rest, or left for rest, at once. A turn
-    /// is a stop and a start.
+    /// Maximum speed that starts or ends at rest without a ramp. A turn is a stop and a start.
     pub start_stop_steps_s: f64,
 }
 
-/// When a motion ends.
+/// When a motion ends, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Duration {
-    /// Of the plan, in s.
     pub planned_s: f64,
-    /// As it was asked for, in s; `None` where no move names a time. Moves that name none count as planned.
+    /// `None` where no move has a requested time; other moves count as planned.
     pub requested_s: Option<f64>,
-    /// Planned less asked, in s.
     pub plan_error_s: Option<f64>,
-    /// When the last step is due, in s.
     pub last_due_s: Option<f64>,
-    /// When the last pulse comes, in s.
     pub last_pulse_s: Option<f64>,
-    /// How much later than due that is, in s; `None` without a pulse.
     pub end_error_s: Option<f64>,
 }
 
-/// A polyline against the exact sine, at the document's points of a quarter.
+/// A polyline against the exact sine, at 512 points of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SineMeasures {
-    /// Segments of a quarter.
     pub segments: usize,
-    /// The document's Ev: Euclidean distance in parts of the amplitude.
+    /// Ev: Euclidean distance in parts of the amplitude.
     pub euclidean: f64,
-    /// Exact sine and polyline over a quarter, in steps; all of it from the points, which are its vertices too.
+    /// Exact sine and polyline over a quarter, in steps.
     pub quarter: CurveMetrics,
 }
 
 impl Measures {
-    /// Of an axis: its plan, what the run made of it, and the moves that were asked for, where they are known.
-    ///
-    /// The time grows with the steps, some microseconds each, and the memory too: [`within_bounds`] says whether
-    /// there are too many.
+    /// Measures an axis. `asked` are the requested moves, if known. Check [`within_bounds`] first.
     #[must_use]
     pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, asked: Option<&Axis>) -> Self {
         let (zero, hz) = (pulses.zero(), pulses.hz());
@@ -161,7 +134,7 @@ impl Measures {
         let (tick_errors, stray) = placed(plan, &due, &made, hz);
         let last = |steps: &[Step]| steps.last().map(|step| step.cycle as f64 / hz);
         let (last_due_s, last_pulse_s) = (last(&due), last(&made));
-        // One cycle at least, so that there is something to look at.
+        // At least one cycle, so that the comparison is not empty.
         let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
         let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
         let breakpoints = Breakpoints::of(plan);
@@ -191,7 +164,6 @@ impl Measures {
     }
 }
 
-/// The time that the moves name, those that name none as planned; `None` where none does.
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     let names_one = axis.moves.iter().any(|asked| asked.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
@@ -211,7 +183,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
         }
     };
     breakpoints.intervals(0.0, plan.duration_s(), &mut |interval| {
-        // Just inside, for at a joint the speed is that of one side; and from there to the joint itself.
+        // Just inside: at a breakpoint the speed is that of one side.
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         let speed = |t: f64, by: f64| plan.speed(t) + plan.acceleration(t) * by;
         meets(before, speed(interval.from_s + inset, -inset));
@@ -224,7 +196,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
         jerk_steps_s3: peaks.jerk,
         speed_jump_steps_s: peaks.jump,
         acceleration_jump_steps_s2: peaks.acceleration_jump,
-        // What is left of a curve that begins at rest is rounding.
+        // A curve that begins at rest leaves only rounding here.
         start_stop_steps_s: if start_stop > 1e-9 * peaks.speed { start_stop } else { 0.0 },
     }
 }
@@ -243,7 +215,7 @@ fn polyline(sine: &sine_segments::SineSegments) -> SineMeasures {
         let at_s = point as f64 * sine.point_s();
         sums.look(at_s, off);
         sums.sample(off);
-        // Line and cosine meet at both ends, so a sum over the points is the rule of trapezoids.
+        // Line and cosine meet at both ends, so a sum over the points is the trapezoid rule.
         sums.interval(&[(cosine, off, sine.point_s())]);
     }
     let quarter = sums.ended();

@@ -1,10 +1,6 @@
-//! Two runs over one time: the difference of the positions that their pulses make.
+//! Position difference of two runs.
 //!
-//! ```text
-//! first        ____|‾‾‾     positions stay from step to step, so the difference changes only at
-//! second     __|‾‾‾‾‾‾‾     steps; both stand at 0 before their first and stay where the last
-//! difference ‾‾|___|‾‾‾     brought them
-//! ```
+//! Positions stay from step to step, so the difference changes only at steps; both are 0 before their first step.
 //!
 //! ```
 //! use stepscope_inspect::motion::position_error::{Scaled, apart};
@@ -21,14 +17,12 @@
 use crate::motion::curves::{Band, Window};
 use stepscope_peripheral::trace::Step;
 
-/// A run's steps in a unit that two of them share.
+/// Steps of a run, in a unit shared by two runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<'a> {
-    /// Steps of the run's channel.
     pub steps: &'a [Step],
-    /// Cycles a second.
     pub hz: f64,
-    /// What a step is in that unit.
+    /// Units per step.
     pub unit: f64,
 }
 
@@ -43,34 +37,28 @@ impl Scaled<'_> {
     }
 }
 
-/// The first run's position less the second's, from change to change.
 pub(crate) struct Difference<'a> {
     runs: [Scaled<'a>; 2],
-    /// Steps of each that have come.
     next: [usize; 2],
 }
 
 impl<'a> Difference<'a> {
-    /// From a time on: what happened before is in [`Self::now`].
     pub(crate) fn from(runs: [Scaled<'a>; 2], from_s: f64) -> Self {
         let next = runs.map(|run| run.steps.partition_point(|step| step.cycle as f64 / run.hz <= from_s));
         Self { runs, next }
     }
 
-    /// The difference as it stands.
     fn now(&self) -> f64 {
         let [a, b] = self.places();
         a - b
     }
 
-    /// Both positions as they stand.
     pub(crate) fn places(&self) -> [f64; 2] {
         let [a, b] = self.runs;
         let [after_a, after_b] = self.next;
         [a.place(after_a), b.place(after_b)]
     }
 
-    /// The changes up to a time, that time left out: when, and both positions then.
     pub(crate) fn changes(&mut self, to_s: f64, each: &mut dyn FnMut(f64, [f64; 2])) {
         loop {
             let [a, b] = self.runs;
@@ -87,8 +75,7 @@ impl<'a> Difference<'a> {
     }
 }
 
-/// The least and greatest difference in each column of a window, that with which it is entered among
-/// them; NaN where no time is common.
+/// Minimum and maximum difference per column; NaN outside the common time.
 #[must_use]
 pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: Window) -> Band {
     let mut band = Band::new(window.columns);
@@ -103,18 +90,16 @@ pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: 
     band
 }
 
-/// How far two runs' positions lie apart.
+/// How far two runs' positions are apart, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apart {
-    /// The difference of the greatest magnitude, with its sign.
     pub largest: f64,
-    /// When it first is so, in s.
+    /// Time of the first largest difference, in s.
     pub at_s: f64,
-    /// Root of the mean square over the common time.
     pub rms: f64,
 }
 
-/// How far apart they are from 0 to `common_s`, which is above 0.
+/// Compares from 0 to `common_s`, which is above 0.
 #[must_use]
 pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
     let mut walk = Difference::from([first, second], 0.0);

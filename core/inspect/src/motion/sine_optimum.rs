@@ -1,15 +1,8 @@
-//! The polyline of so many segments that makes a sine with least distortion (DESIGN B5, beyond the document).
+//! Finds the polyline with minimum distortion of a sine for a number of segments (DESIGN B5).
 //!
-//! The vertices are free to move: along the curve, or in angle and height. What is to be least is the sum of squares of
-//! r_k = a_k/a_1 over the odd harmonics k = 3, 5, …, so each step is one of Levenberg and Marquardt's,
-//!
-//! ```text
-//! (J'J + damping*diag(J'J))*step = -J'r          J  the derivatives of r, in closed form
-//! ```
-//!
-//! from several first guesses, of which the best end counts. Sums go in one order and functions come from `libm`, so the
-//! result has the same bits on every target. That no other place is better is not proven; the tests hold it against
-//! optima that were found otherwise.
+//! Levenberg-Marquardt minimizes the sum of squares of r_k = a_k/a_1 over the odd harmonics from several first
+//! guesses. Sums go in one order and functions come from `libm`, so the result has the same bits on every target. The
+//! minimum found may be local.
 //!
 //! ```
 //! use stepscope_inspect::motion::sine_optimum::{Freedom, optimum};
@@ -24,34 +17,27 @@ use crate::motion::sine_polyline::{Distortion, OddCosines, Vertex, distortion, s
 use alloc::{vec, vec::Vec};
 use core::f64::consts::FRAC_PI_2;
 
-/// Most segments of a quarter.
+/// Maximum segments of a quarter.
 pub const MAX_SEGMENTS: usize = 32;
-/// Steps from one first guess, at most.
 const MAX_STEPS: u32 = 200;
-/// First guesses: the density of breakpoints is cos(angle) to this power.
+/// Exponents of cos(angle), the density of breakpoints of a first guess.
 const GUESSES: [f64; 4] = [0.4, 0.0, 0.7, 1.0];
 
-/// Where vertices may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// On the curve: only their angles are free.
     OnCurve,
-    /// Anywhere.
     Free,
 }
 
-/// The best polyline.
+/// The best polyline found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
-    /// Vertices of the quarter, the first at angle 0, the last at pi/2 and height 0, scaled so that the first harmonic
-    /// is 1 where they are free.
+    /// From angle 0 to pi/2, scaled so that free vertices have a first harmonic of 1.
     pub vertices: Vec<Vertex>,
-    /// Its distortion.
     pub distortion: Distortion,
 }
 
-/// The polyline of `segments` (1 to [`MAX_SEGMENTS`]) a quarter with least distortion of position up to harmonic
-/// `order`; None for another number of segments.
+/// `None` unless `segments` is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
 #[must_use]
 pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum> {
     if !(1..=MAX_SEGMENTS).contains(&segments) {
@@ -73,12 +59,10 @@ fn harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
     super::sine_polyline::odd_harmonics(vertices, order)
 }
 
-/// A search from one first guess.
 struct Search {
     freedom: Freedom,
     order: u16,
     vertices: Vec<Vertex>,
-    /// Sum of the squares of all r_k.
     cost: f64,
 }
 
@@ -94,7 +78,7 @@ impl Search {
         for _ in 0..MAX_STEPS {
             let (matrix, slope) = self.normal_equations();
             let before = self.cost;
-            // Ever shorter steps, until one goes down.
+            // Shorten the step until the cost falls.
             while damping < 1e12 {
                 let step = solve(damped(&matrix, damping), &slope);
                 if step.is_some_and(|step| self.go(&step)) {
@@ -110,7 +94,7 @@ impl Search {
         self
     }
 
-    /// Takes a step if it leads to less.
+    /// Accepts the step if it lowers the cost.
     fn go(&mut self, step: &[f64]) -> bool {
         let inner = self.vertices.len() - 2;
         let mut moved = self.vertices.clone();
@@ -136,7 +120,7 @@ impl Search {
         let harmonics = harmonics(&self.vertices, self.order);
         let first = harmonics.first().copied().unwrap_or(1.0);
         let columns = self.derivatives();
-        // r_k = a_k/a_1, so dr_k = (da_k - r_k*da_1)/a_1; the first harmonic itself has none.
+        // dr_k = (da_k - r_k*da_1)/a_1; the first harmonic has none.
         let ratios: Vec<f64> = harmonics.iter().skip(1).map(|a| a / first).collect();
         let columns: Vec<Vec<f64>> = columns
             .iter()
@@ -151,7 +135,7 @@ impl Search {
         (matrix, slope)
     }
 
-    /// Derivatives of all odd harmonics by each free number: the inner angles, then, if free, the inner heights.
+    /// Derivatives of the harmonics by each inner angle and, if free, each inner height.
     fn derivatives(&self) -> Vec<Vec<f64>> {
         let inner = self.vertices.len() - 2;
         let by_angle = (1..=inner).map(|index| self.derivative(index, true));
@@ -162,7 +146,7 @@ impl Search {
                 .zip(by_height)
                 .zip(self.vertices.iter().skip(1))
                 .map(|((angle, height), vertex)| {
-                    // Along the curve the height falls with sin(angle).
+                    // On the curve the height falls with sin(angle).
                     let falls = libm::sin(vertex.angle);
                     angle.iter().zip(&height).map(|(a, h)| a - falls * h).collect()
                 })
@@ -170,7 +154,6 @@ impl Search {
         }
     }
 
-    /// Derivatives of all odd harmonics by the angle or the height of an inner vertex.
     fn derivative(&self, index: usize, by_angle: bool) -> Vec<f64> {
         let at =
             |index: usize| self.vertices.get(index).copied().unwrap_or(Vertex { angle: 0.0, height: 0.0 });
@@ -178,7 +161,6 @@ impl Search {
         let (left, right) = (this.angle - before.angle, after.angle - this.angle);
         let (slope_left, slope_right) =
             ((this.height - before.height) / left, (after.height - this.height) / right);
-        // What the slopes on both sides gain.
         let (gain_left, gain_right) =
             if by_angle { (-slope_left / left, slope_right / right) } else { (1.0 / left, -1.0 / right) };
         let bend = slope_left - slope_right;
@@ -202,7 +184,6 @@ impl Search {
     }
 }
 
-/// sin(k*angle) for k = 1, 3, 5, …
 struct OddSines {
     now: f64,
     before: f64,
@@ -226,7 +207,6 @@ impl Iterator for OddSines {
     }
 }
 
-/// Breakpoints on the curve whose density is cos(angle)^power.
 fn guess(segments: usize, power: f64) -> Vec<Vertex> {
     const PARTS: u16 = 4096;
     let angle = |part: u16| f64::from(part) * FRAC_PI_2 / f64::from(PARTS);
@@ -243,7 +223,6 @@ fn guess(segments: usize, power: f64) -> Vec<Vertex> {
     vertices
 }
 
-/// Sum of the squares of all r_k.
 fn cost(vertices: &[Vertex], order: u16) -> f64 {
     let position = distortion(vertices, order).position;
     position * position
@@ -259,7 +238,7 @@ fn damped(matrix: &[Vec<f64>], damping: f64) -> Vec<Vec<f64>> {
     matrix
 }
 
-/// Solves a symmetric positive definite system by elimination; None where it is none.
+/// Gaussian elimination; `None` if the matrix is not positive definite.
 fn solve(mut rows: Vec<Vec<f64>>, right: &[f64]) -> Option<Vec<f64>> {
     for (row, value) in rows.iter_mut().zip(right) {
         row.push(*value);

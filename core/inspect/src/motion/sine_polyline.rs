@@ -1,7 +1,6 @@
-//! How good a polyline stands for a sine, and which d1 gives the best one (DESIGN B5, figure 4 of SWorldJournal issue 11).
+//! Distortion of a polyline that replaces a sine, and the d1 that minimizes it (DESIGN B5).
 //!
-//! A quarter's vertices stand for the whole period by symmetry, so all even harmonics are 0 and the odd ones are a sum
-//! over the vertices, in which only the bends of the line count:
+//! A quarter's vertices define the whole period, so even harmonics are 0. Only the bends of the line count:
 //!
 //! ```text
 //! y |._                    s_i  slope from vertex i to i + 1, s_-1 = 0
@@ -10,10 +9,8 @@
 //! 0 +---------'- 90 deg    THD  = sqrt(a_3^2 + a_5^2 + …)/|a_1|
 //! ```
 //!
-//! Nothing is sampled, so nothing folds back. Speed and acceleration have k and k^2 times the harmonics; those of the
-//! acceleration do not fall, so its distortion grows with the order. What an accelerometer on the rig feels of it has
-//! |H| = 1/sqrt(1 + (k/b)^2) times that, b being the sensor's bandwidth (-3 dB, a low pass of first order) over the
-//! frequency of the oscillation, and its distortion hardly changes once the order is well above b.
+//! Nothing is sampled, so nothing aliases. Harmonics of the acceleration do not fall, so its distortion grows with
+//! the order; a sensor of limited bandwidth removes that.
 //!
 //! ```
 //! use stepscope_inspect::motion::sine_polyline::{distortion, vertices};
@@ -28,21 +25,19 @@ use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use stepscope_motion::polyline::{POINTS, QUARTER, breakpoints, cosine_at, next_deviation};
 
-/// A vertex of a quarter.
+/// A vertex of a quarter: angle in rad from the extreme, height in parts of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
-    /// Angle in radians, from 0, the extreme, to pi/2, the middle.
     pub angle: f64,
-    /// Distance from the middle in parts of the amplitude.
     pub height: f64,
 }
 
-/// What bounds a distortion; an order alone is one without a sensor.
+/// Limits of a distortion; an order alone means no sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Highest harmonic that counts, 1 to 65535.
+    /// Maximum harmonic, 1 to 65535.
     pub order: u16,
-    /// Bandwidth (-3 dB) of the sensor over the frequency of the oscillation, above 0.
+    /// Bandwidth (-3 dB) of the sensor over the frequency of the oscillation.
     pub sensor: Option<f64>,
 }
 
@@ -52,25 +47,21 @@ impl From<u16> for Bounds {
     }
 }
 
-/// |H| of a low pass of first order at `part` of its bandwidth.
+/// |H| of a first-order low pass at a multiple of its bandwidth.
 pub(crate) fn low_pass(part: f64) -> f64 {
     1.0 / libm::sqrt(1.0 + part * part)
 }
 
-/// Distortion within its bounds.
+/// THD_F of each quantity, as a ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distortion {
-    /// THD_F of the position, as a ratio.
     pub position: f64,
-    /// Of the speed.
     pub speed: f64,
-    /// Of the acceleration.
     pub acceleration: f64,
-    /// Of what the sensor feels of the acceleration.
     pub acceleration_filtered: Option<f64>,
 }
 
-/// The vertices that B5 puts on the curve for the largest deviation `d1`, in parts of the amplitude.
+/// B5's vertices for a maximum deviation `d1`, in parts of the amplitude.
 #[must_use]
 pub fn vertices(d1: f64) -> Vec<Vertex> {
     on_points(&breakpoints(d1))
@@ -84,9 +75,7 @@ fn on_points(points: &[u16]) -> Vec<Vertex> {
     points.iter().map(vertex).collect()
 }
 
-/// Harmonics 1, 3, 5, … up to `order` of the period that a quarter's vertices stand for, with their signs.
-///
-/// The vertices rise in angle, the first at 0, the last at pi/2 and height 0.
+/// Signed harmonics 1, 3, 5, … up to `order`. Angles rise from 0 to pi/2.
 #[must_use]
 pub fn odd_harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
     let mut sums: Vec<f64> = (1..=order).step_by(2).map(|_| 0.0).collect();
@@ -104,13 +93,13 @@ pub fn odd_harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
     sums
 }
 
-/// 4/(pi*k^2) of the harmonic with this index, k = 2*index + 1.
+/// 4/(pi*k^2) with k = 2*index + 1.
 pub(crate) fn scale(index: usize) -> f64 {
     let k = (2 * index + 1) as f64;
     4.0 / (PI * k * k)
 }
 
-/// cos(k*angle) for k = 1, 3, 5, …, each from the two before it.
+/// cos(k*angle) for k = 1, 3, 5, …, by recurrence.
 pub(crate) struct OddCosines {
     now: f64,
     before: f64,
@@ -120,7 +109,7 @@ pub(crate) struct OddCosines {
 impl OddCosines {
     pub(crate) fn of(angle: f64) -> Self {
         let now = libm::cos(angle);
-        // cos(-angle) comes before it.
+        // cos(-angle) precedes it.
         Self { now, before: now, twice: 2.0 * libm::cos(2.0 * angle) }
     }
 }
@@ -135,7 +124,6 @@ impl Iterator for OddCosines {
     }
 }
 
-/// THD of position, speed and acceleration within bounds.
 #[must_use]
 pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion {
     let Bounds { order, sensor } = bounds.into();
@@ -150,7 +138,7 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
             *square += amplitude * amplitude;
             amplitude *= k;
         }
-        // k^3 times the harmonic by now.
+        // Now k^3 times the harmonic.
         let amplitude = amplitude / k * filtered(k);
         filtered_square += amplitude * amplitude;
     }
@@ -160,29 +148,24 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
     Distortion { position, speed, acceleration, acceleration_filtered }
 }
 
-/// What a d1 gives: a row of figure 4.
+/// The polyline of one d1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// Largest deviation, in parts of the amplitude.
     pub d1: f64,
-    /// Segments of a quarter.
     pub segments: usize,
-    /// THD within the bounds that were asked for.
     pub distortion: Distortion,
-    /// Root of the sum of the squared differences of line and cosine over the quarter's 512 points, in parts of the
-    /// amplitude.
+    /// Euclidean distance of line and cosine over 512 points, in parts of the amplitude.
     pub euclidean: f64,
 }
 
 impl Row {
-    /// That of one d1.
     #[must_use]
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
         Measure::new(bounds).row(d1)
     }
 }
 
-/// What polylines are measured by: the bounds of their distortions, and the cosines that all are held against.
+/// Limits of the distortion, and the cosines to compare with.
 #[derive(Clone, Debug)]
 pub struct Measure {
     bounds: Bounds,
@@ -190,13 +173,11 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Within these bounds.
     #[must_use]
     pub fn new(bounds: impl Into<Bounds>) -> Self {
         Self { bounds: bounds.into(), cosines: cosines() }
     }
 
-    /// The row of one d1.
     #[must_use]
     pub fn row(&self, d1: f64) -> Row {
         self.of_points(d1, &breakpoints(d1))
@@ -209,13 +190,11 @@ impl Measure {
     }
 }
 
-/// The cosine at the points of a quarter, from its extreme to its middle.
 pub(crate) fn cosines() -> Vec<f64> {
     (0..=QUARTER).map(cosine_at).collect()
 }
 
-/// The cosine at the quarter's 512 points, from its extreme on, and what the line through these breakpoints
-/// has more there, in parts of the amplitude.
+/// The cosine at a quarter's 512 points, and the line's deviation there, in parts of the amplitude.
 pub(crate) fn differences<'p>(
     points: &'p [u16],
     cosines: &'p [f64],
@@ -230,8 +209,7 @@ pub(crate) fn differences<'p>(
     })
 }
 
-/// `count` values of d1 evenly from `from` to `to`, each with what it gives: one call of `next` is one row, so who
-/// asks can show how far it is, or stop.
+/// `count` rows of d1 evenly from `from` to `to`, computed one per `next`.
 pub fn sweep(
     from: f64,
     to: f64,
@@ -242,16 +220,15 @@ pub fn sweep(
     (0..count).map(move |index| measure.row(swept(from, to, count, index)))
 }
 
-/// The d1 of row `index` of a sweep: who shares the rows out makes each by itself.
+/// The d1 of row `index` of a sweep, for workers that share it.
 #[must_use]
 pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
     from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
 
-/// Every polyline that some d1 in a range gives, each once and with its least d1, rising.
+/// Each polyline within a range of d1 once, with its minimum d1.
 ///
-/// A polyline changes where the next point of one of its chords comes within d1, so the steps are found and not searched
-/// for: the best row of these is the best of the range.
+/// A polyline changes where the next point of a chord comes within d1, so the steps are found and not sampled.
 #[derive(Clone, Debug)]
 pub struct Distinct {
     next: Option<f64>,
@@ -260,7 +237,6 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    /// Those of `from` <= d1 <= `to`.
     #[must_use]
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
         Self { next: Some(from), to, measure: Measure::new(bounds) }
@@ -278,7 +254,7 @@ impl Iterator for Distinct {
     }
 }
 
-/// The row with least distortion of the position; of equals the first.
+/// The row with minimum distortion of the position; the first of equals.
 pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     rows.into_iter().reduce(
         |best, row| {
@@ -287,7 +263,7 @@ pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     )
 }
 
-/// For each number of segments the row with least distortion of the position, in the order in which they come.
+/// The best row for each number of segments.
 pub fn best_of_each(rows: impl IntoIterator<Item = Row>) -> Vec<Row> {
     let mut all: Vec<Row> = Vec::new();
     for row in rows {

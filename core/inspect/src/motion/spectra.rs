@@ -1,4 +1,4 @@
-//! The spectra of an axis side by side: of the ideal motion, and of the pulses as they come.
+//! The spectra of an axis: ideal motion and actual pulses.
 //!
 //! ```
 //! use stepscope_inspect::motion::{actual_motion::Pulses, spectra::Spectra};
@@ -24,23 +24,19 @@ use alloc::{borrow::ToOwned, format, string::String};
 use stepscope_motion::AxisPlan;
 use stepscope_scenario::{Scenario, Source};
 
-/// So many samples a harmonic bring the acceleration of a curve with corners to a part in a hundred or so.
+/// Samples per harmonic; 16 keep the acceleration of a curve with corners within about 1 %.
 const FOLDING: u32 = 16;
 
-/// Both spectra, and what has to be said of them.
 #[derive(Clone, Debug, Default)]
 pub struct Spectra {
-    /// Of the ideal curve.
     pub ideal: Option<Spectrum>,
-    /// Of the pulses.
     pub actual: Option<Spectrum>,
-    /// Why there is none, or what it is not; empty for nothing.
+    /// Why there is none, or its limits; empty for nothing.
     pub note: String,
 }
 
 impl Spectra {
-    /// Of the axis that a scenario's analysis names, with its plan, if it has one, and its pulses. Without a plan only what
-    /// the pulses make is known.
+    /// Both spectra of the axis that the scenario's analysis selects. Without a plan only the pulses have one.
     #[must_use]
     pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
@@ -71,7 +67,6 @@ impl Spectra {
         }
     }
 
-    /// Of steps of which no plan is known: those of packets, line scripts, lists of segments, recordings.
     fn of_steps(scenario: &Scenario, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
         let Some(window) = AnalysisWindow::of_steps(run.steps, run.hz()) else {

@@ -1,27 +1,14 @@
-//! Spectrum and distortion of a motion: of the ideal curve, and of the pulses as they come
-//! (DESIGN B5, Part D).
+//! Spectrum and distortion of a motion: ideal curve and pulses (DESIGN B5, Part D).
 //!
-//! Whole periods are looked at and no window is laid over them, so each harmonic stands in one
-//! line and nothing leaks. Speed and acceleration of a periodic curve have, exactly, the
-//! harmonics of its position times 2*pi*k*f0 and times its square:
-//!
-//! ```text
-//! position  A_k        speed  A_k*(2*pi*k*f0)        acceleration  A_k*(2*pi*k*f0)^2
-//! THD_F = sqrt(A_2^2 + … + A_order^2)/A_1
-//! ```
-//!
-//! The order belongs to the figure: segments of fixed rate have jumps of speed, so the harmonics
-//! of their acceleration do not fall at all and its distortion grows with the order. An accelerometer
-//! on the rig does not pass all of that: it is a low pass, of first order here, with the bandwidth f_b
-//! (-3 dB), and what it lets through has a distortion that the order hardly changes any more:
+//! Whole periods are taken without a window function, so nothing leaks. Speed and acceleration have the position's
+//! harmonics times 2*pi*k*f0 and its square. Distortion of the acceleration grows with the order; a sensor is a
+//! first-order low pass of bandwidth f_b:
 //!
 //! ```text
 //! filtered  A_k*(2*pi*k*f0)^2 * |H(k*f0)|        |H(f)| = 1/sqrt(1 + (f/f_b)^2)
 //! ```
 //!
-//! A motion that is not periodic is looked at as a whole; the straight line from its first to its
-//! last point is taken off its position, for otherwise the jump back at the end would be in all
-//! three. Its lines are no harmonics of anything, so it has no distortion.
+//! A motion that is not periodic is taken as a whole, less its straight line, and has no distortion.
 //!
 //! ```
 //! use stepscope_inspect::motion::spectrum::Spectrum;
@@ -47,12 +34,11 @@ use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 use stepscope_motion::AxisPlan;
 
-/// Harmonics of one quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harmonics {
-    /// Amplitudes (peak, not effective) of harmonics 1, 2, ….
+    /// Peak amplitudes of harmonics 1, 2, ….
     pub amplitudes: Vec<f64>,
-    /// THD_F over all of these, as a ratio; `None` without a first harmonic to compare with.
+    /// THD_F as a ratio; `None` without a first harmonic.
     pub distortion: Option<f64>,
 }
 
@@ -63,33 +49,26 @@ impl Harmonics {
     }
 }
 
-/// THD_F: the root of the sum of squares of all harmonics but the first, over the first.
 fn distortion(amplitudes: &[f64]) -> Option<f64> {
     let (&first, others) = amplitudes.split_first()?;
     let square: f64 = others.iter().map(|amplitude| amplitude * amplitude).sum();
     (first > 0.0).then(|| libm::sqrt(square) / first)
 }
 
-/// A spectrum with what belongs to its figures.
+/// A spectrum in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// What it is taken of; no window is laid over it.
     pub window: AnalysisWindow,
-    /// Highest harmonic, also of the distortion.
+    /// Maximum harmonic.
     pub order: u16,
-    /// Position, in steps.
     pub position: Harmonics,
-    /// Speed, in steps/s.
     pub speed: Harmonics,
-    /// Acceleration, in steps/s^2.
     pub acceleration: Harmonics,
-    /// What of the acceleration a sensor feels, in steps/s^2; `None` without one
-    /// ([`Self::filtered_by`]).
+    /// The acceleration that a sensor measures ([`Self::filtered_by`]).
     pub acceleration_filtered: Option<Harmonics>,
 }
 
 impl Spectrum {
-    /// From the position's harmonics.
     fn of_position(window: AnalysisWindow, position: Vec<f64>) -> Self {
         let per_s = |k: usize| TAU * (k + 1) as f64 / window.period_s;
         let speed: Vec<f64> = position.iter().enumerate().map(|(k, a)| a * per_s(k)).collect();
@@ -104,8 +83,7 @@ impl Spectrum {
         }
     }
 
-    /// With what a sensor of the bandwidth `sensor_hz` (-3 dB, in Hz, above 0) feels of the acceleration;
-    /// without one as it is.
+    /// Adds the acceleration that a sensor of this bandwidth (-3 dB, in Hz) measures.
     #[must_use]
     pub fn filtered_by(mut self, sensor_hz: Option<f64>) -> Self {
         self.acceleration_filtered = sensor_hz.map(|sensor_hz| {
@@ -118,12 +96,8 @@ impl Spectrum {
         self
     }
 
-    /// Of the ideal curve over [`AnalysisWindow::of`] it, up to harmonic `order`; `None` where that is.
-    ///
-    /// `points` (16 to 65536 in a scenario, any number) are the samples of a period. One period is
-    /// sampled, because the others are the same, so the samples fill it and nothing leaks, whatever
-    /// their number. Harmonics from half of the points on do not exist: the order is cut to that and
-    /// stated in the result.
+    /// The ideal curve over [`AnalysisWindow::of`]. `points` sample one period; harmonics from half of them on do not
+    /// exist, which lowers the order.
     #[must_use]
     pub fn ideal(plan: &AxisPlan, order: u16, points: u32) -> Option<Self> {
         let window = AnalysisWindow::of(plan)?;
@@ -131,12 +105,8 @@ impl Spectrum {
         Some(Self::of_position(window, amplitudes(&samples, order.into())))
     }
 
-    /// Of the motion that pulses make: `pulses` are (time in s, on the same axis of time as the
-    /// window; +1 right or -1 left), in any order, such as [`AnalysisWindow::own_pulses`]. All count; one
-    /// outside the window stands where whole periods take it.
-    ///
-    /// Straight from the pulses' times, see `fourier`: nothing is sampled, nothing folds back. The
-    /// time grows with the pulses, some 10 ns each, and not with pulses times order.
+    /// The spectrum of pulses (time in s, +1 right or -1 left) in any order. Pulses outside the window are moved by
+    /// whole periods.
     #[must_use]
     pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
         let phases =

@@ -1,12 +1,5 @@
-//! The acceleration of steps that no plan is known of: from each eight steps in one direction to the next eight, since from
-//! step to step the rounding to cycles alone would make it.
-//!
-//! ```text
-//!       |<-- eight steps -->|<------ eight steps ------>|
-//!  STEP '  ' ' ' '' ' ' ' ' '   '    '   '   '    '   '  '     rate: 8 by the time of each half;
-//!      from               middle                        to     acceleration, at the middle: what the rate changes by,
-//!                                                              by the mean of both times
-//! ```
+//! Acceleration of steps without a plan: between two runs of eight steps, because rounding to cycles dominates from
+//! step to step.
 //!
 //! ```
 //! use stepscope_inspect::motion::step_acceleration::of;
@@ -21,11 +14,10 @@
 
 use stepscope_peripheral::trace::Step;
 
-/// Steps of each half.
 pub(crate) const HALF: usize = 8;
 
-/// At a step, in steps/s^2, with sign; `None` where there are no eight steps in one direction on either side, or where all of
-/// a half share a cycle.
+/// Signed, in steps/s^2, at a step; `None` without eight steps in one direction on both sides, or if eight share a
+/// cycle.
 #[must_use]
 #[inline(never)]
 pub fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {

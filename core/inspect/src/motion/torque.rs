@@ -1,11 +1,8 @@
-//! Torque against step rate: does a motor have what a plan asks of it (Song, Han, Lu 2021, 1.1 and 2.3)?
+//! Torque over step rate: can a motor follow a plan (Song, Han, Lu 2021, 1.1 and 2.3)?
 //!
-//! The motor is a two-phase hybrid stepping motor on a bipolar driver that regulates the current, and the
-//! model the phasor model of the textbooks (P. Acarnley, *Stepping Motors: a guide to theory and
-//! practice*, the chapter on high-speed operation): only the fundamentals of flux, current and voltage; no
-//! saturation, no detent torque, no iron losses, no resonance; the driver drops no voltage and gives at
-//! most a sine of its supply's amplitude. With p = 90/full_step_deg pole pairs (rotor teeth), at w rad/s of
-//! the shaft:
+//! The phasor model of a two-phase hybrid motor on a current-regulated bipolar driver (P. Acarnley, *Stepping Motors:
+//! a guide to theory and practice*): fundamentals only, without saturation, detent torque, iron losses or resonance.
+//! With p = 90/full_step_deg pole pairs, at w rad/s:
 //!
 //! ```text
 //! k = holding torque/(sqrt(2)*rated current)      N*m/A, and V*s/rad: both phases on hold sqrt(2)*k*I
@@ -13,10 +10,8 @@
 //! i = (V - E)/(R + j*X),  torque = k*Re(i)        the current, E being real
 //! ```
 //!
-//! Available is the most torque of all currents with |i| <= the regulated peak and |V| <= the supply, that is of
-//! the points that two discs in the plane of i have in common: one of radius I around 0, one of radius
-//! V/|Z| around -E/Z, Z = R + j*X. Where all of these brake, or there is none, it is negative: the motor
-//! has no torque of its own at that rate.
+//! Available is the maximum torque of all currents with |i| <= the regulated peak and |V| <= the supply: two discs in
+//! the plane of i. It is negative where all of these brake.
 //!
 //! ```text
 //! torque |--------.               up to the corner the driver holds the current: k*I
@@ -26,11 +21,8 @@
 //!        +--------------------    rate
 //! ```
 //!
-//! Needed is (rotor + load inertia)*acceleration plus the load's torque, which opposes the motion, so that
-//! it helps when slowing down. Braking is compared with the same curve, though the motor's losses help it there:
-//! the verdict is on the safe side. Where the speed jumps (a start above rate 0) no torque is finite and the model
-//! says nothing: [`Demand::jump`] tells how far. Of steps without a plan the acceleration is taken over the rotor's natural
-//! period (`of_steps.rs`).
+//! Needed is inertia times acceleration plus the load's torque, which opposes the motion. Braking is compared with
+//! the same curve, which is on the safe side. Jumps of speed have no finite torque; [`Demand::jump`] reports them.
 //!
 //! ```
 //! use stepscope_inspect::motion::torque::{Demand, Machine};
@@ -63,45 +55,38 @@ use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
 
-/// Shortages that are listed.
 const MAX_SHORTAGES: usize = 1024;
-/// Times of each move that a chart's needed torque is taken at.
+/// Samples per move of a chart's needed torque.
 const LOOKS_A_MOVE: u32 = 2048;
-/// A plan is looked at so often, beside both sides of each of its joints.
+/// Samples per plan, in addition to both sides of each breakpoint.
 const LOOKS: f64 = 512.0;
 
-/// A stretch of time in which a plan needs more torque than there is.
+/// A time in which a plan needs more torque than there is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shortage {
-    /// Its start in s.
     pub from_s: f64,
-    /// Its end in s.
     pub to_s: f64,
-    /// In how many whole periods of a sine it comes again, itself counted; else 1.
+    /// Number of periods of a sine in which it recurs; otherwise 1.
     pub times: f64,
-    /// Where most is missing.
     pub worst: Moment,
 }
 
-/// What a plan, or a list of steps, asks of a motor.
+/// What a plan or a list of steps requires of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
-    /// Where there is too little torque, in order; the first 1024.
+    /// In order, at most 1024.
     pub shortages: Vec<Shortage>,
-    /// How many stretches there are.
     pub total: u64,
-    /// The moment with the least margin, the first of several; `None` where the plan takes no time.
+    /// The moment with the minimum margin; `None` where the plan takes no time.
     pub least: Option<Moment>,
-    /// The greatest rate in steps/s.
     pub greatest_rate: f64,
-    /// That rate, if it is above the motor's stated working rate.
+    /// The maximum rate, if it exceeds the motor's working rate.
     pub over_working_rate: Option<f64>,
-    /// The greatest jump of speed in steps/s, which the motor has to follow at once.
+    /// Maximum jump of speed in steps/s.
     pub jump: f64,
 }
 
 impl Demand {
-    /// What `plan` asks of `machine`.
     #[must_use]
     pub fn of(machine: &Machine, plan: &AxisPlan) -> Self {
         let peaks = plan.peaks();
@@ -121,8 +106,8 @@ impl Demand {
         walk.demand
     }
 
-    /// What is to be said of the move from `from_s` to `to_s` of `peak_rate` steps/s: too high a rate, or where most
-    /// torque is missing, and what to change; `None` where there is enough.
+    /// What is wrong with the move from `from_s` to `to_s` of `peak_rate` steps/s, and how to fix it; `None` where
+    /// the torque suffices.
     #[must_use]
     pub fn warning(&self, machine: &Machine, from_s: f64, to_s: f64, peak_rate: f64) -> Option<String> {
         if let Some(most) = machine.working_rate().filter(|most| peak_rate > *most) {
@@ -145,15 +130,15 @@ impl Demand {
         ))
     }
 
-    /// Whether the motor can follow all of it, jumps aside.
+    /// Whether the motor can follow, jumps aside.
     #[must_use]
     pub fn is_met(&self) -> bool {
         self.total == 0 && self.over_working_rate.is_none()
     }
 }
 
-/// The most torque in mN*m, driving or braking, that a plan needs at each rate, for a chart: of `bins` stretches of the
-/// rate from 0 to `most_rate` steps/s; not-a-number where the plan has no such rate.
+/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `most_rate` steps/s; NaN where
+/// it has no such rate.
 #[must_use]
 pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, most_rate: f64, bins: usize) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
@@ -169,14 +154,11 @@ pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, most_rate: f64, bins
     needed
 }
 
-/// A walk along a plan.
 struct Walk<'m> {
     machine: &'m Machine,
     plan: &'m AxisPlan,
     demand: Demand,
-    /// The shortage that has not ended yet.
     open: Option<Shortage>,
-    /// The end of the last piece and how often it stands there.
     before: Option<Interval>,
 }
 
@@ -189,7 +171,7 @@ impl Walk<'_> {
         }
         self.before = Some(piece);
         let length = piece.to_s - piece.from_s;
-        // Just inside: at a joint itself the value may be that of the other side.
+        // Just inside: at a breakpoint itself the value may be that of the other side.
         let inset = length * 1e-9;
         let parts = libm::fmax(1.0, libm::ceil(length / look_s)) as u32;
         let mut last: Option<Moment> = None;
@@ -207,7 +189,6 @@ impl Walk<'_> {
         }
     }
 
-    /// Takes a moment; `last` is the one before in the same piece.
     fn look(&mut self, moment: Moment, last: Option<Moment>, piece: Interval) {
         let border = || last.map_or(piece.from_s, |last| self.border(last.at_s, moment.at_s));
         let short = moment.margin_mn_m() < 0.0;
@@ -234,7 +215,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The time between both at which one is short and the other not.
+    /// The time at which the margin changes its sign.
     fn border(&self, from_s: f64, to_s: f64) -> f64 {
         let short = |t: f64| self.machine.at(self.plan, t).margin_mn_m() < 0.0;
         let begins = short(to_s);

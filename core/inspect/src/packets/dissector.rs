@@ -1,13 +1,8 @@
-//! What each byte of a packet, a frame or a reply means (DESIGN A5, A6): its fields, in the order of
-//! the line, each with its place among the bytes; and the whole of it in one line (`summary`).
+//! The meaning of each byte of a packet, frame or reply (DESIGN A5, A6): fields with their positions, and a one-line
+//! summary.
 //!
-//! ```text
-//! raw    [address]  ch0  ch1  …                                        no check
-//! wire   COBS  address  kind  body …  check x 4  end mark
-//! ```
-//!
-//! COBS writes the distance to the next zero where a zero stood, so a decoded byte has one place on the
-//! wire, and what COBS adds (the first byte, and one after each 254 bytes without a zero) is its own field.
+//! COBS replaces each zero, so a decoded byte has one position on the line. The bytes that COBS adds are fields of
+//! their own.
 //!
 //! ```
 //! use stepscope_inspect::packets::dissector::Reading;
@@ -43,46 +38,38 @@ use stepscope_peripheral::{
     },
 };
 
-/// One field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// What it is called, such as `seq`, `ch3` or `tick 0 ch3`.
+    /// Such as `seq`, `ch3` or `tick 0 ch3`.
     pub name: Cow<'static, str>,
-    /// Its bytes, counted from the row's first, 0.
+    /// Its bytes, from the row's first.
     pub bytes: Range<usize>,
-    /// What stands there, in words.
     pub value: String,
 }
 
-/// The check of a row's bytes.
+/// The CRC of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     /// Raw packets have none.
     None,
-    /// The bytes are no frame, or not a whole one.
+    /// The bytes are no complete frame.
     Missing,
-    /// CRC-32/ISCSI.
     Compared {
-        /// The check that came.
         found: u32,
-        /// The check of what came before it.
         expected: u32,
     },
 }
 
-/// What the bytes of a row mean.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Meaning {
-    /// The fields, rising in their places; they do not overlap.
+    /// In order, without overlap.
     pub fields: Vec<Field>,
-    /// Its check.
     pub check: Check,
 }
 
-/// What has to be known of a line to read its bytes.
+/// What is needed to read the bytes of a line.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// How packets are framed.
     pub protocol: Protocol,
     /// Whether raw packets begin with an address.
     pub addressed: bool,
@@ -90,17 +77,15 @@ pub struct Reading<'a> {
     pub channels: &'a dyn Fn(u8) -> u8,
 }
 
-/// Address and kind of a frame whose check holds.
+/// Address and kind of a frame with a valid CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Head {
-    /// Where it goes to, or comes from.
     pub address: u8,
-    /// What it is, as it stands on the wire.
     pub kind: u8,
 }
 
 impl Head {
-    /// Of a row with these bytes; `None` where there is none that can be trusted.
+    /// `None` where the bytes are no valid frame.
     #[must_use]
     pub fn of(bytes: &[u8], outcome: RowOutcome) -> Option<Self> {
         let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
@@ -119,20 +104,19 @@ impl Head {
         Some(Self { address: content.next()?, kind: content.next()? })
     }
 
-    /// Whether a controller sends such frames.
     #[must_use]
     pub const fn is_reply(self) -> bool {
         self.kind & ACK != 0
     }
 
-    /// Name of its kind, the same for a frame and the reply that acknowledges it; `NAK` for a refusal.
+    /// Name of its kind, the same for a frame and its acknowledgment; `NAK` for a refusal.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         if self.kind == NAK { Some("NAK") } else { Kind::parse(self.kind & !ACK).map(Kind::name) }
     }
 }
 
-/// Where the frame stands among the bytes of its row: after the delimiter before it, without its own.
+/// The frame within its row, without delimiters.
 fn last_frame(bytes: &[u8]) -> Range<usize> {
     let end = bytes.len() - usize::from(bytes.last() == Some(&DELIMITER));
     let before = bytes.get(..end).and_then(|bytes| bytes.iter().rposition(|&byte| byte == DELIMITER));
@@ -140,7 +124,7 @@ fn last_frame(bytes: &[u8]) -> Range<usize> {
 }
 
 impl Reading<'_> {
-    /// The fields of a row with these bytes. A frame whose check fails is read as if it held.
+    /// The fields of a row. A frame with a wrong CRC is read as if it were valid.
     #[must_use]
     pub fn of(&self, bytes: &[u8], outcome: RowOutcome) -> Meaning {
         match (self.protocol, outcome) {
@@ -148,7 +132,7 @@ impl Reading<'_> {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
                 Meaning { fields: ignored.into_iter().collect(), check: Check::None }
             }
-            // On a raw line a reply was recorded, of a device that answers.
+            // A recorded reply may stand on a raw line.
             (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
             (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
             (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
@@ -165,7 +149,7 @@ impl Reading<'_> {
         let check = content.check();
         let mut meant = content.fields(check, self.channels);
         for &(at, code) in &content.overhead {
-            // What COBS adds within a body goes with the body.
+            // COBS bytes within a body belong to the body.
             if !meant.iter().any(|field| field.bytes.contains(&at)) {
                 let place = meant.partition_point(|field| field.bytes.start < at);
                 meant.insert(place, field("COBS", at..at + 1, cobs_to_text(code)));
@@ -179,7 +163,6 @@ impl Reading<'_> {
     }
 }
 
-/// The reply that the frame of a row is, if its check holds.
 pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
     let content = Content::of(bytes, last_frame(bytes));
     let check @ Check::Compared { found, expected } = content.check() else { return None };
@@ -187,25 +170,22 @@ pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
     if found == expected { Reply::parse(Frame { address: *address, kind: *kind, body }) } else { None }
 }
 
-/// What the frame of a row carries, and whether it is whole COBS.
+/// The decoded frame, and whether its COBS is complete.
 pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
     let Content { decoded, whole, .. } = Content::of(bytes, last_frame(bytes));
     (decoded, whole)
 }
 
-/// What COBS holds, and where on the wire.
 struct Content {
     decoded: Vec<u8>,
-    /// Of each decoded byte, and of the end.
+    /// Position of each decoded byte, and of the end.
     places: Vec<usize>,
-    /// What COBS added: where, and what stands there.
+    /// COBS bytes: position and value.
     overhead: Vec<(usize, u8)>,
-    /// Whether the last run is as long as COBS says.
     whole: bool,
 }
 
 impl Content {
-    /// Reads the bytes in `range`, of which none is a zero.
     fn of(bytes: &[u8], range: Range<usize>) -> Self {
         let mut content = Self { decoded: Vec::new(), places: Vec::new(), overhead: Vec::new(), whole: true };
         let mut reader = CobsDecoder::default();
@@ -224,7 +204,6 @@ impl Content {
         content
     }
 
-    /// The check of the bytes before it.
     fn check(&self) -> Check {
         match self.decoded.split_last_chunk::<CRC_LEN>() {
             Some((frame, sum)) if self.whole && frame.len() >= 2 => {
@@ -234,20 +213,18 @@ impl Content {
         }
     }
 
-    /// Address, kind and body, as far as they are there, without the check.
+    /// Address, kind and body, as far as they exist.
     fn without(&self, check: Check) -> &[u8] {
         let checked = if check == Check::Missing { 0 } else { CRC_LEN };
         self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
     }
 
-    /// Places on the wire of some decoded bytes.
     fn at(&self, decoded: Range<usize>) -> Range<usize> {
         let last = decoded.end.checked_sub(1).and_then(|last| self.places.get(last));
         let first = self.places.get(decoded.start).copied().unwrap_or_default();
         first..last.map_or(first, |last| last + 1)
     }
 
-    /// The fields but COBS and the end mark.
     fn fields(&self, check: Check, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
         let content = self.without(check);
         let end = content.len();
@@ -354,7 +331,6 @@ fn reason_to_text(reason: Reason) -> String {
     format!("{}, {}", reason as u8, reason.name())
 }
 
-/// A position counter with its sign; right is plus.
 fn position_to_text(counter: i32) -> String {
     match counter {
         0 => "0".into(),
@@ -363,7 +339,6 @@ fn position_to_text(counter: i32) -> String {
     }
 }
 
-/// Steps with their direction; right is plus.
 fn command_to_text(byte: u8) -> String {
     match ChannelCommand::parse(byte) {
         ChannelCommand { right: true, steps: 0 } => "0, right".into(),

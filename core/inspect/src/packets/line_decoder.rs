@@ -1,8 +1,7 @@
-//! What is on the line, decoded for the rows under RX and TX: bits, bytes and fields, each a span of cycles
-//! with texts from the longest to the shortest (DESIGN A4 to A6).
+//! The line decoded into bits, bytes and fields: spans of cycles with texts from the longest to the shortest (DESIGN
+//! A4 to A6).
 //!
-//! RX is decoded as the controller heard it: each byte where its start bit was seen, each bit where the
-//! receiver looked. What the host sent there stands beside it where it differs.
+//! RX is decoded as the controller received it; what the host sent is shown where it differs.
 //!
 //! ```
 //! use stepscope_inspect::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
@@ -33,46 +32,36 @@ use stepscope_peripheral::{
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
 
-/// One span of a decoder's row.
+/// A span of cycles `start..end`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Span {
-    /// First cycle.
     pub start: u64,
-    /// First cycle after it.
     pub end: u64,
     /// From the longest to the shortest.
     pub texts: Vec<String>,
-    /// Something is wrong with it.
     pub bad: bool,
-    /// Row of the packet table that it belongs to.
+    /// Its row of the packet table.
     pub packet: Option<usize>,
-    /// Where the receiver looked at it.
+    /// The cycle in which the receiver sampled it.
     pub sample: Option<u64>,
 }
 
-/// The spans of one line.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spans {
-    /// Start bits, data bits, stop bits.
     pub bits: Vec<Span>,
-    /// Bytes, those with a framing error among them.
+    /// Includes bytes with a framing error.
     pub bytes: Vec<Span>,
-    /// Fields of packets, frames and replies.
     pub fields: Vec<Span>,
 }
 
-/// What both lines carry.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Decoded {
-    /// As the controller heard it.
     pub rx: Spans,
-    /// As the controller sent it.
     pub tx: Spans,
-    /// More bytes than were asked for: none are listed.
+    /// More bytes than requested: none are listed.
     pub more: bool,
 }
 
-/// The decoder of one controller's lines.
 #[derive(Clone, Copy)]
 pub struct LineDecoder<'a> {
     table: PacketTable<'a>,
@@ -80,14 +69,13 @@ pub struct LineDecoder<'a> {
 }
 
 impl<'a> LineDecoder<'a> {
-    /// For the rows of `table` and the signals of the same controller.
     #[must_use]
     pub const fn new(table: PacketTable<'a>, trace: &'a [Record]) -> Self {
         Self { table, trace }
     }
 
-    /// What is on the line in the cycles `start..end`, unless that is more than `most_bytes` bytes; their bits only
-    /// where there are at most `most_bits` bytes.
+    /// Decodes the cycles `start..end`, unless they have more than `most_bytes` bytes; bits only for at most
+    /// `most_bits` bytes.
     #[must_use]
     pub fn decode(&self, start: u64, end: u64, most_bytes: usize, most_bits: usize) -> Decoded {
         let (mut rx, mut tx) = (Spans::default(), Spans::default());
@@ -125,11 +113,10 @@ impl<'a> LineDecoder<'a> {
         self.table.packets()
     }
 
-    /// The bytes that touch a stretch of cycles; `None` if there are more than `most`.
     fn bytes_in(&self, start: u64, end: u64, most: usize) -> Option<Vec<PlacedByte>> {
         let mut bytes = Vec::new();
         for packet in self.packets().touching(Instant(start), Instant(end)) {
-            // Of a row of megabytes only what is on show is looked at.
+            // A row may have megabytes: decode only what is visible.
             let seen = self.packets().seen(packet);
             let before =
                 if self.table.is_own_reply(packet) { 0 } else { seen.partition_point(|at| at.0 < start) };
@@ -143,7 +130,6 @@ impl<'a> LineDecoder<'a> {
         Some(bytes)
     }
 
-    /// A byte, and what the host sent there where it is another.
     fn byte(&self, placed: PlacedByte, reply: bool) -> Span {
         let PlacedByte { packet, byte, start, end } = placed;
         let sent = if reply { None } else { self.table.sent_at(Instant(start)) };
@@ -156,7 +142,6 @@ impl<'a> LineDecoder<'a> {
         Span { start, end, texts, bad: sent.is_some(), packet: Some(packet), sample: None }
     }
 
-    /// The bits of a byte as the receiver looked at them.
     fn heard_bits(&self, seen: u64, packet: Option<usize>) -> Vec<Span> {
         let Cycles(bit) = self.own().bit();
         (0..BYTE_BITS)
@@ -175,7 +160,6 @@ impl<'a> LineDecoder<'a> {
             .collect()
     }
 
-    /// The bits of a byte as the controller sends them.
     fn sent_bits(&self, placed: PlacedByte) -> Vec<Span> {
         let PlacedByte { packet, byte, start, .. } = placed;
         let times = BitTimes::new(self.own().clock_hz(), self.own().reply_baud());
@@ -192,7 +176,7 @@ impl<'a> LineDecoder<'a> {
             .collect()
     }
 
-    /// Adds the bytes whose stop bit was low.
+    /// Adds bytes with a framing error.
     fn broken_in(&self, start: u64, end: u64, rx: &mut Spans, with_bits: bool) {
         let broken = self.packets().broken();
         let length = BYTE_BITS * self.own().bit().0;
@@ -225,14 +209,13 @@ fn bit_texts(index: u64, high: bool) -> Vec<String> {
     }
 }
 
-/// Bytes of the longest row whose fields are told; a frame has at most 600 before COBS.
+/// Maximum bytes of a row with fields; a frame has at most 600 before COBS.
 const MAX_BYTES: usize = 1024;
 
 impl LineDecoder<'_> {
-    /// The fields of a row of the packets.
     fn fields_of(&self, packet: usize) -> Vec<Span> {
         let Some(row) = self.packets().rows().get(packet) else { return Vec::new() };
-        // No packet and no frame is longer: what is, was ignored or is none.
+        // Longer rows are no packet or frame.
         if self.packets().bytes(packet).len() > MAX_BYTES {
             return Vec::new();
         }
@@ -261,7 +244,6 @@ impl LineDecoder<'_> {
     }
 }
 
-/// A field from its longest text to its shortest.
 fn texts(Field { name, value, .. }: &Field, bad: bool) -> Vec<String> {
     let mut texts = vec![format!("{name}: {value}"), value.clone()];
     texts.extend(value.split([' ', ',']).next().filter(|first| first.len() < value.len()).map(str::to_owned));

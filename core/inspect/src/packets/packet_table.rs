@@ -1,13 +1,7 @@
-//! The packet table: what went over the line as one controller heard it, and what became of it, a row each. The command's
-//! files and the page's table, search and files are made of it (DESIGN Part D).
+//! The packet table: one row per packet, frame or reply that one controller received or sent, with its outcome
+//! (DESIGN Part D).
 //!
-//! ```text
-//! number  kind   start  gap  bytes  summary            outcome        tick
-//! 2       frame  1.204  …    0b 01  to 1: TICKS seq 0  8 ticks queued  0 to 256000
-//! ```
-//!
-//! A row is what the controller took for one packet or frame, and each of its own replies. The bytes of another
-//! controller's reply look like a frame's; whose they are says the schedule of what the host sent.
+//! Bytes of another controller's reply look like a frame; the host's schedule tells them apart.
 //!
 //! ```
 //! use stepscope_inspect::packets::packet_table::PacketTable;
@@ -47,16 +41,14 @@ use stepscope_peripheral::{
 };
 use stepscope_sim::{Experiment, Run};
 
-/// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
-    /// A raw packet of the host, or a part of one.
+    /// A raw packet, or a part of one.
     Packet,
-    /// A frame of the host, or what was none.
     Frame,
-    /// What a controller answered: this one, or another one that it heard.
+    /// A reply of this or another controller.
     Reply,
-    /// Two drove the line at once.
+    /// Two senders at once.
     Collision,
 }
 
@@ -73,107 +65,84 @@ impl RowKind {
     }
 }
 
-/// A row for the eye.
+/// A formatted row. Cycles are half-open ranges.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
-    /// Its number, from 0 on.
     pub index: usize,
-    /// [`RowKind::name`].
     pub kind: &'static str,
-    /// Where the start bit of its first byte was seen.
+    /// Start bit of its first byte.
     pub start_cycle: u64,
-    /// Where it was complete or given up.
     pub end_cycle: u64,
-    /// First cycle after its last byte on the line.
+    /// End of its last byte on the line.
     pub line_end_cycle: u64,
-    /// When it starts, in the table's unit.
     pub start: String,
-    /// Time since the end of what was on the line before; empty for the first.
+    /// Time since the end of the row before; empty for the first.
     pub gap: String,
-    /// Its bytes, two digits each, with a space between.
     pub hex: String,
-    /// What they mean, in one line.
     pub fields: String,
-    /// What became of it.
     pub outcome: String,
     /// The outcome for a narrow column.
     pub short: String,
-    /// [`PacketTable::why`].
     pub why: String,
-    /// [`Mark::name`].
     pub mark: &'static str,
-    /// First cycle of the first tick that it brought, if that has begun.
+    /// Start of the first tick that it delivered.
     pub tick_start_cycle: Option<u64>,
-    /// First cycle after the last of them that has ended.
+    /// End of the last of them.
     pub tick_end_cycle: Option<u64>,
 }
 
-/// A tick that a row, or firmware, brought.
+/// A tick, and the row that delivered it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TickRow {
-    /// Its first cycle.
     pub start_cycle: u64,
-    /// First cycle after it.
     pub end_cycle: u64,
-    /// Row that brought it.
     pub row: Option<usize>,
-    /// Its steps.
     pub fields: String,
 }
 
-/// What there is to choose from, rising, each of them on some row.
+/// Values of the filters, rising; each occurs in some row.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Choices {
-    /// Addresses.
     pub addresses: Vec<u8>,
-    /// [`RowKind::name`], kinds of DESIGN A6, `NAK`.
     pub kinds: Vec<&'static str>,
 }
 
-/// The table of one controller's finished log.
 #[derive(Clone, Copy)]
 pub struct PacketTable<'a> {
     experiment: &'a Experiment,
     run: &'a Run,
-    /// The controller that heard it.
     own: &'a Config,
     log: &'a PacketLog,
 }
 
 impl<'a> PacketTable<'a> {
-    /// The table of what controller `controller` heard in a run; `log` is its finished log. A controller that there is
-    /// not counts as the first.
+    /// The table of controller `controller`; `log` is its finished log. An unknown controller counts as the first.
     #[must_use]
     pub fn new(experiment: &'a Experiment, run: &'a Run, controller: usize, log: &'a PacketLog) -> Self {
         let own = experiment.configs().nth(controller).unwrap_or_else(|| experiment.config());
         Self { experiment, run, own, log }
     }
 
-    /// How many rows there are.
     #[must_use]
     pub fn len(&self) -> usize {
         self.log.rows().len()
     }
 
-    /// Whether nothing was heard.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.log.rows().is_empty()
     }
 
-    /// Bytes of a row.
     #[must_use]
     pub fn bytes(&self, index: usize) -> &'a [u8] {
         self.log.bytes(index)
     }
 
-    /// The unit and digits of the table's times.
     #[must_use]
     pub fn scale(&self) -> TimeScale {
         TimeScale::of(self.run.cycles(), self.own.clock_hz())
     }
 
-    /// What a row is; `None` past the last.
     #[must_use]
     pub fn kind(&self, index: usize) -> Option<RowKind> {
         let row = self.logged(index)?;
@@ -186,8 +155,7 @@ impl<'a> PacketTable<'a> {
         })
     }
 
-    /// Whether a row on a framed line is what another controller sent. One that is spoiled says so by nothing but its
-    /// time: neither the host nor a forced level began it.
+    /// Whether another controller sent a row of a framed line: neither the host nor a forced level began it.
     fn is_of_another_controller(&self, index: usize, row: &LoggedPacket) -> bool {
         let first = self.log.seen(index).first().copied().unwrap_or(row.start);
         let of_host = self.run.schedule().last_until(first + self.own.bit()).is_some_and(|send| {
@@ -209,7 +177,7 @@ impl<'a> PacketTable<'a> {
         }
     }
 
-    /// Address that a row goes to or comes from, where its bytes have one that can be trusted.
+    /// The row's address, if its bytes are valid.
     #[must_use]
     pub fn address(&self, index: usize) -> Option<u8> {
         match (self.own.protocol(), self.logged(index)?.outcome) {
@@ -221,7 +189,6 @@ impl<'a> PacketTable<'a> {
         }
     }
 
-    /// A row for the eye; `None` past the last.
     #[must_use]
     pub fn row(&self, index: usize) -> Option<Row> {
         let logged = self.logged(index)?;
@@ -252,19 +219,16 @@ impl<'a> PacketTable<'a> {
         })
     }
 
-    /// Adds a row's bytes in hex to a text.
     pub fn write_hex(&self, index: usize, text: &mut String) {
         format::write_hex(self.bytes(index), " ", text);
     }
 
-    /// What each byte of a row means.
     #[must_use]
     pub fn meaning(&self, index: usize) -> Option<Meaning> {
         let outcome = self.logged(index)?.outcome;
         Some(self.reading(&|address| self.channels(address)).of(self.bytes(index), outcome))
     }
 
-    /// What there is to choose from.
     #[must_use]
     pub fn choices(&self) -> Choices {
         let (mut addresses, mut kinds) = ([false; 256], Vec::new());
@@ -285,18 +249,17 @@ impl<'a> PacketTable<'a> {
         }
     }
 
-    /// The rows whose time on the line touches the cycles `start..=end`, rising.
+    /// Rows on the line in the cycles `start..=end`.
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> + use<'a> {
         self.log.touching(start, end)
     }
 
-    /// Whether a row has a byte on the line in the cycles `start..=end`.
     #[must_use]
     pub fn is_on_line(&self, index: usize, start: Instant, end: Instant) -> bool {
         self.logged(index).is_some_and(|row| row.start <= end) && self.line_end(index) >= start.0
     }
 
-    /// The ticks that touch the cycles `start..=end`, each with the row that brought it.
+    /// Ticks in the cycles `start..=end`, each with its row.
     pub fn ticks_touching(
         &self,
         start: Instant,
@@ -347,13 +310,11 @@ impl<'a> PacketTable<'a> {
         Reading { protocol: self.own.protocol(), addressed, channels }
     }
 
-    /// Channels of the controller with an address; of the one that hears the line where there is none.
     fn channels(&self, address: u8) -> u8 {
         let known = self.experiment.configs().find(|config| config.address() == Some(address));
         known.unwrap_or(self.own).channels()
     }
 
-    /// When the host's bits and bytes begin.
     fn host_times(&self) -> BitTimes {
         BitTimes::new(self.own.clock_hz(), self.experiment.baud())
     }

@@ -1,5 +1,5 @@
-//! A plant's run for the eye: the least and greatest of each value in equal stretches of time, and the plant itself every now
-//! and then, from which a shorter stretch is worked out again, to the same bits.
+//! A plant's run as minimum and maximum per interval, with snapshots of the plant from which a shorter window is
+//! computed again, to the same bits.
 //!
 //! ```text
 //! points   . . . . . . . . . . . . . . . .     one each grid step, of which there may be 10^8
@@ -30,65 +30,53 @@ use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;
 use stepscope_plant::{Observer, Plant};
 
-/// Values of the whole plant: the bus' voltage in V, the supply current and its sensor's reading in A.
+/// Values of the whole plant: bus voltage in V, supply current and its sensor's reading in A.
 pub const SUPPLY: [&str; 3] = ["bus_v", "load_a", "sensor_a"];
-/// Values of each motor: what it is told and where it is in full steps, the difference, full steps/s, phase currents in A, the
-/// encoder's code.
+/// Values of each motor: command and rotor in full steps, their difference, full steps/s, phase currents in A,
+/// encoder code.
 pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a", "phase_b_a", "encoder"];
 
-/// Bins that there may be; there are never fewer than half as many, once there were so many points.
+/// Maximum bins; when full, two become one.
 const BINS: usize = 8192;
-/// Stretches of fewer bins are worked out again.
+/// Windows of fewer bins are computed again.
 const ENOUGH: u64 = 512;
-/// Plants that are kept, at most.
 const KEPT: usize = 64;
-/// Points of a stretch that is not drawn from bins are all told up to so many a column.
+/// Points per column up to which all are drawn.
 const POINTS_A_COLUMN: u64 = 2;
 
-/// What a run's plant did.
 #[derive(Clone, Debug)]
 pub struct PlantLog {
-    /// Cycles of a grid step.
     step_cycles: u64,
-    /// Points of a bin, and those in the one that is being filled.
     points_a_bin: u64,
     in_last: u64,
-    /// Least and greatest of each value, bin after bin.
     least: Vec<f64>,
     greatest: Vec<f64>,
-    /// The values of the latest point.
     latest: Vec<f64>,
     kept: Vec<Kept>,
-    /// Plants are kept at least so many points from each other.
+    /// Minimum distance of snapshots in points.
     apart: u64,
 }
 
-/// A plant at a point, and how many of the records it had been told by then.
 #[derive(Clone, Debug)]
 struct Kept {
     plant: Plant,
     records: usize,
 }
 
-/// A stretch of time and how finely it is looked at.
+/// A range of cycles, divided into columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// Its first cycle.
     pub from: u64,
-    /// Its last one.
     pub to: u64,
-    /// Columns of pixels, at least 1.
     pub columns: usize,
 }
 
-/// A value over time: where least and greatest are equal everywhere it is a line.
+/// A value over time; equal minimum and maximum make a line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
-    /// Cycles of its places: of points, or of the middles of stretches.
+    /// Cycles of points, or of the middles of intervals.
     pub cycle: Vec<f64>,
-    /// The least at or around each.
     pub least: Vec<f64>,
-    /// The greatest.
     pub greatest: Vec<f64>,
 }
 
@@ -115,7 +103,7 @@ impl Observer for PlantLog {
     }
 }
 
-/// The values of a plant at its point, in the order of [`SUPPLY`] and, of each motor, [`MOTOR`].
+/// Reads the values in the order of [`SUPPLY`] and, per motor, [`MOTOR`].
 fn read(plant: &Plant, values: &mut [f64]) {
     let (supply, motors) = values.split_at_mut(SUPPLY.len());
     supply.copy_from_slice(&[plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()]);
@@ -127,7 +115,6 @@ fn read(plant: &Plant, values: &mut [f64]) {
 }
 
 impl PlantLog {
-    /// A log that begins with this plant, which has been told nothing yet.
     #[must_use]
     pub fn new(plant: &Plant) -> Self {
         Self {
@@ -142,7 +129,7 @@ impl PlantLog {
         }
     }
 
-    /// Keeps a plant that has been told the first `records` of the run's records; between two slices of a run, never in one.
+    /// Takes a snapshot of a plant that has processed the first `records` records; between slices of a run only.
     pub fn keep(&mut self, plant: &Plant, records: usize) {
         let step = plant.step_cycles();
         let last = self.kept.last().map_or(0, |kept| kept.plant.cycle());
@@ -150,7 +137,7 @@ impl PlantLog {
             self.kept.push(Kept { plant: plant.clone(), records });
         }
         if self.kept.len() > KEPT {
-            // Every other one goes, and the next come half as often.
+            // Drop every other one and halve the rate.
             let mut index = 0;
             self.kept.retain(|_| {
                 index += 1;
@@ -160,7 +147,7 @@ impl PlantLog {
         }
     }
 
-    /// Index of the first value of a motor, in the order of [`MOTOR`].
+    /// Index of a motor's first value.
     #[must_use]
     pub const fn of_motor(channel: usize) -> usize {
         SUPPLY.len() + channel * MOTOR.len()
@@ -184,8 +171,7 @@ impl PlantLog {
         self.points_a_bin *= 2;
     }
 
-    /// Some values over a stretch of time, by their indices: at most two places a column; every point where there are no more,
-    /// and one more at each end.
+    /// Values by index over a window: at most two points per column, and one more at each end.
     #[must_use]
     pub fn curves(&self, records: &[Record], stretch: Stretch, values: &[usize]) -> Vec<Band> {
         let mut bands = vec![Band::default(); values.len()];
@@ -232,9 +218,9 @@ impl PlantLog {
         values
     }
 
-    /// Runs the plant once more from the last one that was kept before `from`, to `to`.
+    /// Runs the plant again from the last snapshot before `from`, up to `to`.
     fn again(&self, records: &[Record], from: u64, to: u64, observer: &mut dyn Observer) -> Option<Plant> {
-        // One that is kept has its point behind it already.
+        // A snapshot lies behind its point.
         let before = from.saturating_sub(2 * self.step_cycles);
         let kept = self.kept.iter().rev().find(|kept| kept.plant.cycle() <= before).or(self.kept.first())?;
         let mut plant = kept.plant.clone();
@@ -246,7 +232,6 @@ impl PlantLog {
     }
 }
 
-/// Joins so many places to one.
 struct Columns<'a> {
     bands: &'a mut [Band],
     join: u64,

@@ -1,8 +1,7 @@
-//! Do the torque-speed curve and the plant say the same of a motor, and if not, why?
+//! Compares torque curve and plant, and explains differences.
 //!
-//! The curve ([`torque`](crate::motion::torque)) asks whether there is enough torque at each moment of a plan; the plant runs the
-//! rotor. They leave out different things: the curve knows no friction, ringing or jumps of speed, and gives the driver a
-//! sine, of which a driver out of voltage makes a square wave. docs/plant.md, "How sure the figures are", has the sizes.
+//! The curve ([`torque`](crate::motion::torque)) omits friction, ringing and jumps of speed, and assumes a sine where
+//! a driver out of voltage makes a square wave.
 //!
 //! ```
 //! use stepscope_inspect::{motion::torque::{Demand, Machine}, plant::model_agreement::{FirstSlips, agreement}};
@@ -35,36 +34,34 @@ use stepscope_plant::{
     stability::Natural,
 };
 
-/// Steps over which the rate at a slip is taken.
+/// Steps over which the rate at a slip is averaged.
 const STEPS: usize = 16;
-/// What the driver's square wave has over the curve's sine above the corner, at most.
+/// Maximum gain of the driver's square wave over the curve's sine.
 const SQUARE_WAVE: f64 = 1.28;
-/// Up to this multiple of the natural frequency, in full steps/s, ...
+/// Multiple of the natural frequency, in full steps/s, up to which ...
 const RESONANCE: f64 = 1.5;
-/// ... and up to so many microsteps a full step, a rate can make the rotor swing out of its field.
+/// ... and microsteps up to which a rate can throw the rotor out of its field.
 const RESONANT_MICROSTEPS: u16 = 4;
-/// A slip at a rate up to this multiple of the greatest jump of speed is the jump's.
+/// A slip up to this multiple of the maximum jump of speed is due to the jump.
 const JUMPED: f64 = 2.0;
 /// A bus below this part of the supply has sagged.
 const SAG: f64 = 0.95;
 
-/// The rate at which STEP came when a motor slipped first, by channel.
+/// The step rate at the first slip, per channel.
 #[derive(Clone, Debug, Default)]
 pub struct FirstSlips {
     channels: [Steps; MAX_CHANNELS],
 }
 
-/// The latest steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steps {
     cycles: [u64; STEPS],
     count: usize,
-    /// Cycles of a step when it slipped first.
     interval: Option<f64>,
 }
 
 impl FirstSlips {
-    /// Steps/s at the first slip of a channel; `None` where it did not slip, or before its second step.
+    /// In steps/s; `None` without a slip, or before the second step.
     #[must_use]
     pub fn rate(&self, channel: usize, clock_hz: u32) -> Option<f64> {
         self.channels.get(channel)?.interval.map(|cycles| f64::from(clock_hz) / cycles)
@@ -98,19 +95,17 @@ impl Observer for FirstSlips {
     }
 }
 
-/// What both models say of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
-    /// What the plant's motor does, in words.
+    /// What the plant's motor does.
     pub plant: String,
-    /// Whether the curve has torque enough exactly where the plant's motor follows; `None` where the run does not tell.
+    /// Whether curve and plant agree; `None` where the run does not decide it.
     pub agrees: Option<bool>,
-    /// Why they differ, or why the run does not tell.
     pub why: Option<String>,
 }
 
-/// Holds the plant's motor of `channel` against what the curve says of the axis of that channel. `overload` is the cycle in
-/// which a protection stopped the controller.
+/// Compares the plant's motor of `channel` with the curve. `overload` is the cycle in which a protection stopped the
+/// controller.
 #[must_use]
 pub fn agreement(
     machine: &Machine,
@@ -144,7 +139,6 @@ pub fn agreement(
     Agreement { plant, agrees: Some(enough == follows), why }
 }
 
-/// The curve has enough torque, and the plant's motor slips at `rate`.
 fn why_it_slips(
     machine: &Machine,
     demand: &Demand,
@@ -187,7 +181,6 @@ fn why_it_slips(
     )
 }
 
-/// The curve has too little torque, and the plant's motor follows.
 fn why_it_follows(machine: &Machine, demand: &Demand, found: &MotorResult) -> String {
     let Some(worst) = demand.least else { return String::new() };
     let needed = worst.needed_mn_m;

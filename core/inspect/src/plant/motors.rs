@@ -1,9 +1,7 @@
-//! Motors and drivers to choose from, for who has no data sheet at hand: figures that a plant asks for, and where each comes
-//! from.
+//! Motors and drivers to choose from, with the source of each figure.
 //!
-//! No sheet tells friction. Every motor has the default motor's in parts of its holding torque, 1/80 of it, and
-//! 0.75 uN*m*s for each mN*m; these are guesses of the size, so [`MotorSheet::typical`] names them. So it does with every
-//! other figure that its document does not give, or that no text at hand confirmed. Supply and load are the scenario's.
+//! No data sheet states friction: every motor has the default motor's in proportion to its holding torque.
+//! [`MotorSheet::typical`] lists all such figures that the source does not state.
 //!
 //! ```
 //! use stepscope_inspect::plant::motors::{drive, motor};
@@ -26,61 +24,43 @@ use stepscope_motion::{
 };
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
-/// A motor's figures, and where they come from.
+/// A motor's figures and their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
-    /// Its word on the command line.
+    /// Its name on the command line.
     pub id: &'static str,
-    /// Size, maker and type.
     pub name: &'static str,
-    /// Its full step in degrees.
     pub full_step_deg: f64,
-    /// Rated current of a phase in A, both phases on.
     pub rated_current_a: f64,
-    /// Resistance of a phase in ohm.
     pub resistance_ohm: f64,
-    /// Inductance of a phase in mH.
     pub inductance_mh: f64,
-    /// Holding torque in mN*m, both phases at the rated current.
     pub holding_torque_mn_m: f64,
-    /// Inertia of the rotor in g*cm^2.
     pub rotor_inertia_g_cm2: f64,
-    /// Amplitude of the detent torque in mN*m; 0 where no document tells it.
+    /// 0 where the source does not state it.
     pub detent_torque_mn_m: f64,
-    /// Coulomb friction in mN*m.
     pub friction_mn_m: f64,
-    /// Viscous friction in uN*m*s.
     pub viscous_un_m_s: f64,
     /// The document, and what in it the figures rest on.
     pub source: &'static str,
-    /// Fields of the scenario's motor that the document does not give: figures of the usual size.
+    /// Fields that the source does not state: figures of the usual size.
     pub typical: &'static [&'static str],
 }
 
-/// A driver's figures, and where they come from.
+/// A driver's figures and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
-    /// Its word on the command line.
     pub id: &'static str,
-    /// Maker and type.
     pub name: &'static str,
-    /// The figures.
     pub drive: Drive,
-    /// The document, what in it the figures rest on, and what of the driver the model leaves out.
     pub source: &'static str,
-    /// Fields of the scenario's driver that the document does not give, or that no text at hand confirmed.
     pub typical: &'static [&'static str],
 }
 
-/// What no data sheet of a motor tells.
 const FRICTIONS: &[&str] = &["friction_mn_m", "viscous_un_m_s"];
-/// What many leave out, too.
 const FRICTIONS_AND_DETENT: &[&str] = &["detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
 
-/// What drawings of windings leave out.
 const INERTIA_AND_FRICTIONS: &[&str] =
     &["rotor_inertia_g_cm2", "detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
-/// Of a motor without a document.
 const ALL: &[&str] = &[
     "rated_current_a",
     "resistance_ohm",
@@ -92,7 +72,7 @@ const ALL: &[&str] = &[
     "viscous_un_m_s",
 ];
 
-/// A motor of 1.8 degrees with friction as the default motor's, in parts of its holding torque.
+/// A 1.8 degree motor with the default friction in proportion to its holding torque.
 const fn usual(
     [rated_current_a, resistance_ohm, inductance_mh]: [f64; 3],
     [holding_torque_mn_m, rotor_inertia_g_cm2, detent_torque_mn_m]: [f64; 3],
@@ -114,7 +94,7 @@ const fn usual(
     }
 }
 
-/// All motors: the documents' own, then by size. Each row is A, ohm, mH; mN*m, g*cm^2, mN*m of detent torque.
+/// Rows are A, ohm, mH; mN*m, g*cm^2, mN*m of detent torque.
 pub const MOTORS: &[MotorSheet] = &[
     MotorSheet {
         id: "song-2021",
@@ -197,7 +177,7 @@ pub const MOTORS: &[MotorSheet] = &[
     },
 ];
 
-/// What the chips share: a chopper that decays slowly while the current rises and mixed while it falls.
+/// What the chips share: slow decay while the current rises, mixed while it falls.
 const CHIP: Drive = Drive {
     regulator: Regulator::Chopper,
     decay: Decay::Auto,
@@ -209,7 +189,7 @@ const CHIP: Drive = Drive {
     diode_v: 0.7,
 };
 
-/// All drivers; those that the timing check knows, too, have the same word there ([`drivers`](crate::trace::drivers)).
+/// Drivers known to the timing check have the same id there ([`drivers`](crate::trace::drivers)).
 pub const DRIVES: &[DriveSheet] = &[
     DriveSheet {
         id: "ideal",
@@ -269,21 +249,18 @@ pub const DRIVES: &[DriveSheet] = &[
     },
 ];
 
-/// The motor of that word.
 #[must_use]
 pub fn motor(id: &str) -> Option<&'static MotorSheet> {
     MOTORS.iter().find(|sheet| sheet.id == id)
 }
 
-/// The driver of that word.
 #[must_use]
 pub fn drive(id: &str) -> Option<&'static DriveSheet> {
     DRIVES.iter().find(|sheet| sheet.id == id)
 }
 
 impl MotorSheet {
-    /// The motor with these figures, at its rated current; supply, load and driver are those of `place`, which it takes
-    /// the place of.
+    /// This motor at its rated current, with supply, load and driver of `place`.
     #[must_use]
     pub fn in_place_of(&self, place: &Motor) -> Motor {
         Motor {
@@ -302,7 +279,7 @@ impl MotorSheet {
         }
     }
 
-    /// The motor by itself, for its torque: at its rated current, with the default motor's supply and microsteps, and no load.
+    /// The motor without load, on the default supply and microsteps.
     #[must_use]
     pub fn machine(&self) -> Option<Machine> {
         let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
@@ -310,7 +287,7 @@ impl MotorSheet {
         Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
     }
 
-    /// Puts it in the place of every motor of a scenario, with its full step.
+    /// Replaces every motor of a scenario.
     pub fn put_into(&self, scenario: &mut Scenario) {
         each_motor(scenario, |full_step_deg, motor| {
             *motor = self.in_place_of(motor);
@@ -322,13 +299,12 @@ impl MotorSheet {
 }
 
 impl DriveSheet {
-    /// Puts it in the place of the driver of every motor of a scenario.
+    /// Replaces the driver of every motor of a scenario.
     pub fn put_into(&self, scenario: &mut Scenario) {
         each_motor(scenario, |_, motor| motor.drive = self.drive.clone());
     }
 }
 
-/// Every motor of a scenario with its full step; those that stand there by default are written out before.
 fn each_motor(scenario: &mut Scenario, mut with: impl FnMut(Option<&mut f64>, &mut Motor)) {
     let listed = scenario.plant.as_ref().is_some_and(|plant| !plant.motors.is_empty());
     let first: Vec<&mut Axis> = match &mut scenario.source {
@@ -343,7 +319,7 @@ fn each_motor(scenario: &mut Scenario, mut with: impl FnMut(Option<&mut f64>, &m
             Mechanics::Screw(m) => Some(&mut m.full_step_deg),
             Mechanics::Direct(_) => None,
         };
-        // Without one of its own an axis has that of the list, and without a list the default one.
+        // An axis without a motor has the list's, and without a list the default one.
         if axis.motor.is_none() && (listed || full_step_deg.is_none()) {
             continue;
         }

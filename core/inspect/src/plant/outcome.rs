@@ -1,4 +1,4 @@
-//! What a plant did, in words and as series, and the settling time of a motor's supply current (PLANT F8).
+//! Results of a plant as text and series, and the settling time of a motor's supply current (PLANT F8).
 //!
 //! ```
 //! use stepscope_inspect::plant::outcome::{settling, verdict};
@@ -30,17 +30,15 @@ use stepscope_plant::{
     settling::{REST_STEPS, SensorLog, StepResponse},
 };
 
-/// Following errors from here on, in full steps, are more than a motor's own: the field hardly holds it.
+/// Following errors in full steps from which on the field hardly holds the rotor.
 const FAR: f64 = 2.0;
 
-/// Half an electrical period, in full steps: a rotor that goes further in a grid step is thrown rather than turned.
+/// Half an electrical period in full steps: more per grid step is a throw, not a turn.
 const HALF_PERIOD: f64 = 2.0;
-/// Degrees of a turn.
 const TURN_DEG: f64 = 360.0;
 
-/// What is to be said where the grid was too coarse for what the motor of `channel` did: at its greatest speed the rotor goes
-/// over half an electrical period, or the load over half a period of its turning torque, in one grid step. Then the result says
-/// nothing of a real motor. F3's limits look at the start alone.
+/// Warns if rotor or load moved more than half a period in one grid step. The result is meaningless then; F3's limits
+/// check only the start.
 #[must_use]
 pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
     let motor = setup.motors.get(channel)?;
@@ -69,7 +67,7 @@ pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<
 /// More of the energy than this must not be left over (F8).
 const MAX_ENERGY_ERROR: f64 = 1e-3;
 
-/// What is to be said where too much of the energy that went through a motor is left over: the grid is too coarse.
+/// Warns if too much energy is unaccounted for.
 #[must_use]
 pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     let error = found.energy.error();
@@ -77,7 +75,7 @@ pub fn energy_left_over(found: &MotorResult) -> Option<String> {
         .then(|| format!("{:.2} % of the energy is left over; give a smaller step_cycles", 100.0 * error))
 }
 
-/// Whether a motor follows its pulses, in words.
+/// Whether a motor follows its pulses.
 #[must_use]
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let lost = motor.lost.unsigned_abs();
@@ -95,7 +93,7 @@ pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     }
 }
 
-/// Names of the analogue values of a plant, in the order of [`values`]; units are in the names.
+/// Names with units, in the order of [`values`].
 #[must_use]
 pub fn names(plant: &Plant) -> Vec<String> {
     let mut names: Vec<String> = ["bus_v", "load_a", "sensor_a", "sensor_code"].map(String::from).into();
@@ -106,7 +104,7 @@ pub fn names(plant: &Plant) -> Vec<String> {
     names
 }
 
-/// What a plant's values are at its point: V, A, codes, full steps and full steps/s.
+/// The plant's values at its point, in V, A, codes, full steps and full steps/s.
 #[must_use]
 pub fn values(plant: &Plant) -> Vec<f64> {
     let sensor = plant.current_sensor();
@@ -119,13 +117,11 @@ pub fn values(plant: &Plant) -> Vec<f64> {
     values
 }
 
-/// The head of a table of points.
 #[must_use]
 pub fn table_head(plant: &Plant) -> String {
     format!("cycle,time_s,{}\n", names(plant).join(","))
 }
 
-/// A row of it.
 #[must_use]
 pub fn table_row(plant: &Plant) -> String {
     let cycle = plant.cycle();
@@ -138,10 +134,8 @@ pub fn table_row(plant: &Plant) -> String {
     row
 }
 
-/// The supply current around one step to the right of the motor of `channel` alone, which rested for ten `t_step` cycles.
-///
-/// # Errors
-/// Those of the plant; none at all where there is no such channel or no sample.
+/// Settling of the supply current after one step to the right, after a rest of ten `t_step` cycles. `None` where
+/// there is no such channel or sample.
 pub fn settling(
     setup: &Setup,
     channel: usize,
@@ -154,10 +148,7 @@ pub fn settling(
 /// A reading of the current sensor: cycles after STEP's rise, and A.
 pub type CurrentAt = (f64, f64);
 
-/// The same, and what the sensor said from `t_step` cycles before the step on.
-///
-/// # Errors
-/// As [`settling`].
+/// Also returns the sensor's readings from `t_step` cycles before the step on.
 pub fn settling_with(
     setup: &Setup,
     channel: usize,
@@ -166,7 +157,7 @@ pub fn settling_with(
 ) -> Result<(StepResponse, Vec<CurrentAt>), Vec<Refused>> {
     let mut plant = Plant::new(&setup.alone(channel).ok_or_else(Vec::new)?)?;
     let mut log = SensorLog::default();
-    // As the self-test has it: S = 1.
+    // As in the self-test: S = 1.
     let (from, rise) = (1, 1 + REST_STEPS * t_step);
     let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
     plant.record(Record { cycle: Instant(rise), levels }, &mut log);

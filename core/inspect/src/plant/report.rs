@@ -1,5 +1,4 @@
-//! What a run's plant came to, as command and page tell it: numbers with their units in their names, and a sentence for each
-//! motor.
+//! The results of a run's plant, for the command and the page.
 //!
 //! ```
 //! use stepscope_inspect::plant::report::PlantReport;
@@ -21,32 +20,23 @@ use stepscope_plant::{
 };
 use stepscope_sim::{Experiment, Run};
 
-/// All of it, of one controller.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantReport {
-    /// Of the whole plant.
     pub plant: Whole,
-    /// Of each channel's motor.
     pub motors: Vec<Motor>,
-    /// Every slip, motor after motor.
     pub slips: Vec<Slip>,
-    /// What the self-test found; empty where there is none.
     pub self_test: Vec<SelfTest>,
 }
 
-/// Supply and sensors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Whole {
     pub controller: usize,
-    /// XXH64, 16 hexadecimal digits.
     pub digest: String,
-    /// The last point.
     pub cycle: u64,
     pub load_least_a: f64,
     pub load_greatest_a: f64,
     pub load_rms_a: f64,
-    /// How far the sensor's reading went from its rest, where enough steps were made.
+    /// Maximum change of the sensor's reading, if enough steps were made.
     pub deviation_above_a: Option<f64>,
     pub deviation_below_a: Option<f64>,
     pub bus_least_v: f64,
@@ -55,22 +45,17 @@ pub struct Whole {
     pub overload_cycle: Option<u64>,
 }
 
-/// One motor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Motor {
     pub channel: usize,
-    /// Whether it follows, in words.
     pub verdict: String,
     pub command_full_steps: f64,
     pub rotor_full_steps: f64,
-    /// Positive to the right.
     pub lost_full_steps: i64,
     pub slips: u64,
-    /// The greatest, with its sign.
+    /// Signed maximum.
     pub following_error_full_steps: f64,
     pub following_error_at_s: f64,
-    /// After the last step.
     pub overshoot_full_steps: Option<f64>,
     pub settling_s: Option<f64>,
     pub phase_peak_a: f64,
@@ -82,37 +67,31 @@ pub struct Motor {
     pub diodes_j: f64,
     pub load_j: f64,
     pub stored_j: f64,
-    /// What is left over, in parts of all that went through.
+    /// Unaccounted energy, in parts of the total.
     pub energy_error: f64,
-    /// The greatest speed, without sign.
     pub fastest_full_steps_s: f64,
-    /// What is to be said where the grid was too coarse for it.
     pub grid_too_coarse: Option<String>,
-    /// The same where too much of the energy is left over.
     pub energy_left_over: Option<String>,
 }
 
 /// Four full steps lost at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Slip {
     pub channel: usize,
     pub cycle: u64,
-    /// Behind to the left of its command.
+    /// The rotor is to the left of its command.
     pub behind: bool,
 }
 
-/// What the self-test found on a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct SelfTest {
     pub channel: usize,
-    /// None: it does not settle.
+    /// `None`: it does not settle.
     pub settling_cycles: Option<u64>,
 }
 
 impl PlantReport {
-    /// Of the plant behind a controller, as far as the run of the experiment has come; `None` where it has none.
+    /// `None` if the controller has no plant.
     #[must_use]
     pub fn of(experiment: &Experiment, run: &Run, controller: usize) -> Option<Self> {
         let setup = experiment.plants()?.setups.get(controller)?;

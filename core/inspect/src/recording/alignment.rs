@@ -1,5 +1,4 @@
-//! Recorded steps compared with a plan's, each with the one that it is ([`super::matching`]): steps may be missing from the
-//! recording, or additional in it.
+//! Recorded steps compared with matched planned steps ([`super::matching`]).
 //!
 //! ```text
 //! recorded     |   |  | | |        late = time since the aligned step, recorded minus planned
@@ -7,8 +6,7 @@
 //!              ^ aligned           jitter: what is left of late without it
 //! ```
 //!
-//! Two clocks never agree: a crystal is off by some tens of ppm, which grows to milliseconds in a minute. So drift is
-//! reported by itself, and jitter without it; a few steps that are far off tilt neither ([`super::drift`]), and are counted.
+//! Clocks differ by tens of ppm, so drift is reported apart from jitter; outliers affect neither ([`super::drift`]).
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
@@ -31,84 +29,62 @@ use serde::Serialize;
 
 pub use super::side::Side;
 
-/// A step that is off.
+/// A step that differs. Late is positive, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Off {
-    /// Which step of the plan, from 0.
     pub step: usize,
-    /// Which step of the recording, from 0.
     pub recorded_step: usize,
-    /// When it was recorded, in s of the recording.
     pub recorded_s: f64,
-    /// How much later than planned it comes, in s; below 0 earlier.
     pub late_s: f64,
-    /// Whether it goes in the other direction.
     pub other_direction: bool,
-    /// Whether the byte has another value.
     pub other_value: bool,
 }
 
-/// A recording compared with a plan, in numbers.
+/// A recording compared with a plan. Times are in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Steps of the recording.
     pub recorded: usize,
-    /// Steps of the plan.
     pub model: usize,
-    /// Steps that both have.
     pub compared: usize,
-    /// Planned steps that were not recorded.
     pub missing: usize,
-    /// Recorded steps that were not planned.
     pub extra: usize,
-    /// What the recording's time has over the plan's at the aligned step, in s.
+    /// The recording's time less the plan's at the aligned step.
     pub offset_s: f64,
-    /// The step that is off most.
     pub largest: Off,
-    /// Root of the mean square of how late the steps are, in s.
     pub rms_s: f64,
-    /// Mean of how late they are, in s.
     pub mean_s: f64,
-    /// How much longer the recording takes than the plan, in millionths: above 0, the recorded clock is the slower one.
+    /// In millionths; above 0 the recorded clock is slower.
     pub drift_ppm: f64,
-    /// Greatest magnitude of what is left without drift and offset, in s.
     pub largest_jitter_s: f64,
-    /// Root of its mean square, in s, of all but the outliers.
     pub rms_jitter_s: f64,
-    /// Steps that are so far off that they do not count for drift and jitter.
+    /// Steps left out of drift and jitter.
     pub outliers: usize,
-    /// The first step that is off by more than is allowed, or goes in the other direction.
     pub first_difference: Option<Off>,
-    /// Steps that are off by more, or go in the other direction.
+    /// Steps that are late beyond the tolerance or have the other direction.
     pub differing: usize,
-    /// Bytes that have another value.
     pub other_values: usize,
 }
 
 impl Comparison {
-    /// Whether every step is there, in its direction and within what is allowed, and every byte has its value.
     #[must_use]
     pub const fn is_same(&self) -> bool {
         self.differing == 0 && self.missing == 0 && self.extra == 0 && self.other_values == 0
     }
 }
 
-/// A recording's steps matched with a plan's, and a time that both have in common.
+/// Matched steps, and an instant that both sides share.
 #[derive(Clone, Debug)]
 pub struct Alignment<'a> {
-    /// What was recorded.
     pub recorded: Side<'a>,
-    /// What was planned.
     pub model: Side<'a>,
-    /// Which is which.
     pub matching: Matching,
-    /// The planned and the recorded step that come at one time.
+    /// The planned and the recorded step of the shared instant.
     pub aligned: (usize, usize),
 }
 
 impl<'a> Alignment<'a> {
-    /// Matches the steps; planned step `aligned` and the recorded one that it is are taken for the same instant, or, where
-    /// none is given, the first that both have. `None` where one of them has no such step.
+    /// Matches the steps. Planned step `aligned`, or the first that both have, gives the shared instant; `None` where
+    /// there is none.
     #[must_use]
     pub fn of(recorded: Side<'a>, model: Side<'a>, aligned: Option<usize>) -> Option<Self> {
         let matching = Matching::of(recorded, model);
@@ -119,7 +95,7 @@ impl<'a> Alignment<'a> {
         Some(Self { recorded, model, matching, aligned })
     }
 
-    /// How late matched step `index` is, exactly, in units of 1/(clock * clock) s.
+    /// Lateness of a matched step, exactly, in units of 1/(clock * clock) s.
     fn units(&self, index: usize) -> Option<i128> {
         let (step, recorded_step) = self.matching.pair(index)?;
         let (due, came) =
@@ -127,7 +103,6 @@ impl<'a> Alignment<'a> {
         Some(came * i128::from(self.model.clock_hz) - due * i128::from(self.recorded.clock_hz))
     }
 
-    /// How far matched step `index` is off; `None` where there are not so many.
     #[must_use]
     pub fn off(&self, index: usize) -> Option<Off> {
         let Self { recorded, model, .. } = self;
@@ -144,14 +119,13 @@ impl<'a> Alignment<'a> {
         })
     }
 
-    /// Whether matched step `index` is off by more than is allowed.
     #[must_use]
     pub fn is_late(&self, index: usize, within: Tolerance) -> bool {
         let most = within.units(self.recorded.clock_hz, self.model.clock_hz);
         self.units(index).is_none_or(|units| units.unsigned_abs() > most)
     }
 
-    /// The comparison in numbers; a step that is off by exactly `within` is not different.
+    /// Compares; a step that is off by exactly `within` is not different.
     #[must_use]
     pub fn comparison(&self, within: Tolerance) -> Comparison {
         let (recorded, model) = (self.recorded, self.model);
@@ -219,13 +193,11 @@ impl<'a> Alignment<'a> {
         found
     }
 
-    /// When a step is planned, from the aligned one on, in s.
     fn model_s(&self, step: usize) -> f64 {
         self.model.since(self.aligned.0, step).unwrap_or(0) as f64 / f64::from(self.model.clock_hz.max(1))
     }
 
-    /// When a planned step is due in the recording, from the last matched step before it, or the first one after, in s of the
-    /// recording.
+    /// The due time of a planned step in s of the recording, from the nearest matched step.
     pub(super) fn due_s(&self, step: usize) -> f64 {
         let runs = self.matching.runs();
         let before = runs.partition_point(|run| run.model <= step).checked_sub(1);

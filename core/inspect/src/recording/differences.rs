@@ -1,10 +1,4 @@
-//! The differences of a recording from its plan, one row each: what is missing, extra, in the wrong direction, another byte or
-//! late. Neighbors of one kind are one row.
-//!
-//! ```text
-//! 1 step missing after step 1999, at 225.6 ms
-//! 3 extra steps after step 2400, at 270.1 ms
-//! ```
+//! The differences of a recording from its plan; neighbors of one kind share a row.
 //!
 //! ```
 //! use stepscope_inspect::recording::{
@@ -25,57 +19,44 @@ use super::{alignment::Alignment, side::Kind, tolerance::Tolerance};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 
-/// Rows that are listed; all are counted.
+/// Maximum listed rows; all are counted.
 pub const MAX_LISTED: usize = 100_000;
 
-/// What kind of difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum What {
-    /// Planned, and not recorded.
     Missing,
-    /// Recorded, and not planned.
     Extra,
-    /// Steps in the wrong direction.
     Direction,
-    /// Bytes with another value.
     Value,
-    /// Earlier or later than allowed.
     Late,
 }
 
-/// Neighboring steps, or bytes, that differ in the same way.
+/// Neighboring steps or bytes that differ in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// In which way.
     pub what: What,
-    /// How many.
     pub count: usize,
-    /// The first of them in the plan, from 0; of extra ones the planned step before them, `None` before the first.
+    /// The first in the plan, from 0; for extra ones the planned step before them.
     pub step: Option<usize>,
-    /// The first of them in the recording; of missing ones the recorded step before them.
+    /// The first in the recording; for missing ones the recorded step before them.
     pub recorded_step: Option<usize>,
-    /// When the first of them was recorded, or, if missing, was due, in s of the recording.
+    /// When it was recorded or due, in s of the recording.
     pub recorded_s: f64,
-    /// How late the one is that is off most, in s; `None` for missing and extra ones.
+    /// Lateness of the worst one, in s.
     pub late_s: Option<f64>,
-    /// The first byte's planned value.
     pub planned_value: Option<u8>,
-    /// The first byte's recorded value.
     pub recorded_value: Option<u8>,
 }
 
-/// All differences.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
-    /// The first [`MAX_LISTED`], in the order of time.
     pub listed: Vec<Difference>,
-    /// How many there are.
     pub count: usize,
 }
 
 impl Differences {
-    /// Those of an alignment; a step that is off by exactly `within` is not late.
+    /// A step that is off by exactly `within` is not late.
     #[must_use]
     pub fn of(alignment: &Alignment<'_>, within: Tolerance) -> Self {
         let mut found = Self::default();
@@ -107,7 +88,6 @@ impl Differences {
         }
     }
 
-    /// What is missing, and what is extra, between two runs.
     fn gap(&mut self, of: &Alignment<'_>, missing: core::ops::Range<usize>, extra: core::ops::Range<usize>) {
         let none = Difference {
             what: What::Missing,
@@ -139,7 +119,6 @@ impl Differences {
 }
 
 impl Alignment<'_> {
-    /// How matched step `index` differs.
     fn difference(&self, index: usize, within: Tolerance) -> Option<Difference> {
         let off = self.off(index)?;
         let what = match (off.other_direction, off.other_value) {
@@ -170,7 +149,7 @@ impl Difference {
         }
     }
 
-    /// In words: "1 step missing after step 1999, at 225.6 ms".
+    /// Such as "1 step missing after step 1999, at 225.6 ms".
     #[must_use]
     pub fn to_text(&self, kind: Kind) -> String {
         let one = kind.singular();
@@ -209,7 +188,7 @@ impl Difference {
     }
 }
 
-/// A time with four digits or more, in the unit that suits it.
+/// A time with at least four digits in a suitable unit.
 fn time(seconds: f64) -> String {
     let (value, unit) = match libm::fabs(seconds) {
         size if size >= 1.0 => (seconds, "s"),

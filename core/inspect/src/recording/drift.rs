@@ -1,5 +1,4 @@
-//! How fast two clocks drift apart: a straight line through how late events are over time, which single late ones do not
-//! tilt.
+//! Clock drift: a line through lateness over time that outliers do not tilt.
 //!
 //! ```text
 //!  late               .  left out        1. slope: the median of those from each event to the one a quarter of all later
@@ -9,10 +8,8 @@
 //!   +------------------------> time
 //! ```
 //!
-//! The medians bear that half of the slopes are wrong, whatever they are (a Theil-Sen estimate of fewer pairs): an event
-//! that is late by itself is in two of them, and a pause in a quarter of all. The least squares' line does what a
-//! median cannot: it sees a drift that is less than a cycle of the clocks. All is in the order of the events, so the same
-//! events have the same drift everywhere.
+//! The medians tolerate that half of the slopes are wrong (Theil-Sen with fewer pairs). Least squares then resolve a
+//! drift below one cycle.
 //!
 //! ```
 //! use stepscope_inspect::recording::drift::Drift;
@@ -26,27 +23,25 @@
 
 use alloc::vec::Vec;
 
-/// Events that the medians are taken of; of more every second, third, ... is.
+/// Maximum events of the medians; of more every second, third, ... is taken.
 const MAX_SAMPLED: usize = 1 << 20;
-/// Pairs are so great a part of all events apart.
+/// Pairs are this part of all events apart.
 const PART: usize = 4;
-/// Median deviations, about four standard ones, within which an event counts.
+/// About four standard deviations.
 const DEVIATIONS: f64 = 6.0;
 
 /// A line through most events.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drift {
-    /// Seconds of lateness a second.
+    /// Seconds of lateness per second.
     pub slope: f64,
-    /// How late the line is at time 0, in s.
     pub late_s: f64,
-    /// How far from the line an event may be that counts, in s.
+    /// Maximum distance of events that count, in s.
     pub within_s: f64,
 }
 
 impl Drift {
-    /// Of `count` events in the order of time, each with its time and how late it is, in s; a cycle of the clocks, by which
-    /// these are rounded, lasts `cycle_s`.
+    /// Fits `count` events in the order of time, each (time, lateness) in s; a cycle lasts `cycle_s`.
     #[must_use]
     pub fn of(count: usize, cycle_s: f64, event: impl Fn(usize) -> Option<(f64, f64)>) -> Self {
         let sampled: Vec<(f64, f64)> =
@@ -58,7 +53,7 @@ impl Drift {
         let middle = median(sampled.iter().copied().map(left).collect());
         let off = |event: (f64, f64)| libm::fabs(left(event) - middle);
         let within_s = DEVIATIONS * median(sampled.iter().copied().map(off).collect()) + cycle_s;
-        // Least squares about the means, of what the first slope leaves.
+        // Least squares about the means, of the rest after the first slope.
         let counting = || (0..count).filter_map(&event).filter(|event| off(*event) <= within_s);
         let (mut n, mut times, mut sum) = (0.0, 0.0, 0.0);
         for event in counting() {
@@ -78,20 +73,18 @@ impl Drift {
         Self { slope: slope + more, late_s: mean - more * mean_time, within_s }
     }
 
-    /// What is left of how late an event is, without the line, in s.
+    /// The lateness that the line does not explain, in s.
     #[must_use]
     pub fn left(&self, time_s: f64, late_s: f64) -> f64 {
         late_s - self.late_s - self.slope * time_s
     }
 
-    /// Whether what is left is too much for an event that counts.
     #[must_use]
     pub fn is_outlier(&self, left_s: f64) -> bool {
         libm::fabs(left_s) > self.within_s
     }
 }
 
-/// The middle one, or the mean of the two in the middle; 0 of none.
 fn median(mut of: Vec<f64>) -> f64 {
     let (half, is_odd) = (of.len() / 2, of.len() % 2 == 1);
     if of.is_empty() {

@@ -1,5 +1,4 @@
-//! What two recordings, or a recording and a run, are compared by: the steps of a channel, or, where none steps, the bytes
-//! of RX, each with its time.
+//! What is compared: the steps of a channel or, if none steps, the bytes of RX.
 //!
 //! ```
 //! use stepscope_inspect::recording::{events::{Events, Kind}, tolerance::Tolerance};
@@ -32,39 +31,29 @@ use stepscope_peripheral::{
 
 pub use super::side::Kind;
 
-/// Steps or bytes with their times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Events {
-    /// What they are.
     pub kind: Kind,
-    /// Cycles a second.
     pub clock_hz: u32,
-    /// Each with its cycle; of bytes the position is how many came.
+    /// With cycles; for bytes the position is their number.
     steps: Vec<Step>,
-    /// Of bytes.
     values: Vec<u8>,
 }
 
-/// How two lists of them compare.
+/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
-    /// What was compared.
     pub kind: Kind,
-    /// In numbers.
     #[serde(flatten)]
     pub comparison: Comparison,
-    /// One by one.
     pub differences: Differences,
-    /// Which is which.
     #[serde(skip)]
     pub matching: Matching,
-    /// The planned and the recorded one that come at one time.
     #[serde(skip)]
     pub aligned: (usize, usize),
 }
 
 impl Beside {
-    /// Whether all of them are there, at their times, with their values.
     #[must_use]
     pub const fn is_same(&self) -> bool {
         self.comparison.is_same()
@@ -72,13 +61,11 @@ impl Beside {
 }
 
 impl Events {
-    /// Steps in cycles of `clock_hz`.
     #[must_use]
     pub const fn of_steps(steps: Vec<Step>, clock_hz: u32) -> Self {
         Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new() }
     }
 
-    /// Bytes in cycles of `clock_hz`.
     #[must_use]
     pub fn of_bytes(heard: &Heard, clock_hz: u32) -> Self {
         let step =
@@ -91,7 +78,7 @@ impl Events {
         }
     }
 
-    /// Those of a trace: the steps of a channel, or the bytes of RX at `baud`.
+    /// The steps of a channel, or the bytes of RX at `baud`.
     #[must_use]
     pub fn of_records(records: &[Record], clock_hz: u32, kind: Kind, channel: u8, baud: u32) -> Self {
         match kind {
@@ -102,27 +89,23 @@ impl Events {
         }
     }
 
-    /// When number `index` comes, from 0, in s.
     #[must_use]
     pub fn at_s(&self, index: usize) -> Option<f64> {
         self.steps.get(index).map(|step| step.cycle as f64 / f64::from(self.clock_hz))
     }
 
-    /// How many there are.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// Whether there is none.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
 
-    /// Compared with a plan's: number `aligned` of the plan, from 0, and the recorded one that it is are taken for the same
-    /// instant, or, without it, the first that both have. One that is off by exactly `within` is not different. `None`
-    /// where one of both has none of this number.
+    /// Compares with a plan. Number `aligned` of the plan, or the first that both have, gives the shared instant;
+    /// `None` where there is none.
     #[must_use]
     pub fn beside(&self, model: &Self, aligned: Option<usize>, within: Tolerance) -> Option<Beside> {
         let alignment = Alignment::of(self.side(), model.side(), aligned)?;
@@ -135,7 +118,6 @@ impl Events {
         })
     }
 
-    /// The alignment that a comparison was made by: how late each one is.
     #[must_use]
     pub fn alignment<'a>(&'a self, model: &'a Self, found: &Beside) -> Alignment<'a> {
         let (recorded, model) = (self.side(), model.side());

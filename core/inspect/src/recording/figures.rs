@@ -1,4 +1,4 @@
-//! What the steps of a channel come to, where no plan is known: of a recording, or of a list of segments.
+//! Figures of a channel's steps without a plan.
 //!
 //! ```
 //! use stepscope_inspect::recording::figures::StepFigures;
@@ -16,51 +16,38 @@ use alloc::collections::VecDeque;
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
-/// The steps of a channel in numbers. Rates are 1 by the interval from step to step.
+/// Rates are 1/interval from step to step; times are in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StepFigures {
-    /// Steps.
     pub steps: u64,
-    /// Of them, to the right.
     pub right: u64,
-    /// Of them, to the left.
     pub left: u64,
-    /// How often the direction changes.
     pub turns: u64,
-    /// Position after the last, from 0 before the first.
     pub position: i32,
-    /// Least position.
     pub least_position: i32,
-    /// Greatest position.
     pub greatest_position: i32,
-    /// When the first step comes, in s.
     pub first_s: f64,
-    /// When the last step comes, in s.
     pub last_s: f64,
-    /// Shortest interval in s; `None` of a single step.
     pub shortest_interval_s: Option<f64>,
-    /// When it ends, in s.
     pub shortest_at_s: Option<f64>,
-    /// Longest interval in s.
     pub longest_interval_s: Option<f64>,
-    /// Greatest rate in steps/s; `None` where two steps share a cycle.
+    /// `None` where two steps share a cycle.
     pub greatest_rate_steps_s: Option<f64>,
-    /// Steps by the time from the first to the last, in steps/s.
     pub mean_rate_steps_s: Option<f64>,
-    /// Greatest magnitude of the acceleration ([`step_acceleration`]), in steps/s^2; 0 where rounding to cycles explains it.
+    /// Magnitude in steps/s^2 ([`step_acceleration`]); 0 where rounding to cycles explains it.
     pub greatest_acceleration_steps_s2: Option<f64>,
-    /// Greatest part by which an interval differs from the one before it, in one direction: 0.1 for a tenth.
+    /// Maximum relative change of the interval in one direction: 0.1 for a tenth.
     pub greatest_interval_change: Option<f64>,
 }
 
 impl StepFigures {
-    /// Of steps in cycles of `clock_hz`, one after the other: none of them is kept. `None` where there is none.
+    /// Takes steps in cycles of `clock_hz` without storing them; `None` where there is none.
     #[must_use]
     pub fn of(steps: impl IntoIterator<Item = Step>, clock_hz: u32) -> Option<Self> {
         Self::of_rate(steps, f64::from(clock_hz))
     }
 
-    /// The same of steps in ticks, `hz` of which are a second.
+    /// As [`Self::of`], with steps in ticks of `hz`.
     #[must_use]
     pub fn of_rate(steps: impl IntoIterator<Item = Step>, hz: f64) -> Option<Self> {
         let mut steps = steps.into_iter();
@@ -87,7 +74,6 @@ impl StepFigures {
         let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
         let mut acceleration =
             Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), certain: None, any: None };
-        // The step before, its direction, and the interval before it where that was in this direction.
         let (mut last, mut way, mut length) = (first, 0, None::<u64>);
         for step in core::iter::once(first).chain(steps) {
             let now =
@@ -128,18 +114,15 @@ impl StepFigures {
     }
 }
 
-/// The greatest acceleration.
 struct Acceleration {
     hz: f64,
-    /// The last ones, as many as one is taken of.
     steps: VecDeque<Step>,
-    /// The greatest that rounding does not explain; 0 where it explains all.
+    /// The maximum that rounding does not explain.
     certain: Option<f64>,
-    /// The greatest of all.
     any: Option<f64>,
 }
 
-/// Cycles by which rounded times explain a difference of two intervals: each of three times is off by half a cycle.
+/// Cycles of rounding in a difference of two intervals: three times, each off by half a cycle.
 const ROUNDING: u64 = 2;
 
 impl Acceleration {
@@ -158,8 +141,8 @@ impl Acceleration {
         self.any = greater(self.any, found);
     }
 
-    /// Of steps whose intervals differ by up to `spread` cycles. A rate that changes so slowly that rounding explains each
-    /// change by itself still changes.
+    /// The maximum for intervals that differ by up to `spread` cycles. A slow change shows even where rounding
+    /// explains each single one.
     fn greatest(&self, spread: u64) -> Option<f64> {
         if self.certain == Some(0.0) && spread > ROUNDING { self.any } else { self.certain }
     }

@@ -1,15 +1,13 @@
-//! Which recorded step is which planned step, where steps are missing from the recording or additional in it.
+//! Matches recorded with planned steps, where steps may be missing or extra.
 //!
 //! ```text
 //! plan       |   |   |   |   |   |        runs: planned 0.. with recorded 0.., then planned 3.. with recorded 2..
 //! recorded   |   |       |   | : |              (one missing), then planned 5.. with recorded 5.. (one extra)
 //! ```
 //!
-//! A beam search: hypotheses walk along both lists. Each follows the clock of the recording by a filter of offset and rate, so
-//! drift of a few percent and jitter of part of an interval change no match. A step that is not on time makes further
-//! hypotheses: steps are missing, steps are extra, this step is late, or all from here on are. The steps behind it show which
-//! one fits, and the cheapest wins. The search is repeated for each of the first pairs of steps, as no clock is known there.
-//! At most 16 hypotheses live at a time, and the number of tried gaps is bounded: time and memory grow linearly.
+//! A beam search: each hypothesis follows the recording's clock by a filter of offset and rate. A step that is not on
+//! time makes further hypotheses: missing, extra, late, or a shift. The cheapest wins. It starts from each of the
+//! first pairs of steps. Hypotheses and tried gaps are bounded, so time and memory are linear.
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::Side, matching::Matching};
@@ -33,27 +31,22 @@ use self::search::Search;
 use super::side::Side;
 use alloc::vec::Vec;
 
-/// Planned steps that are matched with recorded ones, one by one.
+/// Planned and recorded steps matched one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// The first planned step, from 0.
     pub model: usize,
-    /// The recorded step that it is.
     pub recorded: usize,
-    /// How many follow each other on both sides, this one included.
     pub count: usize,
-    /// Matched steps before it.
     before: usize,
 }
 
-/// All matched steps, in runs without a missing or extra step.
+/// All matched steps, as runs without a missing or extra step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Matching {
     runs: Vec<Run>,
 }
 
 impl Matching {
-    /// Matches two lists of steps, or of bytes.
     #[must_use]
     pub fn of(recorded: Side<'_>, model: Side<'_>) -> Self {
         let Some((end, starts)) = Search::new(recorded, model).run() else { return Self::default() };
@@ -68,25 +61,22 @@ impl Matching {
         found
     }
 
-    /// The runs, in order.
     #[must_use]
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
 
-    /// Matched steps.
     #[must_use]
     pub fn len(&self) -> usize {
         self.runs.last().map_or(0, |last| last.before + last.count)
     }
 
-    /// Whether none is matched.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }
 
-    /// Matched step number `index`: the planned and the recorded step.
+    /// The planned and the recorded step of match `index`.
     #[must_use]
     pub fn pair(&self, index: usize) -> Option<(usize, usize)> {
         let after = self.runs.partition_point(|run| run.before <= index);
@@ -95,7 +85,7 @@ impl Matching {
         (within < run.count).then_some((run.model + within, run.recorded + within))
     }
 
-    /// The recorded step that a planned step is; `None` where it is missing.
+    /// The recorded step of a planned one; `None` where it is missing.
     #[must_use]
     pub fn recorded(&self, model: usize) -> Option<usize> {
         let after = self.runs.partition_point(|run| run.model <= model);

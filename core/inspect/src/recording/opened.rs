@@ -1,5 +1,3 @@
-//! A capture that is opened: what its file leaves open is said, its times are cycles, and it can be looked at.
-//!
 //! ```
 //! use stepscope_capture::read::{Limits, read};
 //! use stepscope_inspect::recording::opened::{Ask, Opened};
@@ -49,33 +47,30 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::{Scenario, SegmentLists, Source, TimingRules};
 
-/// Clock of bytes without times, and of steps that only rows of positions tell.
+/// Clock for bytes without times and for rows of positions.
 const USUAL_CLOCK_HZ: u32 = 16_000_000;
-/// Bit rate of bytes with times, where there is but one.
+/// Bit rate of bytes with times.
 const USUAL_BAUD: u32 = 115_200;
-/// Most segments of a scenario that is shown in a form.
+/// Maximum segments of a scenario in a form.
 const MAX_SHOWN: usize = 20_000;
-/// Most steps that positions may stand for: two rows can ask for any number.
+/// Maximum steps of position rows; two rows can demand any number.
 const MAX_MADE_STEPS: u64 = 10_000_000;
-/// Cycles of a tick of the file in which an edge can become a pulse and a pause.
+/// Cycles per tick of the file that an edge needs to become a pulse.
 const CYCLES_PER_EDGE: u64 = 4;
-/// Longest name that a scenario may have, in characters.
 const MAX_TITLE: usize = 120;
 
-/// What whoever opens a capture says of it.
+/// How to open a capture. Missing values are proposed, measured or taken from the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Ask {
-    /// The channel map; proposed without it.
     pub map: Option<String>,
-    /// Clock that times become cycles of, in Hz; the file's own without it.
     pub clock_hz: Option<u32>,
-    /// Samples a second, where the file does not tell.
+    /// Samples per second.
     pub sample_rate_hz: Option<u64>,
-    /// Bit rate of RX and TX; measured without it.
+    /// Bit rate of RX and TX.
     pub baud: Option<u32>,
-    /// Whether the drivers step on both edges: each STEP of the map becomes DEDGE.
+    /// Drivers step on both edges: STEP of the map becomes DEDGE.
     pub both_edges: bool,
-    /// Data bits, parity and stop bits of RX and TX, such as `8E1`; 8N1 without it.
+    /// Data bits, parity and stop bits such as `8E1`; 8N1 by default.
     pub uart: Option<String>,
 }
 
@@ -89,36 +84,26 @@ impl Ask {
     }
 }
 
-/// Why a capture cannot be looked at as yet.
+/// Why a capture cannot be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OpenError {
-    /// The map is wrong.
     Map(MapError),
-    /// Nothing says which channel is which signal.
+    /// No map, and none can be proposed.
     NoMap {
-        /// Names of its channels.
         names: Vec<String>,
-        /// A map that there can be.
         example: String,
     },
-    /// A clock that there cannot be.
     Clock(u32),
-    /// A rate of samples that there cannot be.
     SampleRate,
-    /// Its samples, or the ticks of a controller, have no length.
+    /// Samples or ticks have no duration.
     NoSampleRate(Format),
-    /// Its bytes have no times, and no bit rate is given.
     NoBaud,
-    /// A bit rate that there cannot be.
     Baud,
-    /// A format of a line that there cannot be, and those that there are.
     Uart(String, &'static str),
-    /// Nothing steps, and a line cannot be decoded; why, and what would help.
+    /// No steps, and a line cannot be decoded: the reason and remedies.
     NoRate(String, Vec<Remedy>),
-    /// A time has no cycle.
     TooLate(TooLate),
-    /// Its positions stand for too many steps, or lead too far.
     TooManySteps(u64),
 }
 
@@ -165,34 +150,26 @@ impl fmt::Display for OpenError {
 
 impl core::error::Error for OpenError {}
 
-/// A map of the first two channels.
 fn example(capture: &Capture) -> String {
     let pairs = ["STEP0", "DIR0"].into_iter().zip(0..capture.channels.len());
     let pairs = pairs.map(|(signal, index)| format!("{signal}={}", written(index, &capture.channels)));
     pairs.collect::<Vec<_>>().join(",")
 }
 
-/// Why a capture cannot be laid beside a model by a step, or a byte.
+/// Why a recording cannot be aligned with a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Misaligned {
-    /// Only a part of it is kept, whose first step is not that of the recording.
+    /// Only a part is loaded, without the recording's first step.
     Part,
-    /// It has none of that number.
     None {
-        /// What it has.
         kind: Kind,
-        /// The number, from 0.
         aligned: usize,
-        /// How many it has.
         count: usize,
     },
-    /// The first one would come before the model begins, or with it.
+    /// The first one would come before the model begins.
     Early {
-        /// What it has.
         kind: Kind,
-        /// The number of the one that both have at one time.
         aligned: usize,
-        /// When the first one would come, in s.
         first_s: f64,
     },
 }
@@ -220,74 +197,52 @@ impl fmt::Display for Misaligned {
 
 impl core::error::Error for Misaligned {}
 
-/// Which records are kept of a recording that has too many of them; what it comes to is always told of all.
+/// Which records to load of a long recording; the report always covers all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Most records that are kept.
+    /// Maximum records.
     pub most: usize,
-    /// From this time on, in s; from the beginning without it.
     pub from_s: Option<f64>,
-    /// Up to this time, in s; as many as there is room for without it.
     pub to_s: Option<f64>,
 }
 
-/// What is kept, where that is not all.
+/// The loaded part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Kept {
-    /// From this time on, in s.
     pub from_s: f64,
-    /// Up to this time.
     pub to_s: f64,
-    /// When the recording ends, in s.
     pub end_s: f64,
-    /// Records that are kept.
     pub records: usize,
-    /// Records that there are.
     pub of: usize,
 }
 
-/// A capture in cycles.
+/// A capture in cycles, with its report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opened {
-    /// What the file is, in words.
     pub format: String,
-    /// What it holds: changes, bytes or positions.
     pub what: &'static str,
-    /// How many of them.
     pub count: usize,
-    /// Names of its channels.
     pub names: Vec<String>,
-    /// What was not read, and what has to be known of it.
     pub notes: Vec<Note>,
-    /// The map as text; empty where there are no levels.
     pub map: String,
-    /// Clock of the cycles, in Hz.
     pub clock_hz: u32,
-    /// What the clock does to times.
     pub rounding: String,
-    /// Whether it rounds any.
     pub is_rounded: bool,
-    /// Channels of the bus.
     pub channels: u8,
-    /// Its levels; of positions and bytes that of reset alone.
+    /// Levels; only the reset for positions and bytes.
     pub records: Vec<Record>,
-    /// Which part of them `records` is; `None` where it is all.
+    /// Which part `records` is; `None` for all.
     pub kept: Option<Kept>,
-    /// The last time of the file, in s.
     pub end_s: f64,
-    /// What it comes to.
     pub report: Report,
-    /// Steps that positions stand for.
+    /// Steps of position rows.
     made_steps: Option<Vec<Step>>,
-    /// Motors whose pulses are made, and from what.
+    /// Motors with generated pulses, and their source.
     made_pulses: Vec<(u8, PulseSource)>,
 }
 
 impl Opened {
-    /// Opens a capture. Takes its memory over.
-    ///
-    /// # Errors
-    /// [`OpenError`].
+    /// Loads a capture and frees its memory.
     pub fn new(capture: Capture, ask: &Ask) -> Result<Self, OpenError> {
         let (mut opened, map, base) = Self::before(&capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(&capture, ask, &map).map(|()| opened) };
@@ -310,16 +265,13 @@ impl Opened {
         Ok(opened)
     }
 
-    /// Opens a capture that stays: of its levels no more are kept than `part` says, whatever their number.
-    ///
-    /// # Errors
-    /// [`OpenError`].
+    /// Loads at most `part` of a capture's levels and leaves the capture usable.
     pub fn of_part(capture: &Capture, ask: &Ask, part: &Part) -> Result<Self, OpenError> {
         let (mut opened, map, base) = Self::before(capture, ask)?;
         let Some(base) = base else { return opened.back_to_back(capture, ask, &map).map(|()| opened) };
         let clock_hz = opened.clock_hz;
         let report = opened.without_levels(capture, base, ask, &map)?;
-        // Without levels there is one record, that of reset.
+        // Without levels there is only the record of reset.
         if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
             let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
@@ -344,23 +296,18 @@ impl Opened {
         Ok(opened)
     }
 
-    /// The same recording, of which another part is kept: what it comes to is known. `ask` is as it was, and it is where it was
-    /// recorded ([`Self::align`]).
-    ///
-    /// # Errors
-    /// [`OpenError`].
+    /// Loads another part without computing the report again. Options and alignment stay.
     pub fn with_part(mut self, capture: &Capture, ask: &Ask, part: &Part) -> Result<Self, OpenError> {
         let (Self { end_s, .. }, map, base) = Self::before(capture, ask)?;
         let Some(base) = base.filter(|_| !capture.changes.is_empty()) else { return Ok(self) };
         let count = self.kept.take().map_or(self.records.len(), |kept| kept.of);
         self.end_s = end_s;
-        // Its memory is there for the others.
+        // Free the memory before the next part is loaded.
         self.records = Vec::new();
         self.take_part(capture, &map, base, part, count)?;
         Ok(self)
     }
 
-    /// Takes the records of a part, of so many.
     fn take_part(
         &mut self,
         capture: &Capture,
@@ -380,11 +327,7 @@ impl Opened {
         Ok(())
     }
 
-    /// The timing check in the file's own ticks, which the second result is; `None` where the clock has whole cycles for them,
-    /// or pulses are made.
-    ///
-    /// # Errors
-    /// [`OpenError`].
+    /// The timing check in the file's own ticks; `None` where the clock is exact or pulses are generated.
     pub fn timing_in_ticks(
         capture: &Capture,
         ask: &Ask,
@@ -401,10 +344,7 @@ impl Opened {
         Ok(Some((check, base)))
     }
 
-    /// All of a channel at a glance, in so many columns; `None` where no levels were recorded.
-    ///
-    /// # Errors
-    /// [`OpenError`].
+    /// Minimum and maximum of a channel per column; `None` without levels.
     pub fn overview(
         capture: &Capture,
         ask: &Ask,
@@ -418,7 +358,6 @@ impl Opened {
         Ok(Some(Overview::of(steps(records, channel), f64::from(clock_hz), window)))
     }
 
-    /// Keeps a part of all records: the `rest` from a time on.
     fn keep(&mut self, mut rest: impl Iterator<Item = Record>, of: usize, from_s: f64, part: &Part) {
         let hz = f64::from(self.clock_hz);
         let to_s = part.to_s.unwrap_or(self.end_s).clamp(from_s, self.end_s);
@@ -432,13 +371,12 @@ impl Opened {
             }
             self.records.push(record);
         }
-        // What is full ends before the first one that has no room.
+        // The part ends before the first record without room.
         let to_s = next.filter(|next| *next <= to).map_or(to_s, |next| next as f64 / hz);
         self.kept = Some(Kept { from_s, to_s, end_s: self.end_s, records: self.records.len(), of });
         self.end_s = to_s;
     }
 
-    /// What is known of it before its times are cycles: itself, its map, and how long its ticks are.
     fn before(capture: &Capture, ask: &Ask) -> Result<(Self, ChannelMap, Option<Timebase>), OpenError> {
         if ask.baud == Some(0) {
             return Err(OpenError::Baud);
@@ -481,7 +419,7 @@ impl Opened {
         }
         let told =
             ask.sample_rate_hz.map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate)).transpose()?;
-        // Places among bytes are no samples.
+        // Positions among bytes are no samples.
         let base = capture.timebase.or(told.filter(|_| !has_untimed_bytes(capture)));
         if let Some(base) = base {
             opened.clock_hz = clock(ask, base, !capture.positions.is_empty(), map.makes_pulses())?;
@@ -491,7 +429,6 @@ impl Opened {
         Ok((opened, map, base))
     }
 
-    /// Notes what the clock does to the times of levels, and to so many others.
     fn rounded(&mut self, mut rounding: Rounding, others: u64) {
         rounding.rounded += others;
         (self.rounding, self.is_rounded) = (rounding.to_string(), rounding.rounded > 0);
@@ -504,8 +441,8 @@ impl Opened {
         }
     }
 
-    /// The figures of the steps in the file's own ticks, where its own clock would round them: an interval would vary by a
-    /// cycle, and a constant rate would have an acceleration.
+    /// Figures in the file's own ticks where its clock would round: otherwise a constant rate would have an
+    /// acceleration.
     fn exact_channels(
         &self,
         capture: &Capture,
@@ -513,7 +450,7 @@ impl Opened {
         base: Timebase,
         ask: &Ask,
     ) -> Option<Vec<ChannelReport>> {
-        // In ticks there may be no room for pulses that are made.
+        // Generated pulses may not fit in ticks.
         let are_made = self.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
         if capture.changes.is_empty() || ask.clock_hz.is_some() || base.is_exact(self.clock_hz) || are_made {
             return None;
@@ -527,7 +464,6 @@ impl Opened {
         Some((0..self.channels).filter_map(of).collect())
     }
 
-    /// What bytes or positions come to; `None` of levels.
     fn without_levels(
         &mut self,
         capture: &Capture,
@@ -560,7 +496,7 @@ impl Opened {
         Ok(report)
     }
 
-    /// Decoded bytes by the line they are on. Those of one channel are on RX; of several, the map says which are.
+    /// Decoded bytes per line; a single channel is RX.
     fn lines_of<'c>(&mut self, capture: &'c Capture, map: &ChannelMap) -> Vec<(u64, Vec<&'c TimedByte>)> {
         let lines = [Levels::RX, Levels::TX];
         let of = |line: u64| {
@@ -583,7 +519,6 @@ impl Opened {
         found
     }
 
-    /// Notes what STEP is made from, and what else its edges may mean.
     fn hint(&mut self, capture: &Capture, map: &ChannelMap) {
         let sources = (0..self.channels).map(|motor| (motor, map.pulses(motor)));
         self.made_pulses = sources.filter(|(_, source)| *source != PulseSource::Step).collect();
@@ -627,7 +562,7 @@ impl Opened {
         }
     }
 
-    /// Rules that say nothing of a channel, since the edges that they are about were made and not recorded.
+    /// Timing rules that do not apply, because the edges were generated.
     pub fn unchecked(&self) -> impl Iterator<Item = (u8, Rule)> {
         self.made_pulses.iter().flat_map(|(channel, source)| {
             let rules: &[Rule] = match source {
@@ -640,10 +575,6 @@ impl Opened {
         })
     }
 
-    /// Tells what it comes to.
-    ///
-    /// # Errors
-    /// [`OpenError::NoRate`] where a line cannot be decoded and nothing else is there.
     fn told(&mut self, report: Report, map: &ChannelMap) -> Result<(), OpenError> {
         self.report = report;
         for remedy in self.report.lines.iter_mut().flat_map(|line| &mut line.remedies) {
@@ -668,7 +599,7 @@ impl Opened {
         Ok(())
     }
 
-    /// Bytes without times are taken for sent back to back on each line; levels without times cannot be used.
+    /// Bytes without times count as sent back to back on each line.
     fn back_to_back(&mut self, capture: &Capture, ask: &Ask, map: &ChannelMap) -> Result<(), OpenError> {
         if !has_untimed_bytes(capture) {
             return Err(OpenError::NoSampleRate(capture.format));
@@ -692,11 +623,8 @@ impl Opened {
         Ok(())
     }
 
-    /// Puts all of it so much later, or earlier, that step `aligned` of a channel, from 0, or, where nothing steps, that byte,
-    /// comes at a time, in s. Levels that would stand before cycle 0 stand at it. Where nothing comes, nothing is moved.
-    ///
-    /// # Errors
-    /// [`Misaligned`]: where something comes, but none of that number, or the first one would come before cycle 0.
+    /// Shifts the recording so that step (or byte) `aligned` of a channel comes at `at_s`. Without steps and bytes
+    /// nothing moves. Fails with [`Misaligned`] if the first would come before cycle 0.
     pub fn align(&mut self, channel: u8, aligned: usize, at_s: f64) -> Result<(), Misaligned> {
         if self.kept.is_some() {
             return Err(Misaligned::Part);
@@ -707,7 +635,7 @@ impl Opened {
         let (kind, count) = (events.kind, events.len());
         let now_s = events.at_s(aligned).ok_or(Misaligned::None { kind, aligned, count })?;
         let first_s = first_s + (at_s - now_s);
-        // One that rises in cycle 0 is none: nothing is before it.
+        // A rise in cycle 0 is no step.
         if libm::round(first_s * hz) < 1.0 {
             return Err(Misaligned::Early { kind, aligned, first_s });
         }
@@ -716,7 +644,7 @@ impl Opened {
         for record in &mut self.records {
             record.cycle = Instant(moved(record.cycle.0));
         }
-        // Of those that are at cycle 0 now the last one stands there; the first is always there.
+        // Of records at cycle 0 only the last counts.
         let before = self.records.partition_point(|record| record.cycle.0 == 0).saturating_sub(1);
         self.records.drain(..before);
         if let Some(record) = self.records.first_mut() {
@@ -738,8 +666,7 @@ impl Opened {
         Ok(())
     }
 
-    /// The scenario that it is shown with: [`Self::scenario`], or, where there is none, one that has its clock and its
-    /// channels and does nothing. Its run is as long as the recording.
+    /// The scenario to show: [`Self::scenario`], or an idle one with its clock, channels and duration.
     #[must_use]
     pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
         let made = if self.kept.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
@@ -756,7 +683,7 @@ impl Opened {
         });
         let last = self.records.last().map_or(0, |record| record.cycle.0);
         let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
-        // The last byte of a line is not over where the line changes last.
+        // The last byte ends after the last edge.
         let heard = self.report.rx().filter(|line| self.kept.is_none() && line.baud > 0).and_then(|line| {
             let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
             Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
@@ -765,7 +692,6 @@ impl Opened {
         scenario
     }
 
-    /// The steps of a channel.
     #[must_use]
     pub fn steps_of(&self, channel: u8) -> Vec<Step> {
         match &self.made_steps {
@@ -775,7 +701,7 @@ impl Opened {
         }
     }
 
-    /// What it is compared by: the steps of a channel, or, where no channel steps, the bytes of RX.
+    /// The steps of a channel or, if none steps, the bytes of RX.
     #[must_use]
     pub fn events(&self, channel: u8) -> Events {
         match self.report.rx().filter(|_| self.report.channels.is_empty()) {
@@ -784,17 +710,14 @@ impl Opened {
         }
     }
 
-    /// Whether levels were recorded: else there are no pulses to look at, only what they stand for.
+    /// Without levels there are only steps or bytes.
     #[must_use]
     pub fn has_levels(&self) -> bool {
         self.what == "changes"
     }
 
-    /// The scenario that gives it again: its bytes, where RX has some and not `steps` are asked for, else its steps, none
-    /// further than `error_us` from where it was recorded. Bytes go to the controllers of `base`. `file` is the file's name.
-    ///
-    /// # Errors
-    /// [`Refused`].
+    /// The scenario that reproduces it: its bytes, unless `steps` is set, otherwise its steps within `error_us`.
+    /// Bytes go to the controllers of `base`.
     pub fn scenario(
         &self,
         file: &str,
@@ -812,7 +735,7 @@ impl Opened {
                 scenario::of_bytes(&line.heard, &asked, base)
             }
             (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &asked),
-            // Pulses that were made have no width to take over.
+            // Generated pulses have no width of their own.
             (None, None) if self.unchecked().any(|(_, rule)| rule == Rule::StepHigh) => {
                 let all: Vec<Vec<Step>> = (0..channels).map(|channel| self.steps_of(channel)).collect();
                 scenario::of_step_times(&all, &asked)
@@ -825,17 +748,16 @@ impl Opened {
     }
 }
 
-/// Whether a capture has bytes without times: each byte's tick is its place then, where others are times of an unknown unit.
+/// Bytes without times have their index as tick.
 fn has_untimed_bytes(capture: &Capture) -> bool {
     let untimed = || (0..).zip(&capture.bytes).all(|(place, byte)| byte.tick == place);
     capture.timebase.is_none() && !capture.bytes.is_empty() && untimed()
 }
 
-/// Segments of a scenario, or bytes that it sends one after the other.
 fn entries(scenario: &Scenario) -> usize {
     match &scenario.source {
         Source::Segments(lists) => lists.channels.iter().map(|list| list.segments.len()).sum(),
-        // A form has some fields for each.
+        // A form has several fields per send.
         Source::Line(script) => script.sends.len() * 8,
         _ => 0,
     }
@@ -845,8 +767,8 @@ fn title(file: &str) -> String {
     format!("recorded: {file}").chars().take(MAX_TITLE).collect()
 }
 
-/// The requested clock, or the file's own: the slowest in which each of its ticks is a whole number of cycles, or the fastest
-/// where there is none. Steps between rows of positions need a finer one, and so do pulses that are made of single edges.
+/// The requested clock, or the slowest in which each tick of the file is a whole number of cycles. Position rows and
+/// single edges need a finer one.
 fn clock(ask: &Ask, base: Timebase, positions: bool, makes_pulses: bool) -> Result<u32, OpenError> {
     let (least, most) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
     let own = || {
@@ -861,7 +783,6 @@ fn clock(ask: &Ask, base: Timebase, positions: bool, makes_pulses: bool) -> Resu
     judged(ask.clock_hz.unwrap_or_else(own))
 }
 
-/// Times of bytes and positions that are no whole cycles.
 fn others_rounded(capture: &Capture, base: Timebase, clock_hz: u32) -> u64 {
     let bytes = capture.bytes.iter().map(|byte| byte.tick);
     let ticks = bytes.chain(capture.positions.iter().map(|row| row.tick));
@@ -885,8 +806,7 @@ fn heard<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> 
     heard
 }
 
-/// The rate of bytes whose times are known: the closest two are back to back at most. Bytes that share a time have that of
-/// their line of text; then it is the usual rate, or as much as they need.
+/// The closest two bytes are back to back. Bytes of one line of text share a time; then the usual rate or more.
 fn likely_baud(heard: &Heard, clock_hz: u32) -> u32 {
     let (mut needed, mut shared, mut count) = (0.0_f64, false, 1_u32);
     for (before, byte) in heard.bytes.iter().zip(heard.bytes.iter().skip(1)) {

@@ -1,9 +1,5 @@
-//! All of a recording at a glance: least and greatest position and speed of a channel in each pixel column, made in one pass over
-//! steps that come one after the other and are kept nowhere. It is what [`crate::motion::curves::actual`] makes of steps that lie together.
-//!
-//! ```text
-//! changes, 2 to 4 bytes each  ->  steps, one at a time  ->  columns, 32 bytes each
-//! ```
+//! A recording at a glance: minimum and maximum position and speed per pixel column, in one pass that stores no
+//! steps.
 //!
 //! ```
 //! use stepscope_inspect::{motion::curves::Window, recording::overview::Overview};
@@ -18,24 +14,19 @@
 use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
 
-/// The columns as far as the steps have come.
 #[derive(Clone, Debug)]
 pub struct Overview {
     window: Window,
     hz: f64,
     position: Band,
     speed: Band,
-    /// The first column that no step has come to yet.
     next: usize,
-    /// Position and cycle of the step before.
     place: i32,
     last: Option<u64>,
-    /// Where the last speed ends that is known.
     moved_to_s: f64,
 }
 
 impl Overview {
-    /// Of steps one after the other, in cycles of `hz`.
     #[must_use]
     pub fn of(steps: impl IntoIterator<Item = Step>, hz: f64, window: Window) -> Actual {
         let mut overview = Self {
@@ -50,7 +41,7 @@ impl Overview {
         };
         for step in steps {
             overview.take(step);
-            // Its speed reaches past the end: nothing of what follows is within.
+            // Its speed reaches past the end.
             if step.cycle as f64 / hz > window.end_s {
                 break;
             }
@@ -74,7 +65,6 @@ impl Overview {
         self.place = step.position;
     }
 
-    /// The columns before this one begin with the position that there is.
     fn reach(&mut self, column: usize) {
         for column in self.next..column {
             self.position.take(column, f64::from(self.place));

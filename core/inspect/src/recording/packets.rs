@@ -1,5 +1,5 @@
-//! What recorded lines say, packet by packet: what the host sent on RX, and what the device answered on TX, in the order of time.
-//! Bytes that are frames (DESIGN A6) end at their end mark and are checked; others end at a gap (A5).
+//! Packets on recorded lines in the order of time. Frames (DESIGN A6) end at their delimiter and are checked; other
+//! bytes end at a gap (A5).
 //!
 //! ```
 //! use stepscope_inspect::recording::{packets::Packets, report::Report};
@@ -43,36 +43,28 @@ use stepscope_peripheral::{
     },
 };
 
-/// A packet on a recorded line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LinePacket {
-    /// `RX` or `TX`.
     pub line: &'static str,
-    /// `packet`, `frame`, `reply`, or `byte` of one whose stop bit was low.
+    /// `packet`, `frame`, `reply`, or `byte` for a framing error.
     pub kind: &'static str,
-    /// Where its first start bit was seen.
     pub start_cycle: u64,
-    /// First cycle after its last byte.
     pub end_cycle: u64,
-    /// Its bytes; none of one whose stop bit was low.
+    /// Empty for a framing error.
     pub bytes: Vec<u8>,
-    /// What its bytes mean; empty where that is not known.
     pub meaning: String,
-    /// Whether it is whole: its check, or what is wrong with it; empty where there is none.
+    /// The CRC, or what is wrong; empty where there is none.
     pub outcome: String,
 }
 
-/// All of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packets {
-    /// In the order of their beginnings.
     pub rows: Vec<LinePacket>,
     clock_hz: u32,
 }
 
 impl Packets {
-    /// Of the lines of a recording, whose device has so many channels; `addressed` says whether raw packets begin with an
-    /// address.
+    /// `addressed`: raw packets begin with an address.
     #[must_use]
     pub fn of(report: &Report, clock_hz: u32, channels: u8, addressed: bool) -> Self {
         let mut rows = Vec::new();
@@ -83,18 +75,15 @@ impl Packets {
         Self { rows, clock_hz }
     }
 
-    /// How many frames were answered: those of TX with a right check.
+    /// Replies on TX with a valid CRC.
     #[must_use]
     pub fn replies(&self) -> usize {
         let tx = line_name(Levels::TX);
         self.rows.iter().filter(|row| row.line == tx && row.outcome == HOLDS).count()
     }
 
-    /// As a table; the columns that `stepscope run --packets` has, too, have the same names, so that it can be opened and
-    /// sent again.
-    ///
-    /// # Errors
-    /// Those of the writer.
+    /// Writes CSV. Columns shared with `stepscope run --packets` have the same names, so that the file can be opened
+    /// and sent.
     pub fn write_csv(&self, out: &mut impl Write) -> fmt::Result {
         out.write_str("start_cycle,end_cycle,bytes,outcome,kind,line,number,start_s,end_s,gap_s,meaning\n")?;
         let seconds = |cycle: u64| Instant(cycle).seconds(self.clock_hz);
@@ -105,7 +94,7 @@ impl Packets {
             bytes.iter().try_for_each(|byte| write!(out, "{byte:02x}"))?;
             write_fields(out, &[outcome])?;
             write!(out, ",{kind},{line},{number},{},{},", seconds(*start_cycle), seconds(*end_cycle))?;
-            // Since whatever was on either line before.
+            // Counts from the last byte on either line.
             if let Some(last) = last {
                 write!(out, "{}", seconds(start_cycle.saturating_sub(last)))?;
             }
@@ -117,29 +106,22 @@ impl Packets {
     }
 }
 
-/// What is said of a frame whose check holds.
 const HOLDS: &str = "check holds";
 
-/// A packet as it stands on a line, before anything is said of it.
 pub(super) struct Found {
-    /// Where its first start bit was seen.
     pub(super) start_cycle: u64,
-    /// First cycle after its last byte.
     pub(super) end_cycle: u64,
     pub(super) bytes: Vec<u8>,
-    /// What is known of a whole frame; none of other bytes.
     pub(super) outcome: Option<FrameOutcome>,
 }
 
-/// A line whose packets are found.
 pub(super) struct Line<'a> {
     line: &'a LineReport,
     is_framed: bool,
     channels: u8,
     addressed: bool,
-    /// Cycles of a byte.
     byte: u64,
-    /// Cycles from one byte to the next that end a raw packet.
+    /// Cycles between bytes that end a raw packet.
     gap: u64,
 }
 
@@ -170,7 +152,7 @@ impl<'a> Line<'a> {
         }));
     }
 
-    /// Goes through its packets in the order of time; none is kept.
+    /// Calls `take` for each packet in the order of time.
     pub(super) fn each(&self, mut take: impl FnMut(Found)) {
         let (mut deframer, mut outcome) = (Deframer::default(), None);
         let (mut bytes, mut start_cycle, mut last) = (Vec::new(), 0, 0);
@@ -194,14 +176,14 @@ impl<'a> Line<'a> {
                 continue;
             }
             outcome = match deframer.byte(heard.byte) {
-                // It is what it is for, whatever became of it.
+                // Classified by destination, whatever its outcome.
                 Some(Deframed::Frame(_)) => Some(FrameOutcome::OtherAddress),
                 Some(Deframed::Short) => Some(FrameOutcome::Short),
                 Some(Deframed::BadCrc { found, expected }) => Some(FrameOutcome::BadCrc { found, expected }),
                 Some(Deframed::Overlong) => Some(FrameOutcome::Overlong),
                 None => outcome,
             };
-            // End marks that end nothing stand before the next frame.
+            // Single delimiters belong to the next frame.
             if heard.byte == DELIMITER && outcome.is_some() {
                 take(found(start_cycle, last, &mut bytes, outcome.take()));
             }

@@ -1,4 +1,4 @@
-//! What would help with a recording, for the command and the page to word: one by its options, the other by its fields.
+//! What helps with a recording; the command names options, the page fields.
 //!
 //! ```
 //! use stepscope_inspect::recording::remedy::{Note, Remedy};
@@ -9,48 +9,32 @@
 
 use alloc::string::String;
 
-/// A way to read a recording otherwise.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// Count a step on both edges of STEP.
     BothEdges {
-        /// The motor.
         motor: u8,
-        /// Its channel, as a map names it.
         channel: String,
     },
-    /// Count steps where the other edge of STEP is.
+    /// Count steps at the other edge of STEP.
     OtherEdge {
-        /// The motor.
         motor: u8,
-        /// Its channel, as a map names it.
         channel: String,
-        /// Whether the channel is to be inverted; else it is no longer to be.
         inverted: bool,
     },
-    /// Change the polarity of a line.
     InvertLine {
-        /// RX or TX.
         line: &'static str,
-        /// Whether the channel is to be inverted; else it is no longer to be.
         inverted: bool,
     },
-    /// Choose the channel whose bytes are those of RX.
+    /// Choose the channel of RX.
     ChooseLine,
-    /// Decode with another format, such as `8E1`.
     Format(String),
-    /// Choose one of several bit rates.
     Baud,
-    /// Give the bit rate, or another format.
     BaudOrFormat,
 }
 
-/// Something to know about a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// In a sentence.
     pub text: String,
-    /// What would help.
     pub remedy: Option<Remedy>,
 }
 

@@ -1,5 +1,5 @@
-//! Replies that were recorded on TX, as one part of the page hands them to another: of each its first cycle and the first one after
-//! it, how many bytes it has and which controller's it is, and these bytes.
+//! Recorded TX replies as bytes, which one worker of the page hands to another: start, end, length and controller per
+//! reply.
 //!
 //! ```
 //! use stepscope_inspect::recording::{replies, report::Report};
@@ -33,17 +33,15 @@ use stepscope_peripheral::{
 };
 use stepscope_sim::{Experiment, Run};
 
-/// What TX said, each packet dealt to a controller.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Dealt {
-    /// As [`of`] reads it.
     pub bytes: Vec<u8>,
-    /// Packets of which nothing says whose they are: the first controller has them.
+    /// Packets without a known sender, assigned to the first controller.
     pub unknown: usize,
 }
 
-/// What TX said within some cycles, dealt to controllers of these addresses. A frame that names one of them is its reply; other
-/// bytes are of the one that the last frame before them on RX is for.
+/// Assigns replies on TX to controllers by address. Bytes without an address belong to the last controller addressed
+/// on RX.
 #[must_use]
 pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &[u8]) -> Dealt {
     let of = |mask| {
@@ -53,12 +51,12 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
     let mut dealt = Dealt::default();
     let Some(tx) = of(Levels::TX) else { return dealt };
     let place = |address: u8| addresses.iter().position(|own| *own == address);
-    // Where each frame ends, and which controller it is for. One controller is asked by all of them.
+    // A single controller receives all of them.
     let mut asked: Vec<(u64, usize)> = Vec::new();
     if let Some(rx) = of(Levels::RX).filter(|_| addresses.len() > 1) {
         rx.each(|Found { end_cycle, bytes, outcome, .. }| {
             let head = outcome.and_then(|outcome| Head::of(&bytes, RowOutcome::Frame(outcome)));
-            // RX may have heard what other controllers replied, too.
+            // RX may carry replies of other controllers.
             let to = head.filter(|head| !head.is_reply()).and_then(|head| place(head.address));
             asked.extend(to.map(|to| (end_cycle, to)));
         });
@@ -80,10 +78,9 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
     dealt
 }
 
-/// Where the controller stands in the word of the length.
 const CONTROLLER_SHIFT: u32 = 32;
 
-/// What was handed on of a controller, as far as all is whole and in the order of time; of frames, what they say.
+/// The complete replies of a controller.
 #[must_use]
 pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
     let mut replies = Vec::new();
@@ -103,15 +100,13 @@ pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
     replies
 }
 
-/// Puts what was handed on in the place of what the controllers of a run answered, in the finished log of one of them: of its own
-/// replies, and of those of others that it heard.
+/// Replaces the replies in a controller's finished log: its own, and those that it received of others.
 pub fn put(bytes: &[u8], experiment: &Experiment, run: &Run, controller: usize, log: &mut PacketLog) {
     let table = PacketTable::new(experiment, run, controller, log);
     let is_made: Vec<bool> = (0..table.len()).map(|row| table.kind(row) == Some(RowKind::Reply)).collect();
     log.answer(&of(bytes, controller), &is_made);
 }
 
-/// The three numbers before the bytes of each.
 fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
     let (numbers, rest) = bytes.split_at_checked(24)?;
     let (words, _) = numbers.as_chunks::<8>();

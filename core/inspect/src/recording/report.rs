@@ -1,4 +1,4 @@
-//! All that is told of a recording at once: the figures of each channel, and what is on its lines.
+//! The report of a recording: figures of each channel, and its lines.
 //!
 //! ```
 //! use stepscope_inspect::recording::report::Report;
@@ -29,58 +29,41 @@ use stepscope_peripheral::{
     trace::Step,
 };
 
-/// What a recording comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Channels that step, in order.
     pub channels: Vec<ChannelReport>,
-    /// RX and TX, where something was heard on them.
     pub lines: Vec<LineReport>,
 }
 
-/// A channel that steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelReport {
-    /// Its number.
     pub channel: u8,
-    /// What its steps come to.
     pub figures: StepFigures,
 }
 
-/// A line on which bytes were heard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineReport {
-    /// RX or TX.
     pub name: &'static str,
-    /// The rate that its pulses have; `None` where none fits.
     pub measured: Option<Measured>,
-    /// The rate that its bytes were decoded at; 0 where none fits.
+    /// 0 where no rate fits.
     pub baud: u32,
-    /// Data bits, parity and stop bits, such as `8N1`.
     pub format: String,
-    /// Why it was not decoded.
     pub problem: Option<String>,
-    /// What is doubtful about its bytes.
     pub hint: Option<String>,
-    /// What would help with that.
     pub remedies: Vec<Remedy>,
-    /// Its bytes.
     pub heard: Heard,
-    /// What they seem to be.
     pub guess: Guess,
 }
 
-/// What there is of records, in one pass.
+/// The records in one pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Survey {
-    /// How many.
     pub count: usize,
-    /// A bit for each signal that is not at one level throughout.
+    /// One bit per signal that changes.
     pub changing: u64,
 }
 
 impl Survey {
-    /// Of all of them.
     pub fn of(records: impl IntoIterator<Item = Record>) -> Self {
         let mut records = records.into_iter();
         let Some(first) = records.next() else { return Self::default() };
@@ -93,8 +76,7 @@ impl Survey {
 }
 
 impl Report {
-    /// Of records in cycles of `clock_hz`, of a bus of so many channels. Lines are decoded as 8N1 at `baud`, or at the rate
-    /// that their pulses have.
+    /// Decodes lines as 8N1 at `baud`, or at the measured rate.
     #[must_use]
     pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
         let all = records.iter().copied();
@@ -102,8 +84,7 @@ impl Report {
         Self::of_all(all.clone(), Survey::of(all).changing, clock_hz, channels, options)
     }
 
-    /// The same of records that are gone through as often as it takes, and kept nowhere; `changing` has a bit for each
-    /// signal that changes ([`Survey`]).
+    /// As [`Self::of`], for records that are iterated several times and not stored; `changing` comes from [`Survey`].
     #[must_use]
     pub fn of_all(
         records: impl Iterator<Item = Record> + Clone,
@@ -124,7 +105,6 @@ impl Report {
         }
     }
 
-    /// Of steps alone, those of channel 0.
     #[must_use]
     pub fn of_steps(steps: &[Step], clock_hz: u32) -> Self {
         let figures = StepFigures::of(steps.iter().copied(), clock_hz);
@@ -134,18 +114,16 @@ impl Report {
         }
     }
 
-    /// What is on RX.
     #[must_use]
     pub fn rx(&self) -> Option<&LineReport> {
         self.lines.iter().find(|line| line.name == line_name(Levels::RX))
     }
 }
 
-/// The steps of a channel, one after the other, as [`stepscope_peripheral::trace::steps_in`] has them of records that
-/// lie together.
+/// As [`stepscope_peripheral::trace::steps_in`], for iterated records.
 pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
-    // A level that is there from the first record on has not risen.
+    // A level that is high from the first record on has not risen.
     let (mut before, mut position) = (u16::MAX, 0_i32);
     records.filter_map(move |record| {
         let rises = record.levels.step() & !before & mask != 0;
@@ -158,10 +136,9 @@ pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl 
     })
 }
 
-/// The format of a line that is given none.
 const EIGHT_N_ONE: &str = "8N1";
 
-/// Why no rate was found, and what would help.
+/// Why no rate was found, and what helps.
 fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
     if let NoRate::Ambiguous(rates) = why {
         let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
@@ -173,7 +150,6 @@ fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
     (format!("no bit rate fits its pulses{found}"), remedies.collect())
 }
 
-/// What would fit.
 fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     match why {
         NoRate::Format(format) => {
@@ -192,7 +168,7 @@ fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     }
 }
 
-/// What would show bytes of seven bits that were decoded with eight.
+/// Detects 7-bit bytes that were decoded with eight.
 fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
     if is_text_of_seven(bytes) {
         let text = "all bytes look like text of 7 data bits with 2 stop bits, or 1 and pauses";
@@ -206,7 +182,6 @@ fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
 }
 
 impl LineReport {
-    /// Of a line that changes.
     fn of(
         records: impl Iterator<Item = Record> + Clone,
         mask: u64,
@@ -259,13 +234,12 @@ impl LineReport {
         Some(line)
     }
 
-    /// Of bytes that were decoded already, on RX.
     #[must_use]
     pub fn of_heard(heard: Heard, clock_hz: u32, baud: u32) -> Self {
         Self::of_heard_on(Levels::RX, heard, clock_hz, baud)
     }
 
-    /// Of bytes that were decoded already, on a line: [`Levels::RX`] or [`Levels::TX`].
+    /// Decoded bytes on a line: [`Levels::RX`] or [`Levels::TX`].
     #[must_use]
     pub fn of_heard_on(line: u64, heard: Heard, clock_hz: u32, baud: u32) -> Self {
         let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
@@ -282,7 +256,6 @@ impl LineReport {
         }
     }
 
-    /// In one sentence.
     #[must_use]
     pub fn to_text(&self) -> String {
         let measured = self
@@ -309,7 +282,6 @@ impl LineReport {
         )
     }
 
-    /// What the bytes seem to be, in words.
     #[must_use]
     pub fn guess_text(&self) -> String {
         match self.guess {

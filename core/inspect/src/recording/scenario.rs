@@ -1,8 +1,7 @@
-//! The scenario that gives a recording again: its steps as lists of segments, or its bytes as a line script.
+//! The scenario that reproduces a recording: steps as segment lists, or bytes as a line script.
 //!
-//! Steps come in their very cycles, or no further from them than is asked for; how wide a pulse is and when DIR changes are
-//! the bus' own, so those are taken from the recording as far as they are the same for all pulses. Bytes begin within half a
-//! bit of where they were heard: those that follow each other at the line's rate are one send.
+//! Steps are exact to the requested error. Pulse width and DIR set-up belong to the bus and are taken over where all
+//! pulses agree. Bytes begin within half a bit of the recording; those back to back are one send.
 //!
 //! ```
 //! use stepscope_inspect::recording::scenario::{Steps, of_steps};
@@ -41,34 +40,27 @@ use stepscope_scenario::{
 };
 use stepscope_sim::replayed;
 
-/// The start of every list: nothing begins before (DESIGN A3).
+/// Lists start at cycle 1 at the earliest (DESIGN A3).
 const START: u64 = 1;
-/// Cycles between a list's start and its first step beyond what the first pulse needs.
+/// Cycles before the first step in addition to its pulse.
 const MARGIN: u64 = 1;
-/// Widest pulse that is taken over, in cycles: one that stands for most of an interval would leave no room for DIR.
+/// A pulse above 1/2 of the interval leaves no room for DIR.
 const WIDEST_PART: u64 = 2;
 
-/// What is made of steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
-    /// Cycles a second.
     pub clock_hz: u32,
-    /// Channels of the bus.
     pub channels: u8,
-    /// How far a step may be from its cycle: 0 for not at all; more makes fewer segments.
+    /// Maximum error of a step in cycles; more makes fewer segments.
     pub within_cycles: u64,
 }
 
-/// A scenario of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Made {
-    /// The scenario.
     pub scenario: Scenario,
-    /// How many cycles later than recorded everything comes: a first step that has no time for its pulse is put off.
+    /// Delay of everything, because a first step may need time for its pulse.
     pub later_cycles: u64,
-    /// The furthest that a step, or a byte, is from its cycle beside that.
     pub greatest_error_cycles: u64,
-    /// Segments, or sends.
     pub entries: usize,
 }
 
@@ -76,13 +68,9 @@ pub struct Made {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Refused {
-    /// No channel steps.
     NoSteps,
-    /// Nothing was heard on the line.
     NoBytes,
-    /// The steps of a channel cannot be kept.
     Channel(u8, Cause),
-    /// A clock of which a bit has too few cycles: the clock, the rate.
     FewCycles(u32, u32),
 }
 
@@ -103,20 +91,13 @@ impl fmt::Display for Refused {
 
 impl core::error::Error for Refused {}
 
-/// The steps of all channels as lists of segments.
-///
-/// # Errors
-/// [`Refused`].
+/// The steps of all channels as segment lists.
 pub fn of_steps(records: &[Record], asked: &Steps) -> Result<Made, Refused> {
     let all: Vec<Vec<Step>> = (0..asked.channels).map(|channel| steps(records, channel)).collect();
     of_list(&all, asked, Some(records))
 }
 
-/// Steps that are known by their times alone, those of channel 0 first; pulses are half of the shortest interval wide, and
-/// at most as wide as a scenario's are by default.
-///
-/// # Errors
-/// [`Refused`].
+/// Steps by channel, without pulses: the width is half of the shortest interval, at most the default.
 pub fn of_step_times(all: &[Vec<Step>], asked: &Steps) -> Result<Made, Refused> {
     of_list(all, asked, None)
 }
@@ -173,7 +154,7 @@ fn channel_list(list: &SegmentList) -> ChannelSegments {
     ChannelSegments { start_cycle: list.start.0, segments: list.segments.iter().map(segment).collect() }
 }
 
-/// Width and set-up of the pulses that all of them have room for: the shortest that were recorded.
+/// The shortest recorded width and set-up, which fit all pulses.
 fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> PulseTimes {
     let mut check = TimingCheck::new(&TimingRules::default(), clock_hz, 0);
     records.into_iter().flatten().for_each(|record| check.record(*record));
@@ -191,30 +172,22 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
         .unwrap_or_else(|| Bus::default().pulse_width_cycles.into())
         .min(interval / WIDEST_PART)
         .clamp(*PULSE_WIDTH_CYCLES.start(), *PULSE_WIDTH_CYCLES.end());
-    // DIR changes where a segment begins, long before most of its steps: asking for more would only refuse some.
+    // DIR changes at the start of a segment, long before most of its steps, so more set-up only refuses some.
     let setup =
         least(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / WIDEST_PART);
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
-/// How the bytes of a line are sent again.
 #[derive(Clone, Copy, Debug)]
 pub struct Bytes {
-    /// Cycles a second.
     pub clock_hz: u32,
-    /// Bits a second.
     pub baud: u32,
-    /// What the bytes are.
     pub guess: Guess,
-    /// Channels of the bus, where the bytes do not say.
+    /// Used if the bytes do not determine it.
     pub channels: u8,
 }
 
-/// The bytes of a line as a line script: sent to the controllers of `base`, by its clock, or, without it, to one that the
-/// bytes themselves speak of.
-///
-/// # Errors
-/// [`Refused`].
+/// The bytes of a line as a line script for the controllers of `base`, or for one that the bytes imply.
 pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result<Made, Refused> {
     let Bytes { clock_hz, baud, .. } = *asked;
     let first = heard.bytes.first().ok_or(Refused::NoBytes)?;
@@ -236,7 +209,7 @@ pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result
         let at = cycle(byte.start).saturating_add(later_cycles);
         let next =
             sends.last().map(|send| send.start_cycle.saturating_add(times.byte(send.bytes.0.len() as u64).0));
-        // What comes before the byte before it is over, because a clock is fast, comes right after it.
+        // A fast clock makes bytes overlap; these are sent back to back.
         match (sends.last_mut(), next) {
             (Some(send), Some(next)) if at <= next.saturating_add(half_bit) => {
                 greatest = greatest.max(at.abs_diff(next));
@@ -253,7 +226,6 @@ pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result
     Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
 }
 
-/// The scenario that bytes speak of, with the clock that all else of it is made for, where that is fast enough.
 fn spoken_of(asked: &Bytes) -> Scenario {
     let mut scenario = Scenario::default();
     if u64::from(scenario.clock_hz) < 11 * u64::from(asked.baud) {
@@ -271,7 +243,7 @@ fn spoken_of(asked: &Bytes) -> Scenario {
     scenario
 }
 
-/// The sentence that says where a scenario comes from.
+/// The sentence that states a scenario's origin.
 #[must_use]
 pub fn note(file: &str, made: &Made) -> String {
     let error = match made.greatest_error_cycles {
@@ -288,7 +260,6 @@ pub fn note(file: &str, made: &Made) -> String {
     }
 }
 
-/// When a line's last byte is over.
 #[must_use]
 pub fn end_of(heard: &Heard, bit_cycles: u64) -> Option<Instant> {
     heard.bytes.last().map(|byte| Instant(byte.start.0 + BYTE_BITS * bit_cycles))

@@ -1,5 +1,4 @@
-//! Bytes on a recorded line: its bit rate from its pulses, its bytes, and which protocol they
-//! speak.
+//! Bytes on a recorded line: bit rate, framing, and protocol.
 //!
 //! ```
 //! use stepscope_inspect::recording::serial::{Guess, guess, hear, measured_baud};
@@ -28,17 +27,15 @@ use stepscope_peripheral::{
     wire::frame::{Deframed, Deframer, Ticks},
 };
 
-/// Edges that the rate is measured by.
+/// Edges of a rate measurement.
 pub(super) const MEASURED_EDGES: usize = 4000;
-/// Bit times after which a gap ends a raw packet (DESIGN A5).
+/// Gap in bit times that ends a raw packet (DESIGN A5).
 pub(super) const GAP_BITS: u64 = 45;
 
-/// The bit rate that pulses have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// As measured, in bits a second.
     pub baud: f64,
-    /// The usual rate that is nearest, within 2 %.
+    /// The nearest usual rate within 2 %.
     pub usual: Option<u32>,
 }
 
@@ -47,23 +44,19 @@ impl Measured {
         Self { baud: f64::from(clock_hz) / found.measured, usual: found.usual }
     }
 
-    /// The usual rate, or the measured one.
     #[must_use]
     pub fn rounded(self) -> u32 {
         self.usual.unwrap_or_else(|| libm::round(self.baud) as u32)
     }
 }
 
-/// How a line is decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineOptions {
-    /// Bit rate; measured without it.
     pub baud: Option<u32>,
-    /// Data bits, parity and stop bits.
     pub format: Format,
 }
 
-/// The rate of the 8N1 line of `mask` (RX or TX); `None` where no rate fits, or several do.
+/// The rate of an 8N1 line (RX or TX); `None` where none or several fit.
 #[must_use]
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
     let edges: Vec<Edge> = edges(records.iter().copied(), mask).take(MEASURED_EDGES).collect();
@@ -71,7 +64,6 @@ pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Mea
     Some(Measured::of(found, clock_hz))
 }
 
-/// The edges of a line.
 pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl Iterator<Item = Edge> {
     let mut before = None;
     records.filter_map(move |record| {
@@ -81,13 +73,11 @@ pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl It
     })
 }
 
-/// Words that are read under another format, so that it shows, and how many of them are different: as many have one parity
-/// by chance once in 32.
+/// Different words required to detect a format; fewer share a parity by chance.
 const FORMAT_WORDS: usize = 8;
 const PARITY_WORDS: u32 = 6;
 
-/// The parity that eight bits of each byte have, seven of data and the parity bit: `E` or `O`. `None` where they have none, or
-/// too few of them are different.
+/// The parity of 7 data bits: `E` or `O`; `None` without one, or with too few different bytes.
 pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
     let mut seen = [0_u64; 4];
     let (mut even, mut odd) = (true, true);
@@ -104,8 +94,7 @@ pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
     if even { Some('E') } else { odd.then_some('O') }
 }
 
-/// Whether bytes look like text of seven bits, with a stop bit or a pause where the eighth one is. Other bytes with their
-/// top bit set may well have eight.
+/// Whether bytes look like 7-bit text with a stop bit or pause as the eighth bit.
 pub(super) fn is_text_of_seven(bytes: &[HeardByte]) -> bool {
     let is_text = |heard: &&HeardByte| matches!(heard.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
     // Packets of a few such bytes are no text.
@@ -115,34 +104,26 @@ pub(super) fn is_text_of_seven(bytes: &[HeardByte]) -> bool {
         && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
-/// A byte, and where its start bit was seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HeardByte {
-    /// Where the line went low.
     pub start: Instant,
-    /// The byte.
     pub byte: u8,
 }
 
-/// What a line says.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Heard {
-    /// Its bytes.
     pub bytes: Vec<HeardByte>,
-    /// Where bytes begin whose stop bit was low.
     pub framing_errors: Vec<Instant>,
-    /// Where bytes begin whose parity bit does not fit.
     pub parity_errors: Vec<Instant>,
 }
 
-/// The bytes of the 8N1 line of `mask` at a rate.
+/// The bytes of an 8N1 line at a rate.
 #[must_use]
 pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
     let bit = f64::from(clock_hz) / f64::from(baud.max(1));
     hear_among(records.iter().copied(), mask, bit, Format::default())
 }
 
-/// The same of records that are nowhere together; a bit lasts so many cycles.
 pub(super) fn hear_among(
     records: impl Iterator<Item = Record>,
     mask: u64,
@@ -166,29 +147,22 @@ pub(super) fn hear_among(
 pub enum Guess {
     /// Frames (DESIGN A6).
     Framed {
-        /// The address that most of them have, 255 left out.
+        /// The most frequent address except 255.
         address: u8,
-        /// Channels, where a frame orders ticks.
         channels: Option<u8>,
-        /// Frames with a right check.
         good: u32,
-        /// Others.
         bad: u32,
     },
-    /// Raw packets of so many bytes (DESIGN A5); the address, if there is one, is the first of them.
+    /// Raw packets of so many bytes (DESIGN A5), including the address.
     Raw {
-        /// Bytes of a packet: those between two gaps.
         length: u8,
-        /// Packets of this length.
         good: u32,
-        /// Others.
         bad: u32,
     },
-    /// Neither.
     Other,
 }
 
-/// What bytes seem to be; a bit lasts `bit_cycles`.
+/// Detects the protocol; a bit lasts `bit_cycles`.
 #[must_use]
 pub fn guess(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
     let framed = framed(bytes);
@@ -212,7 +186,7 @@ fn framed(bytes: &[HeardByte]) -> Guess {
                     *count += 1;
                 }
                 if frame.kind == Kind::Ticks as u8 {
-                    // So many that the ticks of the body come out even.
+                    // The number of channels must divide the ticks evenly.
                     let fits = |channels: &u8| Ticks::parse(frame.body, *channels).is_some();
                     channels = channels.or_else(|| (1..=MAX_CHANNELS as u8).find(fits));
                 }
@@ -249,14 +223,13 @@ fn raw(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
         .enumerate()
         .max_by_key(|(length, count)| (**count, MAX_CHANNELS + 2 - length))
         .map_or((0, 0), |(length, count)| (length, *count));
-    // Without gaps in most places there are no packets.
+    // Without gaps in most positions there are no packets.
     if good * 2 > all && (1..=MAX_CHANNELS + 1).contains(&length) {
         return Guess::Raw { length: length as u8, good, bad: all - good };
     }
     Guess::Other
 }
 
-/// Bit of a line in words.
 #[must_use]
 pub const fn line_name(mask: u64) -> &'static str {
     if mask == Levels::TX { "TX" } else { "RX" }

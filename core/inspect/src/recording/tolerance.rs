@@ -1,5 +1,4 @@
-//! How far a step may be from its planned time: an exact fraction of a second, so that what is off by exactly the allowed
-//! time is accepted.
+//! An exact tolerance, so that a step off by exactly that time is accepted.
 //!
 //! ```
 //! use stepscope_inspect::recording::tolerance::Tolerance;
@@ -19,7 +18,6 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Exactly the aligned time.
     pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
 
     /// `mantissa / 10^places` us; `None` with more than 13 decimal places.
@@ -31,21 +29,19 @@ impl Tolerance {
         }
     }
 
-    /// One cycle of the slower of two clocks.
+    /// One cycle of the slower clock.
     #[must_use]
     pub fn cycle(one_hz: u32, other_hz: u32) -> Self {
         Self { numerator: 1, denominator: one_hz.min(other_hz).max(1).into() }
     }
 
-    /// The same in units of 1/(`one_hz` * `other_hz`) s, in which any difference of times of the two clocks is whole; rounded
-    /// down.
+    /// In units of 1/(`one_hz` * `other_hz`) s, in which time differences of both clocks are whole; rounded down.
     #[must_use]
     pub const fn units(self, one_hz: u32, other_hz: u32) -> u128 {
         // The product of the clocks fits in 64 bits.
         self.numerator as u128 * (one_hz as u128 * other_hz as u128) / self.denominator as u128
     }
 
-    /// In s.
     #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
@@ -53,7 +49,6 @@ impl Tolerance {
 }
 
 impl Serialize for Tolerance {
-    /// In s.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_f64(self.seconds())
     }

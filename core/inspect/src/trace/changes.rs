@@ -1,5 +1,4 @@
-//! Where signals change in a long trace: a pyramid over its records, so that a view of millions of them
-//! costs no more than its pixels.
+//! A pyramid over the changes of a long trace, so that a view costs no more than its pixels.
 //!
 //! ```text
 //! level 1   [ which were high, which were low in 1024 records ] [ … ]
@@ -7,8 +6,8 @@
 //! trace     r r r r r r r r r r r r r r r r r r r r r r r r r r      16 bytes each
 //! ```
 //!
-//! A block's two masks are exact, so a search steps over every block in which its signal stays as it is.
-//! All levels together take 16 / 64 * 16 / 15 of a byte more for a record: about a quarter of a byte.
+//! Masks are exact, so a search skips every block in which its signal is constant. All levels take about a quarter of
+//! a byte per record.
 //!
 //! ```
 //! use stepscope_inspect::trace::changes::{Changes, Edge};
@@ -29,12 +28,10 @@ use crate::trace::columns::Columns;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;
 
-/// Records in a block of level 0.
 const BLOCK: usize = 64;
-/// Blocks of one level in a block of the next.
 const FAN: usize = 16;
 
-/// Which signals were high, and which were low, in some of a block's records.
+/// Signals that were high or low in a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Block {
     high: u64,
@@ -55,26 +52,22 @@ impl Block {
     }
 }
 
-/// Which edges are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
-    /// Rising and falling ones.
     Any,
-    /// From low to high.
     Rise,
-    /// From high to low.
     Fall,
 }
 
-/// The pyramid over one trace. Every question is asked with the trace that it was made of.
+/// The pyramid over one trace; each call takes that trace.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
-    /// Whole blocks only; the records after the last one are looked at themselves.
+    /// Complete blocks only.
     levels: Vec<Vec<Block>>,
 }
 
 impl Changes {
-    /// Takes in the records that came since the last call.
+    /// Adds the records since the last call.
     pub fn extend(&mut self, trace: &[Record]) {
         let first = self.level(0);
         let known = first.len() * BLOCK;
@@ -101,14 +94,13 @@ impl Changes {
         &mut self.levels[index]
     }
 
-    /// Bytes that it takes beside the trace.
+    /// Memory in addition to the trace.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.capacity() * size_of::<Block>()).sum()
     }
 
-    /// As [`super::columns`] of the same stretch, with `margin` further columns of the same width at each side; those
-    /// that end before cycle 0 have no levels at all.
+    /// As [`super::columns`], with `margin` additional columns on each side; columns before cycle 0 have no levels.
     #[must_use]
     pub fn columns(&self, trace: &[Record], start: u64, end: u64, count: usize, margin: usize) -> Columns {
         let span = i128::from(end.saturating_sub(start).max(1));
@@ -127,7 +119,7 @@ impl Changes {
             if after == 0 {
                 continue;
             }
-            // Columns narrower than a cycle share it, so one may begin before the last one's end.
+            // Columns narrower than a cycle share it.
             let back = trace.get(until.saturating_sub(1)).map_or(0, |record| record.cycle.0);
             let from = if back > first { until.saturating_sub(1) } else { until };
             let begin = from + gallop(trace.get(from..).unwrap_or_default(), first);
@@ -142,7 +134,6 @@ impl Changes {
         result
     }
 
-    /// What the records `first..after` have of each signal.
     fn between(&self, trace: &[Record], first: usize, after: usize) -> Block {
         let mut all = Block::default();
         let mut at = first;
@@ -167,8 +158,7 @@ impl Changes {
         all
     }
 
-    /// Index of the record with the next edge of signal `bit` after cycle `at`. The levels that a trace begins
-    /// with are no edge.
+    /// Index of the next edge of signal `bit` after cycle `at`. Initial levels are no edge.
     #[must_use]
     pub fn next_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
         let mask = 1_u64.checked_shl(bit.into())?;
@@ -182,7 +172,7 @@ impl Changes {
         }
     }
 
-    /// Index of the record with the last edge of signal `bit` before cycle `at`.
+    /// Index of the last edge of signal `bit` before cycle `at`.
     #[must_use]
     pub fn previous_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
         let mask = 1_u64.checked_shl(bit.into())?;
@@ -196,7 +186,6 @@ impl Changes {
         }
     }
 
-    /// The first record from index `at` on in which a signal of `mask` is at a level.
     fn first_at(&self, trace: &[Record], at: usize, mask: u64, high: bool) -> Option<usize> {
         let mut at = at;
         loop {
@@ -221,7 +210,6 @@ impl Changes {
         }
     }
 
-    /// The last record before index `end` in which a signal of `mask` is at a level.
     fn last_at(&self, trace: &[Record], end: usize, mask: u64, high: bool) -> Option<usize> {
         let mut end = end;
         while end > 0 {
@@ -248,7 +236,7 @@ impl Changes {
     }
 }
 
-/// How many records stand at or before `cycle`, looked for in ever wider steps: what is near is found at once.
+/// The number of records up to `cycle`, by exponential search: the next one is usually near.
 fn gallop(trace: &[Record], cycle: u64) -> usize {
     let mut reach = 1;
     while trace.get(reach - 1).is_some_and(|record| record.cycle.0 <= cycle) {

@@ -1,6 +1,6 @@
-//! A stretch of a trace as the pixel columns of a logic view: which levels a signal had in each.
+//! A trace as pixel columns of a logic view.
 //!
-//! Nothing is sampled: a glitch of one cycle within a column is in it, however wide the column is.
+//! Nothing is sampled: a glitch of one cycle shows in a column of any width.
 //!
 //! ```
 //! use stepscope_inspect::trace::columns::columns;
@@ -19,19 +19,18 @@
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;
 
-/// Each column's levels, a bit a signal as in [`stepscope_peripheral::signal::Levels`].
+/// One bit per signal, as in [`stepscope_peripheral::signal::Levels`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
-    /// Signals that were high in some cycle of the column.
+    /// High in some cycle of the column.
     pub high: Vec<u64>,
-    /// Signals that were low in some cycle of the column.
+    /// Low in some cycle of the column.
     pub low: Vec<u64>,
-    /// Levels in the column's last cycle.
     pub last: Vec<u64>,
 }
 
-/// Column i covers the cycles from start + floor(i*span/count) on to the start of column i + 1, and
-/// at least one. Columns past the trace's last record go on with its levels.
+/// Column i starts at start + floor(i*span/count) and has at least one cycle. Columns past the last record continue
+/// its levels.
 #[must_use]
 pub fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns {
     let span = u128::from(end.saturating_sub(start).max(1));
@@ -41,7 +40,7 @@ pub fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns 
     let mut levels = next.checked_sub(1).and_then(|i| trace.get(i)).map_or(0, |r| r.levels.0);
     for i in 0..count {
         let (first, after) = (bound(i), bound(i + 1).max(bound(i).saturating_add(1)));
-        // Columns narrower than a cycle share it: the records of cycle `first` are already in.
+        // Columns narrower than a cycle share it.
         let (mut high, mut low) = (levels, !levels);
         while let Some(record) = trace.get(next).filter(|r| r.cycle.0 < after) {
             if record.cycle.0 == first && high == levels && low == !levels {

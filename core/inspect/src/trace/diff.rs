@@ -1,8 +1,7 @@
-//! A trace that was saved, held against a run: a table of edges ([`write_edges_row`](crate::export::tables::write_edges_row)) or a trace's
-//! text ([`write_record`](stepscope_peripheral::trace::write_record)), read in pieces of any size.
+//! Compares a saved trace with a run: a table of edges ([`write_edges_row`](crate::export::tables::write_edges_row))
+//! or a trace's text ([`write_record`](stepscope_peripheral::trace::write_record)), in pieces of any size.
 //!
-//! A file may be a stretch of a run: its first row then stands for all the levels at its first cycle, and
-//! what the run does after the file's last row is not in question.
+//! The file may be a part of a run: its first row holds all levels, and the run may continue after its last.
 //!
 //! ```
 //! use stepscope_inspect::trace::diff::TraceDiff;
@@ -33,15 +32,13 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Longest line of a file, in bytes: a row of 36 signals has less than 200.
+/// Maximum line length in bytes: a row of 36 signals has less than 200.
 const MAX_LINE: usize = 1000;
 
-/// A line that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadLine {
-    /// Which line, from 1.
+    /// From 1.
     pub line: u64,
-    /// What is wrong with it.
     pub what: String,
 }
 
@@ -53,44 +50,38 @@ impl fmt::Display for BadLine {
 
 impl core::error::Error for BadLine {}
 
-/// The first place where file and run are not the same.
+/// The first difference of file and run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Line of the file.
     pub line: u64,
-    /// The earlier of the cycles in which the file and the run go on.
+    /// The earlier cycle of both.
     pub cycle: Instant,
-    /// Levels in the file in that cycle.
     pub file: Levels,
-    /// Levels in the run.
     pub run: Levels,
 }
 
 impl Difference {
-    /// Signals that are not the same; none where the run has ended.
+    /// Differing signals; none where the run has ended.
     #[must_use]
     pub const fn signals(&self) -> u64 {
         self.file.0 ^ self.run.0
     }
 }
 
-/// What came of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Records of the file that are the run's own.
+    /// Records that agree.
     pub same: u64,
-    /// First and last cycle of the file; of a file that differs, the last that was the same.
+    /// First and last cycle that agree.
     pub range: (Instant, Instant),
-    /// Where they part.
     pub difference: Option<Difference>,
-    /// Whether the run has records after the file's last.
+    /// Whether the run continues after the file.
     pub goes_on: bool,
 }
 
-/// What the lines are.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Not known before the first line.
+    /// Before the first line.
     Unknown,
     /// Cycle and levels in hexadecimal.
     Trace,
@@ -98,15 +89,13 @@ enum Form {
     Table(Vec<u32>),
 }
 
-/// Takes a file piece by piece. The run's trace is given with each piece and is always the same.
+/// Compares piece by piece; each call takes the same run's trace.
 #[derive(Clone, Debug)]
 pub struct TraceDiff {
     channels: u8,
     form: Form,
-    /// The part of a line that has come.
     partial: Vec<u8>,
     line: u64,
-    /// Index of the run's record that is next; none before the file's first.
     next: Option<usize>,
     first: Instant,
     last: Record,
@@ -115,7 +104,6 @@ pub struct TraceDiff {
 }
 
 impl TraceDiff {
-    /// Before a file; `channels` are those of the controller that made the run.
     #[must_use]
     pub const fn new(channels: u8) -> Self {
         Self {
@@ -131,10 +119,7 @@ impl TraceDiff {
         }
     }
 
-    /// Takes a piece of the file. True if the rest is not needed: a difference is found.
-    ///
-    /// # Errors
-    /// [`BadLine`] if a line cannot be read.
+    /// Returns true if a difference is found and the rest is not needed.
     pub fn feed(&mut self, run: &[Record], piece: &[u8]) -> Result<bool, BadLine> {
         for part in piece.split_inclusive(|byte| *byte == b'\n') {
             if self.difference.is_some() {
@@ -148,10 +133,7 @@ impl TraceDiff {
         Ok(self.difference.is_some())
     }
 
-    /// The file is over.
-    ///
-    /// # Errors
-    /// [`BadLine`] if its last line cannot be read, or nothing was in it.
+    /// Ends the file; fails if the last line is invalid or the file empty.
     pub fn finish(mut self, run: &[Record]) -> Result<Outcome, BadLine> {
         if !self.partial.is_empty() && self.difference.is_none() {
             self.end_of_line(run)?;
@@ -201,7 +183,6 @@ impl TraceDiff {
         Ok(())
     }
 
-    /// The bits of a table's columns.
     fn columns(&self, head: &str) -> Result<Vec<u32>, BadLine> {
         let expected: Vec<u32> = shown_signals(self.channels).collect();
         let names = expected.iter().filter_map(|bit| signal::name(*bit));
@@ -222,7 +203,7 @@ impl TraceDiff {
                 self.first = record.cycle;
                 let after = run.partition_point(|own| own.cycle <= record.cycle);
                 let Some(own) = after.checked_sub(1).and_then(|at| run.get(at)) else {
-                    // Nothing comes before a run's first record, in cycle 0.
+                    // Nothing precedes a run's first record.
                     self.differ(record.cycle, record.levels, Levels(0));
                     return;
                 };
@@ -253,7 +234,6 @@ impl TraceDiff {
     }
 }
 
-/// A row of a table of edges.
 fn row(text: &str, bits: &[u32]) -> Result<Record, String> {
     let mut fields = text.split(',');
     let cycle = fields.next().unwrap_or_default();

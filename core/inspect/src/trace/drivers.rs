@@ -1,9 +1,7 @@
-//! Drivers and the times that their data sheets ask for.
+//! Drivers and the timing that their data sheets require.
 //!
-//! Figures are the sheets' minima in ns. Where a sheet counts its own clock, the slowest clock that
-//! it allows is taken. What no sheet's text confirmed is said at the driver, in [`DataSheet::source`]
-//! too, so that a user sees it beside the figures. A wake-up from a sleep mode is not one from EN:
-//! who ties SLEEP to EN gives rules of his own.
+//! Figures are minima in ns, at the slowest clock that the sheet allows. [`DataSheet::source`] states what is not
+//! confirmed by a sheet.
 //!
 //! ```
 //! use stepscope_inspect::trace::drivers::DRIVERS;
@@ -15,27 +13,21 @@
 use crate::trace::timing::TimingCheck;
 use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
-/// A driver's figures, and where they come from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
-    /// Which driver it is.
     pub model: DriverModel,
-    /// Its word in a scenario and on the command line.
     pub id: &'static str,
-    /// Maker and type.
     pub name: &'static str,
-    /// The document, and what in it the figures rest on.
+    /// The document, and what the figures are based on.
     pub source: &'static str,
-    /// The figures.
     pub rules: TimingRules,
 }
 
 /// All drivers, by maker.
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
-/// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A STEP high 1 us, t_B STEP low
-/// 1 us, t_C set-up and t_D hold of DIR and the step mode about the rise of STEP 200 ns each. It
-/// gives no time from ENABLE to STEP; 1 ms is its wake-up from SLEEP.
+/// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
+/// ENABLE to STEP; 1 ms is the wake-up from SLEEP.
 pub const A4988: DataSheet = DataSheet {
     model: DriverModel::A4988,
     id: "a4988",
@@ -50,8 +42,8 @@ pub const A4988: DataSheet = DataSheet {
     },
 };
 
-/// Allegro A4979: STEP high at least 1 us (so Zephyr's binding of this driver, `step-width-ns`).
-/// The other times are the A4988's and are **not confirmed** by the A4979's own sheet.
+/// Allegro A4979: STEP high 1 us (Zephyr's binding, `step-width-ns`). Other times are the A4988's, **not confirmed**
+/// by the A4979's sheet.
 pub const A4979: DataSheet = DataSheet {
     model: DriverModel::A4979,
     id: "a4979",
@@ -60,9 +52,8 @@ pub const A4979: DataSheet = DataSheet {
     rules: A4988.rules,
 };
 
-/// Texas Instruments DRV8825, SLVSA73, "Timing requirements": t_WH(STEP) 1.9 us, t_WL(STEP) 1.9 us,
-/// t_SU(STEP) and t_H(STEP), "command" before and after STEP rising, 650 ns each, t_ENBL from
-/// nENBL active to STEP 650 ns. t_WAKE, 1.7 ms, is from nSLEEP.
+/// Texas Instruments DRV8825, SLVSA73, "Timing requirements": t_WH(STEP) and t_WL(STEP) 1.9 us, t_SU(STEP), t_H(STEP)
+/// and t_ENBL 650 ns. t_WAKE, 1.7 ms, is from nSLEEP.
 pub const DRV8825: DataSheet = DataSheet {
     model: DriverModel::Drv8825,
     id: "drv8825",
@@ -77,10 +68,9 @@ pub const DRV8825: DataSheet = DataSheet {
     },
 };
 
-/// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface", timing: t_SH and t_SL
-/// max(t_FILTSD, t_CLK + 20 ns) with a spike filter of 30 ns at most, t_DSU and t_DSH 20 ns. Its own
-/// oscillator has 11.5 MHz at least, so 87 + 20 ns; on an external clock of 4 MHz, the slowest, both
-/// are 270 ns. It gives no time from ENN.
+/// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface": t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns),
+/// t_DSU and t_DSH 20 ns. Its oscillator has at least 11.5 MHz, so 87 + 20 ns; 270 ns on an external clock of 4 MHz.
+/// No time from ENN.
 pub const TMC2209: DataSheet = DataSheet {
     model: DriverModel::Tmc2209,
     id: "tmc2209",
@@ -96,10 +86,8 @@ pub const TMC2209: DataSheet = DataSheet {
     },
 };
 
-/// Trinamic TMC262. The formula, t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns), t_DSU and t_DSH 20 ns,
-/// with a spike filter of 85 ns at most, is that of the TMC2100's data sheet, and the clock of
-/// 10 MHz, the slowest, that of boards with the sister TMC2660: **not confirmed** by the TMC262's
-/// own sheet.
+/// Trinamic TMC262 with the TMC2100's formula and a clock of 10 MHz, as on boards with the TMC2660: **not confirmed**
+/// by the TMC262's sheet.
 pub const TMC262: DataSheet = DataSheet {
     model: DriverModel::Tmc262,
     id: "tmc262",
@@ -115,11 +103,9 @@ pub const TMC262: DataSheet = DataSheet {
     },
 };
 
-/// Opto-isolated drivers in the class of the TB6600 boxes, DM542, DM556, AM882. The figures are the
-/// class's, as in the control signals' sequence chart of the Leadshine AM882 manual: pulse high
-/// 2.5 us, low 2.5 us, DIR 5 us ahead of the pulse's active edge, ENA 5 us ahead of DIR, which makes
-/// 10 us from ENA to the pulse. The chart has no hold time. Boxes differ (a DM556T wants 200 ms
-/// after ENA): **check your driver's sheet**.
+/// Opto-isolated drivers such as TB6600 boxes, DM542, DM556, AM882, after the Leadshine AM882 manual: pulse high and
+/// low 2.5 us, DIR 5 us before the pulse, ENA 5 us before DIR. No hold time. Boxes differ: **check your driver's
+/// sheet**.
 pub const TB6600_CLASS: DataSheet = DataSheet {
     model: DriverModel::Tb6600Class,
     id: "tb6600_class",
@@ -135,7 +121,6 @@ pub const TB6600_CLASS: DataSheet = DataSheet {
     },
 };
 
-/// The sheet of a driver.
 #[must_use]
 pub const fn sheet(model: DriverModel) -> &'static DataSheet {
     match model {
@@ -148,14 +133,13 @@ pub const fn sheet(model: DriverModel) -> &'static DataSheet {
     }
 }
 
-/// The check of a run that a scenario asks for, if it names a driver or rules; it lists `most` violations in full.
+/// The check that a scenario requests; it lists `most` violations.
 #[must_use]
 pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
     let rules = scenario.driver_timing.as_ref().map(rules)?;
     Some(TimingCheck::new(&rules, scenario.clock_hz, most))
 }
 
-/// What a scenario's driver asks for.
 #[must_use]
 pub fn rules(driver: &DriverTiming) -> TimingRules {
     match driver {

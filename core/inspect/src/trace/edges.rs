@@ -1,5 +1,4 @@
-//! The edges of a run's signals, as the logic view asks for them: the next one, the pulse at a cycle, lists, counts. No
-//! question looks at more records than its answer needs, however many there are.
+//! Edges for the logic view: next, pulse, lists and counts. Each call reads only as many records as its result needs.
 //!
 //! ```
 //! use stepscope_inspect::trace::{changes::Changes, edges::Signals};
@@ -27,66 +26,52 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Bits of a record that are signals (DESIGN A3).
 const SIGNALS: u32 = 36;
 
-/// One edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EdgeRow {
-    /// When.
     pub cycle: u64,
-    /// Which signal (DESIGN A3).
     pub bit: u32,
-    /// To high.
     pub high: bool,
 }
 
-/// Edges in the order of time.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct EdgeList {
-    /// The edges.
     pub rows: Vec<EdgeRow>,
-    /// Whether there are more in the direction that was asked for.
+    /// Whether there are more in the requested direction.
     pub more: bool,
 }
 
-/// What a signal does around a cycle.
+/// The pulse or pause around a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pulse {
-    /// Its level there.
     pub high: bool,
-    /// The edge that began it.
     pub begin: Option<u64>,
-    /// The edge that ends it.
     pub end: Option<u64>,
     /// The edge after that.
     pub next: Option<u64>,
 }
 
-/// A trace with where its signals change.
+/// A trace and its changes.
 #[derive(Clone, Copy)]
 pub struct Signals<'a> {
-    /// The records.
     pub trace: &'a [Record],
-    /// Their changes.
     pub changes: &'a Changes,
 }
 
 impl Signals<'_> {
-    /// Level of a signal in a cycle.
     #[must_use]
     pub fn level(&self, bit: u8, cycle: u64) -> bool {
         levels_at(self.trace, Instant(cycle)).has(1 << bit.min(63))
     }
 
-    /// Cycle of a signal's first edge after `cycle`, or of the last one before.
+    /// Cycle of the first edge after `cycle`, or the last one before.
     #[must_use]
     pub fn next(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<u64> {
         let found = self.edge(bit, cycle, forward, edge);
         found.and_then(|index| self.trace.get(index)).map(|record| record.cycle.0)
     }
 
-    /// The pulse, or the pause, of a signal at a cycle.
     #[must_use]
     pub fn pulse_at(&self, bit: u8, cycle: u64) -> Pulse {
         let end = self.next(bit, cycle, true, Edge::Any);
@@ -98,8 +83,8 @@ impl Signals<'_> {
         }
     }
 
-    /// The first edges after `cycle` (`None`: from reset on), or with `forward` false the last ones before it, of one
-    /// signal or of all: at least `most` of them where there are so many, and with them all of their cycles.
+    /// Edges after `cycle` (`None`: from reset), or before it, of one or all signals: at least `most` if they exist,
+    /// and all edges of the last cycle.
     #[must_use]
     pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, most: usize) -> EdgeList {
         let at = cycle.unwrap_or(0);
@@ -119,7 +104,7 @@ impl Signals<'_> {
             let shown = bits.filter(|&place| bit.is_none_or(|bit| u32::from(bit) == place));
             let cycle = self.trace.get(found).map_or(0, |record| record.cycle.0);
             let edge = |place| EdgeRow { cycle, bit: place, high: now >> place & 1 == 1 };
-            // Backwards the rows are reversed in the end, also those of one cycle.
+            // Backward lists are reversed at the end, so rows of one cycle are, too.
             if forward {
                 list.rows.extend(shown.map(edge));
             } else {
@@ -133,7 +118,6 @@ impl Signals<'_> {
         list
     }
 
-    /// Index of the first record from `index` on, or of the last one before it, in which a signal, or any, changes.
     fn changed_from(&self, bit: Option<u8>, index: usize, forward: bool) -> Option<usize> {
         match (bit, forward) {
             (Some(bit), true) => {
@@ -162,14 +146,14 @@ impl Signals<'_> {
     }
 }
 
-/// How often single signals change in a trace.
+/// Changes of single signals in a trace.
 #[must_use]
 pub fn count(trace: &[Record]) -> u64 {
     let pairs = trace.iter().zip(trace.iter().skip(1));
     pairs.map(|(before, now)| u64::from((before.levels.0 ^ now.levels.0).count_ones())).sum()
 }
 
-/// Bits of the signals that are not the same in all records.
+/// Signals that change.
 #[must_use]
 pub fn changing(trace: &[Record]) -> Vec<u8> {
     let Levels(first) = trace.first().map_or(Levels::RESET, |record| record.levels);

@@ -1,8 +1,7 @@
-//! What tells whether two runs are the same without either's trace, and where they part if not: the
-//! digest of a trace, and the running digest at up to sixteen places on the way (PAGE "Share link").
+//! Compares two runs without their traces: the digest, and running digests at up to sixteen checkpoints.
 //!
-//! The places are a power of two of records apart: the least that makes at most sixteen of them. So they
-//! follow from the number of records alone, and one pass finds them without knowing that number before:
+//! Checkpoints are the smallest power of two of records apart that makes at most sixteen, so the number of records
+//! determines them:
 //!
 //! ```text
 //! records    1 … 16    17 … 33    34 … 67    …    n
@@ -31,22 +30,18 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Most checkpoints of a fingerprint.
 pub(crate) const MAX_CHECKPOINTS: usize = 16;
 
-/// A trace, told by its digests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fingerprint {
-    /// The digest of the whole trace (DESIGN A3).
+    /// The digest of the trace (DESIGN A3).
     pub digest: u64,
-    /// How many records it has; at least the one of cycle 0.
     pub records: u64,
-    /// The high half of the digest of the first [`Self::spacing`] records, of twice as many, and so on.
+    /// High halves of the digests of the first [`Self::spacing`] records, twice as many, and so on.
     pub checkpoints: Vec<u32>,
 }
 
 impl Fingerprint {
-    /// The fingerprint of a stored trace.
     #[must_use]
     pub fn of(trace: &[Record]) -> Self {
         let mut fingerprinter = Fingerprinter::default();
@@ -56,26 +51,23 @@ impl Fingerprint {
         fingerprinter.finish()
     }
 
-    /// Records from one checkpoint to the next.
     #[must_use]
     pub const fn spacing(&self) -> u64 {
         spacing(self.records)
     }
 }
 
-/// Records from one checkpoint to the next in a trace of so many.
+/// The smallest power of two s with records/s < 17.
 #[must_use]
 pub(crate) const fn spacing(records: u64) -> u64 {
     (records / (MAX_CHECKPOINTS as u64 + 1) + 1).next_power_of_two()
 }
 
-/// Takes a trace and gives its fingerprint.
 #[derive(Clone)]
 pub struct Fingerprinter {
     digest: Digest,
     checkpoints: Vec<u32>,
     spacing: u64,
-    /// Records that the next checkpoint is taken after.
     next: u64,
 }
 
@@ -86,7 +78,6 @@ impl Default for Fingerprinter {
 }
 
 impl Fingerprinter {
-    /// The fingerprint of the records so far.
     #[must_use]
     pub fn finish(self) -> Fingerprint {
         Fingerprint {
@@ -103,7 +94,7 @@ impl Sink for Fingerprinter {
         if self.digest.records() == self.next {
             self.checkpoints.push(high_half(&self.digest));
             if self.checkpoints.len() > MAX_CHECKPOINTS {
-                // Every second one stays.
+                // Keep every second one.
                 let mut index = 0;
                 self.checkpoints.retain(|_| {
                     index += 1;
@@ -120,57 +111,47 @@ fn high_half(digest: &Digest) -> u32 {
     (digest.value() >> 32) as u32
 }
 
-/// A place in a trace.
+/// A position in a trace: records, changes of single signals, last cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// Records up to here.
     pub records: u64,
-    /// Changes of single signals up to here.
     pub edges: u64,
-    /// Cycle of the last of these records.
     pub cycle: Instant,
 }
 
-/// How a trace stands to another's fingerprint.
+/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerprintMatch {
-    /// They are the same, record by record.
     Same(Mark),
     /// The first difference comes after `after` and no later than `until`.
     Differs {
-        /// As far as this both are the same.
         after: Mark,
-        /// Here they are not.
         until: Mark,
-        /// Which of the two ends first, if one is as far as it goes the same.
+        /// Which trace ends first, if all before is equal.
         shorter: Option<Shorter>,
     },
 }
 
-/// Which of two traces ends within the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
-    /// The one that was compared.
+    /// The trace that was checked.
     This,
-    /// The one that the fingerprint tells.
+    /// The trace of the fingerprint.
     Other,
 }
 
-/// Takes a trace and holds it against another's fingerprint.
+/// Compares a trace with a fingerprint.
 pub struct FingerprintCheck<'a> {
     other: &'a Fingerprint,
     spacing: u64,
     digest: Digest,
     levels: Option<Levels>,
     last: Mark,
-    /// As far as they are known to be the same.
     same: Mark,
-    /// Where they first were not.
     differs: Option<Mark>,
 }
 
 impl<'a> FingerprintCheck<'a> {
-    /// Before the first record.
     #[must_use]
     pub fn with(other: &'a Fingerprint) -> Self {
         let none = Mark { records: 0, edges: 0, cycle: Instant::RESET };
@@ -185,7 +166,6 @@ impl<'a> FingerprintCheck<'a> {
         }
     }
 
-    /// The trace is over.
     #[must_use]
     pub fn finish(self) -> FingerprintMatch {
         let Self { other, last, same, differs, .. } = self;

@@ -1,5 +1,4 @@
-//! A run that is kept in memory to be analyzed, in bounded memory: one that makes too many steps is refused, before it
-//! begins where that is known.
+//! Keeps a run in bounded memory: refuses too many steps, before the run where they are known.
 //!
 //! ```
 //! use stepscope_inspect::trace::recorded_run::record_run;
@@ -15,17 +14,16 @@ use core::fmt;
 use stepscope_peripheral::trace::Recording;
 use stepscope_sim::{Experiment, Run};
 
-/// Maximum records of a run that is kept: of all its controllers that are, at 16 bytes each. A step takes two.
+/// Maximum records of all controllers together, at 16 bytes each. A step takes two.
 pub const MAX_RECORDS: u64 = 48_000_000;
-/// Records after which [`check_records`] is due again.
+/// Interval of [`check_records`], in records.
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
-/// A run makes more records than are kept.
+/// The run exceeds [`MAX_RECORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TooLong {
-    /// Lists of segments have this many steps.
+    /// Steps of the segment lists.
     Steps(u64),
-    /// It made more edges than are kept before its end.
     Edges,
 }
 
@@ -41,10 +39,7 @@ impl fmt::Display for TooLong {
 
 impl core::error::Error for TooLong {}
 
-/// Runs an experiment and keeps what its first `controllers` do.
-///
-/// # Errors
-/// [`TooLong`] for more than [`MAX_RECORDS`].
+/// Runs an experiment and keeps the traces of its first `controllers` controllers.
 pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<Recording>), TooLong> {
     record_within(experiment, controllers, MAX_RECORDS)
 }
@@ -54,7 +49,7 @@ fn record_within(
     controllers: usize,
     most: u64,
 ) -> Result<(Run, Vec<Recording>), TooLong> {
-    // The steps of segments are known before the run; elsewhere the edges are counted as they come.
+    // Segments have known steps; other edges are counted as they come.
     let segments = experiment.segments();
     if let Some(steps) = segments.map(|segments| segments.steps()).filter(|steps| *steps > most / 2) {
         return Err(TooLong::Steps(steps));
@@ -69,10 +64,6 @@ fn record_within(
     Ok((run, recordings))
 }
 
-/// Checks the number of records while a run goes on.
-///
-/// # Errors
-/// [`TooLong`] for more than [`MAX_RECORDS`].
 pub fn check_records(recordings: &[Recording]) -> Result<(), TooLong> {
     check_within(recordings, MAX_RECORDS)
 }

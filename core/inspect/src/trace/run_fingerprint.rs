@@ -1,16 +1,12 @@
-//! The part of a link that tells which run its sender saw, so that whoever opens it can tell whether the
-//! own run is the same one (PAGE "Share link").
+//! The run fingerprint in a link, which shows whether a run is the one that the sender saw.
 //!
 //! ```text
 //! d=<form>.<version>.<controller>….<check>        form 1
 //! <controller> = <digest>.<records>.<checkpoints>
 //! ```
 //!
-//! `version` is the sender's Stepscope, with `_` for its dots; of each controller, in the order of the
-//! scenario, the digest stands in 16 hexadecimal digits, the number of records in decimal, and the
-//! checkpoints ([`Fingerprint`]), four bytes each, big-endian, in base64url. The check is the CRC-32
-//! (ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits: a part that was changed on the
-//! way must not tell of a difference that there is not.
+//! The CRC-32 (ISO-HDLC) of all before the last dot keeps a damaged link from reporting a difference. Checkpoints are
+//! big-endian base64url; `_` replaces dots of the version.
 //!
 //! ```
 //! use stepscope_inspect::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
@@ -35,31 +31,24 @@ use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-/// The form that is written here.
 const FORM: u32 = 1;
-/// Most controllers of a scenario.
 const MAX_CONTROLLERS: usize = 32;
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// What a sender saw.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunFingerprint {
-    /// The version of Stepscope that made the run.
     pub version: String,
-    /// The trace of each controller, in the order of the scenario.
     pub controllers: Vec<Fingerprint>,
 }
 
-/// Why a proof cannot be used.
+/// Why a fingerprint cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunFingerprintError {
-    /// Written in a newer form.
     Newer {
-        /// The form.
         given: u32,
     },
-    /// The check fails, or the text is no proof.
+    /// Wrong CRC, or no fingerprint.
     Damaged,
 }
 
@@ -79,17 +68,14 @@ impl fmt::Display for RunFingerprintError {
 
 impl core::error::Error for RunFingerprintError {}
 
-/// The version of Stepscope that this is.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl RunFingerprint {
-    /// What this version of Stepscope saw.
     #[must_use]
     pub fn of(controllers: Vec<Fingerprint>) -> Self {
         Self { version: VERSION.to_string(), controllers }
     }
 
-    /// The text of the part, without its `d=`.
     #[must_use]
     pub fn emit(&self) -> String {
         let mut text = format!("{FORM}.{}", self.version.replace('.', "_"));
@@ -101,16 +87,14 @@ impl RunFingerprint {
         text + &format!(".{check:08x}")
     }
 
-    /// The version that made it, where it is another than this.
+    /// The sender's version, if it differs from this one.
     #[must_use]
     pub fn other_version(&self) -> Option<&str> {
         (self.version != VERSION).then_some(self.version.as_str())
     }
 
-    /// What takes the trace of each of a run's `controllers` controllers, to be given to [`Verification::of`] after it.
-    ///
-    /// # Errors
-    /// With the number of controllers that the sender had, where it is another.
+    /// Checks for the traces of `controllers` controllers, for [`Verification::of`]. Fails with the sender's number
+    /// if that differs.
     pub fn checks(&self, controllers: usize) -> Result<Vec<FingerprintCheck<'_>>, usize> {
         if self.controllers.len() != controllers {
             return Err(self.controllers.len());
@@ -118,10 +102,7 @@ impl RunFingerprint {
         Ok(self.controllers.iter().map(FingerprintCheck::with).collect())
     }
 
-    /// Reads what [`Self::emit`] wrote.
-    ///
-    /// # Errors
-    /// What [`RunFingerprintError`] lists; the form is judged before the check.
+    /// Reads the text of [`Self::emit`]; the form is checked before the CRC.
     pub fn parse(text: &str) -> Result<Self, RunFingerprintError> {
         let (form, _) = text.split_once('.').ok_or(RunFingerprintError::Damaged)?;
         match form.parse() {
@@ -137,29 +118,21 @@ impl RunFingerprint {
     }
 }
 
-/// How a run stands to the one that a sender saw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verification {
-    /// It is the same, record by record.
     Same {
-        /// Changes of single signals, of all controllers.
         edges: u64,
     },
-    /// The first difference of the first controller that has one comes after `after` and no later than `until`.
+    /// The first difference of the first controller that has one.
     Differs {
-        /// The controller.
         controller: usize,
-        /// As far as this both are the same.
         after: Mark,
-        /// Here they are not.
         until: Mark,
-        /// Which of the two ends first, if one is as far as it goes the same.
         shorter: Option<Shorter>,
     },
 }
 
 impl Verification {
-    /// Of checks that have taken the traces of all controllers.
     #[must_use]
     pub fn of<'a>(checks: impl IntoIterator<Item = FingerprintCheck<'a>>) -> Self {
         let mut edges = 0;

@@ -1,4 +1,4 @@
-//! A run as the page makes it: kept for its views, and the pulses checked on the way.
+//! A run kept for the page's views, with the timing check of its pulses.
 //!
 //! ```
 //! use stepscope_inspect::trace::{drivers::A4988, run_sink::RunSink, timing::TimingCheck};
@@ -18,12 +18,9 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// What becomes of one controller's signals.
 #[derive(Clone, Default)]
 pub struct RunSink {
-    /// They are kept.
     pub recording: Recording,
-    /// The pulses against the scenario's driver, if it names one.
     pub timing: Option<TimingCheck>,
 }
 

@@ -1,4 +1,4 @@
-//! The timing check: could a driver have followed the pulses of a run?
+//! The timing check: can a driver follow the pulses of a run?
 //!
 //! ```text
 //!          |<-set-up->|<-hold->|
@@ -9,25 +9,12 @@
 //! EN    ____/--------------------------------
 //! ```
 //!
-//! | rule | measured at | from, to |
-//! | --- | --- | --- |
-//! | STEP high | fall of STEP | its rise, the fall |
-//! | STEP low | rise of STEP | its last fall, the rise |
-//! | DIR set-up | every rise of STEP | the channel's last change of DIR, the rise |
-//! | DIR hold | change of DIR | the channel's last rise of STEP, the change |
-//! | EN wake-up | a channel's first rise of STEP after EN | rise of EN, the rise of STEP |
+//! Set-up and hold of DIR refer to the rise of STEP. EN counts as risen in cycle 0 (DESIGN A3). What never changed is
+//! not measured: DIR constant since reset has no set-up, the first pulse no low time, and a pulse cut by the end no
+//! high time. A DIR change in the cycle of a rise has a set-up of 0 and counts as hold of the rise before. A pulse
+//! that STOP cuts short (DESIGN A6) is a short pulse.
 //!
-//! The active edge of STEP is its rise, and set-up and hold of DIR both count from it, as data sheets
-//! do; a DIR that changes during a pulse is therefore a matter of hold. Levels before the first record
-//! are DESIGN A3's reset: EN is high from cycle 0 on, so a wake-up counts from there. What never
-//! changed is not measured: a DIR that kept its level since reset has no set-up, a first pulse no
-//! low time before it, and a pulse that the run's end cuts no high time. A DIR that changes in the
-//! very cycle in which STEP rises has a set-up of 0 cycles, and its hold counts from the rise
-//! before. Steps while EN is low have no wake-up; the fall of EN is no rule, but a pulse that STOP
-//! cuts short (DESIGN A6) is a short pulse.
-//!
-//! A time of n cycles keeps a rule of t ns if n*10^9 >= t*clock_hz. That is so exactly from
-//! ceil(t*clock_hz/10^9) cycles on, which is what is compared; no fraction is ever rounded.
+//! n cycles satisfy t ns from ceil(t*clock_hz/10^9) on, which is what is compared, without rounding.
 //!
 //! ```
 //! use stepscope_inspect::trace::{drivers::TB6600_CLASS, timing::{Rule, TimingCheck}};
@@ -53,30 +40,22 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::TimingRules;
 
-/// Signals that the rules are about.
 const WATCHED: u64 = Levels::EN | 0xFFFF_FFFF;
 
-/// What a driver asks for.
+/// A driver's requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Rule {
-    /// STEP high.
     StepHigh,
-    /// STEP low.
     StepLow,
-    /// DIR stable before STEP rises.
     DirSetup,
-    /// DIR stable after STEP has risen.
     DirHold,
-    /// EN before the first rise of STEP.
     EnableWake,
 }
 
 impl Rule {
-    /// All rules, in the order of [`TimingCheck::results`].
     pub const ALL: [Self; 5] =
         [Self::StepHigh, Self::StepLow, Self::DirSetup, Self::DirHold, Self::EnableWake];
 
-    /// The rule's word in tables and on the page.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -88,7 +67,7 @@ impl Rule {
         }
     }
 
-    /// What the rules ask for under this one, in ns; 0 asks for nothing.
+    /// The required ns; 0 for none.
     #[must_use]
     pub const fn nanos(self, rules: &TimingRules) -> u32 {
         match self {
@@ -101,63 +80,48 @@ impl Rule {
     }
 }
 
-/// Fewest cycles that last at least `nanos`; no product of two `u32` leaves `u64`.
+/// Minimum cycles that last `nanos`; the product of two `u32` fits in `u64`.
 #[must_use]
 pub const fn cycles_at_least(nanos: u32, clock_hz: u32) -> Cycles {
     Cycles((nanos as u64 * clock_hz as u64).div_ceil(1_000_000_000))
 }
 
-/// A time that is shorter than the driver asks for.
+/// A time shorter than required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// Channel, from 0.
     pub channel: u8,
-    /// Which rule.
     pub rule: Rule,
-    /// Cycle of the edge that came too early.
+    /// The edge that came too early.
     pub at: Instant,
-    /// How long it was.
     pub measured: Cycles,
-    /// How long it should have been, in whole cycles.
     pub required: Cycles,
 }
 
-/// A shortest time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Least {
-    /// How long it was.
     pub measured: Cycles,
-    /// Cycle of the edge that ended it; the first, where several were as short.
+    /// The edge that ended it; the first of equals.
     pub at: Instant,
-    /// Channel, from 0.
     pub channel: u8,
 }
 
-/// What a run came to under one rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RuleResult {
-    /// Which rule.
     pub rule: Rule,
-    /// What is asked for, in ns; 0 asks for nothing.
     pub nanos: u32,
-    /// The same in whole cycles, rounded up.
     pub required: Cycles,
-    /// The shortest time of all channels, also where nothing is asked for; `None` where there was
-    /// nothing to measure.
+    /// The shortest time of all channels, required or not; `None` where nothing was measured.
     pub least: Option<Least>,
-    /// Violations of each channel.
     pub violations: [u64; MAX_CHANNELS],
 }
 
 impl RuleResult {
-    /// Violations of all channels.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.violations.iter().sum()
     }
 }
 
-/// A channel's last edges.
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     rise: Option<Instant>,
@@ -165,7 +129,7 @@ struct Edges {
     dir: Option<Instant>,
 }
 
-/// Takes the records of a run and holds them against a driver's rules.
+/// Checks the records of a run.
 #[derive(Clone, Debug)]
 pub struct TimingCheck {
     results: [RuleResult; Rule::ALL.len()],
@@ -173,17 +137,15 @@ pub struct TimingCheck {
     most_kept: usize,
     levels: Levels,
     edges: [Edges; MAX_CHANNELS],
-    /// Last rise of EN; reset counts as one.
+    /// Reset counts as a rise.
     enabled: Instant,
-    /// Channels that have not stepped since; none while EN is low.
+    /// Channels that have not stepped since EN rose.
     waking: u16,
-    /// Channels that each rule leaves out.
     left_out: [u16; Rule::ALL.len()],
 }
 
 impl TimingCheck {
-    /// A check before the first record, for a run at `clock_hz`. It counts all violations and keeps
-    /// the first `most_kept` of them in full.
+    /// Counts all violations and lists the first `most_kept`.
     #[must_use]
     pub fn new(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
         let result = |rule: Rule| {
@@ -203,15 +165,14 @@ impl TimingCheck {
         }
     }
 
-    /// Leaves a rule out for a channel whose edges were made and not recorded.
+    /// Excludes a rule for a channel with generated edges.
     pub fn leave_out(&mut self, channel: u8, rule: Rule) {
         if let Some(channels) = self.left_out.get_mut(rule as usize) {
             *channels |= 1 << (channel & 15);
         }
     }
 
-    /// The same of times that were rounded to cycles, half a cycle at most: a time that may have been as long as required is
-    /// no violation.
+    /// For times rounded to cycles: a time that may have been long enough is no violation.
     #[must_use]
     pub fn of_rounded(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
         let mut check = Self::new(rules, clock_hz, most_kept);
@@ -221,8 +182,7 @@ impl TimingCheck {
         check
     }
 
-    /// A check of records whose cycles are ticks of `numerator / denominator` seconds: exact where no clock has whole cycles
-    /// for the ticks.
+    /// For records in ticks of `numerator / denominator` seconds, which no clock represents exactly.
     #[must_use]
     pub fn in_ticks(rules: &TimingRules, (numerator, denominator): (u64, u64), most_kept: usize) -> Self {
         let mut check = Self::new(rules, 1, most_kept);
@@ -234,26 +194,23 @@ impl TimingCheck {
         check
     }
 
-    /// What the run came to under each rule, in the order of [`Rule::ALL`].
     #[must_use]
     pub const fn results(&self) -> &[RuleResult] {
         &self.results
     }
 
-    /// All violations, also those that are not kept.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.results.iter().map(RuleResult::total).sum()
     }
 
-    /// The first violations, in the order of their cycles; within one cycle by channel, and of one
-    /// channel hold, high, low, set-up, wake-up.
+    /// In the order of cycles, then channels, then hold, high, low, set-up, wake-up.
     #[must_use]
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
-    /// Index of the first kept violation after `at`, or with `forward` false of the last one before.
+    /// Index of the first listed violation after `at`, or the last one before.
     #[must_use]
     pub fn next(&self, at: Instant, forward: bool) -> Option<usize> {
         if forward {
@@ -264,7 +221,6 @@ impl TimingCheck {
         }
     }
 
-    /// Signals of `changed` have new levels from `at` on.
     fn change(&mut self, at: Instant, changed: Levels) {
         if changed.has(Levels::EN) {
             self.enabled = at;
@@ -308,7 +264,6 @@ impl TimingCheck {
         }
     }
 
-    /// A time that began at `from`, if it did, and ends at `at`.
     fn measure(&mut self, rule: Rule, channel: usize, from: Option<Instant>, at: Instant) {
         let (Some(from), Some(result)) = (from, self.results.get_mut(rule as usize)) else { return };
         if self.left_out.get(rule as usize).is_some_and(|channels| channels >> channel & 1 == 1) {
@@ -332,7 +287,7 @@ impl TimingCheck {
 
 impl Sink for TimingCheck {
     fn record(&mut self, record: Record) {
-        // What a recording begins with is no edge; a run begins with the levels of reset.
+        // A recording's first levels are no edge; a run begins with those of reset.
         if record.cycle == Instant::RESET {
             self.levels = record.levels;
         }

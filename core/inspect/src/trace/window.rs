@@ -1,4 +1,4 @@
-//! A part of a trace as records of its own: the first one stands at the part's start, with the levels that hold there.
+//! A part of a trace as records: the first one has the levels at its start.
 //!
 //! ```
 //! use stepscope_inspect::trace::window::TraceWindow;
@@ -15,7 +15,6 @@
 
 use stepscope_peripheral::{signal::Record, trace::levels_at, units::Instant};
 
-/// Records of some cycles of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct TraceWindow<'a> {
     first: Record,
@@ -23,7 +22,7 @@ pub struct TraceWindow<'a> {
 }
 
 impl<'a> TraceWindow<'a> {
-    /// Of the cycles `start..=end`.
+    /// The cycles `start..=end`.
     #[must_use]
     pub fn of(trace: &'a [Record], start: Instant, end: Instant) -> Self {
         let after = trace.partition_point(|record| record.cycle <= start);
@@ -32,13 +31,11 @@ impl<'a> TraceWindow<'a> {
         Self { first, rest: trace.get(after..until).unwrap_or_default() }
     }
 
-    /// How many records there are, at least one.
     #[must_use]
     pub const fn records(&self) -> usize {
         1 + self.rest.len()
     }
 
-    /// Record `index`; `None` past the last.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<Record> {
         match index.checked_sub(1) {
@@ -47,7 +44,6 @@ impl<'a> TraceWindow<'a> {
         }
     }
 
-    /// The records from `index` on.
     pub fn iter_from(&self, index: usize) -> impl Iterator<Item = Record> {
         (index..).map_while(|index| self.get(index))
     }

@@ -1,4 +1,4 @@
-//! What would let a motion run that its bus is too slow for: each change of numbers is judged before it is offered.
+//! Changes that make a motion possible that is too fast for its bus; each is validated before it is offered.
 //!
 //! ```
 //! use stepscope_inspect::validation::remedies::Remedies;
@@ -24,29 +24,26 @@ use stepscope_motion::{
 use stepscope_scenario::{Cause, MotionEngine, Scenario, Source};
 use stepscope_sim::{ValidatedScenario, axes_of};
 
-/// A time is lengthened to a whole number of these, in s.
+/// Times are rounded up to multiples of this, in s.
 const TIME_STEP_S: f64 = 1e-4;
 
-/// What is wrong with a motion's speed, and what would do.
+/// The problem, and changes that solve it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Remedies {
-    /// The rate that is needed and the one that there is, in a sentence.
     pub wrong: String,
-    /// Changes after which the scenario has no problem, the smallest first.
+    /// The smallest change first.
     pub offers: Vec<Offer>,
 }
 
-/// One change that would do.
 #[derive(Clone, Debug, Serialize)]
 pub struct Offer {
-    /// What is changed, with the new numbers.
     pub change: String,
-    /// The changed scenario, as JSON with every field written.
+    /// As JSON with every field written.
     pub scenario: String,
 }
 
 impl Remedies {
-    /// Of a scenario that was judged; `None` where no motion is too fast for its bus.
+    /// `None` where no motion is too fast for its bus.
     #[must_use]
     pub fn of(judged: &ValidatedScenario) -> Option<Self> {
         let is_too_fast = |cause: &Cause| matches!(cause, Cause::Motion(problem::Cause::TooManySteps { .. }));
@@ -78,7 +75,7 @@ impl Remedies {
     }
 }
 
-/// Steps/s that a controller's motion needs at its top, and those that its bus gives: one a slot.
+/// Steps/s that a motion needs, and those that its bus allows.
 #[derive(Clone, Copy)]
 struct Rates {
     controller: usize,
@@ -98,7 +95,7 @@ impl Rates {
 
 type Change = Option<(String, Scenario)>;
 
-/// Slots so short that there is one for each step at the top; all controllers keep ticks of one length.
+/// Shorter slots: one per step at the maximum rate; all controllers keep the same tick.
 fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
     let needed = slow.iter().map(|rates| rates.needed).fold(1.0, libm::fmax);
     let period = libm::floor(f64::from(scenario.clock_hz) / needed) as u32;
@@ -111,7 +108,7 @@ fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
     Some((format!("slot {period} cycles{whose}"), changed))
 }
 
-/// More time for the moves that name theirs and are too fast in it.
+/// Longer times for the moves that are too fast.
 fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
     let mut changed = scenario.clone();
     let mut texts = Vec::new();
@@ -146,12 +143,12 @@ fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
     (!texts.is_empty()).then(|| (format!("more time for the move: {times}"), changed))
 }
 
-/// A multiple of the step as it is printed: without the last bits of its product.
+/// Formats a multiple without the product's last bits.
 fn shortest(time_s: f64) -> String {
     format!("{time_s:.4}").trim_end_matches('0').trim_end_matches('.').to_string()
 }
 
-/// Segments instead of ticks: each step has its own time, and no slot limits it.
+/// Segments instead of ticks: no slot limits a step.
 fn segments(scenario: &Scenario) -> Change {
     let mut changed = scenario.clone();
     let Source::Motion(motion) = &mut changed.source else { return None };

@@ -1,10 +1,7 @@
-//! Two curves of positions compared: distance, correlation, deviation, area.
+//! Compares two position curves: distance, correlation, deviation, area.
 //!
-//! ```text
-//! off = second - first        integrals from joint to joint and from step to step, cut where off changes its
-//!                             sign, by three points of Gauss and Legendre: exact for what is straight or bent
-//! area = | |off| dt           once, for cosines to the last digits
-//! ```
+//! Integrals go from breakpoint to breakpoint and from step to step, split where the deviation changes sign, by
+//! three-point Gauss-Legendre.
 
 use crate::motion::{
     cursor_stats::POINTS as GAUSS,
@@ -14,36 +11,29 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
-/// Points at which curves are sampled: the document's 512 of a quarter, for a whole run.
+/// Points at which curves are sampled, for a whole run.
 pub const POINTS: u32 = 2048;
 
-/// How far the second of two curves is from the first, in steps.
+/// Deviation of the second of two curves from the first, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurveMetrics {
-    /// The deviation of greatest magnitude, second less first, in steps.
     pub largest_steps: f64,
-    /// When it first is so, in s from the motion's start.
+    /// Time of the first largest deviation, in s.
     pub largest_at_s: f64,
-    /// Root of the mean square of the deviation over the time, in steps.
     pub rms_steps: f64,
-    /// Area between the two: the integral of |second - first|, in steps times s.
+    /// Integral of |second - first|, in steps times s.
     pub area_steps_s: f64,
-    /// Difference of their areas: the integral of second - first, in steps times s; 0 where only the rounding of
-    /// areas that cancel is left.
+    /// Integral of second - first, in steps times s; 0 where only rounding is left.
     pub area_difference_steps_s: f64,
-    /// Points at which both are sampled, evenly from the start on, for the two figures that follow.
     pub points: u32,
-    /// Sum of the squares of the deviations at the points, in steps^2.
     pub sum_of_squares_steps2: f64,
-    /// Euclidean distance: its root, in steps.
     pub euclidean_steps: f64,
-    /// Correlation coefficient over the time, -1 to 1; `None` where one of the two stands still.
+    /// -1 to 1; `None` where a curve stands still.
     pub correlation: Option<f64>,
-    /// 1 less the correlation, which has digits where the correlation is all nines.
+    /// 1 less the correlation, which keeps its digits near 1.
     pub uncorrelated: Option<f64>,
 }
 
-/// What is summed up of two curves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
     seconds: f64,
@@ -60,7 +50,6 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// A stretch in which the deviation keeps its sign, as (first, deviation, seconds).
     pub(super) fn interval(&mut self, looks: &[(f64, f64, f64)]) {
         let mut off_sum = 0.0;
         for &(first, off, seconds) in looks {
@@ -75,14 +64,12 @@ impl Sums {
         self.area += libm::fabs(off_sum);
     }
 
-    /// A deviation that may be the largest.
     pub(super) fn look(&mut self, at_s: f64, off: f64) {
         if libm::fabs(off) > libm::fabs(self.largest) {
             (self.largest, self.largest_at_s) = (off, at_s);
         }
     }
 
-    /// The deviation at the next of the points.
     pub(super) fn sample(&mut self, off: f64) {
         self.points += 1;
         self.sampled_square += off * off;
@@ -95,12 +82,12 @@ impl Sums {
         let of_off = mean(self.off_square) - off * off;
         let of_both = mean(self.product) - first * off;
         let of_second = of_first + 2.0 * of_both + of_off;
-        // Of a curve that stands still only rounding is left.
+        // A curve that stands still leaves only rounding.
         let least = 1e-12 * mean(self.first_square);
         let correlation = (of_first > least && of_second > least)
             .then(|| (of_first + of_both) / libm::sqrt(of_first * of_second));
         let uncorrelated = correlation.map(|correlation| {
-            // 1 - r^2 = (1 - r)*(1 + r), without the digits that 1 - r loses.
+            // 1 - r^2 = (1 - r)*(1 + r), without the cancellation in 1 - r.
             let rest = (of_first * of_off - of_both * of_both) / (of_first * of_second);
             if correlation > 0.0 { libm::fmax(0.0, rest / (1.0 + correlation)) } else { 1.0 - correlation }
         });
@@ -119,7 +106,6 @@ impl Sums {
     }
 }
 
-/// The ideal curve, and steps in cycles from the motion's start.
 pub(super) fn curve_and_steps(
     plan: &AxisPlan,
     breakpoints: &Breakpoints,
@@ -143,13 +129,12 @@ pub(super) fn curve_and_steps(
     sums.ended()
 }
 
-/// A smooth interval of the ideal curve, and a place at which the steps stay.
 fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sums: &mut Sums) {
     let off = |t: f64| place - plan.position(t);
     // Just inside: a table's curve ends with half a step at once.
     let inset = (interval.to_s - interval.from_s) * 1e-9;
     let ends = [interval.from_s + inset, interval.to_s - inset].map(|t| (t, off(t)));
-    // What lasts less than a cycle is the rounding of the step's time.
+    // Shorter than a cycle: rounding of the step's time.
     if (interval.to_s - interval.from_s) * hz > 0.75 {
         ends.into_iter().for_each(|(t, off)| sums.look(t, off));
     }
@@ -165,14 +150,13 @@ fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sum
     }
 }
 
-/// Where a deviation that only rises or only falls is 0, between two ends of different sign: by false position, the
-/// end that stays counting half (Illinois).
+/// The zero of a monotonic deviation, by false position (Illinois).
 fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f64 {
     let mut kept_low = None;
     for _ in 0..50 {
         let t = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
         let value = off(t);
-        // The area that is put on the wrong side is of second order.
+        // The error in area is of second order.
         if libm::fabs(value) < 1e-9 {
             return t;
         }
@@ -193,10 +177,9 @@ fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f
     (low.0 + high.0) / 2.0
 }
 
-/// Steps, and other steps, both in cycles from the motion's start.
 pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s: f64) -> CurveMetrics {
     let mut sums = Sums::default();
-    // From before the start, so that a step in cycle 0 is a change like any other.
+    // From before the start, so that a step in cycle 0 is a change.
     let mut walk = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);
     let (mut since_s, mut places) = (0.0, [0.0; 2]);
     let mut stay = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
@@ -218,7 +201,6 @@ fn sample(sums: &mut Sums, length_s: f64, off: impl Fn(f64) -> f64) {
     (0..POINTS).for_each(|point| sums.sample(off(length_s * (f64::from(point) / f64::from(POINTS)))));
 }
 
-/// Position after all steps up to a time.
 fn place_at(steps: &[Step], hz: f64, time_s: f64) -> f64 {
     let after = steps.partition_point(|step| step.cycle as f64 / hz <= time_s);
     after.checked_sub(1).and_then(|last| steps.get(last)).map_or(0.0, |step| f64::from(step.position))

@@ -1,40 +1,26 @@
-//! How far pulses are from where they should be, in time and in place.
+//! Errors of pulses in time and position.
 //!
-//! ```text
-//!                ideal instant    whole cycle        pulse
-//! time           |---step error---|----tick error----|
-//! place  s(t) =  k - 1/2          + what the ideal motion goes meanwhile
-//! ```
-//!
-//! A pulse is held against the step that goes the same way over the same place; of a motion that comes by more than
-//! once, against the nearest in time. So steps to and fro that cancel within a tick, or a pulse that was lost, do not
-//! move the others.
+//! A pulse is compared with the step of the same position and direction, the nearest in time of several. So canceled
+//! or lost steps do not shift the others.
 
 use alloc::vec::Vec;
 use serde::Serialize;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::trace::Step;
 
-/// Errors of pulses.
+/// Time errors in s, late positive; position errors in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PulseErrors {
-    /// Pulses that count.
     pub pulses: u64,
-    /// The time error of greatest magnitude in s; late is above 0.
     pub largest_s: f64,
-    /// When that pulse comes, in s from the motion's start.
     pub largest_at_s: f64,
-    /// Mean of the time errors in s.
     pub mean_s: f64,
-    /// Root of their mean square in s.
     pub rms_s: f64,
-    /// Largest position error in steps: how far the ideal motion goes within the time error.
+    /// Distance of the ideal motion within the time error.
     pub largest_steps: f64,
-    /// Root of the mean square of those in steps.
     pub rms_steps: f64,
 }
 
-/// Sums of errors.
 #[derive(Default)]
 struct Errors {
     found: PulseErrors,
@@ -44,7 +30,6 @@ struct Errors {
 }
 
 impl Errors {
-    /// Of a pulse that comes at `at_s`, so much late and so many steps off.
     fn add(&mut self, at_s: f64, late_s: f64, steps: f64) {
         self.found.pulses += 1;
         self.time += late_s;
@@ -70,7 +55,7 @@ impl Errors {
     }
 }
 
-/// All steps at their whole cycles (B1), and how far these are from the ideal instants.
+/// B1's steps in whole cycles, and their deviation from the ideal instants.
 pub(super) fn due_steps(plan: &AxisPlan, clock_hz: u32) -> (Vec<Step>, PulseErrors) {
     let hz = f64::from(clock_hz);
     let (mut errors, mut position) = (Errors::default(), 0);
@@ -87,7 +72,6 @@ pub(super) fn due_steps(plan: &AxisPlan, clock_hz: u32) -> (Vec<Step>, PulseErro
     (steps, errors.ended())
 }
 
-/// How far the pulses are from the steps that were due, and how many have none.
 pub(super) fn placed(plan: &AxisPlan, due: &[Step], made: &[Step], hz: f64) -> (PulseErrors, u64) {
     let runs = runs(due);
     let (mut errors, mut stray) = (Errors::default(), 0);
@@ -103,27 +87,21 @@ pub(super) fn placed(plan: &AxisPlan, due: &[Step], made: &[Step], hz: f64) -> (
     (errors.ended(), stray)
 }
 
-/// How far the ideal motion goes from one time to another, in steps.
-///
-/// Both are taken a cycle earlier: a table's last step is due at its end, where its curve goes the last half of a
-/// step at once.
+/// Distance of the ideal motion in steps. Both times are one cycle earlier, because a table's curve goes its last
+/// half step at once.
 fn gone(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }
 
-/// Steps one way, up to a turn.
+/// Steps in one direction, up to a turn.
 struct Run {
-    /// Index of its first step.
     first: usize,
-    /// Cycle of that.
     cycle: u64,
-    /// Its steps.
     count: usize,
-    /// +1 right, -1 left.
     way: i32,
 }
 
-/// Runs that are looked at on either side of a pulse's time.
+/// Runs on either side of a pulse's time that are searched.
 const BESIDE: usize = 3;
 
 fn runs(due: &[Step]) -> Vec<Run> {
@@ -138,7 +116,7 @@ fn runs(due: &[Step]) -> Vec<Run> {
     runs
 }
 
-/// The step that goes over the pulse's place, its way, nearest to its time; of equals the earlier.
+/// The step of the pulse's position and direction nearest in time; of equals the earlier.
 fn nearest<'d>(runs: &[Run], due: &'d [Step], pulse: &Step, way: i32) -> Option<&'d Step> {
     let after = runs.partition_point(|run| run.cycle <= pulse.cycle);
     let beside = runs.iter().skip(after.saturating_sub(BESIDE)).take(2 * BESIDE);

@@ -1,4 +1,4 @@
-//! The motor with its load as numbers of the phasor model, and what it can at a rate.
+//! The motor with its load in the phasor model.
 
 use crate::motion::torque::moment::Moment;
 use core::f64::consts::{PI, SQRT_2};
@@ -7,25 +7,20 @@ use stepscope_motion::{AxisPlan, MAX_SPEED, bisection::border, moves::Axis};
 use stepscope_scenario::{PlantMotor, PlantSettings, Scenario};
 use stepscope_sim::axes_of;
 
-/// mN*m in a N*m.
 const MILLI: f64 = 1000.0;
 /// kg*m^2 in a g*cm^2.
 const GRAM_CM2: f64 = 1e-7;
-/// Shortest natural period in s.
 const MIN_PERIOD_S: f64 = 1e-6;
 
-/// An axis' motor, its driver and its load.
+/// An axis' motor, driver and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
-    /// k in N*m/A, of a phase.
     constant: f64,
-    /// Peak of the regulated phase current in A.
     current_a: f64,
     supply_v: f64,
     resistance_ohm: f64,
     inductance_h: f64,
     pole_pairs: f64,
-    /// Angle of the shaft in one step, in rad.
     step_rad: f64,
     inertia_kg_m2: f64,
     load_n_m: f64,
@@ -33,7 +28,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Of an axis; `None` where it has no motor, or mechanics without an angle.
+    /// `None` without a motor, or if the mechanics have no angle.
     #[must_use]
     pub fn of(axis: &Axis) -> Option<Self> {
         let motor = axis.motor.as_ref()?;
@@ -52,7 +47,6 @@ impl Machine {
         })
     }
 
-    /// Of a motor of a plant on its supply.
     #[must_use]
     pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
         Self {
@@ -69,8 +63,7 @@ impl Machine {
         }
     }
 
-    /// Of a channel: of its axis, where that has a motor, else what the scenario's plant has there (F9); `None` where it has
-    /// neither.
+    /// The motor of the channel's axis, otherwise that of the scenario's plant (F9).
     #[must_use]
     pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
         let axis = axes_of(scenario, controller).get(channel);
@@ -86,34 +79,31 @@ impl Machine {
         Self::of(&Axis { mechanics, motor: Some(motor), ..Axis::default() })
     }
 
-    /// How long the rotor with its load takes to swing to and fro once, in s, held by the regulated peak of its currents:
-    /// 2*pi*sqrt(J/(p*k*I)); 1 us where there is hardly any inertia.
+    /// Period of the rotor with its load in the field of the regulated current, in s: 2*pi*sqrt(J/(p*k*I)), at least
+    /// 1 us.
     #[must_use]
     pub fn natural_period_s(&self) -> f64 {
         let stiffness = self.pole_pairs * self.constant * self.current_a;
         libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), MIN_PERIOD_S)
     }
 
-    /// Microsteps of half a full step, at least 1.
     pub(super) fn microsteps_of_half_a_step(&self) -> usize {
         libm::fmax(1.0, libm::round(PI / (4.0 * self.pole_pairs * self.step_rad))) as usize
     }
 
-    /// The stated highest rate in steps/s, if there is one.
+    /// The stated maximum rate in steps/s.
     #[must_use]
     pub fn working_rate(&self) -> Option<f64> {
         self.working_rate
     }
 
-    /// The torque in mN*m that the load opposes to the motion.
     #[must_use]
     pub fn load_mn_m(&self) -> f64 {
         self.load_n_m * MILLI
     }
 
-    /// The most torque in mN*m that the driver can make at `rate` steps/s. Below 0 the motor brakes
-    /// whatever the driver does: no current that the supply leaves it drives, so it cannot stay in step, not even
-    /// without a load.
+    /// Maximum torque in mN*m of the driver at a rate in steps/s. Below 0 the motor brakes at any current, so it
+    /// cannot stay in step.
     #[must_use]
     pub fn available_mn_m(&self, rate: f64) -> f64 {
         let speed = libm::fabs(rate) * self.step_rad;
@@ -126,11 +116,11 @@ impl Machine {
         MILLI * self.constant * most_real(self.current_a, centre, radius)
     }
 
-    /// The torque in mN*m in the direction of the motion that `speed` steps/s and `acceleration` steps/s^2,
-    /// both with sign, need; negative where the motor brakes.
+    /// Torque in mN*m in the direction of motion that a signed speed and acceleration need; negative where the motor
+    /// brakes.
     #[must_use]
     pub fn needed_mn_m(&self, speed: f64, acceleration: f64) -> f64 {
-        // From standstill it sets off in the direction of the acceleration.
+        // From rest it moves in the direction of the acceleration.
         let ahead = if speed == 0.0 { acceleration } else { speed };
         if ahead == 0.0 {
             return 0.0;
@@ -139,12 +129,10 @@ impl Machine {
         MILLI * (turning + self.load_n_m)
     }
 
-    /// Both at `at_s` of a plan.
     pub(super) fn at(&self, plan: &AxisPlan, at_s: f64) -> Moment {
         self.moment(at_s, plan.speed(at_s), plan.acceleration(at_s))
     }
 
-    /// Both at a speed in steps/s and an acceleration in steps/s^2.
     pub(super) fn moment(&self, at_s: f64, speed: f64, acceleration: f64) -> Moment {
         Moment {
             at_s,
@@ -154,8 +142,8 @@ impl Machine {
         }
     }
 
-    /// The greatest rate in steps/s with the whole regulated current, above which the voltage limits;
-    /// 0 where it limits at standstill already, `None` where it never does up to 10^7 steps/s.
+    /// Maximum rate in steps/s with the full regulated current; 0 if voltage limits at rest, `None` if it never does
+    /// up to 10^7 steps/s.
     #[must_use]
     pub fn corner_rate(&self) -> Option<f64> {
         greatest(|rate| {
@@ -166,15 +154,14 @@ impl Machine {
         })
     }
 
-    /// The greatest rate in steps/s at which there is enough torque for the load at constant speed; 0 where
-    /// there is none, `None` where there is enough up to 10^7 steps/s.
+    /// Maximum rate in steps/s with enough torque for the load at constant speed; 0 for none, `None` for all up to
+    /// 10^7 steps/s.
     #[must_use]
     pub fn torque_rate(&self) -> Option<f64> {
         greatest(|rate| self.available_mn_m(rate) >= self.load_mn_m())
     }
 
-    /// B4's f_s: the greatest rate in steps/s that the motor can do with its load, the lower of
-    /// [`Self::torque_rate`] and [`Self::working_rate`]; `None` where neither limits it.
+    /// B4's f_s: the lower of [`Self::torque_rate`] and [`Self::working_rate`], in steps/s.
     #[must_use]
     pub fn greatest_rate(&self) -> Option<f64> {
         match (self.torque_rate(), self.working_rate) {
@@ -183,7 +170,7 @@ impl Machine {
         }
     }
 
-    /// The curve: (rate in steps/s, available torque in mN*m) at `points` rates, from 0 to `most_rate` evenly.
+    /// (Rate in steps/s, available torque in mN*m) at `points` rates from 0 to `most_rate`.
     pub fn curve(&self, most_rate: f64, points: u32) -> impl Iterator<Item = (f64, f64)> + '_ {
         let last = f64::from(points.saturating_sub(1).max(1));
         (0..points).map(move |point| {
@@ -192,8 +179,7 @@ impl Machine {
         })
     }
 
-    /// A rate in steps/s up to which a curve shows what matters: all of `used`, the corner, and the greatest
-    /// rate, or twice the corner.
+    /// The rate up to which a curve shows all that matters, in steps/s.
     #[must_use]
     pub fn shown_rate(&self, used: f64) -> f64 {
         let corner = self.corner_rate().unwrap_or(0.0);
@@ -203,9 +189,8 @@ impl Machine {
     }
 }
 
-/// The greatest real part of the points that the disc of radius `own` around 0 and that of `radius` around
-/// `centre` have in common; where they have none, that of the second's point nearest to the first: the
-/// back-EMF drives more current than the driver would regulate, at least so much.
+/// Maximum real part of the intersection of two discs; if they are disjoint, that of the second's point nearest to
+/// the first.
 fn most_real(own: f64, centre: (f64, f64), radius: f64) -> f64 {
     let (re, im) = centre;
     let distance = libm::sqrt(re * re + im * im);
@@ -225,8 +210,7 @@ fn most_real(own: f64, centre: (f64, f64), radius: f64) -> f64 {
     (along * re + across * libm::fabs(im)) / distance
 }
 
-/// The greatest rate that `holds`, which it does up to some rate and not above; 0 where it never does,
-/// `None` where it does up to the highest rate that a plan may have.
+/// The maximum rate up to which `holds`; 0 for none, `None` for all.
 fn greatest(holds: impl Fn(f64) -> bool) -> Option<f64> {
     if holds(MAX_SPEED) {
         return None;

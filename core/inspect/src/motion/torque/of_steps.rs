@@ -1,8 +1,7 @@
-//! What the steps themselves ask of a motor, where no plan is known: of a list of segments, of packets, of a recording.
+//! Torque that steps without a plan require: segments, packets, recordings.
 //!
-//! A staircase has no acceleration. What a rotor makes of it depends on the rotor: what comes and goes faster than it swings
-//! in the field of its currents moves it little. So the steps are looked at through its natural period T, position being
-//! straight from each step to the next:
+//! Steps have no acceleration of their own. A rotor hardly follows what is faster than its natural period T, so
+//! positions, straight from step to step, are smoothed over T:
 //!
 //! ```text
 //! speed        = (x(t + h) - x(t - h))/(2*h)
@@ -11,13 +10,9 @@
 //! T = 2*pi*sqrt(J/(p*k*I))      rotor and load in the field of the regulated peak
 //! ```
 //!
-//! These are the mean speed over T, and the mean speed of the half after t less that of the half before it. Both are straight
-//! from one of the instants t_i - h, t_i, t_i + h of all steps i to the next, so at these the greatest acceleration is found
-//! exactly. J*step/h^2 does not depend on J: with 16 microsteps, positions that are off by a step ask for at most
-//! 4*(pi/2)/(16*pi^2) of the motor's torque, 4 %, whatever the load; and a start by a hundred steps within h asks for all of
-//! it. So the window makes no shortage of jitter, and hides none.
-//!
-//! A jump of speed is taken within T here, which is about what a rotor does; its start-stop rate says more.
+//! Both are piecewise linear between t_i - h, t_i and t_i + h of all steps, so the maximum acceleration is found
+//! exactly. With 16 microsteps a position error of one step requires at most 4 % of the motor's torque, whatever the
+//! load, so jitter makes no shortage.
 //!
 //! ```
 //! use stepscope_inspect::motion::torque::{Demand, Machine};
@@ -40,8 +35,7 @@ use alloc::vec::Vec;
 use stepscope_peripheral::trace::Step;
 
 impl Demand {
-    /// What the steps of a channel, in cycles of `clock_hz`, ask of `machine`. Times are those of the steps, from cycle 0;
-    /// the jump is the greatest rate that is taken up, or left, beside a rest or a turn.
+    /// What steps in cycles of `clock_hz` require. The jump is the maximum rate next to a rest or turn.
     #[must_use]
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
         let mut looked = Looked {
@@ -65,7 +59,7 @@ impl Demand {
     }
 }
 
-/// The most torque in mN*m that steps need at each rate, as [`needed_over_rate`](super::needed_over_rate) has it of a plan.
+/// As [`needed_over_rate`](super::needed_over_rate), for steps.
 #[must_use]
 pub fn steps_needed_over_rate(
     machine: &Machine,
@@ -76,7 +70,6 @@ pub fn steps_needed_over_rate(
 ) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     moments(machine, steps, clock_hz, &mut |moment| {
-        // At rest there is nothing to need.
         let moves = moment.rate > 0.0 || moment.needed_mn_m != 0.0;
         let bin = (moment.rate / most_rate * bins as f64) as usize;
         if let Some(most) = needed.get_mut(bin).filter(|_| moves) {
@@ -86,7 +79,7 @@ pub fn steps_needed_over_rate(
     needed
 }
 
-/// Every instant at which the acceleration of the steps bends, in order.
+/// Every instant at which the acceleration bends, in order.
 fn moments(machine: &Machine, steps: &[Step], clock_hz: u32, each: &mut impl FnMut(Moment)) {
     let hz = f64::from(clock_hz);
     let half_s = machine.natural_period_s() / 2.0;
@@ -95,7 +88,6 @@ fn moments(machine: &Machine, steps: &[Step], clock_hz: u32, each: &mut impl FnM
     let mut next = [0; 3];
     let mut before = f64::NEG_INFINITY;
     loop {
-        // Of the three lists t_i - h, t_i, t_i + h the one whose turn it is.
         let mut first: Option<(usize, f64)> = None;
         for (list, index) in next.iter().enumerate() {
             let ahead_s = positions.get(list).map_or(0.0, |(ahead_s, _)| *ahead_s);
@@ -120,12 +112,10 @@ fn moments(machine: &Machine, steps: &[Step], clock_hz: u32, each: &mut impl FnM
     }
 }
 
-/// The position over times that never go back, straight from step to step.
 #[derive(Clone, Copy)]
 struct Position<'a> {
     steps: &'a [Step],
     hz: f64,
-    /// The first step after the last time.
     next: usize,
 }
 
@@ -141,17 +131,16 @@ impl Position<'_> {
                 let part = (at_s - seconds(from)) / (seconds(to) - seconds(from));
                 f64::from(from.position) + part * f64::from(to.position.wrapping_sub(from.position))
             }
-            // Before the first step it stands where that leads: how long it took to get there is not known.
+            // Before the first step it stands at that step's target; how long that took is unknown.
             (at, None) | (None, at) => at.map_or(0.0, |step| f64::from(step.position)),
         }
     }
 }
 
-/// The greatest rate that is taken up or left at once: beside a turn, a rest, or the end.
+/// The maximum rate next to a turn, a rest, or an end.
 ///
-/// It is that of the next step, or of the next half a full step, whichever is lower: less than that moves the rotor little,
-/// however fast it comes. A rest is an interval of more than a natural period, or one in which half a full step, and four
-/// steps, would have come at that rate: a late step is none.
+/// It is that of the next step or of the next half full step, whichever is lower, because less moves the rotor
+/// little. A rest is longer than a natural period, or than half a full step and four steps take at that rate.
 fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     let swing_s = machine.natural_period_s();
     let half = machine.microsteps_of_half_a_step();
@@ -172,18 +161,15 @@ fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     greatest
 }
 
-/// What stands on one side of a step.
+/// One side of a step.
 struct Side {
-    /// To the next step; without end where there is none.
+    /// To the next step; infinite where there is none.
     interval_s: f64,
-    /// Direction in which time goes by; 0 where there is none.
     direction: f64,
-    /// Of the next step, or of the next half a full step, whichever is lower, in steps/s; 0 where there is not as much.
     rate: f64,
 }
 
 impl Side {
-    /// Beside the step `at`: the next one, and the last one of half a full step.
     fn of(steps: &[Step], at: usize, ends: [Option<usize>; 2], hz: f64) -> Self {
         let span = |to: Option<usize>| {
             let (from, to) = (steps.get(at)?, steps.get(to?)?);
@@ -199,11 +185,9 @@ impl Side {
     }
 }
 
-/// Moments one after the other.
 struct Looked {
     demand: Demand,
     last: Option<Moment>,
-    /// The shortage that has not ended yet.
     open: Option<Shortage>,
 }
 
@@ -214,7 +198,7 @@ impl Looked {
         if self.demand.least.is_none_or(|least| margin < least.margin_mn_m()) {
             self.demand.least = Some(moment);
         }
-        // Where the margin is 0 on the straight line from the moment before.
+        // The zero of the margin since the last moment.
         let border_s = || match self.last {
             Some(last) => {
                 let before = last.margin_mn_m();

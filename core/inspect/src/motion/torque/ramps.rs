@@ -1,45 +1,37 @@
-//! Which ramps of a move of n steps in T (DESIGN B4) a motor can follow. A short ramp needs much torque to
-//! accelerate, a long one a high rate, where there is little:
+//! Ramps with which a motor can follow a move of n steps in T (DESIGN B4).
 //!
-//! ```text
-//! f_max = n/(T - t_s), so t_s <= T - n/f_s keeps it under f_s; the acceleration falls up to t_s = T/2
-//! ```
-//!
-//! (For shapes that are not symmetric f_max has their area in it: `motion::ramp`.)
+//! A short ramp needs torque to accelerate; a long one has a high rate, where torque is low: f_max = n/(T - t_s).
 
 use crate::motion::torque::Machine;
 use serde::Serialize;
 use stepscope_motion::{Curve, Profile, bisection::border, cosine::Cosine};
 
-/// Ramps that are tried, evenly from none to half of the time.
+/// Ramps that are tried, evenly up to half of the time.
 const TRIED: u32 = 512;
-/// Times within a ramp that are looked at.
+/// Samples per ramp.
 const LOOKS: u32 = 128;
 
-/// Which ramps a motor can follow, in s.
+/// Ramps that a motor can follow, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ramps {
-    /// f_s: the greatest rate in steps/s that the motor can do with its load; `None` where nothing limits it.
+    /// f_s, the motor's maximum rate in steps/s; `None` without a limit.
     pub greatest_rate: Option<f64>,
-    /// T - n/f_s: the longest ramp under that rate, which may be more than the move has room for; `None`
-    /// where nothing limits it, or where even no ramp is too fast ([`Self::too_fast`]).
+    /// T - n/f_s: the longest ramp below that rate; may exceed [`Self::room_s`].
     pub longest_s: Option<f64>,
-    /// Even at one rate throughout the move is faster than f_s: it needs more time.
+    /// Even without ramps the rate exceeds f_s.
     pub too_fast: bool,
-    /// T/2: the longest ramp that the move has room for.
+    /// T/2: the longest ramp that fits.
     pub room_s: f64,
-    /// The shortest and the longest ramp above 0 with which the torque suffices throughout and the stated rate
-    /// is kept; `None` where there is none.
+    /// The shortest and longest ramp above 0 with enough torque and within the stated rate.
     pub enough_s: Option<(f64, f64)>,
-    /// Where there is none: those whose torque would suffice, all above the stated rate.
+    /// Otherwise those with enough torque above the stated rate.
     pub too_fast_s: Option<(f64, f64)>,
-    /// Without ramps the torque suffices at the one rate, and the stated rate is kept; the motor has to start
-    /// and to stop at it at once.
+    /// Torque and rate suffice without ramps, apart from the jump.
     pub without_ramps: bool,
 }
 
 impl Ramps {
-    /// Of a move of B4: a cosine, or ramps of another shape; `None` for any other.
+    /// `None` unless the move has ramps of a shape.
     #[must_use]
     pub fn of(machine: &Machine, profile: &Profile) -> Option<Self> {
         match profile {
@@ -56,7 +48,6 @@ impl Ramps {
         }
     }
 
-    /// Of a move, its longest ramp under a rate, and the same move with a ramp of so many s.
     fn with<C: Curve>(
         machine: &Machine,
         curve: &C,
@@ -69,7 +60,6 @@ impl Ramps {
         let torque = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
         let enough = |ramp_s: f64| keeps_rate(machine, &of(ramp_s)) && torque(ramp_s);
         let too_fast = greatest_rate.is_some() && longest_s.is_none();
-        // Any longer one is too fast.
         let longest_tried_s =
             if too_fast { 0.0 } else { longest_s.map_or(room_s, |most| libm::fmin(most, room_s)) };
         let enough_s = widest(longest_tried_s, enough);
@@ -85,15 +75,14 @@ impl Ramps {
     }
 }
 
-/// Whether the stated rate, if there is one, is kept.
 fn keeps_rate(machine: &Machine, curve: &impl Curve) -> bool {
     let top = libm::fabs(curve.speed(curve.duration_s() / 2.0));
     machine.working_rate().is_none_or(|most| top <= most)
 }
 
-/// Whether there is enough torque all the way up and on the plateau: on the way down the load helps.
+/// Checks the way up and the plateau; on the way down the load helps.
 fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
-    // The last look is just before the ramp's end, where a straight ramp still accelerates.
+    // The last sample is just before the ramp's end, where a straight ramp still accelerates.
     let ramp = (0..=LOOKS).map(|look| ramp_s * (1.0 - 1e-9) * f64::from(look) / f64::from(LOOKS));
     ramp.chain([curve.duration_s() / 2.0]).all(|t| {
         let (speed, acceleration) = (curve.speed(t), curve.acceleration(t));
@@ -101,13 +90,12 @@ fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
     })
 }
 
-/// The longest run of ramps above 0 and up to `room_s` that are `enough`, its ends found by halving.
+/// The widest range of ramps that are `enough`, with bisected ends.
 fn widest(room_s: f64, enough: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     if room_s <= 0.0 {
         return None;
     }
     let ramp = |index: u32| room_s * f64::from(index) / f64::from(TRIED);
-    // The run that is open, and the widest so far: first and last index.
     let (mut open, mut widest): (Option<u32>, Option<(u32, u32)>) = (None, None);
     for index in 1..=TRIED {
         if !enough(ramp(index)) {
@@ -120,7 +108,6 @@ fn widest(room_s: f64, enough: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
         }
     }
     let (first, last) = widest?;
-    // The end of the run between an index in it and the one beside it.
     let end = |inside: u32, outside: u32| border(ramp(inside), ramp(outside), &enough).0;
     let longest = if last == TRIED { room_s } else { end(last, last + 1) };
     Some((end(first, first - 1), longest))

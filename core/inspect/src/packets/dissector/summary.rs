@@ -1,4 +1,4 @@
-//! A packet, frame or reply in one line, as far as its bytes are known to mean something.
+//! A packet, frame or reply in one line.
 
 use super::{Check, Content, Head, Reading, last_frame, position_to_text};
 use alloc::string::String;
@@ -13,7 +13,7 @@ use stepscope_peripheral::{
 };
 
 impl Reading<'_> {
-    /// Adds a row's meaning to a text: whom it goes to or comes from, and what it orders or tells.
+    /// Adds address and meaning of a row.
     pub fn summary(&self, bytes: &[u8], outcome: RowOutcome, text: &mut String) {
         match outcome {
             RowOutcome::Packet(_) => match bytes.split_first() {
@@ -26,7 +26,7 @@ impl Reading<'_> {
             },
             RowOutcome::Reply(reply) => {
                 let _ = write!(text, "from {}: {reply}", reply.address);
-                // Counters are kept as bytes alone.
+                // The trace stores counters as bytes only.
                 if reply.answer == Ok(Kind::Positions) {
                     let content = Content::of(bytes, last_frame(bytes));
                     if let [address, kind, body @ ..] = content.without(content.check()) {
@@ -47,7 +47,6 @@ impl Reading<'_> {
         }
     }
 
-    /// A frame whose check holds.
     fn frame(&self, frame: Frame<'_>, text: &mut String) {
         let head = Head { address: frame.address, kind: frame.kind };
         if head.is_reply() {
@@ -78,7 +77,6 @@ impl Reading<'_> {
     }
 }
 
-/// Adds the position counters that a frame tells, such as `, ch0 at +12, ch1 at 0`.
 fn write_positions(frame: Frame<'_>, text: &mut String) {
     let Some(positions) = frame.positions() else { return };
     for (channel, &counter) in positions.as_slice().iter().enumerate() {
@@ -95,7 +93,7 @@ fn steps(byte: u8) -> i64 {
     if right { i64::from(steps) } else { -i64::from(steps) }
 }
 
-/// Adds what the bytes of one tick order, a byte a channel, such as `ch0 +12, ch3 −1`.
+/// Adds the steps of one tick, one byte per channel, such as `ch0 +12, ch3 −1`.
 pub fn write_steps(commands: impl Iterator<Item = u8>, text: &mut String) {
     write_totals(commands.map(steps).enumerate(), text);
 }

@@ -1,11 +1,7 @@
-//! The packet table as a file: CSV as in RFC 4180, with a line feed at the end of a row.
+//! The packet table as CSV (RFC 4180).
 //!
-//! ```text
-//! start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind,     in cycles; bytes in hexadecimal
-//! number,start_s,end_s,gap_s,meaning,tick_start_s,tick_end_s                    in s; end_s is that of the last byte
-//! ```
-//!
-//! `LineScript::recorded` of the scenario reads it again.
+//! `start_cycle` to `kind` are in cycles, with bytes in hexadecimal; the columns after `number` are in s.
+//! `LineScript::recorded` of the scenario reads the file again.
 
 use super::PacketTable;
 use alloc::string::{String, ToString};
@@ -13,21 +9,12 @@ use core::fmt::{self, Write};
 use stepscope_peripheral::units::Instant;
 
 impl PacketTable<'_> {
-    /// Names of the columns.
-    ///
-    /// # Errors
-    /// Those of the writer.
     pub fn write_head(out: &mut impl Write) -> fmt::Result {
         out.write_str("start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind,")?;
         out.write_str("number,start_s,end_s,gap_s,meaning,tick_start_s,tick_end_s\n")
     }
 
-    /// Row `index`: when on the line, which bytes, what became of them (of a reply, what it says), when the ticks that
-    /// they brought ran (empty for none), what it is ([`super::RowKind::name`]); then its number, the same times in s,
-    /// and what the bytes mean.
-    ///
-    /// # Errors
-    /// Those of the writer.
+    /// Writes row `index`.
     pub fn write_row(&self, out: &mut impl Write, index: usize) -> fmt::Result {
         let (Some(row), Some(kind)) = (self.logged(index), self.kind(index)) else { return Ok(()) };
         write!(out, "{},{},", row.start.0, row.end.0)?;
@@ -53,7 +40,7 @@ impl PacketTable<'_> {
     }
 }
 
-/// A text as a field of a table: in quotes where it needs them.
+/// Quotes a field if necessary.
 struct Quoted<'a>(&'a str);
 
 impl fmt::Display for Quoted<'_> {
@@ -65,7 +52,6 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
-/// Adds texts as fields of a table, each after a comma.
 pub(crate) fn write_fields(out: &mut impl Write, texts: &[&str]) -> fmt::Result {
     texts.iter().try_for_each(|text| write!(out, ",{}", Quoted(text)))
 }

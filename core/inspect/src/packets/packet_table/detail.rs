@@ -1,4 +1,4 @@
-//! One row in full: its fields with their bytes, its check, and the times around it.
+//! One row in full: fields, CRC, and times.
 
 use super::{Mark, PacketTable, Row};
 use crate::packets::dissector::Check;
@@ -6,56 +6,40 @@ use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::units::Cycles;
 
-/// Bit times from the cycle in which a frame is taken to the reply's first start bit (DESIGN A6), and
-/// from there back to the rise of DE.
+/// Bit times from the end of a frame to the reply's start bit (DESIGN A6).
 const REPLY_BITS: u64 = 11;
 const DE_BITS: u64 = 10;
-/// Rows among which the frame of a reply is looked for: those that others sent at the same time.
+/// Rows among which the frame of a reply is searched.
 const NEAR: usize = 64;
 
-/// A row in full.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Detail {
-    /// As the table has it.
     #[serde(flatten)]
     pub row: Row,
-    /// Its fields.
     pub layout: Vec<FieldRow>,
     /// `none`, `missing`, `holds` or `fails`.
     pub check: &'static str,
-    /// The check that came, in hex.
     pub check_found: Option<String>,
-    /// The check of what came before it.
     pub check_expected: Option<String>,
-    /// Where each byte starts on the line.
     pub byte_cycles: Vec<u64>,
-    /// How long each is, in cycles.
     pub byte_length: u64,
-    /// Cycles since the end of what was on the line before.
     pub gap_cycles: Option<u64>,
-    /// From the end of the frame that is answered to the rise of DE; not of a recorded reply.
+    /// From the end of the frame to the rise of DE; `None` for recorded replies.
     pub drive_cycles: Option<u64>,
     /// From there to the first start bit.
     pub turnaround_cycles: Option<u64>,
-    /// The row that is answered.
     pub answers: Option<usize>,
 }
 
-/// A field and its bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FieldRow {
-    /// What it is called.
     pub name: String,
-    /// First byte.
     pub from: usize,
-    /// The byte after the last.
     pub until: usize,
-    /// What stands there.
     pub value: String,
 }
 
 impl PacketTable<'_> {
-    /// Row `index` in full; `None` past the last.
     #[must_use]
     pub fn detail(&self, index: usize) -> Option<Detail> {
         let (row, meaning) = (self.row(index)?, self.meaning(index)?);
@@ -93,8 +77,7 @@ impl PacketTable<'_> {
         })
     }
 
-    /// The row that a reply of this controller answers: the frame whose end it waited for; of a recorded one, which comes when
-    /// the device was ready, the last frame before it.
+    /// The frame that a reply answers. A recorded reply answers the last frame before it.
     pub(super) fn answered(&self, index: usize) -> Option<usize> {
         let reply = self.logged(index).filter(|_| self.is_own_reply(index))?;
         let wait = Cycles(REPLY_BITS * self.own.bit().0);

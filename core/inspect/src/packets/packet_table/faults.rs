@@ -1,4 +1,4 @@
-//! Why a row came to nothing, in its own numbers, and where each fault flag comes from.
+//! Why a row failed, and the first row of each fault flag.
 
 use super::PacketTable;
 use crate::packets::dissector::decoded;
@@ -15,25 +15,21 @@ use stepscope_peripheral::{
     },
 };
 
-/// Rows after a frame among which its reply is looked for: others may have driven the line meanwhile.
+/// Rows after a frame among which its reply is searched.
 const NEAR: usize = 64;
 
-/// Where a fault flag comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FaultPlace {
-    /// Name of the flag (DESIGN A6).
     pub name: &'static str,
-    /// How often it was raised.
     pub times: u64,
-    /// Where it was raised first.
     pub cycle: u64,
-    /// The row that raised it first, if one did.
+    /// The row that first raised it.
     pub row: Option<usize>,
 }
 
 impl PacketTable<'_> {
-    /// Why a row came to nothing, such as `3 of 4 bytes, then 45 bit times of silence`; empty where all is well, or where
-    /// [`Row::outcome`](super::Row::outcome) says all that is known.
+    /// Such as `3 of 4 bytes, then 45 bit times of silence`; empty where nothing failed, or where
+    /// [`Row::outcome`](super::Row::outcome) is enough.
     #[must_use]
     pub fn why(&self, index: usize) -> String {
         let Some(row) = self.logged(index) else { return String::new() };
@@ -70,7 +66,7 @@ impl PacketTable<'_> {
         }
     }
 
-    /// The flags that were raised, in the order of their bits.
+    /// Raised flags, in the order of their bits.
     #[must_use]
     pub fn fault_places(&self) -> Vec<FaultPlace> {
         let mut places: Vec<FaultPlace> = Vec::new();
@@ -101,7 +97,7 @@ impl PacketTable<'_> {
         Faults::ALL.names().filter_map(place).collect()
     }
 
-    /// The first order of a tick that is more than a tick has slots for.
+    /// The first command of a tick that exceeds the tick's slots.
     fn too_many(&self, commands: &[u8]) -> String {
         let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
         let asked =
@@ -143,7 +139,6 @@ impl PacketTable<'_> {
         }
     }
 
-    /// What this controller answered to a row.
     fn reply_to(&self, index: usize) -> Option<Reply> {
         (index + 1..index + NEAR).find_map(|after| match self.logged(after)?.outcome {
             RowOutcome::Reply(reply) if self.answered(after) == Some(index) => Some(reply),
@@ -152,7 +147,6 @@ impl PacketTable<'_> {
     }
 }
 
-/// The flag that a row raised.
 fn fault_of(row: &LoggedPacket) -> Faults {
     match row.outcome {
         RowOutcome::Short | RowOutcome::Frame(FrameOutcome::Short) => Faults::SHORT_PACKET,
@@ -167,7 +161,6 @@ fn fault_of(row: &LoggedPacket) -> Faults {
     }
 }
 
-/// Why bytes before a delimiter are no frame.
 fn short_frame(bytes: &[u8]) -> String {
     let (content, whole) = decoded(bytes);
     let bytes = count(content.len(), "byte");
@@ -178,7 +171,6 @@ fn short_frame(bytes: &[u8]) -> String {
     }
 }
 
-/// So many of a thing.
 fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }

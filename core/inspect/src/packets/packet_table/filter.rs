@@ -1,41 +1,33 @@
-//! Which rows of packets the table shows, and which of them a search finds. Judged in slices, so that
-//! a million rows freeze nothing; the rows' indices stay here.
+//! Filters and searches the packet table in slices, so that a million rows do not block the page.
 
 use super::{Mark, PacketTable, RowKind, format};
 use crate::packets::dissector::Head;
 use alloc::vec;
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 
-/// Rows on show, and matches of the search among them.
 #[derive(Debug, Default)]
 pub struct Filter {
-    /// What is requested; without it all rows are shown.
     request: Option<Request>,
-    /// Rows on show, rising.
     shown: Vec<u32>,
-    /// Positions among the rows on show that the search finds, rising.
+    /// Positions among the shown rows.
     matches: Vec<u32>,
-    /// The row that is judged next.
     next: usize,
 }
 
-/// What is requested.
 #[derive(Debug, Default)]
 pub struct Request {
     needle: Option<Needle>,
     /// A [`RowKind::name`], a kind of DESIGN A6 or `NAK`; empty for any.
     kind: String,
     address: Option<u8>,
-    /// A [`Mark::name`]; empty for any.
     mark: String,
-    /// Whether rows that the search does not find are left out.
+    /// Whether rows without a match are hidden.
     only: bool,
 }
 
 impl Request {
-    /// Rows of a kind (`packet`, `frame`, `reply`, `collision`, a kind of DESIGN A6 or `NAK`), an address and a mark
-    /// ([`Mark::name`]), each empty for any; the text is looked for in bytes (as hex), words and numbers, and `only`
-    /// leaves out what it does not find. Beside it what has to be said of the text, if anything.
+    /// Filters are empty for any; the text is searched in hex, words and numbers. Also returns what is wrong with the
+    /// text, if anything.
     #[must_use]
     pub fn new(text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> (Self, String) {
         let (needle, note) = Needle::parse(text);
@@ -60,20 +52,18 @@ impl Request {
     }
 }
 
-/// What is searched for.
 #[derive(Debug)]
 struct Needle {
-    /// In small letters; with a hyphen also with a minus sign.
+    /// In lowercase; with a hyphen also with a minus sign.
     words: Vec<String>,
-    /// Bytes that it spells in hex.
     bytes: Vec<u8>,
     number: Option<usize>,
-    /// `#12`: nothing but the number.
+    /// `#12`: only the number.
     only_number: bool,
 }
 
 impl Needle {
-    /// Reads what was typed; none for nothing. Beside it what has to be said of it, if anything.
+    /// Also returns what is wrong with the text.
     fn parse(typed: &str) -> (Option<Self>, String) {
         let text = typed.trim().to_ascii_lowercase();
         if text.is_empty() {
@@ -119,7 +109,7 @@ impl Needle {
     }
 }
 
-/// Bytes that a text spells in hex: `81 05`, `8105`, `0x81 0x05`. What is meant as hex and is none is said.
+/// Bytes that a text spells in hex: `81 05`, `8105`, `0x81 0x05`; reports invalid hex.
 fn spelled(text: &str) -> (Vec<u8>, String) {
     let meant = text.starts_with("0x");
     let parts = text.split([' ', ',']).filter(|part| !part.is_empty());
@@ -130,7 +120,7 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
         return (Vec::new(), if meant { note } else { String::new() });
     }
     if parts.iter().any(|part| part.len() % 2 != 0) {
-        // A plain number is looked for among the numbers.
+        // A plain number is searched among the numbers.
         let plain = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_digit());
         let word = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_alphabetic());
         let note =
@@ -142,13 +132,12 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
 }
 
 impl Filter {
-    /// Requests other rows; nothing is judged yet.
     #[must_use]
     pub fn new(request: Request) -> Self {
         Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
     }
 
-    /// Judges up to `count` more rows; true if that was all of them.
+    /// Filters up to `count` more rows; true when done.
     pub fn advance(&mut self, table: &PacketTable<'_>, count: usize) -> bool {
         let total = table.len();
         let Some(request) = &self.request else {
@@ -173,19 +162,17 @@ impl Filter {
         until == total
     }
 
-    /// How many of `total` rows are on show.
     #[must_use]
     pub fn shown(&self, total: usize) -> usize {
         if self.request.is_some() { self.shown.len() } else { total }
     }
 
-    /// How many of them the search finds.
     #[must_use]
     pub fn matches(&self) -> usize {
         self.matches.len()
     }
 
-    /// The row at a position among those on show.
+    /// The row at a position among the shown rows.
     #[must_use]
     pub fn row(&self, position: usize) -> Option<usize> {
         if self.request.is_none() {
@@ -194,7 +181,7 @@ impl Filter {
         self.shown.get(position).map(|&row| row as usize)
     }
 
-    /// Where a row stands among those on show, if it is one of them.
+    /// The position of a row, if it is shown.
     #[must_use]
     pub fn position(&self, row: usize) -> Option<usize> {
         if self.request.is_none() {
@@ -203,13 +190,13 @@ impl Filter {
         self.shown.binary_search(&(row as u32)).ok()
     }
 
-    /// Which of the matches the row at a position is, 0 the first.
+    /// Rank of the match at a position, from 0.
     #[must_use]
     pub fn rank(&self, position: usize) -> Option<usize> {
         self.matches.binary_search(&(position as u32)).ok()
     }
 
-    /// Position of the next match after a position, or of the one before it; past the last comes the first.
+    /// Position of the next or previous match, wrapping around.
     #[must_use]
     pub fn next_match(&self, position: Option<usize>, forward: bool) -> Option<usize> {
         let found = match (position, forward) {

@@ -1,4 +1,4 @@
-//! Words and numbers of the packet table: outcomes, marks, hex, times.
+//! Texts and numbers of the packet table: outcomes, marks, hex, times.
 
 use alloc::{
     borrow::ToOwned,
@@ -13,21 +13,17 @@ use stepscope_peripheral::{
     units::Cycles,
 };
 
-/// What became of a row, at a glance.
+/// The outcome at a glance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// Done.
     Good,
-    /// Not for this controller, or from another.
     OtherAddress,
-    /// Acknowledged, and not done again.
+    /// Acknowledged, and not executed again.
     Repeated,
-    /// Dropped, refused, or spoiled.
     Bad,
 }
 
 impl Mark {
-    /// Of a row.
     #[must_use]
     pub const fn of(outcome: RowOutcome) -> Self {
         match outcome {
@@ -41,7 +37,6 @@ impl Mark {
         }
     }
 
-    /// `good`, `foreign`, `repeated` or `bad`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -53,7 +48,6 @@ impl Mark {
     }
 }
 
-/// What became of a row, in full; what a reply says beside that stands in its summary.
 pub(super) fn outcome(outcome: RowOutcome) -> String {
     match outcome {
         RowOutcome::Reply(Reply { answer: Ok(_), .. }) => "acknowledged".to_owned(),
@@ -62,7 +56,7 @@ pub(super) fn outcome(outcome: RowOutcome) -> String {
     }
 }
 
-/// What became of a row, for a narrow column: a cross for what was not done, and the name of the reason.
+/// The outcome for a narrow column: a cross and the reason.
 pub(super) fn short(row: RowOutcome) -> String {
     match row {
         RowOutcome::Frame(FrameOutcome::Repeated) => "\u{21bb} repeated".to_owned(),
@@ -82,26 +76,23 @@ pub(super) fn short(row: RowOutcome) -> String {
     }
 }
 
-/// Adds bytes in hex, two digits each.
 pub(super) fn write_hex(bytes: &[u8], between: &str, text: &mut impl Write) {
     for (index, byte) in bytes.iter().enumerate() {
         let _ = write!(text, "{}{byte:02x}", if index == 0 { "" } else { between });
     }
 }
 
-/// Times of one column: one unit and one number of digits, so that they can be compared at a glance.
+/// One unit and number of digits per column, so that times compare at a glance.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeScale {
-    /// The unit.
     pub unit: &'static str,
-    /// Smallest step that is printed: so many of them are a second.
+    /// Smallest printed step, as steps per second.
     per_s: u64,
     digits: usize,
     clock_hz: u64,
 }
 
 impl TimeScale {
-    /// For a run of so many cycles.
     #[must_use]
     pub(super) fn of(Cycles(cycles): Cycles, clock_hz: u32) -> Self {
         let clock_hz = u64::from(clock_hz.max(1));
@@ -113,7 +104,6 @@ impl TimeScale {
         Self { unit, per_s, digits, clock_hz }
     }
 
-    /// Adds a time.
     pub(super) fn write(self, cycles: u64, text: &mut String) {
         let steps = u128::from(cycles) * u128::from(self.per_s) + u128::from(self.clock_hz / 2);
         let steps = steps / u128::from(self.clock_hz);

@@ -1,4 +1,4 @@
-//! Where the bytes of rows are on the line, and what of the line's time lies between rows.
+//! Positions of bytes on the line, and gaps between rows.
 
 use super::PacketTable;
 use alloc::vec::Vec;
@@ -8,34 +8,27 @@ use stepscope_peripheral::{
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
 
-/// A byte on the line: its row, and its cycles.
+/// A byte on the line, in the cycles `start..end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlacedByte {
-    /// Its row.
     pub packet: usize,
-    /// The byte.
     pub byte: u8,
-    /// First cycle of its start bit.
     pub start: u64,
-    /// First cycle after its stop bit.
     pub end: u64,
 }
 
 impl PacketTable<'_> {
-    /// Whether this controller sent a row.
     pub(crate) fn is_own_reply(&self, index: usize) -> bool {
         self.logged(index)
             .is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_) | RowOutcome::Recorded))
     }
 
-    /// The bytes of a row with their places.
     #[must_use]
     pub fn placed(&self, index: usize) -> Vec<PlacedByte> {
         self.placed_from(index, 0).collect()
     }
 
-    /// The bytes of a row from the one of this index on. What was heard is as long as the receiver has it, what is sent
-    /// as long as the sender has it.
+    /// Bytes of a row from an index on. Received bytes have the receiver's length, sent ones the sender's.
     pub(crate) fn placed_from(&self, index: usize, first: usize) -> impl Iterator<Item = PlacedByte> {
         let seen = self.log.seen(index);
         let sent =
@@ -51,13 +44,12 @@ impl PacketTable<'_> {
         })
     }
 
-    /// First cycle after the last byte of a row on the line.
     #[must_use]
     pub fn line_end(&self, index: usize) -> u64 {
         let Some(row) = self.logged(index) else { return 0 };
         match row.outcome {
             RowOutcome::Reply(_) | RowOutcome::Recorded | RowOutcome::Collision => row.end.0,
-            // Complete with the look at a stop bit, half a bit and nine after the start bit was seen.
+            // A packet is complete half a bit and nine bits after its start bit.
             RowOutcome::Packet(_) | RowOutcome::Frame(_) | RowOutcome::Framing => {
                 let (Cycles(bit), Cycles(byte)) = (self.own.bit(), self.host_times().byte(1));
                 (row.end.0 + byte).saturating_sub(bit / 2 + 9 * bit)
@@ -68,7 +60,7 @@ impl PacketTable<'_> {
         }
     }
 
-    /// Cycles between the end of what was on the line before a row and its start; none where they overlap.
+    /// Cycles since the end of the row before; `None` where they overlap.
     #[must_use]
     pub fn gap(&self, index: usize) -> Option<u64> {
         let is_sent = |row: &usize| self.logged(*row).is_some_and(|row| row.outcome != RowOutcome::Collision);
@@ -77,7 +69,7 @@ impl PacketTable<'_> {
         row.start.0.checked_sub(self.line_end(before))
     }
 
-    /// The byte that the host sent where the receiver saw a start bit: within a bit of it.
+    /// The byte that the host sent within a bit of a start bit.
     pub(crate) fn sent_at(&self, seen: Instant) -> Option<u8> {
         let (reach, times) = (self.own.bit(), self.host_times());
         let send = self.run.schedule().last_until(seen + reach)?;

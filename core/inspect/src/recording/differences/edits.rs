@@ -1,4 +1,4 @@
-//! Plans with known edits: the differences that are reported must be exactly these.
+//! Plans with known edits must report exactly these.
 
 use super::*;
 use crate::recording::alignment::Side;
@@ -28,22 +28,18 @@ impl Noise {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
     Constant,
-    /// Constant acceleration up to a plateau, and down again.
     Linear,
     SCurve,
-    /// The motion ends at the maximum rate.
     LinearUp,
     SCurveUp,
 }
 
-/// Step times in s.
 fn plan(shape: Shape, count: usize, slow: f64, fast: f64) -> Vec<f64> {
     let mut at = 0.0;
     let mut times = Vec::with_capacity(count);
     for k in 0..count {
         times.push(at);
         let done = (k as f64 + 0.5) / count as f64;
-        // How far up the ramp, from 0 to 1.
         let up = match shape {
             Shape::Constant => 0.0,
             Shape::Linear | Shape::SCurve => libm::fmin(libm::fmin(done, 1.0 - done) * 3.0, 1.0),
@@ -62,7 +58,6 @@ fn plan(shape: Shape, count: usize, slow: f64, fast: f64) -> Vec<f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Edit {
     Missing(usize, usize),
-    /// After this planned step; -1 before the first.
     Extra(i64),
     Direction(usize),
 }
@@ -154,7 +149,7 @@ impl Case {
     }
 }
 
-/// One case per seed. `close`: the edits are within a dozen steps of each other.
+/// One case per seed; `close` puts the edits within a dozen steps.
 fn case(seed: u64, close: bool) -> Case {
     let mut noise = Noise(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     for _ in 0..8 {

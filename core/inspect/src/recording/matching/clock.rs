@@ -1,17 +1,13 @@
-//! The recording's clock compared with the plan's: a filter of offset and rate.
+//! The recording's clock relative to the plan's: a filter of offset and rate.
 
-/// Maximum difference of the clocks' rates.
 const MAX_SLOPE: f64 = 0.125;
 
-/// How late the recording is, from the steps that were matched.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
-    /// Time of the last followed step, in s of the plan.
     at_s: f64,
     late_s: f64,
-    /// Seconds of lateness per second.
     slope: f64,
-    /// Followed steps; it starts above 0, so that the first steps do not turn the slope.
+    /// Starts above 0, so that the first steps do not turn the slope.
     seen: u32,
 }
 
@@ -20,7 +16,6 @@ impl Clock {
         Self { at_s, late_s, slope: 0.0, seen: 9 }
     }
 
-    /// The same rate from another offset on.
     pub(super) const fn shifted(self, at_s: f64, late_s: f64) -> Self {
         Self { at_s, late_s, ..self }
     }
@@ -33,13 +28,12 @@ impl Clock {
         self.late_s + self.slope * (at_s - self.at_s)
     }
 
-    /// The plan's time of a recorded time.
     pub(super) fn planned_at(&self, recorded_s: f64) -> f64 {
         self.at_s + (recorded_s - self.at_s - self.late_s) / (1.0 + self.slope)
     }
 
-    /// One more step. The memory grows to dozens of steps for the offset and hundreds for the rate: with a shorter one the
-    /// clock would follow a ramp whose steps are all matched with their neighbors.
+    /// Follows one more step. The memory grows to dozens of steps for the offset and hundreds for the rate; a shorter
+    /// one would follow a ramp that is matched with its neighbors.
     pub(super) fn follow(&self, at_s: f64, late_s: f64) -> Self {
         let seen = self.seen.saturating_add(1);
         let n = f64::from(seen);

@@ -1,5 +1,3 @@
-//! The beam search for the cheapest match.
-
 use super::{
     clock::Clock,
     costs::{AGAIN, BYTES, CLEAN, Costs, LATE, STEPS, gap},
@@ -7,31 +5,30 @@ use super::{
 use crate::recording::side::Side;
 use alloc::{rc::Rc, vec, vec::Vec};
 
-/// A planned and a recorded step.
 pub(super) type Pair = (usize, usize);
 
-/// Hypotheses that live at a time.
+/// Hypotheses at a time.
 const WIDTH: usize = 16;
-/// A hypothesis that costs so much more than the best one is dropped.
+/// Hypotheses that cost this much more than the best one are dropped.
 const MARGIN: f64 = 2.5;
-/// Only what costs at most so much more than the best one makes further hypotheses of gaps.
+/// Maximum extra cost of a hypothesis that may try gaps.
 const SPAWNING: f64 = 1.5;
-/// Steps that are tried as missing, or extra, whatever the clock says.
+/// Steps that are tried as missing or extra in any case.
 const NEAR: usize = 3;
 /// The same before the first match, where no clock is known.
 const NEAR_START: usize = 8;
-/// Intervals that a start far from the first steps is found by.
+/// Intervals that identify a start far from the first steps.
 const SIGNATURE: usize = 32;
-/// A gap so few steps after another of its kind is cheaper.
+/// A gap this few steps after one of its kind is cheaper.
 const AGAIN_WITHIN: usize = 1;
-/// Steps of both lists after which all hypotheses wait for each other.
+/// Steps after which all hypotheses wait for each other.
 const BLOCK: usize = 64;
-/// Blocks within which another start must become cheaper than those before it.
+/// Blocks within which another start must become cheaper.
 const TRIAL: usize = 512;
-/// What a pair of steps costs that is matched by no run: more than a step that is on time.
+/// Cost of an unmatched pair: above that of a step on time.
 const UNMATCHED: f64 = 0.3;
 
-/// Where a run begins, linked to the run before it. Hypotheses share their common runs.
+/// The start of a run, linked to the run before. Hypotheses share their common runs.
 #[derive(Debug)]
 struct Start {
     model: usize,
@@ -41,7 +38,7 @@ struct Start {
 
 impl Drop for Start {
     fn drop(&mut self) {
-        // One by one: a long list would need as many frames of the stack.
+        // A recursive drop would overflow the stack.
         let mut next = self.before.take();
         while let Some(mut start) = next.and_then(Rc::into_inner) {
             next = start.before.take();
@@ -49,28 +46,26 @@ impl Drop for Start {
     }
 }
 
-/// A gap on one side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Gap {
     Missing(usize),
     Extra(usize),
 }
 
-/// A hypothesis: all steps before these are matched, missing or extra.
+/// All steps before these are matched, missing or extra.
 #[derive(Clone, Debug)]
 struct Hypothesis {
     model: usize,
     recorded: usize,
     matched: usize,
     cost: f64,
-    /// With the minimum cost of the rest.
+    /// Includes the minimum cost of the rest.
     estimate: f64,
     clock: Option<Clock>,
-    /// What the row of late steps that ends here has cost; 0 if the last one was on time.
+    /// Cost of the current row of late steps.
     late: f64,
-    /// What the row of steps in the wrong direction, or other bytes, that ends here has cost; 0 if the last one was right.
+    /// Cost of the current row of wrong directions or values.
     differing: f64,
-    /// Where the last gap was, and whether steps were missing.
     last_gap: Option<(usize, bool)>,
     start: Rc<Start>,
 }
@@ -85,18 +80,15 @@ pub(super) struct Search<'a> {
     recorded: Side<'a>,
     model: Side<'a>,
     costs: Costs,
-    /// No interval counts for less, in s: two cycles of the slower clock.
+    /// Minimum interval in s: two cycles of the slower clock.
     least_s: f64,
     living: Vec<Hypothesis>,
-    /// The cheapest that has come to an end.
     best: Option<Hypothesis>,
-    /// Minimum estimate of all starts in each block of the trial.
+    /// Minimum estimate of all starts per block.
     trial: Vec<f64>,
-    /// The same where the trial ends.
     trial_end: f64,
-    /// The block that all hypotheses have reached.
     block: usize,
-    /// Gaps that may be tried: it bounds the time on recordings that are unlike the plan.
+    /// Bounds the time on recordings that are unlike the plan.
     max_gaps: usize,
     pub(super) tried_gaps: usize,
 }
@@ -120,9 +112,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The end of the cheapest hypothesis, and where its runs begin.
     pub(super) fn run(&mut self) -> Option<(Pair, Vec<Pair>)> {
-        // One start after the other: together they would push each other's hypotheses out of the beam.
+        // One start after the other, because they would displace each other in the beam.
         for (model, recorded) in self.starts() {
             self.begin(model, recorded);
             while let Some(next) = self.next() {
@@ -140,7 +131,6 @@ impl<'a> Search<'a> {
         Some(((best.model, best.recorded), starts))
     }
 
-    /// The pairs of steps that may be the first that both have.
     fn starts(&self) -> Vec<Pair> {
         let mut starts = vec![(0, 0)];
         if self.unlike(self.recorded, 0, self.model, 0) > 0.02 * SIGNATURE as f64 {
@@ -171,7 +161,7 @@ impl<'a> Search<'a> {
         self.step(&start, None);
     }
 
-    /// How unlike the intervals from two steps on are, each as a part of the second's.
+    /// Relative difference of the intervals from two steps on.
     fn unlike(&self, one: Side<'a>, from: usize, other: Side<'a>, other_from: usize) -> f64 {
         let interval = |side: &Side<'a>, index: usize| Some(side.at_s(index + 1)? - side.at_s(index)?);
         let mut sum = 0.0;
@@ -186,7 +176,7 @@ impl<'a> Search<'a> {
         sum
     }
 
-    /// Where the intervals that the needle begins with are found, if they are anywhere.
+    /// Finds the first intervals of the needle.
     fn find(&self, hay: Side<'a>, needle: Side<'a>) -> Option<usize> {
         if needle.steps.len() <= SIGNATURE {
             return None;
@@ -194,7 +184,7 @@ impl<'a> Search<'a> {
         let (mut least, mut found) = (0.1 * SIGNATURE as f64, None);
         for at in 0..=hay.steps.len().checked_sub(SIGNATURE + 1)? {
             let unlike = self.unlike(hay, at, needle, 0);
-            // Where all are alike the first is taken.
+            // Of similar ones the first is taken.
             if unlike < 0.9 * least {
                 (least, found) = (unlike, Some(at));
             }
@@ -202,13 +192,13 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// Takes the hypothesis with the fewest steps out, and drops those that cost too much.
+    /// Takes the hypothesis with the fewest steps and drops the expensive ones.
     fn next(&mut self) -> Option<Hypothesis> {
         let block = self.living.iter().map(Hypothesis::block).min()?;
         let least = self.living.iter().fold(f64::INFINITY, |least, of| libm::fmin(least, of.estimate));
         let mut most = libm::fmin(least + MARGIN, self.best_estimate());
         if block > self.block {
-            // All are past the end of a block: other starts were here, too.
+            // Compare with other starts at the end of each block.
             if let Some(others) = self.trial.get_mut(block) {
                 most = libm::fmin(most, *others + 2.0 * MARGIN);
                 *others = libm::fmin(*others, least);
@@ -232,9 +222,8 @@ impl<'a> Search<'a> {
         self.living.iter().fold(self.best_estimate(), |least, living| libm::fmin(least, living.estimate))
     }
 
-    /// What a hypothesis can become by its next steps.
     fn go_on(&mut self, mut hypothesis: Hypothesis) {
-        // While it is on time it needs no others.
+        // Needs no alternatives while it is on time.
         let block = hypothesis.block();
         while self.follow(&mut hypothesis) {
             if hypothesis.block() > block {
@@ -265,7 +254,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gaps behind which the next step comes when it is due.
+    /// Gaps behind which the next step is on time.
     fn due_gaps(&self, hypothesis: &Hypothesis, gaps: &mut Vec<Gap>) {
         let Hypothesis { model, recorded, .. } = *hypothesis;
         let (Some(clock), Some(due), Some(came)) =
@@ -286,7 +275,6 @@ impl<'a> Search<'a> {
         hypothesis.model >= self.model.steps.len() || hypothesis.recorded >= self.recorded.steps.len()
     }
 
-    /// The shorter interval next to a planned step, in s.
     fn interval_s(&self, model: usize) -> f64 {
         let at = |index: Option<usize>| index.and_then(|index| self.model.at_s(index));
         let here = at(Some(model)).unwrap_or(0.0);
@@ -295,7 +283,7 @@ impl<'a> Search<'a> {
         libm::fmax(libm::fmin(before, after), self.least_s)
     }
 
-    /// Goes on by one step if it is on time beyond doubt, in its direction and with its value.
+    /// Advances by one step if it is on time and has the right direction or value.
     fn follow(&self, hypothesis: &mut Hypothesis) -> bool {
         let Hypothesis { model, recorded, .. } = *hypothesis;
         let (Some(clock), Some(due), Some(came)) =
@@ -316,20 +304,18 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Whether the direction, or the value, is another.
     fn differs(&self, model: usize, recorded: usize) -> bool {
         self.model.direction(model) != self.recorded.direction(recorded)
             || self.model.values.get(model) != self.recorded.values.get(recorded)
     }
 
-    /// Minimum cost of the rest: a gap, where one side has more left.
+    /// A gap, where one side has more left.
     fn rest(&self, hypothesis: &Hypothesis) -> f64 {
         let model = self.model.steps.len().saturating_sub(hypothesis.model);
         gap(model.abs_diff(self.recorded.steps.len().saturating_sub(hypothesis.recorded)))
     }
 
-    /// Matches the next steps behind a gap, if there is one: on time or late, or with all that follow. Returns whether the
-    /// step was on time beyond doubt.
+    /// Matches the next step behind a gap. Returns whether it was on time.
     fn step(&mut self, from: &Hypothesis, behind: Option<Gap>) -> bool {
         let (mut model, mut recorded, mut cost) = (from.model, from.recorded, from.cost);
         let (mut last_gap, mut start) = (from.last_gap, None);
@@ -393,7 +379,7 @@ impl<'a> Search<'a> {
         off <= CLEAN && differs == (from.differing > 0.0)
     }
 
-    /// Adds a hypothesis in place of one at the same steps with the same clock, or of the one that costs most.
+    /// Adds a hypothesis in place of one at the same steps with the same clock, or of the most expensive.
     fn push(&mut self, next: Hypothesis) {
         let late = |of: &Hypothesis| of.clock.map_or(0.0, |clock| clock.late_s());
         let near_s = self.interval_s(next.model.saturating_sub(1)) / 4.0;
