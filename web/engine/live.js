@@ -100,7 +100,7 @@ export function openLive(told) {
       }
       told(data);
     };
-    compiled("live").then(
+    compiled("tools").then(
       (module) => begun.postMessage({ module }),
       (error) => fail(`this part of the page could not be loaded: ${error.message}`),
     );

@@ -12,7 +12,7 @@
  *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
  * @typedef {{problems: Problem[], warnings: {path: string, message: string}[], scenario: string, derived: Derived | null, cost: Cost | null}} Validation
- * @typedef {{id: string, document: string, title: string, scenario: string | null}} Preset
+ * @typedef {{id: string, document: string, title: string, scenario: string}} Preset
  * @typedef {{id: string, name: string, source: string, rules: {[rule: string]: number}}} DriverSheet
  *
  * @typedef {{address: number | null, digest: string, records: number, edges: number, channels: number, positions: number[],
