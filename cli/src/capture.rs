@@ -32,7 +32,9 @@ use stepscope_core::{
         read::{self, Limits, Reading, Wanted},
         samples::sample,
     },
-    inspect::{motion::torque::Machine, recording::opened::Opened, trace::timing::TimingCheck},
+    inspect::{
+        motion::torque::Machine, recording::loaded_capture::LoadedCapture, trace::timing::TimingCheck,
+    },
     peripheral::signal::Sink,
     scenario::{Scenario, SegmentLists, Source},
 };
@@ -54,11 +56,12 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let most_kept = arguments.timing.most_kept();
     // In the file's own ticks before its memory is taken over: rounded to cycles, a short pulse could pass.
     let in_ticks = rules.as_ref().map(|rules| {
-        Opened::timing_in_ticks(&capture, &arguments.ask(), rules, most_kept)
+        LoadedCapture::timing_in_ticks(&capture, &arguments.open_options(), rules, most_kept)
             .map_err(|error| arguments.cannot_open(&error))
     });
     let in_ticks = in_ticks.transpose()?.flatten();
-    let recording = Opened::new(capture, &arguments.ask()).map_err(|error| arguments.cannot_open(&error))?;
+    let recording = LoadedCapture::new(capture, &arguments.open_options())
+        .map_err(|error| arguments.cannot_open(&error))?;
     // Only a line that the user mapped has to be one.
     let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
     if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
@@ -118,7 +121,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The demand of the steps on their motors: those of the scenario, or the named one.
-fn driven(arguments: &Arguments, recording: &Opened, base: Option<&Scenario>) -> Vec<Driven> {
+fn driven(arguments: &Arguments, recording: &LoadedCapture, base: Option<&Scenario>) -> Vec<Driven> {
     let none = Scenario { source: Source::Segments(SegmentLists::default()), ..Scenario::default() };
     let named = arguments.named.named(base.unwrap_or(&none));
     let channel = |number: u8| {

@@ -13,7 +13,7 @@ use stepscope_core::{
     capture::{read::Base, uart},
     inspect::{
         export::vcd::Timescale,
-        recording::opened::{Ask, OpenError},
+        recording::open_options::{OpenError, OpenOptions},
     },
 };
 
@@ -156,8 +156,8 @@ impl Arguments {
     }
 
     /// How to open the recording.
-    pub(super) fn ask(&self) -> Ask {
-        Ask {
+    pub(super) fn open_options(&self) -> OpenOptions {
+        OpenOptions {
             map: self.map.clone(),
             clock_hz: self.clock,
             sample_rate_hz: self.sample_rate,

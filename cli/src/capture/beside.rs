@@ -6,7 +6,7 @@ use std::{path::Path, rc::Rc};
 use stepscope_core::{
     inspect::recording::{
         events::{self, Events},
-        opened::Opened,
+        loaded_capture::LoadedCapture,
         tolerance::Tolerance,
     },
     scenario::Scenario,
@@ -25,7 +25,7 @@ impl Beside {
     /// The recording compared with the run of a scenario.
     pub(super) fn of(
         arguments: &Arguments,
-        recording: &Opened,
+        recording: &LoadedCapture,
         path: &Path,
         (scenario, experiment): &(Rc<Scenario>, Rc<Experiment>),
     ) -> Result<Self, Failure> {

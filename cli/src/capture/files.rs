@@ -17,7 +17,7 @@ use stepscope_core::{
             tables::{write_edges_head, write_edges_row},
             vcd::VcdWriter,
         },
-        recording::{opened::Opened, packets::Packets},
+        recording::{loaded_capture::LoadedCapture, packets::Packets},
     },
     peripheral::{
         signal::Sink,
@@ -30,7 +30,7 @@ use stepscope_core::{
 pub(super) fn write(
     arguments: &Arguments,
     outputs: &mut Outputs,
-    recording: &Opened,
+    recording: &LoadedCapture,
     beside: Option<&Beside>,
     base: Option<&Scenario>,
 ) -> Result<(), Failure> {
@@ -97,7 +97,7 @@ pub(super) fn write(
 fn scenario(
     path: &Path,
     arguments: &Arguments,
-    recording: &Opened,
+    recording: &LoadedCapture,
     base: Option<&Scenario>,
 ) -> Result<String, Failure> {
     let scenario = recording
@@ -146,7 +146,7 @@ fn steps(out: &mut Out, steps: &[Step]) -> io::Result<()> {
         .try_for_each(|(cycle, dir)| writeln!(out, "{cycle},{dir}"))
 }
 
-fn bytes(out: &mut Out, recording: &Opened) -> io::Result<()> {
+fn bytes(out: &mut Out, recording: &LoadedCapture) -> io::Result<()> {
     writeln!(out, "line,start_cycle,start_s,bytes")?;
     for line in &recording.report.lines {
         for heard in &line.heard.bytes {

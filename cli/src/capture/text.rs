@@ -8,20 +8,20 @@ use crate::{
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
-use stepscope_core::inspect::recording::{opened::Opened, report::ChannelReport};
+use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, report::ChannelReport};
 
 /// Differences from the plan that the screen shows.
 const MAX_SHOWN: usize = 10;
 
 /// For the eye.
 pub(super) fn print(
-    recording: &Opened,
+    recording: &LoadedCapture,
     is_proposed: bool,
     beside: Option<&Beside>,
     driven: &[Driven],
 ) -> io::Result<()> {
     let mut out = terminal::out();
-    let Opened { format, count, what, end_s, .. } = recording;
+    let LoadedCapture { format, count, what, end_s, .. } = recording;
     writeln!(out, "file      {format}, {count} {what} in {end_s} s")?;
     if !recording.names.is_empty() {
         writeln!(out, "channels  {}", recording.names.join(", "))?;
@@ -149,7 +149,7 @@ pub(super) fn difference(beside: &Beside) -> String {
 /// As tables.
 pub(super) fn tables(
     tables: Tables,
-    recording: &Opened,
+    recording: &LoadedCapture,
     is_proposed: bool,
     beside: Option<&Beside>,
 ) -> Tables {

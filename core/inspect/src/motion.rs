@@ -22,5 +22,5 @@ pub mod sine_polyline;
 pub mod spectra;
 #[cfg(feature = "std")]
 pub mod spectrum;
-pub mod step_acceleration;
+pub(crate) mod step_acceleration;
 pub mod torque;

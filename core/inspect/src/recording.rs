@@ -21,11 +21,12 @@
 
 pub mod alignment;
 pub mod differences;
-pub mod drift;
+mod drift;
 pub mod events;
 pub mod figures;
-pub mod matching;
-pub mod opened;
+pub mod loaded_capture;
+mod matching;
+pub mod open_options;
 pub mod overview;
 pub mod packets;
 pub mod remedy;

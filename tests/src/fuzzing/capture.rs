@@ -25,7 +25,8 @@ use stepscope_core::{
         },
         recording::{
             alignment::{Alignment, Side},
-            opened::{Ask, Opened, Part},
+            loaded_capture::{LoadedCapture, Part},
+            open_options::OpenOptions,
             scenario::{Made, Steps, of_step_times, of_steps},
             tolerance::Tolerance,
         },
@@ -62,10 +63,10 @@ pub fn check(data: &[u8]) {
     let session = session(file);
     for file in [file, data, &session] {
         let capture = whole(file);
-        open(capture.clone(), &Ask::default());
+        open(capture.clone(), &OpenOptions::default());
         // Bytes that are used up read as zeros.
-        if let Ok(ask) = asked(&mut Unstructured::new(tail), capture.channels.len()) {
-            open(capture, &ask);
+        if let Ok(options) = asked(&mut Unstructured::new(tail), capture.channels.len()) {
+            open(capture, &options);
         }
     }
 }
@@ -74,8 +75,8 @@ pub fn check(data: &[u8]) {
 #[must_use]
 pub fn told(data: &[u8]) -> String {
     let (file, tail) = data.split_at(data.len().saturating_sub(TAIL));
-    let ask = asked(&mut Unstructured::new(tail), whole(file).channels.len());
-    format!("{}\nasked {ask:?}", String::from_utf8_lossy(file))
+    let options = asked(&mut Unstructured::new(tail), whole(file).channels.len());
+    format!("{}\nasked {options:?}", String::from_utf8_lossy(file))
 }
 
 /// A small file of each kind, of runs and by hand.
@@ -162,7 +163,7 @@ fn session(samples: &[u8]) -> Vec<u8> {
 }
 
 /// How a file is opened.
-fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
+fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
     let some = |bytes: &mut Unstructured<'_>, rates: &[u32]| -> Result<Option<u32>> {
         Ok(match bytes.int_in_range(0..=3_u8)? {
             0 => Some(bytes.arbitrary()?),
@@ -186,7 +187,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<Ask> {
         pairs.push(format!("{signal}={mark}#{}", bytes.int_in_range(0..=channels)?));
     }
     let map = (!pairs.is_empty()).then(|| pairs.join(","));
-    Ok(Ask {
+    Ok(OpenOptions {
         map,
         clock_hz,
         sample_rate_hz,
@@ -263,21 +264,21 @@ fn in_order(capture: &Capture, most: usize) {
 }
 
 /// Opens a capture and looks at all that can be looked at.
-fn open(capture: Capture, ask: &Ask) {
+fn open(capture: Capture, options: &OpenOptions) {
     let ways = capture.positions.windows(2).map(|pair| pair[1].position.abs_diff(pair[0].position));
     let steps = ways.fold(0, u64::saturating_add);
     if (MAX_STEPS..=10_000_000).contains(&steps) {
         return;
     }
     // Looked at where it lies it is the same; of a part the figures are.
-    let [whole, few] =
-        [usize::MAX, 3].map(|most| Opened::of_part(&capture, ask, &Part { most, from_s: None, to_s: None }));
+    let [whole, few] = [usize::MAX, 3]
+        .map(|most| LoadedCapture::of_part(&capture, options, &Part { most, from_s: None, to_s: None }));
     // From one part to another it is as if that were opened at once.
     let part = Part { most: 3, from_s: None, to_s: None };
-    let again = whole.clone().and_then(|whole| whole.with_part(&capture, ask, &part));
+    let again = whole.clone().and_then(|whole| whole.with_part(&capture, options, &part));
     assert_eq!(again, few);
-    let glance = Opened::overview(&capture, ask, 0, COLUMNS);
-    let opened = Opened::new(capture, ask);
+    let glance = LoadedCapture::overview(&capture, options, 0, COLUMNS);
+    let opened = LoadedCapture::new(capture, options);
     assert_eq!(whole, opened);
     match (&opened, glance) {
         (Ok(opened), Ok(Some(glance))) => {
@@ -306,7 +307,7 @@ fn open(capture: Capture, ask: &Ask) {
     }
 }
 
-fn look_at(opened: &Opened) {
+fn look_at(opened: &LoadedCapture) {
     assert!(opened.records.first().is_none_or(|record| record.cycle == Instant(0)));
     for pair in opened.records.windows(2) {
         assert!(pair[0].cycle < pair[1].cycle && pair[0].levels != pair[1].levels, "{pair:?}");
@@ -363,7 +364,7 @@ fn run(experiment: &Experiment) -> Option<Vec<Record>> {
 }
 
 /// The scenario of steps gives each step in its cycle again.
-fn again(opened: &Opened) {
+fn again(opened: &LoadedCapture) {
     let (clock_hz, channels) = (opened.clock_hz, opened.channels);
     let asked = Steps { clock_hz, channels, within_cycles: 0 };
     let made = if opened.has_levels() {
@@ -396,9 +397,14 @@ mod tests {
             let file = &seed[..seed.len() - TAIL - 1];
             let Reading { capture, error } = read(Cursor::new(file), &Limits::default(), &mut |_| true);
             assert_eq!(error, None, "{}", String::from_utf8_lossy(file));
-            let ask = Ask { baud: Some(115_200), sample_rate_hz: Some(16_000_000), ..Ask::default() };
+            let options = OpenOptions {
+                baud: Some(115_200),
+                sample_rate_hz: Some(16_000_000),
+                ..OpenOptions::default()
+            };
             let format = capture.format;
-            let opened = Opened::new(capture, &ask).unwrap_or_else(|error| panic!("{error}: {seed:?}"));
+            let opened =
+                LoadedCapture::new(capture, &options).unwrap_or_else(|error| panic!("{error}: {seed:?}"));
             assert!(opened.scenario("file", false, 0.0, None).is_ok(), "{format}");
             if !kinds.contains(&format) {
                 kinds.push(format);

@@ -9,7 +9,10 @@ use serde_json::{Value, json};
 use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
-        recording::opened::{Ask, Opened, Part},
+        recording::{
+            loaded_capture::{LoadedCapture, Part},
+            open_options::OpenOptions,
+        },
         trace::{drivers, timing::TimingCheck},
     },
     peripheral::{
@@ -78,14 +81,18 @@ pub(crate) fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -
 }
 
 /// A text as the core opens it, beside a model with its first step at a time.
-pub(crate) fn natively(text: &str, ask: &Ask, first_step_s: Option<f64>) -> Result<Opened> {
+pub(crate) fn natively(
+    text: &str,
+    options: &OpenOptions,
+    first_step_s: Option<f64>,
+) -> Result<LoadedCapture> {
     let reading = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true);
-    let mut opened = Opened::new(reading.capture, ask)?;
+    let mut opened = LoadedCapture::new(reading.capture, options)?;
     first_step_s.into_iter().try_for_each(|at| opened.align(0, 0, at))?;
     Ok(opened)
 }
 
-pub(crate) fn digest(opened: &Opened) -> String {
+pub(crate) fn digest(opened: &LoadedCapture) -> String {
     let mut digest = Digest::default();
     opened.records.iter().for_each(|record| digest.record(*record));
     format!("{:016x}", digest.value())
@@ -183,8 +190,8 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         says(&page, "at 16 MHz").await?;
         says(&page, "200 right").await?;
 
-        let ask = Ask { clock_hz: Some(16_000_000), ..Ask::default() };
-        let opened = natively(&text, &ask, Some(first_step_s(&own)?))?;
+        let options = OpenOptions { clock_hz: Some(16_000_000), ..OpenOptions::default() };
+        let opened = natively(&text, &options, Some(first_step_s(&own)?))?;
         page.click(SHOW).await?;
         page.until_digest(&digest(&opened)).await?;
         page.until(CLOSED).await?;
@@ -273,7 +280,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         type_into(&page, "Aligned by step", "50").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
-        let mut opened = natively(&text, &Ask::default(), None)?;
+        let mut opened = natively(&text, &OpenOptions::default(), None)?;
         let model = steps(&own.recording.trace, 0);
         opened.align(0, 50, own.seconds(model.get(50).context("it steps")?.cycle))?;
         page.until_digest(&digest(&opened)).await?;
@@ -298,8 +305,9 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
         says(&page, "200 left").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
-        let ask = Ask { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..Ask::default() };
-        let opened = natively(&text, &ask, None)?;
+        let options =
+            OpenOptions { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..OpenOptions::default() };
+        let opened = natively(&text, &options, None)?;
         page.until_digest(&digest(&opened)).await?;
         ensure!(!page.eval::<bool>("document.body.innerText.includes('Against the baseline')").await?);
         // Its acceleration is drawn: as great as its figures have it.
@@ -358,8 +366,8 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
         ensure!(!page.eval::<bool>(READY).await?, "there is nothing to show yet");
         page.until("document.activeElement.id === 'recording-sample-rate'").await?;
         type_into(&page, "Sample rate", "1000000").await?;
-        let ask = Ask { sample_rate_hz: Some(1_000_000), ..Ask::default() };
-        let opened = natively(&samples, &ask, None)?;
+        let options = OpenOptions { sample_rate_hz: Some(1_000_000), ..OpenOptions::default() };
+        let opened = natively(&samples, &options, None)?;
         says(&page, &format!("{} steps", opened.steps_of(0).len())).await?;
         page.until(READY).await?;
         page.picture("recording-asked").await?;
@@ -384,7 +392,7 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
         says(&page, "steps").await?;
         let said: String = page.eval(&format!("{DIALOG}.innerText")).await?;
         ensure!(said.contains("line 103") && said.contains("maybe"), "{said}");
-        let steps = natively(&torn, &Ask::default(), None)?.steps_of(0).len();
+        let steps = natively(&torn, &OpenOptions::default(), None)?.steps_of(0).len();
         ensure!(steps > 40 && said.contains(&format!("{steps} steps")), "{said}");
         page.picture("recording-torn").await?;
         cancel(&page).await?;
@@ -413,8 +421,8 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
         says(&page, "200 bytes, raw packets of 1 byte").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
-        let ask = Ask { clock_hz: Some(clock_hz), ..Ask::default() };
-        let opened = natively(&text, &ask, Some(first_step_s(&own)?))?;
+        let options = OpenOptions { clock_hz: Some(clock_hz), ..OpenOptions::default() };
+        let opened = natively(&text, &options, Some(first_step_s(&own)?))?;
         page.until(CLOSED).await?;
         page.until_digest(&digest(&opened)).await?;
         let rows = own.recording.packets.rows().len();
@@ -437,7 +445,7 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
         page.until(READY).await?;
         page.click(SHOW).await?;
         page.until(CLOSED).await?;
-        let positions = natively(&table, &Ask::default(), None)?;
+        let positions = natively(&table, &OpenOptions::default(), None)?;
         let shown = Known::of(&positions.shown_scenario("the pasted text", false).to_json())?;
         page.until_digest(&shown.digest).await?;
         page.click("#undo").await?;
@@ -473,7 +481,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
         page.until(CLOSED).await?;
         let capture = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true).capture;
         let part = Part { most: 20_000_000, from_s: Some(0.1), to_s: Some(0.15) };
-        let shown = Opened::of_part(&capture, &Ask::default(), &part)?;
+        let shown = LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?;
         ensure!((20..390).contains(&shown.records.len()), "{}", shown.records.len());
         page.until_digest(&digest(&shown)).await?;
         page.until(&format!("{MESSAGE}.includes('Shown: 100 ms to 150 ms of 203')")).await
@@ -561,8 +569,9 @@ fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_i
         go(&page, &[], "Import: show the recording in all views").await?;
         key(&page, &[], ENTER).await?;
         page.until(CLOSED).await?;
-        let ask = Ask { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..Ask::default() };
-        page.until_digest(&digest(&natively(&text, &ask, Some(first_step_s(&own)?))?)).await?;
+        let options =
+            OpenOptions { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..OpenOptions::default() };
+        page.until_digest(&digest(&natively(&text, &options, Some(first_step_s(&own)?))?)).await?;
 
         page.until("document.activeElement.id === 'open'").await?;
 

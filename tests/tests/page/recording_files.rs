@@ -6,7 +6,7 @@ use std::{fs, io::Cursor};
 use anyhow::{Context, Result, ensure};
 use stepscope_core::{
     capture::read::{Limits, read},
-    inspect::recording::opened::{Ask, Opened},
+    inspect::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions},
 };
 
 use crate::{
@@ -29,18 +29,18 @@ struct Case {
     /// Fields with what is typed into them.
     fields: &'static [(&'static str, &'static str)],
     /// The same for the core.
-    ask: fn() -> Ask,
+    options: fn() -> OpenOptions,
     expected: &'static [&'static str],
 }
 
 impl Case {
     const fn new(file: &'static str, expected: &'static [&'static str]) -> Self {
-        Self { file, signals: &[], fields: &[], ask: Ask::default, expected }
+        Self { file, signals: &[], fields: &[], options: OpenOptions::default, expected }
     }
 }
 
-fn mapped(map: &str) -> Ask {
-    Ask { map: Some(map.to_owned()), ..Ask::default() }
+fn mapped(map: &str) -> OpenOptions {
+    OpenOptions { map: Some(map.to_owned()), ..OpenOptions::default() }
 }
 
 const CASES: &[Case] = &[
@@ -51,18 +51,18 @@ const CASES: &[Case] = &[
     ),
     Case {
         signals: &[("top.CW", "CW0"), ("top.CCW", "CCW0")],
-        ask: || mapped("CW0=CW,CCW0=CCW"),
+        options: || mapped("CW0=CW,CCW0=CCW"),
         ..Case::new("cw-ccw.vcd", &["Channel 0: 32 steps, 20 right and 12 left"])
     },
     Case::new("dedge.vcd", &["Channel 0: 20 steps, 20 right"]),
     Case {
         signals: &[("top.STEP", "DEDGE0")],
-        ask: || mapped("DEDGE0=STEP,DIR0=DIR"),
+        options: || mapped("DEDGE0=STEP,DIR0=DIR"),
         ..Case::new("dedge.vcd", &["Channel 0: 40 steps, 40 right", "10000 steps/s"])
     },
     Case {
         fields: &[("Serial format", "8E1")],
-        ask: || Ask { uart: Some("8E1".to_owned()), ..Ask::default() },
+        options: || OpenOptions { uart: Some("8E1".to_owned()), ..OpenOptions::default() },
         ..Case::new("8e1.csv", &["115200 baud", "42 bytes"])
     },
     Case::new("rx-random-gaps.csv", &["115200 baud", "112 bytes"]),
@@ -70,24 +70,24 @@ const CASES: &[Case] = &[
     Case::new("verilator-like.vcd", &["Channel 0: 30 steps"]),
     Case {
         fields: &[("Bit rate", "115200")],
-        ask: || Ask { baud: Some(115_200), ..Ask::default() },
+        options: || OpenOptions { baud: Some(115_200), ..OpenOptions::default() },
         ..Case::new("hexdump-C-hexletters.txt", &["115200 baud", "16 bytes"])
     },
     Case::new("iso.txt", &["3 bytes", "10 ms"]),
 ];
 
 /// A file as the core opens it.
-fn opened(text: &str, ask: &Ask) -> Result<Opened> {
+fn opened(text: &str, options: &OpenOptions) -> Result<LoadedCapture> {
     let reading = read(Cursor::new(text), &Limits::default(), &mut |_| true);
     ensure!(reading.error.is_none(), "{:?}", reading.error);
-    Ok(Opened::new(reading.capture, ask)?)
+    Ok(LoadedCapture::new(reading.capture, options)?)
 }
 
 /// Opens a file in the page and compares its dialog with the core.
 async fn compare(page: &Session, case: &Case) -> Result<()> {
     let path = format!("{FOLDER}/{}", case.file);
     let text = fs::read_to_string(&path).context(path)?;
-    let known = opened(&text, &(case.ask)())?;
+    let known = opened(&text, &(case.options)())?;
     choose_file(page, case.file, &text).await?;
     page.until(TABLE).await?;
     for (channel, signal) in case.signals {

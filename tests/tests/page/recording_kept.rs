@@ -4,7 +4,7 @@ use std::{fmt::Write as _, time::Duration};
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::inspect::recording::opened::{Ask, Opened};
+use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
 use tokio::time::sleep;
 
 use crate::{
@@ -26,14 +26,14 @@ fn wandering(steps: u32) -> String {
 }
 
 /// Opens a file, not beside the experiment, and waits until the views show it.
-async fn open(page: &Session, name: &str, text: &str) -> Result<Opened> {
+async fn open(page: &Session, name: &str, text: &str) -> Result<LoadedCapture> {
     choose_file(page, name, text).await?;
     page.until(READY).await?;
     page.click("#recording-beside").await?;
     page.until(READY).await?;
     page.click(SHOW).await?;
     page.until(CLOSED).await?;
-    let opened = natively(text, &Ask::default(), None)?;
+    let opened = natively(text, &OpenOptions::default(), None)?;
     page.until_digest(&digest(&opened)).await?;
     page.until(&format!("{MESSAGE}.startsWith('Opened {name}')")).await?;
     Ok(opened)
@@ -51,7 +51,7 @@ async fn reload(page: &Session) -> Result<()> {
 }
 
 /// The digest of what the model makes of it.
-fn model(opened: &Opened, name: &str) -> Result<String> {
+fn model(opened: &LoadedCapture, name: &str) -> Result<String> {
     Ok(Known::of(&opened.shown_scenario(name, false).to_json())?.digest)
 }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Result, ensure};
 use serde_json::json;
-use stepscope_core::inspect::recording::opened::Ask;
+use stepscope_core::inspect::recording::open_options::OpenOptions;
 use tokio::time::sleep;
 
 use crate::{
@@ -179,6 +179,6 @@ fn a_run_waits_for_the_pieces_of_its_recording_and_a_newer_one_does_not() -> Res
         sleep(Duration::from_millis(300)).await;
         ensure!(page.eval::<bool>("document.documentElement.dataset.state === 'busy'").await?, "it waits");
         page.eval::<bool>("(window.late.splice(0).forEach((send) => send()), true)").await?;
-        page.until_digest(&digest(&natively(&text, &Ask::default(), None)?)).await
+        page.until_digest(&digest(&natively(&text, &OpenOptions::default(), None)?)).await
     })
 }

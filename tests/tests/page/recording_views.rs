@@ -10,7 +10,10 @@ use stepscope_core::{
     inspect::{
         motion::{actual_motion::Pulses, cursor_stats},
         packets::packet_table::PacketTable,
-        recording::opened::{Ask, Opened, Part},
+        recording::{
+            loaded_capture::{LoadedCapture, Part},
+            open_options::OpenOptions,
+        },
     },
     peripheral::{
         signal::{Levels, Record},
@@ -57,7 +60,7 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
         let text = cosine();
         choose_file(&page, "mine.csv", &text).await?;
         show(&page).await?;
-        let opened = natively(&text, &Ask::default(), None)?;
+        let opened = natively(&text, &OpenOptions::default(), None)?;
         page.until_digest(&digest(&opened)).await?;
         page.until("document.getElementById('caption-acceleration').textContent.includes('over 8 steps')")
             .await?;
@@ -189,7 +192,7 @@ fn the_header_says_as_long_as_a_recording_is_on_show_and_a_phone_is_told_little(
         let text = cosine();
         choose_file(&page, "mine.csv", &text).await?;
         show(&page).await?;
-        page.until_digest(&digest(&natively(&text, &Ask::default(), None)?)).await?;
+        page.until_digest(&digest(&natively(&text, &OpenOptions::default(), None)?)).await?;
         page.until(ON_SHOW).await?;
         page.until(&format!("{MESSAGE}.startsWith('Opened mine.csv. The views show what was recorded.')"))
             .await?;
@@ -243,7 +246,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         let times: Vec<String> = page.eval(TIMES).await?;
         let [from_s, to_s] = [&times[0], &times[1]].map(|time| time.parse::<f64>().unwrap_or(0.0));
         let capture = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true).capture;
-        let end_s = natively(&text, &Ask::default(), None)?.end_s;
+        let end_s = natively(&text, &OpenOptions::default(), None)?.end_s;
         ensure!(
             (from_s / end_s - 0.5).abs() < 0.01 && (to_s / end_s - 0.75).abs() < 0.01,
             "{times:?} of {end_s}"
@@ -262,7 +265,8 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         says(&page, "Shown: 10").await?;
         show(&page).await?;
         let part = Part { most: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
-        page.until_digest(&digest(&Opened::of_part(&capture, &Ask::default(), &part)?)).await?;
+        page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
+            .await?;
         // From there on another part is chosen without the file being opened again.
         page.until(ON_SHOW).await?;
         page.click("#on-show button").await?;
@@ -279,7 +283,8 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         );
         show(&page).await?;
         let part = Part { most: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
-        page.until_digest(&digest(&Opened::of_part(&capture, &Ask::default(), &part)?)).await?;
+        page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
+            .await?;
         // All of it is shown as any recording is, and there is no other part.
         page.click("#on-show button").await?;
         page.until(&seen).await?;
@@ -287,7 +292,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         page.js::<bool>(drag, vec![json!(0.2), json!(0.2)]).await?;
         page.until("document.getElementById('recording-show-from').checkVisibility() === false").await?;
         show(&page).await?;
-        page.until_digest(&digest(&natively(&text, &Ask::default(), None)?)).await?;
+        page.until_digest(&digest(&natively(&text, &OpenOptions::default(), None)?)).await?;
         page.until(&format!("{ON_SHOW} && document.querySelector('#on-show button') === null")).await
     })
 }

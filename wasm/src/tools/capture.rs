@@ -15,7 +15,8 @@ use stepscope_core::{
         recording::{
             differences::Difference,
             events::{Beside, Events},
-            opened::{Ask, Kept, OpenError, Opened, Part},
+            loaded_capture::{LoadedCapture, LoadedPart, Part},
+            open_options::{OpenError, OpenOptions},
             packets::{LinePacket, Packets},
             remedy::{Note, Remedy},
             replies::{self, Dealt},
@@ -77,9 +78,9 @@ pub struct CaptureFile {
     error: Option<String>,
     /// The map that it was read for, where one was given.
     map: Option<String>,
-    opened: Option<Opened>,
+    opened: Option<LoadedCapture>,
     /// What was said of it, where it stands where it was recorded.
-    asked: Option<Ask>,
+    asked: Option<OpenOptions>,
 }
 
 /// The file's name of a sample, and the scenario that it was to follow: `{file, scenario}`.
@@ -207,7 +208,7 @@ struct Looked<'a> {
     end_s: f64,
     records: usize,
     /// The part that is shown; null where it is all.
-    kept: Option<Kept>,
+    kept: Option<LoadedPart>,
     notes: Vec<String>,
     steps: &'a [ChannelReport],
     lines: Vec<String>,
@@ -286,19 +287,26 @@ impl CaptureFile {
             from_s,
             to_s,
         } = serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
-        let ask = Ask { map, clock_hz, sample_rate_hz, baud, uart, both_edges: both_edges.unwrap_or(false) };
+        let options = OpenOptions {
+            map,
+            clock_hz,
+            sample_rate_hz,
+            baud,
+            uart,
+            both_edges: both_edges.unwrap_or(false),
+        };
         let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
-        let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&ask));
+        let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&options));
         let mut opened = match known {
-            Some(known) => known.with_part(&self.capture, &ask, &part),
-            None => Opened::of_part(&self.capture, &ask, &part),
+            Some(known) => known.with_part(&self.capture, &options, &part),
+            None => LoadedCapture::of_part(&self.capture, &options, &part),
         }
         .map_err(|error| refused(&error))?;
         match at_s {
             Some(at_s) => {
                 opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s).map_err(JsError::from)?
             }
-            None => self.asked = Some(ask),
+            None => self.asked = Some(options),
         }
         let opened = self.opened.insert(opened);
         object(&Looked {
@@ -307,7 +315,7 @@ impl CaptureFile {
             rounding: &opened.rounding,
             end_s: opened.end_s,
             records: opened.records.len(),
-            kept: opened.kept,
+            kept: opened.part,
             notes: opened.notes.iter().map(note).collect(),
             steps: &opened.report.channels,
             lines: opened.report.lines.iter().map(line).collect(),
@@ -328,8 +336,9 @@ impl CaptureFile {
             speed_min: Vec<f64>,
             speed_max: Vec<f64>,
         }
-        let Some(ask) = &self.asked else { return Ok(JsValue::NULL) };
-        let found = Opened::overview(&self.capture, ask, channel, columns.min(MAX_COLUMNS) as usize)?;
+        let Some(options) = &self.asked else { return Ok(JsValue::NULL) };
+        let found =
+            LoadedCapture::overview(&self.capture, options, channel, columns.min(MAX_COLUMNS) as usize)?;
         object(&found.map(|Actual { position, speed }| Columns {
             position_min: position.min,
             position_max: position.max,
@@ -379,7 +388,7 @@ impl CaptureFile {
             return None;
         }
         let cycle = |at_s: f64| (at_s * f64::from(opened.clock_hz)) as u64;
-        let shown = opened.kept.map_or(0..u64::MAX, |kept| cycle(kept.from_s)..cycle(kept.to_s));
+        let shown = opened.part.map_or(0..u64::MAX, |part| cycle(part.from_s)..cycle(part.to_s));
         let Dealt { bytes, unknown } = replies::to_bytes(&opened.report, opened.clock_hz, shown, addresses);
         let dealt = Object::new();
         field(&dealt, "bytes", &Uint8Array::from(bytes.as_slice()).into());
@@ -490,8 +499,8 @@ mod tests {
         capture.channels.push(Channel { name: "Channel 0".into() });
         capture.timebase = Timebase::new(1, 1_000_000);
         capture.changes = (0..40).map(|k| Change { tick: 10 * k, levels: k % 2 }).collect();
-        let ask = Ask { map: Some("STEP0=Channel 0".into()), ..Ask::default() };
-        let opened = Opened::new(capture, &ask).expect("steps");
+        let options = OpenOptions { map: Some("STEP0=Channel 0".into()), ..OpenOptions::default() };
+        let opened = LoadedCapture::new(capture, &options).expect("steps");
         let notes: Vec<String> = opened.notes.iter().map(note).collect();
         let expected = "makes 39 steps of it; for such a driver choose the signal “STEP, both edges”";
         assert!(notes.iter().any(|note| note.ends_with(expected)), "{notes:?}");

@@ -5,11 +5,7 @@
 //!
 //! ```
 //! use stepscope_inspect::export::source_code::{Language, Source, is_name};
-//! use stepscope_motion::{
-//!     moves::Axis,
-//!     plan_axis,
-//!     quantise::{EntryFormat, Form, stored},
-//! };
+//! use stepscope_motion::{moves::Axis, plan_axis, quantise::{EntryFormat, Form, stored}};
 //! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
 //!
 //! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");

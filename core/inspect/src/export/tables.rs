@@ -2,10 +2,7 @@
 //!
 //! ```
 //! use stepscope_inspect::export::tables::{write_edges_head, write_edges_row};
-//! use stepscope_peripheral::{
-//!     signal::{Levels, Record},
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
 //!
 //! let mut table = String::new();
 //! write_edges_head(&mut table, 1).expect("a string takes it");

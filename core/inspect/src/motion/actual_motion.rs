@@ -8,11 +8,9 @@
 //! use stepscope_inspect::motion::actual_motion::Pulses;
 //!
 //! // Of a run of the default motion: 3200 steps in 0.4 s.
-//! # use stepscope_peripheral::trace::{Recording, steps};
-//! # use stepscope_sim::Experiment;
+//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
+//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! # let made = steps(&recording.trace, 0);
 //! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let start_s = pulses.zero() as f64 / pulses.hz();
@@ -131,7 +129,7 @@ impl<'a> Pulses<'a> {
         speed
     }
 
-    /// Calls `each` with start, end (s) and acceleration between steps without a plan ([`step_acceleration`]), within
+    /// Calls `each` with start, end (s) and acceleration between steps without a plan, within
     /// `from_s..=to_s`.
     pub fn accelerations(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(f64, f64, f64)) {
         let hz = self.hz();

@@ -4,12 +4,9 @@
 //! use stepscope_inspect::motion::{actual_motion::Pulses, spectra::Spectra};
 //! use stepscope_scenario::Scenario;
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps};
-//! # use stepscope_sim::Experiment;
+//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # experiment.run(&mut recording);
-//! # let made = steps(&recording.trace, 0);
+//! # let mut recording = Recording::default(); experiment.run(&mut recording); let made = steps(&recording.trace, 0);
 //! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
 //! let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
 //! let lines = |spectrum: Option<stepscope_inspect::motion::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);

@@ -1,16 +1,5 @@
 //! Acceleration of steps without a plan: between two runs of eight steps, because rounding to cycles dominates from
 //! step to step.
-//!
-//! ```
-//! use stepscope_inspect::motion::step_acceleration::of;
-//! use stepscope_peripheral::trace::Step;
-//!
-//! // 8 steps at 100 steps/s, then 8 at 200 steps/s, in cycles of 1 ms.
-//! let at = |k: i32| if k <= 8 { 10 * k } else { 40 + 5 * k };
-//! let steps: Vec<Step> = (0..17).map(|k| Step { cycle: at(k) as u64, position: k }).collect();
-//! assert!((of(&steps, 8, 1000.0).unwrap() - 100.0 / 0.06).abs() < 1e-9);
-//! assert_eq!(of(&steps, 7, 1000.0), None); // too near to the beginning
-//! ```
 
 use stepscope_peripheral::trace::Step;
 
@@ -18,9 +7,7 @@ pub(crate) const HALF: usize = 8;
 
 /// Signed, in steps/s^2, at a step; `None` without eight steps in one direction on both sides, or if eight share a
 /// cycle.
-#[must_use]
-#[inline(never)]
-pub fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
+pub(crate) fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
     let [from, at, to] =
         [middle.checked_sub(HALF)?, middle, middle.checked_add(HALF)?].map(|index| steps.get(index));
     let (from, at, to) = (from?, at?, to?);
@@ -31,4 +18,19 @@ pub fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
     let [first_s, second_s] = [(from, at), (at, to)].map(|(a, b)| (b.cycle - a.cycle) as f64 / hz);
     let change = HALF as f64 / second_s - HALF as f64 / first_s;
     Some(libm::copysign(1.0, f64::from(way)) * change / ((first_s + second_s) / 2.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn eight_steps_on_both_sides_give_the_acceleration() {
+        // 8 steps at 100 steps/s, then 8 at 200 steps/s, in cycles of 1 ms.
+        let at = |k: i32| if k <= 8 { 10 * k } else { 40 + 5 * k };
+        let steps: Vec<Step> = (0..17).map(|k| Step { cycle: at(k) as u64, position: k }).collect();
+        assert!((of(&steps, 8, 1000.0).unwrap() - 100.0 / 0.06).abs() < 1e-9);
+        assert_eq!(of(&steps, 7, 1000.0), None);
+    }
 }

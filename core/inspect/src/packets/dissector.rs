@@ -6,11 +6,7 @@
 //!
 //! ```
 //! use stepscope_inspect::packets::dissector::Reading;
-//! use stepscope_peripheral::{
-//!     config::Protocol,
-//!     signal::PacketOutcome,
-//!     trace::RowOutcome,
-//! };
+//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome, trace::RowOutcome};
 //!
 //! // A raw packet for controller 7, two channels.
 //! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };

@@ -6,11 +6,9 @@
 //! ```
 //! use stepscope_inspect::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps};
-//! # use stepscope_sim::Experiment;
+//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
+//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
 //! let first = table.row(0).expect("there are packets");
 //! let decoded = LineDecoder::new(table, &recording.trace).decode(first.start_cycle, first.line_end_cycle, 100, 100);

@@ -1,9 +1,7 @@
 //! The differences of a recording from its plan; neighbors of one kind share a row.
 //!
 //! ```
-//! use stepscope_inspect::recording::{
-//!     alignment::{Alignment, Side}, differences::Differences, events::Kind, tolerance::Tolerance,
-//! };
+//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, differences::Differences, events::Kind, tolerance::Tolerance};
 //! use stepscope_peripheral::trace::Step;
 //!
 //! let steps = |cycles: &[u64]| cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>();
@@ -202,7 +200,5 @@ fn time(seconds: f64) -> String {
     }
 }
 
-#[cfg(test)]
-mod edits;
 #[cfg(test)]
 mod tests;

@@ -10,16 +10,6 @@
 //!
 //! The medians tolerate that half of the slopes are wrong (Theil-Sen with fewer pairs). Least squares then resolve a
 //! drift below one cycle.
-//!
-//! ```
-//! use stepscope_inspect::recording::drift::Drift;
-//!
-//! // 20 ppm, and event 7 is late by 10 ms.
-//! let late = |k: usize| (k as f64, 20e-6 * k as f64 + if k == 7 { 0.01 } else { 0.0 });
-//! let drift = Drift::of(1000, 1e-6, |k| Some(late(k)));
-//! assert!((drift.slope - 20e-6).abs() < 1e-12);
-//! assert!(drift.is_outlier(drift.left(7.0, late(7).1)) && !drift.is_outlier(drift.left(8.0, late(8).1)));
-//! ```
 
 use alloc::vec::Vec;
 
@@ -32,18 +22,17 @@ const DEVIATIONS: f64 = 6.0;
 
 /// A line through most events.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drift {
+pub(super) struct Drift {
     /// Seconds of lateness per second.
-    pub slope: f64,
-    pub late_s: f64,
+    pub(super) slope: f64,
+    pub(super) late_s: f64,
     /// Maximum distance of events that count, in s.
-    pub within_s: f64,
+    pub(super) within_s: f64,
 }
 
 impl Drift {
     /// Fits `count` events in the order of time, each (time, lateness) in s; a cycle lasts `cycle_s`.
-    #[must_use]
-    pub fn of(count: usize, cycle_s: f64, event: impl Fn(usize) -> Option<(f64, f64)>) -> Self {
+    pub(super) fn of(count: usize, cycle_s: f64, event: impl Fn(usize) -> Option<(f64, f64)>) -> Self {
         let sampled: Vec<(f64, f64)> =
             (0..count).step_by(count.div_ceil(MAX_SAMPLED).max(1)).filter_map(&event).collect();
         let later = sampled.iter().skip((sampled.len() / PART).max(1));
@@ -74,13 +63,11 @@ impl Drift {
     }
 
     /// The lateness that the line does not explain, in s.
-    #[must_use]
-    pub fn left(&self, time_s: f64, late_s: f64) -> f64 {
+    pub(super) fn left(&self, time_s: f64, late_s: f64) -> f64 {
         late_s - self.late_s - self.slope * time_s
     }
 
-    #[must_use]
-    pub fn is_outlier(&self, left_s: f64) -> bool {
+    pub(super) fn is_outlier(&self, left_s: f64) -> bool {
         libm::fabs(left_s) > self.within_s
     }
 }

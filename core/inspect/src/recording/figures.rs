@@ -34,7 +34,7 @@ pub struct StepFigures {
     /// `None` where two steps share a cycle.
     pub greatest_rate_steps_s: Option<f64>,
     pub mean_rate_steps_s: Option<f64>,
-    /// Magnitude in steps/s^2 ([`step_acceleration`]); 0 where rounding to cycles explains it.
+    /// Magnitude in steps/s^2 (over eight steps); 0 where rounding to cycles explains it.
     pub greatest_acceleration_steps_s2: Option<f64>,
     /// Maximum relative change of the interval in one direction: 0.1 for a tenth.
     pub greatest_interval_change: Option<f64>,

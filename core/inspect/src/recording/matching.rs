@@ -8,20 +8,6 @@
 //! A beam search: each hypothesis follows the recording's clock by a filter of offset and rate. A step that is not on
 //! time makes further hypotheses: missing, extra, late, or a shift. The cheapest wins. It starts from each of the
 //! first pairs of steps. Hypotheses and tried gaps are bounded, so time and memory are linear.
-//!
-//! ```
-//! use stepscope_inspect::recording::{alignment::Side, matching::Matching};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! // The third of seven steps is missing from the recording.
-//! let steps = |cycles: &[u64]| -> Vec<Step> {
-//!     (1..).zip(cycles).map(|(position, &cycle)| Step { cycle, position }).collect()
-//! };
-//! let (plan, recorded) = (steps(&[100, 200, 300, 400, 500, 600, 700]), steps(&[100, 200, 400, 500, 600, 700]));
-//! let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
-//! let matching = Matching::of(side(&recorded), side(&plan));
-//! assert_eq!([1, 2, 3].map(|step| matching.recorded(step)), [Some(1), None, Some(2)]);
-//! ```
 
 mod clock;
 mod costs;

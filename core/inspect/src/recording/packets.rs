@@ -6,7 +6,7 @@
 //! use stepscope_peripheral::trace::Recording;
 //! use stepscope_sim::Experiment;
 //!
-//! // A framed link, as a logic analyser would have seen it: each frame of the host is answered.
+//! // A framed link, as a logic analyzer would have seen it: each frame of the host is answered.
 //! let mut recording = Recording::default();
 //! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
 //! let report = Report::of(&recording.trace, 16_000_000, 1, None);

@@ -5,7 +5,7 @@
 //! use stepscope_peripheral::{signal::Levels, trace::Recording};
 //! use stepscope_sim::Experiment;
 //!
-//! // The line of a run, as a logic analyser would have seen it.
+//! // The line of a run, as a logic analyzer would have seen it.
 //! let experiment = Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed");
 //! let mut recording = Recording::default();
 //! experiment.run(&mut recording);

@@ -4,10 +4,7 @@
 //!
 //! ```
 //! use stepscope_inspect::trace::columns::columns;
-//! use stepscope_peripheral::{
-//!     signal::{Levels, Record},
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
 //!
 //! // STEP0 is high in cycles 5 to 7; two columns of ten cycles each.
 //! let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });

@@ -4,11 +4,9 @@
 //! use stepscope_inspect::trace::{changes::Changes, edges::Signals};
 //!
 //! // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
-//! # use stepscope_peripheral::trace::{Recording, steps};
-//! # use stepscope_sim::Experiment;
+//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # experiment.run(&mut recording);
+//! # let mut recording = Recording::default(); experiment.run(&mut recording);
 //! let mut changes = Changes::default();
 //! changes.extend(&recording.trace);
 //! let signals = Signals { trace: &recording.trace, changes: &changes };

@@ -2,10 +2,7 @@
 //!
 //! ```
 //! use stepscope_inspect::trace::window::TraceWindow;
-//! use stepscope_peripheral::{
-//!     signal::{Levels, Record},
-//!     units::Instant,
-//! };
+//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
 //!
 //! let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
 //! let window = TraceWindow::of(&trace, Instant(6), Instant(20));

@@ -1,3 +1,5 @@
+mod edits;
+
 use super::*;
 use crate::recording::alignment::Side;
 use stepscope_peripheral::trace::Step;

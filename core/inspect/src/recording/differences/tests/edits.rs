@@ -1,7 +1,7 @@
 //! Plans with known edits must report exactly these.
 
-use super::*;
 use crate::recording::alignment::Side;
+use crate::recording::differences::*;
 use alloc::{format, string::String, vec, vec::Vec};
 use stepscope_peripheral::trace::Step;
 

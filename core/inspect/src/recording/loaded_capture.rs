@@ -1,0 +1,332 @@
+//! A capture loaded as a recording: times in cycles, levels, and a report.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//! use stepscope_inspect::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1! #22 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a map is proposed");
+//! assert_eq!((loaded.map.as_str(), loaded.clock_hz), ("STEP0=STEP", 1_000_000));
+//! assert_eq!(loaded.report.channels[0].figures.steps, 2);
+//! assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
+//! ```
+
+mod align;
+mod notes;
+mod report;
+mod scenario;
+#[cfg(test)]
+mod tests;
+
+pub use align::Misaligned;
+
+use super::{
+    events::Events,
+    open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ},
+    overview::Overview,
+    remedy::Note,
+    report::{Report, Survey, steps},
+};
+use crate::{
+    motion::curves::{Actual, Window},
+    trace::timing::{Rule, TimingCheck},
+};
+use alloc::{
+    format,
+    string::{String, ToString},
+    vec::Vec,
+};
+use serde::Serialize;
+use stepscope_capture::{
+    Capture, ChannelMap, Recorded,
+    channel_map::{PulseSource, written},
+    recorded::Records,
+    timebase::Timebase,
+};
+use stepscope_peripheral::{
+    signal::{Record, Sink},
+    trace::{self, Step},
+};
+use stepscope_scenario::TimingRules;
+
+/// Which records to load of a long recording; the report always covers all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Maximum records.
+    pub most: usize,
+    pub from_s: Option<f64>,
+    pub to_s: Option<f64>,
+}
+
+/// The loaded part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LoadedPart {
+    pub from_s: f64,
+    pub to_s: f64,
+    pub end_s: f64,
+    pub records: usize,
+    pub of: usize,
+}
+
+/// A capture in cycles, with its report.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedCapture {
+    pub format: String,
+    pub what: &'static str,
+    pub count: usize,
+    pub names: Vec<String>,
+    pub notes: Vec<Note>,
+    pub map: String,
+    pub clock_hz: u32,
+    pub rounding: String,
+    pub is_rounded: bool,
+    pub channels: u8,
+    /// Levels; only the reset for positions and bytes.
+    pub records: Vec<Record>,
+    /// Which part `records` is; `None` for all.
+    pub part: Option<LoadedPart>,
+    pub end_s: f64,
+    pub report: Report,
+    /// Steps of position rows.
+    position_steps: Option<Vec<Step>>,
+    /// Motors with generated pulses, and their source.
+    generated_pulses: Vec<(u8, PulseSource)>,
+}
+
+impl LoadedCapture {
+    /// Loads a capture and frees its memory.
+    pub fn new(capture: Capture, options: &OpenOptions) -> Result<Self, OpenError> {
+        let (mut loaded, map, base) = Self::prepare(&capture, options)?;
+        let Some(base) = base else { return loaded.back_to_back(&capture, options, &map).map(|()| loaded) };
+        let report = loaded.without_levels(&capture, base, options, &map)?;
+        let (exact, lines) = (loaded.exact_channels(&capture, &map, base, options), options.lines()?);
+        let others = others_rounded(&capture, base, loaded.clock_hz);
+        let recorded = Recorded::new(capture, &map, base, loaded.clock_hz).map_err(OpenError::TooLate)?;
+        loaded.note_rounding(recorded.rounding, others);
+        loaded.records = recorded.records;
+        let (clock_hz, channels) = (loaded.clock_hz, loaded.channels);
+        let mut report = report.unwrap_or_else(|| {
+            let all = loaded.records.iter().copied();
+            let changing = Survey::of(all.clone()).changing;
+            Report::of_all(all, changing, clock_hz, channels, lines)
+        });
+        if let Some(exact) = exact.filter(|_| recorded.rounding.lost == 0) {
+            report.channels = exact;
+        }
+        loaded.set_report(report, &map)?;
+        Ok(loaded)
+    }
+
+    /// Loads at most `part` of a capture's levels and leaves the capture usable.
+    pub fn of_part(capture: &Capture, options: &OpenOptions, part: &Part) -> Result<Self, OpenError> {
+        let (mut loaded, map, base) = Self::prepare(capture, options)?;
+        let Some(base) = base else { return loaded.back_to_back(capture, options, &map).map(|()| loaded) };
+        let clock_hz = loaded.clock_hz;
+        let report = loaded.without_levels(capture, base, options, &map)?;
+        // Without levels there is only the record of reset.
+        if capture.changes.is_empty() {
+            let none = Capture { end: capture.end, ..Capture::new(capture.format) };
+            let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+            loaded.note_rounding(recorded.rounding, others_rounded(capture, base, clock_hz));
+            loaded.records = recorded.records;
+            loaded.set_report(
+                report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }),
+                &map,
+            )?;
+            return Ok(loaded);
+        }
+        let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let mut passed = all.clone();
+        let survey = Survey::of(passed.by_ref());
+        loaded.note_rounding(passed.rounding, 0);
+        let mut report = Report::of_all(all, survey.changing, clock_hz, loaded.channels, options.lines()?);
+        if let Some(exact) = loaded.exact_channels(capture, &map, base, options)
+            && passed.rounding.lost == 0
+        {
+            report.channels = exact;
+        }
+        loaded.take_part(capture, &map, base, part, survey.count)?;
+        loaded.set_report(report, &map)?;
+        Ok(loaded)
+    }
+
+    /// Loads another part without computing the report again. Options and alignment stay.
+    pub fn with_part(
+        mut self,
+        capture: &Capture,
+        options: &OpenOptions,
+        part: &Part,
+    ) -> Result<Self, OpenError> {
+        let (Self { end_s, .. }, map, base) = Self::prepare(capture, options)?;
+        let Some(base) = base.filter(|_| !capture.changes.is_empty()) else { return Ok(self) };
+        let count = self.part.take().map_or(self.records.len(), |part| part.of);
+        self.end_s = end_s;
+        // Free the memory before the next part is loaded.
+        self.records = Vec::new();
+        self.take_part(capture, &map, base, part, count)?;
+        Ok(self)
+    }
+
+    fn take_part(
+        &mut self,
+        capture: &Capture,
+        map: &ChannelMap,
+        base: Timebase,
+        part: &Part,
+        count: usize,
+    ) -> Result<(), OpenError> {
+        if count <= part.most && part.from_s.is_none() && part.to_s.is_none() {
+            self.records.reserve_exact(count);
+            self.records.extend(Records::of(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
+        } else {
+            let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, self.end_s);
+            let rest = Records::from(capture, map, base, self.clock_hz, (from_s / base.seconds()) as u64);
+            self.load_part(rest.map_err(OpenError::TooLate)?, count, from_s, part);
+        }
+        Ok(())
+    }
+
+    /// The timing check in the file's own ticks; `None` where the clock is exact or pulses are generated.
+    pub fn timing_in_ticks(
+        capture: &Capture,
+        options: &OpenOptions,
+        rules: &TimingRules,
+        most_kept: usize,
+    ) -> Result<Option<(TimingCheck, Timebase)>, OpenError> {
+        let (loaded, map, base) = Self::prepare(capture, options)?;
+        let are_generated = loaded.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
+        let is_rounded = |base: &Timebase| !capture.changes.is_empty() && !base.is_exact(loaded.clock_hz);
+        let Some(base) = base.filter(|base| is_rounded(base) && !are_generated) else { return Ok(None) };
+        let mut check = TimingCheck::in_ticks(rules, base.parts(), most_kept);
+        loaded.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
+        Records::in_ticks(capture, &map).for_each(|record| check.record(record));
+        Ok(Some((check, base)))
+    }
+
+    /// Minimum and maximum of a channel per column; `None` without levels.
+    pub fn overview(
+        capture: &Capture,
+        options: &OpenOptions,
+        channel: u8,
+        columns: usize,
+    ) -> Result<Option<Actual>, OpenError> {
+        let (Self { end_s, clock_hz, .. }, map, base) = Self::prepare(capture, options)?;
+        let Some(base) = base.filter(|_| !capture.changes.is_empty() && columns > 0) else { return Ok(None) };
+        let records = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let window = Window { start_s: 0.0, end_s, columns };
+        Ok(Some(Overview::of(steps(records, channel), f64::from(clock_hz), window)))
+    }
+
+    fn load_part(&mut self, mut rest: impl Iterator<Item = Record>, of: usize, from_s: f64, part: &Part) {
+        let hz = f64::from(self.clock_hz);
+        let to_s = part.to_s.unwrap_or(self.end_s).clamp(from_s, self.end_s);
+        let to = (to_s * hz) as u64;
+        self.records.reserve_exact(part.most.min(of));
+        let mut next = None;
+        for record in rest.by_ref() {
+            if record.cycle.0 > to || self.records.len() >= part.most.max(1) {
+                next = Some(record.cycle.0);
+                break;
+            }
+            self.records.push(record);
+        }
+        // The part ends before the first record without room.
+        let to_s = next.filter(|next| *next <= to).map_or(to_s, |next| next as f64 / hz);
+        self.part = Some(LoadedPart { from_s, to_s, end_s: self.end_s, records: self.records.len(), of });
+        self.end_s = to_s;
+    }
+
+    fn prepare(
+        capture: &Capture,
+        options: &OpenOptions,
+    ) -> Result<(Self, ChannelMap, Option<Timebase>), OpenError> {
+        if options.baud == Some(0) {
+            return Err(OpenError::Baud);
+        }
+        options.lines()?;
+        let map = match &options.map {
+            Some(text) => ChannelMap::parse(text, capture).map_err(OpenError::Map)?,
+            None => ChannelMap::proposed(capture),
+        };
+        let map = if options.both_edges { map.with_both_edges() } else { map };
+        let names: Vec<String> = capture.channels.iter().map(|channel| channel.name.clone()).collect();
+        if !capture.changes.is_empty() && map.entries().is_empty() {
+            return Err(OpenError::NoMap { example: example(capture), names });
+        }
+        let what = match () {
+            () if !capture.bytes.is_empty() => "bytes",
+            () if !capture.positions.is_empty() => "positions",
+            () => "changes",
+        };
+        let mut loaded = Self {
+            format: capture.format.to_string(),
+            what,
+            count: capture.len(),
+            names,
+            notes: capture.left_out.iter().cloned().map(Note::from).collect(),
+            map: map.to_text(capture),
+            clock_hz: USUAL_CLOCK_HZ,
+            rounding: String::new(),
+            is_rounded: false,
+            channels: map.bus_channels(),
+            records: Vec::new(),
+            part: None,
+            end_s: 0.0,
+            report: Report { channels: Vec::new(), lines: Vec::new() },
+            position_steps: None,
+            generated_pulses: Vec::new(),
+        };
+        if !capture.changes.is_empty() {
+            loaded.note_edges(capture, &map);
+        }
+        let requested = options
+            .sample_rate_hz
+            .map(|rate| Timebase::new(1, rate).ok_or(OpenError::SampleRate))
+            .transpose()?;
+        // Positions among bytes are no samples.
+        let base = capture.timebase.or(requested.filter(|_| !Self::has_untimed_bytes(capture)));
+        if let Some(base) = base {
+            loaded.clock_hz = options.clock(base, !capture.positions.is_empty(), map.makes_pulses())?;
+            let (numerator, denominator) = base.parts();
+            loaded.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
+        }
+        Ok((loaded, map, base))
+    }
+
+    #[must_use]
+    pub fn steps_of(&self, channel: u8) -> Vec<Step> {
+        match &self.position_steps {
+            Some(steps) if channel == 0 => steps.clone(),
+            Some(_) => Vec::new(),
+            None => trace::steps(&self.records, channel),
+        }
+    }
+
+    /// The steps of a channel or, if none steps, the bytes of RX.
+    #[must_use]
+    pub fn events(&self, channel: u8) -> Events {
+        match self.report.rx().filter(|_| self.report.channels.is_empty()) {
+            Some(line) => Events::of_bytes(&line.heard, self.clock_hz),
+            None => Events::of_steps(self.steps_of(channel), self.clock_hz),
+        }
+    }
+
+    /// Without levels there are only steps or bytes.
+    #[must_use]
+    pub fn has_levels(&self) -> bool {
+        self.what == "changes"
+    }
+}
+
+fn example(capture: &Capture) -> String {
+    let pairs = ["STEP0", "DIR0"].into_iter().zip(0..capture.channels.len());
+    let pairs = pairs.map(|(signal, index)| format!("{signal}={}", written(index, &capture.channels)));
+    pairs.collect::<Vec<_>>().join(",")
+}
+
+fn others_rounded(capture: &Capture, base: Timebase, clock_hz: u32) -> u64 {
+    let bytes = capture.bytes.iter().map(|byte| byte.tick);
+    let ticks = bytes.chain(capture.positions.iter().map(|row| row.tick));
+    ticks.filter(|tick| !base.is_whole(*tick, clock_hz)).count() as u64
+}

@@ -1,0 +1,198 @@
+//! The report of a loaded capture: steps and bytes, with or without times.
+
+use super::LoadedCapture;
+use crate::{
+    recording::{
+        figures::StepFigures,
+        open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ, valid_clock},
+        remedy::{Note, Remedy},
+        report::{ChannelReport, LineReport, Report, steps},
+        serial::{Heard, HeardByte},
+    },
+    trace::timing::Rule,
+};
+use alloc::{borrow::ToOwned, format, vec::Vec};
+use stepscope_capture::{Capture, ChannelMap, capture::TimedByte, recorded::Records, timebase::Timebase};
+use stepscope_peripheral::{signal::Levels, units::Instant, wire::BitTimes};
+
+/// Bit rate of bytes with times.
+const USUAL_BAUD: u32 = 115_200;
+/// Maximum steps of position rows; two rows can demand any number.
+const MAX_MADE_STEPS: u64 = 10_000_000;
+
+impl LoadedCapture {
+    /// Figures in the file's own ticks where its clock would round: otherwise a constant rate would have an
+    /// acceleration.
+    pub(super) fn exact_channels(
+        &self,
+        capture: &Capture,
+        map: &ChannelMap,
+        base: Timebase,
+        options: &OpenOptions,
+    ) -> Option<Vec<ChannelReport>> {
+        // Generated pulses may not fit in ticks.
+        let are_generated = self.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
+        if capture.changes.is_empty()
+            || options.clock_hz.is_some()
+            || base.is_exact(self.clock_hz)
+            || are_generated
+        {
+            return None;
+        }
+        let (numerator, denominator) = base.parts();
+        let hz = denominator as f64 / numerator as f64;
+        let of = |channel| {
+            let steps = steps(Records::in_ticks(capture, map), channel);
+            Some(ChannelReport { channel, figures: StepFigures::of_rate(steps, hz)? })
+        };
+        Some((0..self.channels).filter_map(of).collect())
+    }
+
+    pub(super) fn without_levels(
+        &mut self,
+        capture: &Capture,
+        base: Timebase,
+        options: &OpenOptions,
+        map: &ChannelMap,
+    ) -> Result<Option<Report>, OpenError> {
+        let clock_hz = self.clock_hz;
+        let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
+        let mut report = None;
+        if !capture.bytes.is_empty() {
+            let all = heard(capture.bytes.iter(), cycle);
+            let baud = options.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
+            if options.baud.is_none() {
+                self.notes.push(Note::from(format!(
+                    "the file does not say the bit rate; by the times of its bytes {baud} baud is taken: give it"
+                )));
+            }
+            let lines = self.lines_of(capture, map).into_iter();
+            let lines = lines.map(|(line, bytes)| {
+                LineReport::of_heard_on(line, heard(bytes.into_iter(), cycle), clock_hz, baud)
+            });
+            report = Some(Report { channels: Vec::new(), lines: lines.collect() });
+        } else if !capture.positions.is_empty() {
+            let steps =
+                capture.steps(cycle, MAX_MADE_STEPS).ok_or(OpenError::TooManySteps(MAX_MADE_STEPS))?;
+            report = Some(Report::of_steps(&steps, clock_hz));
+            self.position_steps = Some(steps);
+        }
+        Ok(report)
+    }
+
+    /// Decoded bytes per line; a single channel is RX.
+    pub(super) fn lines_of<'c>(
+        &mut self,
+        capture: &'c Capture,
+        map: &ChannelMap,
+    ) -> Vec<(u64, Vec<&'c TimedByte>)> {
+        let lines = [Levels::RX, Levels::TX];
+        let of = |line: u64| {
+            let entry = map.entries().iter().find(|entry| entry.bit == line.trailing_zeros());
+            let bytes = entry.map(|entry| {
+                capture.bytes.iter().filter(|byte| usize::from(byte.channel) == entry.channel).collect()
+            });
+            bytes.filter(|bytes: &Vec<&TimedByte>| !bytes.is_empty()).map(|bytes| (line, bytes))
+        };
+        let found: Vec<_> = lines.into_iter().filter_map(of).collect();
+        if capture.channels.len() > 1 && found.is_empty() {
+            self.notes.push(Note {
+                text: format!("bytes of {} are taken together, as RX", self.names.join(", ")),
+                remedy: Some(Remedy::ChooseLine),
+            });
+        }
+        if capture.channels.len() <= 1 || found.is_empty() {
+            return Vec::from([(Levels::RX, capture.bytes.iter().collect())]);
+        }
+        found
+    }
+
+    pub(super) fn set_report(&mut self, report: Report, map: &ChannelMap) -> Result<(), OpenError> {
+        self.report = report;
+        for remedy in self.report.lines.iter_mut().flat_map(|line| &mut line.remedies) {
+            if let Remedy::InvertLine { line, inverted } = remedy {
+                let bit = if *line == "RX" { Levels::RX } else { Levels::TX }.trailing_zeros();
+                *inverted = !map.entries().iter().any(|entry| entry.bit == bit && entry.inverted);
+            }
+        }
+        let is_something =
+            !self.report.channels.is_empty() || self.report.lines.iter().any(|line| line.problem.is_none());
+        if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_something) {
+            return Err(OpenError::NoRate(line.to_text(), line.remedies.clone()));
+        }
+        for channel in &self.report.channels {
+            if self.has_levels() && !map.has_direction(channel.channel) {
+                let number = channel.channel;
+                self.notes.push(Note::from(format!(
+                    "no channel is DIR{number}: all steps of channel {number} count to the right"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Bytes without times count as sent back to back on each line.
+    pub(super) fn back_to_back(
+        &mut self,
+        capture: &Capture,
+        options: &OpenOptions,
+        map: &ChannelMap,
+    ) -> Result<(), OpenError> {
+        if !Self::has_untimed_bytes(capture) {
+            return Err(OpenError::NoSampleRate(capture.format));
+        }
+        let baud = options.baud.ok_or(OpenError::NoBaud)?;
+        self.clock_hz = valid_clock(options.clock_hz.unwrap_or(USUAL_CLOCK_HZ))?;
+        let times = BitTimes::new(self.clock_hz, baud);
+        let mut last = 0;
+        for (line, bytes) in self.lines_of(capture, map) {
+            let bytes = (0..).zip(bytes);
+            let bytes = bytes.map(|(index, timed)| HeardByte {
+                start: Instant(1 + times.byte(index).0),
+                byte: timed.byte,
+            });
+            let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
+            last = last.max(heard.bytes.len() as u64);
+            self.report.lines.push(LineReport::of_heard_on(line, heard, self.clock_hz, baud));
+        }
+        self.end_s = times.byte(last).0 as f64 / f64::from(self.clock_hz);
+        self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
+        Ok(())
+    }
+
+    /// Bytes without times have their index as tick.
+    pub(super) fn has_untimed_bytes(capture: &Capture) -> bool {
+        let untimed = || (0..).zip(&capture.bytes).all(|(place, byte)| byte.tick == place);
+        capture.timebase.is_none() && !capture.bytes.is_empty() && untimed()
+    }
+}
+
+fn heard<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> Heard {
+    let mut heard = Heard::default();
+    for byte in bytes {
+        let start = Instant(cycle(byte.tick));
+        if byte.framing_error {
+            heard.framing_errors.push(start);
+        } else {
+            heard.bytes.push(HeardByte { start, byte: byte.byte });
+        }
+    }
+    heard
+}
+
+/// The closest two bytes are back to back. Bytes of one line of text share a time; then the usual rate or more.
+fn likely_baud(heard: &Heard, clock_hz: u32) -> u32 {
+    let (mut needed, mut shared, mut count) = (0.0_f64, false, 1_u32);
+    for (before, byte) in heard.bytes.iter().zip(heard.bytes.iter().skip(1)) {
+        match byte.start.0.saturating_sub(before.start.0) {
+            0 => (count, shared) = (count.saturating_add(1), true),
+            cycles => {
+                let bits = 10.0 * f64::from(count);
+                needed = libm::fmax(needed, bits * f64::from(clock_hz) / cycles as f64);
+                count = 1;
+            }
+        }
+    }
+    let needed = libm::round(needed) as u32;
+    if shared || needed == 0 { needed.max(USUAL_BAUD) } else { needed }
+}

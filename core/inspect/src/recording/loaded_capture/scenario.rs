@@ -1,0 +1,86 @@
+//! The scenario that reproduces a loaded capture.
+
+use super::LoadedCapture;
+use crate::{
+    recording::scenario::{self, Bytes, Made, Refused, Steps},
+    trace::timing::Rule,
+};
+use alloc::{format, string::String, vec::Vec};
+use stepscope_peripheral::{trace::Step, wire::BitTimes};
+use stepscope_scenario::{Scenario, SegmentLists, Source};
+
+/// Maximum segments of a scenario in a form.
+const MAX_SHOWN: usize = 20_000;
+const MAX_TITLE: usize = 120;
+
+impl LoadedCapture {
+    /// The scenario to show: [`Self::scenario`], or an idle one with its clock, channels and duration.
+    #[must_use]
+    pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
+        let made = if self.part.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
+        let made = made.filter(|made| made.clock_hz == self.clock_hz && entries(made) <= MAX_SHOWN);
+        let mut scenario = made.unwrap_or_else(|| {
+            let mut scenario = Scenario { clock_hz: self.clock_hz, ..Scenario::default() };
+            scenario.bus.channels = self.channels;
+            scenario.source = Source::Segments(SegmentLists::default());
+            scenario.title = title(file);
+            scenario.note = format!(
+                "Recorded in {file}. No scenario that could be edited here gives it again: it is too long, too fast for the bus, or of another clock. The command says which, and makes a long one (stepscope capture --scenario)."
+            );
+            scenario
+        });
+        let last = self.records.last().map_or(0, |record| record.cycle.0);
+        let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
+        // The last byte ends after the last edge.
+        let heard = self.report.rx().filter(|line| self.part.is_none() && line.baud > 0).and_then(|line| {
+            let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
+            Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
+        });
+        scenario.run_cycles = Some(end.max(last).max(heard.unwrap_or(0)) + 1);
+        scenario
+    }
+
+    /// The scenario that reproduces it: its bytes, unless `steps` is set, otherwise its steps within `error_us`.
+    /// Bytes go to the controllers of `base`.
+    pub fn scenario(
+        &self,
+        file: &str,
+        steps: bool,
+        error_us: f64,
+        base: Option<&Scenario>,
+    ) -> Result<Scenario, Refused> {
+        let (clock_hz, channels) = (self.clock_hz, self.channels);
+        let within_cycles = (error_us * 1e-6 * f64::from(clock_hz)) as u64;
+        let asked = Steps { clock_hz, channels, within_cycles };
+        let rx = self.report.rx().filter(|line| !line.heard.bytes.is_empty() && !steps);
+        let made: Made = match (rx, &self.position_steps) {
+            (Some(line), _) => {
+                let asked = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
+                scenario::of_bytes(&line.heard, &asked, base)
+            }
+            (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &asked),
+            // Generated pulses have no width of their own.
+            (None, None) if self.unchecked().any(|(_, rule)| rule == Rule::StepHigh) => {
+                let all: Vec<Vec<Step>> = (0..channels).map(|channel| self.steps_of(channel)).collect();
+                scenario::of_step_times(&all, &asked)
+            }
+            (None, None) => scenario::of_steps(&self.records, &asked),
+        }?;
+        let mut scenario = Scenario { note: scenario::note(file, &made), ..made.scenario };
+        scenario.title = title(file);
+        Ok(scenario)
+    }
+}
+
+fn entries(scenario: &Scenario) -> usize {
+    match &scenario.source {
+        Source::Segments(lists) => lists.channels.iter().map(|list| list.segments.len()).sum(),
+        // A form has several fields per send.
+        Source::Line(script) => script.sends.len() * 8,
+        _ => 0,
+    }
+}
+
+fn title(file: &str) -> String {
+    format!("recorded: {file}").chars().take(MAX_TITLE).collect()
+}

@@ -1,0 +1,136 @@
+//! Options for opening a capture, and why it cannot be loaded.
+//!
+//! ```
+//! use stepscope_inspect::recording::open_options::{OpenError, OpenOptions};
+//!
+//! assert!(OpenOptions::default().map.is_none()); // the map is proposed
+//! assert!(OpenError::Clock(7).to_string().starts_with("the clock: 7 Hz"));
+//! ```
+
+use super::{remedy::Remedy, serial::LineOptions};
+use alloc::{borrow::ToOwned, string::String, vec::Vec};
+use core::fmt;
+use stepscope_capture::{capture::Format, channel_map::MapError, recorded::TooLate, timebase::Timebase};
+use stepscope_peripheral::config::limits::CLOCK_HZ;
+
+/// Clock for bytes without times and for rows of positions.
+pub(super) const USUAL_CLOCK_HZ: u32 = 16_000_000;
+/// Cycles per tick of the file that an edge needs to become a pulse.
+const CYCLES_PER_EDGE: u64 = 4;
+
+/// How to open a capture. Missing values are proposed, measured or taken from the file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OpenOptions {
+    pub map: Option<String>,
+    pub clock_hz: Option<u32>,
+    /// Samples per second.
+    pub sample_rate_hz: Option<u64>,
+    /// Bit rate of RX and TX.
+    pub baud: Option<u32>,
+    /// Drivers step on both edges: STEP of the map becomes DEDGE.
+    pub both_edges: bool,
+    /// Data bits, parity and stop bits such as `8E1`; 8N1 by default.
+    pub uart: Option<String>,
+}
+
+impl OpenOptions {
+    pub(super) fn lines(&self) -> Result<LineOptions, OpenError> {
+        let format = self
+            .uart
+            .as_deref()
+            .map(|text| text.trim().parse().map_err(|allowed| OpenError::Uart(text.to_owned(), allowed)));
+        Ok(LineOptions { baud: self.baud, format: format.transpose()?.unwrap_or_default() })
+    }
+
+    /// The requested clock, or the slowest in which each tick of the file is a whole number of cycles. Position rows and
+    /// single edges need a finer one.
+    pub(super) fn clock(
+        &self,
+        base: Timebase,
+        positions: bool,
+        makes_pulses: bool,
+    ) -> Result<u32, OpenError> {
+        let (least, most) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
+        let own = || {
+            if positions && base.is_exact(USUAL_CLOCK_HZ) {
+                return USUAL_CLOCK_HZ;
+            }
+            let (_, denominator) = base.parts();
+            let least =
+                if makes_pulses { least.max(denominator.saturating_mul(CYCLES_PER_EDGE)) } else { least };
+            let whole = least.div_ceil(denominator).checked_mul(denominator);
+            whole.map_or(most, |hz| hz.min(most)) as u32
+        };
+        valid_clock(self.clock_hz.unwrap_or_else(own))
+    }
+}
+
+/// Why a capture cannot be loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum OpenError {
+    Map(MapError),
+    /// No map, and none can be proposed.
+    NoMap {
+        names: Vec<String>,
+        example: String,
+    },
+    Clock(u32),
+    SampleRate,
+    /// Samples or ticks have no duration.
+    NoSampleRate(Format),
+    NoBaud,
+    Baud,
+    Uart(String, &'static str),
+    /// No steps, and a line cannot be decoded: the reason and remedies.
+    NoRate(String, Vec<Remedy>),
+    TooLate(TooLate),
+    TooManySteps(u64),
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(error) => write!(f, "the channel map: {error}"),
+            Self::NoMap { .. } => f.write_str("nothing says which channel is which signal"),
+            Self::Clock(given) => {
+                write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
+            }
+            Self::SampleRate => f.write_str("the sample rate is 0; give the samples a second, in Hz"),
+            Self::NoSampleRate(format) => f.write_str(match format {
+                Format::Klipper => {
+                    "the log has no CLOCK_FREQ; give the clock of its controller as the sample rate, in Hz, such as 16000000"
+                }
+                Format::Annotations => {
+                    "the annotations count samples and do not say how long one lasts; give the sample rate of the recording, in Hz"
+                }
+                Format::Vcd | Format::SigrokSession | Format::SigrokCsv => {
+                    "the file does not say how long a sample lasts; give the sample rate, in Hz"
+                }
+                Format::Trace | Format::EdgesCsv => {
+                    "the file does not say how long a cycle lasts; give the clock as the sample rate, in Hz"
+                }
+                _ => {
+                    "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz: 1000000 for times in µs, or name their unit in the head of the table (time_us)"
+                }
+            }),
+            Self::NoBaud => f.write_str(
+                "the bytes have no times; give the bit rate, and they are taken for sent back to back",
+            ),
+            Self::Baud => f.write_str("the bit rate is 0; give the bits a second"),
+            Self::Uart(given, allowed) => write!(f, "the UART format: \"{given}\" is not one; {allowed}"),
+            Self::NoRate(why, _) => f.write_str(why),
+            Self::TooLate(error) => error.fmt(f),
+            Self::TooManySteps(most) => write!(
+                f,
+                "the positions stand for more than {most} steps, or lead further than 2^31 away; give a shorter table"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for OpenError {}
+
+pub(super) fn valid_clock(clock_hz: u32) -> Result<u32, OpenError> {
+    if CLOCK_HZ.contains(&clock_hz.into()) { Ok(clock_hz) } else { Err(OpenError::Clock(clock_hz)) }
+}
