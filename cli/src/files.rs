@@ -5,6 +5,7 @@ use std::{
     io::{self, Write},
     path::PathBuf,
 };
+use stepscope_core::inspect::packets::log::PacketLog;
 use stepscope_core::{
     inspect::{
         export::{
@@ -16,7 +17,7 @@ use stepscope_core::{
     },
     peripheral::{
         signal::{Event, Record, Sink},
-        trace::{Digest, PacketLog, write_record},
+        trace::{Digest, write_record},
         units::Instant,
     },
     sim::{Experiment, Run},

@@ -2,9 +2,8 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use stepscope_core::{
-    inspect::trace::recorded_run::record_run, peripheral::trace::Recording, sim::Experiment,
-};
+use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::{inspect::trace::recorded_run::record_run, sim::Experiment};
 
 /// What the first controller of a scenario's run does.
 ///

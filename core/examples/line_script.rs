@@ -2,7 +2,8 @@
 //!
 //! `cargo run -p stepscope-core --example line_script`
 
-use stepscope_core::{peripheral::trace::Recording, scenario::Problem, sim::Experiment};
+use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::{scenario::Problem, sim::Experiment};
 
 /// Two channels, so two bytes a packet: bit 7 is the direction, the rest the steps. A byte takes 1388 cycles at 115200
 /// baud and 16 MHz; the glitch holds the line low over a stop bit of the second packet.

@@ -12,7 +12,8 @@
 //!
 //! ```
 //! # #[cfg(feature = "sim")] {
-//! use stepscope_core::{peripheral::trace::{Recording, steps}, sim::Experiment};
+//! use stepscope_core::inspect::trace::stored_run::Recording;
+//! use stepscope_core::{peripheral::trace::steps, sim::Experiment};
 //!
 //! // One turn in 0.4 s by a cosine S-curve: 3200 microsteps.
 //! let experiment = Experiment::from_json(

@@ -1,12 +1,13 @@
 //! What a run exports, taken in again.
 
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::{
         export::tables::{write_edges_head, write_edges_row},
         packets::packet_table::PacketTable,
         trace::diff::TraceDiff,
     },
-    peripheral::{trace::Recording, units::Instant, wire::schedule::line_time},
+    peripheral::{units::Instant, wire::schedule::line_time},
     scenario::{LineScript, Scenario, ScriptedSend, presets::PRESETS},
     sim::{Experiment, Run, replayed},
 };

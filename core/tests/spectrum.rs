@@ -1,12 +1,13 @@
 //! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
 
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::motion::{
         actual_motion::Pulses,
         spectrum::{AnalysisWindow, Spectrum},
     },
     motion::quantise::TickClock,
-    peripheral::trace::{Recording, Step, steps},
+    peripheral::trace::{Step, steps},
     sim::Experiment,
 };
 

@@ -4,12 +4,13 @@
 //! All checks panic with what differs, so that property tests, fuzz targets and kept findings share them.
 
 use std::rc::Rc;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     peripheral::{
         config::{Config, Protocol},
         device::Device,
         signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
-        trace::{Digest, Recording, steps},
+        trace::{Digest, steps},
         units::{Cycles, Instant},
         wire::{ForcedLevel, Line},
     },

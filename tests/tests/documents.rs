@@ -4,6 +4,7 @@
 //! it in the core; here is what comes out at the STEP lines.
 
 use std::{f64::consts::PI, fs, path::Path};
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::motion::spectrum::Spectrum,
     motion::{
@@ -15,7 +16,7 @@ use stepscope_core::{
     },
     peripheral::{
         config::PulsePhasing,
-        trace::{Recording, Step, steps},
+        trace::{Step, steps},
     },
     scenario::{Packets, Scenario, Source, presets::PRESETS},
     sim::Experiment,

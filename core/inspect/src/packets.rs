@@ -1,6 +1,7 @@
 //! ```
 //! use stepscope_inspect::packets::dissector::Reading;
-//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome, trace::RowOutcome};
+//! use stepscope_inspect::packets::log::RowOutcome;
+//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
 //!
 //! let reading = Reading { protocol: Protocol::Raw, addressed: false, channels: &|_| 2 };
 //! let meaning = reading.of(&[0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
@@ -9,4 +10,5 @@
 
 pub mod dissector;
 pub mod line_decoder;
+pub mod log;
 pub mod packet_table;

@@ -2,7 +2,8 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::{Alignment, Side}, report::Report, tolerance::Tolerance};
-//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_peripheral::trace::steps;
 //! use stepscope_sim::Experiment;
 //!
 //! let recorded = |json: &str| {

@@ -18,5 +18,6 @@ pub mod fingerprint;
 pub mod recorded_run;
 pub mod run_fingerprint;
 pub mod run_sink;
+pub mod stored_run;
 pub mod timing;
 pub mod window;

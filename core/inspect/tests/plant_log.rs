@@ -2,7 +2,8 @@
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_inspect::plant::log::{MOTOR, PlantLog, SUPPLY, Stretch};
-use stepscope_peripheral::{trace::Recording, units::Instant};
+use stepscope_inspect::trace::stored_run::Recording;
+use stepscope_peripheral::units::Instant;
 use stepscope_plant::{Observer, Plant};
 use stepscope_sim::Experiment;
 

@@ -8,6 +8,7 @@
 use arbitrary::{Result, Unstructured};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use std::{collections::BTreeSet, io::Cursor, slice};
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
@@ -33,7 +34,7 @@ use stepscope_core::{
     },
     peripheral::{
         signal::{Record, Sink},
-        trace::{self, Recording, Step, write_record},
+        trace::{self, Step, write_record},
         units::Instant,
     },
     scenario::Scenario,

@@ -1,7 +1,8 @@
 //! The framed protocol on the page: frames, replies, and what becomes of them on a noisy line.
 
 use anyhow::{Result, ensure};
-use stepscope_core::peripheral::{protocol::FrameOutcome, trace::RowOutcome};
+use stepscope_core::inspect::packets::log::RowOutcome;
+use stepscope_core::peripheral::protocol::FrameOutcome;
 
 use crate::{
     bench::in_browser,
@@ -40,7 +41,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         page.picture("framed").await?;
 
         // The first TICKS frame: its bytes, the reply, and all of its ticks.
-        let first = |row: &&stepscope_core::peripheral::trace::LoggedPacket| {
+        let first = |row: &&stepscope_core::inspect::packets::log::LoggedPacket| {
             matches!(row.outcome, RowOutcome::Frame(FrameOutcome::Queued(_)))
         };
         let rows = framed.recording.packets.rows();

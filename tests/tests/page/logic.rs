@@ -2,10 +2,8 @@
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
-use stepscope_core::{
-    peripheral::trace::{Digest, RowOutcome},
-    scenario::presets::PRESETS,
-};
+use stepscope_core::inspect::packets::log::RowOutcome;
+use stepscope_core::{peripheral::trace::Digest, scenario::presets::PRESETS};
 
 use crate::{
     bench::{in_browser, in_sources},

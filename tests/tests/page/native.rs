@@ -3,8 +3,9 @@
 use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use data_encoding::BASE64URL_NOPAD;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
-    peripheral::trace::{Digest, Recording},
+    peripheral::trace::Digest,
     scenario::{
         Problem, Scenario,
         link::{self, LinkError},

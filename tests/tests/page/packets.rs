@@ -2,9 +2,10 @@
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
+use stepscope_core::inspect::packets::log::RowOutcome;
 use stepscope_core::{
     inspect::packets::dissector::{Meaning, Reading},
-    peripheral::{config::Protocol, protocol::FrameOutcome, trace::RowOutcome},
+    peripheral::{config::Protocol, protocol::FrameOutcome},
     scenario::presets::PRESETS,
 };
 

@@ -1,10 +1,12 @@
 //! What was recorded on TX in the table of packets: of a device that was silent, of one alone, and of several on one line.
 
 use anyhow::{Context, Result, ensure};
+use stepscope_core::inspect::packets::log::RowOutcome;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     peripheral::{
         signal::{Levels, Record},
-        trace::{Recording, RowOutcome, levels_at},
+        trace::levels_at,
     },
     sim::Experiment,
 };

@@ -5,6 +5,7 @@ use std::io::Cursor;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
@@ -17,7 +18,6 @@ use stepscope_core::{
     },
     peripheral::{
         signal::{Levels, Record},
-        trace::Recording,
         units::Instant,
     },
 };

@@ -6,7 +6,7 @@ use fantoccini::actions::{
     WheelActions,
 };
 use serde::Deserialize;
-use stepscope_core::peripheral::trace::LoggedPacket;
+use stepscope_core::inspect::packets::log::LoggedPacket;
 
 use crate::{
     bench::in_browser,

@@ -7,6 +7,7 @@ use crate::{
 };
 use js_sys::Object;
 use serde::Serialize;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::{
         motion::torque::{Machine, TorqueCurve},
@@ -18,7 +19,7 @@ use stepscope_core::{
         },
         trace::recorded_run::{RECORDS_PER_CHECK, check_records},
     },
-    peripheral::{trace::Recording, units::Instant},
+    peripheral::units::Instant,
     plant::{
         Refused,
         parameters::Setup,

@@ -5,9 +5,10 @@ use crate::{
     judged::{Judged, config, listed},
 };
 use serde::Serialize;
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::trace::{diff::TraceDiff, recorded_run::record_run},
-    peripheral::{signal, trace::Recording},
+    peripheral::signal,
 };
 use wasm_bindgen::prelude::*;
 

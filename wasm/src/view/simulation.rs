@@ -10,6 +10,7 @@ use crate::{
     },
 };
 use std::{mem::take, rc::Rc};
+use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::{
         packets::packet_table::Filter,
@@ -20,7 +21,7 @@ use stepscope_core::{
     peripheral::{
         config::Config,
         signal::{Event, Levels, Record, Sink},
-        trace::{Digest, Recording, Step, steps},
+        trace::{Digest, Step, steps},
         units::Instant,
     },
     scenario::Scenario,

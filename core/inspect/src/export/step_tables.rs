@@ -158,7 +158,8 @@ impl<'a> StepTables<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepscope_peripheral::trace::{Recording, steps};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::trace::steps;
     use stepscope_sim::ValidatedScenario;
 
     #[test]

@@ -10,11 +10,12 @@
 //! assert_eq!(table, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n16,0.000001,0,0,1,1,1,0\n");
 //! ```
 
+use crate::packets::log::LoggedTick;
 use core::fmt::{self, Write};
 use stepscope_peripheral::{
     segment::Segment,
     signal::{self, Record},
-    trace::{LoggedTick, shown_signals},
+    trace::shown_signals,
     units::Instant,
     wire::packet::ChannelCommand,
 };

@@ -8,7 +8,8 @@
 //! use stepscope_inspect::motion::actual_motion::Pulses;
 //!
 //! // Of a run of the default motion: 3200 steps in 0.4 s.
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! # let made = steps(&recording.trace, 0);
@@ -19,10 +20,11 @@
 //! ```
 
 use crate::motion::step_acceleration;
+use crate::packets::log::{LoggedTick, PacketLog};
 use stepscope_peripheral::{
     config::Config,
     segment::{FRACTION_BITS, Segment, SegmentList},
-    trace::{LoggedTick, PacketLog, Step},
+    trace::Step,
     units::Cycles,
     wire::packet::ChannelCommand,
 };

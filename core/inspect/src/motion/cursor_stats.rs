@@ -110,8 +110,9 @@ pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::stored_run::Recording;
     use alloc::vec::Vec;
-    use stepscope_peripheral::trace::{Recording, Step, steps};
+    use stepscope_peripheral::trace::{Step, steps};
     use stepscope_sim::Experiment;
 
     /// Means over a great number of looks, each in the middle of its part.

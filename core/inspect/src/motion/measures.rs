@@ -14,7 +14,8 @@
 //! ```
 //! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps;
 //! # use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default();

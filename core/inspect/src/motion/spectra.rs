@@ -4,7 +4,8 @@
 //! use stepscope_inspect::motion::{actual_motion::Pulses, spectra::Spectra};
 //! use stepscope_scenario::Scenario;
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); experiment.run(&mut recording); let made = steps(&recording.trace, 0);
 //! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
@@ -83,7 +84,8 @@ impl Spectra {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepscope_peripheral::trace::{Recording, steps};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::trace::steps;
     use stepscope_sim::Experiment;
 
     #[test]

@@ -6,7 +6,8 @@
 //!
 //! ```
 //! use stepscope_inspect::packets::dissector::Reading;
-//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome, trace::RowOutcome};
+//! use stepscope_inspect::packets::log::RowOutcome;
+//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
 //!
 //! // A raw packet for controller 7, two channels.
 //! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
@@ -19,6 +20,7 @@ mod summary;
 
 pub use summary::write_steps;
 
+use crate::packets::log::RowOutcome;
 use alloc::{borrow::Cow, format, string::String, vec::Vec};
 use core::ops::Range;
 use stepscope_peripheral::{
@@ -26,7 +28,6 @@ use stepscope_peripheral::{
     device::Faults,
     protocol::{FrameOutcome, Kind, Reason, Reply},
     signal::Positions,
-    trace::RowOutcome,
     wire::{
         cobs::CobsDecoder,
         frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks},

@@ -6,7 +6,8 @@
 //! ```
 //! use stepscope_inspect::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
@@ -16,6 +17,7 @@
 //! assert_eq!(decoded.rx.bits.len(), 10); // start, eight of data, stop
 //! ```
 
+use crate::packets::log::{PacketLog, RowOutcome};
 use crate::packets::{
     dissector::{Check, Field},
     packet_table::{PacketTable, PlacedByte},
@@ -25,7 +27,7 @@ use serde::Serialize;
 use stepscope_peripheral::{
     config::Config,
     signal::{Levels, Record},
-    trace::{PacketLog, RowOutcome, levels_at},
+    trace::levels_at,
     units::{Cycles, Instant},
     wire::{BitTimes, bit_times::BYTE_BITS},
 };

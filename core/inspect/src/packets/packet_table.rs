@@ -6,7 +6,8 @@
 //! ```
 //! use stepscope_inspect::packets::packet_table::PacketTable;
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
@@ -29,11 +30,11 @@ pub use format::{Mark, TimeScale};
 pub use places::PlacedByte;
 
 use crate::packets::dissector::{Head, Meaning, Reading, write_steps};
+use crate::packets::log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
 use alloc::{string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::{
     config::{Config, Protocol},
-    trace::{LoggedPacket, LoggedTick, PacketLog, RowOutcome},
     units::Instant,
     wire::BitTimes,
 };

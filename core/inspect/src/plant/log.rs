@@ -9,7 +9,8 @@
 //!
 //! ```
 //! use stepscope_inspect::plant::log::{PlantLog, Stretch};
-//! use stepscope_peripheral::{signal::Record, trace::Recording, units::Instant};
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_peripheral::{signal::Record, units::Instant};
 //! use stepscope_sim::Experiment;
 //!
 //! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");

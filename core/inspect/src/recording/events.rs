@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::{events::{Events, Kind}, tolerance::Tolerance};
-//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_sim::Experiment;
 //!
 //! // The bytes of a run beside themselves.

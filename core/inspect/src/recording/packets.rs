@@ -3,7 +3,7 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::{packets::Packets, report::Report};
-//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_sim::Experiment;
 //!
 //! // A framed link, as a logic analyzer would have seen it: each frame of the host is answered.
@@ -20,6 +20,7 @@ use super::{
     report::{LineReport, Report},
     serial::{GAP_BITS, Guess, line_name},
 };
+use crate::packets::log::RowOutcome;
 use crate::packets::{
     dissector::{Head, Reading},
     packet_table::write_fields,
@@ -35,7 +36,6 @@ use stepscope_peripheral::{
     config::Protocol,
     protocol::FrameOutcome,
     signal::{Levels, PacketOutcome},
-    trace::RowOutcome,
     units::Instant,
     wire::{
         bit_times::BYTE_BITS,
@@ -234,7 +234,7 @@ impl<'a> Line<'a> {
 mod tests {
     use super::*;
     use crate::recording::serial::{Heard, HeardByte};
-    use stepscope_peripheral::trace::Recording;
+    use crate::trace::stored_run::Recording;
     use stepscope_sim::Experiment;
 
     fn run(json: &str) -> (Recording, u8) {

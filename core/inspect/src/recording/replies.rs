@@ -3,7 +3,7 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::{replies, report::Report};
-//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_sim::Experiment;
 //!
 //! // A framed link, as a logic analyzer would have seen it.
@@ -20,17 +20,14 @@ use super::{
     report::Report,
     serial::line_name,
 };
+use crate::packets::log::{PacketLog, RecordedReply, RowOutcome};
 use crate::packets::{
     dissector::{Head, reply},
     packet_table::{PacketTable, RowKind},
 };
 use alloc::vec::Vec;
 use core::ops::Range;
-use stepscope_peripheral::{
-    signal::Levels,
-    trace::{PacketLog, RecordedReply, RowOutcome},
-    units::Instant,
-};
+use stepscope_peripheral::{signal::Levels, units::Instant};
 use stepscope_sim::{Experiment, Run};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -117,8 +114,8 @@ fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::stored_run::Recording;
     use crate::{packets::packet_table::PacketTable, recording::report::Report};
-    use stepscope_peripheral::trace::Recording;
     use stepscope_sim::Experiment;
 
     #[test]

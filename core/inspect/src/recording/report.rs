@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::report::Report;
-//! use stepscope_peripheral::trace::Recording;
+//! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_sim::Experiment;
 //!
 //! let mut recording = Recording::default();

@@ -5,7 +5,8 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::scenario::{Steps, of_steps};
-//! use stepscope_peripheral::trace::{Recording, steps};
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_peripheral::trace::steps;
 //! use stepscope_sim::Experiment;
 //!
 //! // What a run made, made again by segments: each step in its cycle.
@@ -269,7 +270,8 @@ pub fn end_of(heard: &Heard, bit_cycles: u64) -> Option<Instant> {
 mod tests {
     use super::*;
     use crate::recording::serial::{guess, hear};
-    use stepscope_peripheral::{signal::Levels, trace::Recording};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::signal::Levels;
     use stepscope_sim::Experiment;
 
     fn recorded(json: &str) -> Recording {

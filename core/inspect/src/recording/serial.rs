@@ -2,7 +2,8 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::serial::{Guess, guess, hear, measured_baud};
-//! use stepscope_peripheral::{signal::Levels, trace::Recording};
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_peripheral::{signal::Levels};
 //! use stepscope_sim::Experiment;
 //!
 //! // The line of a run, as a logic analyzer would have seen it.

@@ -13,7 +13,8 @@
 //! use stepscope_inspect::trace::changes::{Changes, Edge};
 //!
 //! // Of the trace of a run: the first rise of STEP0, bit 0.
-//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps;
 //! # use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default();

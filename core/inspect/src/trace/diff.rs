@@ -7,7 +7,8 @@
 //! use stepscope_inspect::trace::diff::TraceDiff;
 //! use stepscope_peripheral::trace::write_record;
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
 //! let mut file = String::new(); // what `stepscope run --trace` writes

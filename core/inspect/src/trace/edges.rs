@@ -4,7 +4,8 @@
 //! use stepscope_inspect::trace::{changes::Changes, edges::Signals};
 //!
 //! // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
-//! # use stepscope_peripheral::trace::{Recording, steps}; use stepscope_sim::Experiment;
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default(); experiment.run(&mut recording);
 //! let mut changes = Changes::default();

@@ -12,7 +12,8 @@
 //! use stepscope_inspect::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
 //! use stepscope_peripheral::signal::Sink;
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps;
 //! # use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default();

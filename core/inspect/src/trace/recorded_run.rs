@@ -9,9 +9,9 @@
 //! assert!(!recordings[0].trace.is_empty());
 //! ```
 
+use crate::trace::stored_run::Recording;
 use alloc::vec::Vec;
 use core::fmt;
-use stepscope_peripheral::trace::Recording;
 use stepscope_sim::{Experiment, Run};
 
 /// Maximum records of all controllers together, at 16 bytes each. A step takes two.

@@ -11,7 +11,8 @@
 //! ```
 //! use stepscope_inspect::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
 //!
-//! # use stepscope_peripheral::trace::{Recording, steps};
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # use stepscope_peripheral::trace::steps;
 //! # use stepscope_sim::Experiment;
 //! # let experiment = Experiment::from_json("{}").expect("the default motion");
 //! # let mut recording = Recording::default();

@@ -11,10 +11,10 @@
 //! assert!(watched.recording.digest.records() > 6400);
 //! ```
 
+use crate::trace::stored_run::Recording;
 use crate::trace::timing::TimingCheck;
 use stepscope_peripheral::{
     signal::{Event, Record, Sink},
-    trace::Recording,
     units::Instant,
 };
 

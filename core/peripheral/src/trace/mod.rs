@@ -1,5 +1,4 @@
-//! What a run leaves: records of the signals, what happened on the way, and their digest
-//! (DESIGN A3). The records themselves are in [`crate::signal`].
+//! A trace as the contract has it: its digest, its text, and the steps in it (DESIGN A3).
 //!
 //! ```
 //! use stepscope_peripheral::{signal::{Levels, Record}, trace::{Digest, parse_line, steps, write_record},
@@ -17,16 +16,24 @@
 //! ```
 
 mod digest;
-mod log;
-mod recording;
 mod steps;
 mod text;
 
 pub use digest::Digest;
-pub use log::{LoggedPacket, LoggedTick, PacketLog, RecordedReply, RowOutcome};
-pub use recording::{Recording, levels_at};
 pub use steps::{Step, steps, steps_in};
 pub use text::{ParseError, parse_line, write_record};
+
+use crate::{
+    signal::{Levels, Record},
+    units::Instant,
+};
+
+/// The levels in a cycle.
+#[must_use]
+pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
+    let after = trace.partition_point(|record| record.cycle <= at);
+    after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
+}
 
 /// The signals that exports show: STEP and DIR of the used channels, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {

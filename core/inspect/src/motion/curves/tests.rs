@@ -1,8 +1,9 @@
 //! Columns against a look at everything in them.
 
 use super::*;
+use crate::trace::stored_run::Recording;
 use alloc::{format, vec::Vec};
-use stepscope_peripheral::trace::{Recording, steps};
+use stepscope_peripheral::trace::steps;
 use stepscope_sim::Experiment;
 
 /// A quantity of a plan over time.
@@ -202,7 +203,7 @@ fn the_acceleration_of_steps_is_that_of_their_figures_and_near_their_plans() {
     let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[{"cosine":{}},
         {"cosine":{"distance":{"steps":-3200}}}]}]}}}"#;
     let experiment = stepscope_sim::Experiment::from_json(json).expect("no problems");
-    let mut recording = stepscope_peripheral::trace::Recording::default();
+    let mut recording = crate::trace::stored_run::Recording::default();
     experiment.run(&mut recording);
     let made = stepscope_peripheral::trace::steps(&recording.trace, 0);
     let pulses = Pulses::recorded(0, &made, 16_000_000);

@@ -1,6 +1,7 @@
 use super::*;
+use crate::trace::stored_run::Recording;
 use alloc::{format, string::String};
-use stepscope_peripheral::trace::{Recording, steps};
+use stepscope_peripheral::trace::steps;
 use stepscope_scenario::{Scenario, Source};
 use stepscope_sim::Experiment;
 

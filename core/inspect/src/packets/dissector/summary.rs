@@ -1,11 +1,11 @@
 //! A packet, frame or reply in one line.
 
 use super::{Check, Content, Head, Reading, last_frame, position_to_text};
+use crate::packets::log::RowOutcome;
 use alloc::string::String;
 use core::fmt::Write as _;
 use stepscope_peripheral::{
     protocol::{Kind, Reply},
-    trace::RowOutcome,
     wire::{
         frame::{Frame, Ticks},
         packet::{ALL, ChannelCommand},

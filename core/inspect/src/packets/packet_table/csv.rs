@@ -59,8 +59,8 @@ pub(crate) fn write_fields(out: &mut impl Write, texts: &[&str]) -> fmt::Result 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::stored_run::Recording;
     use alloc::vec::Vec;
-    use stepscope_peripheral::trace::Recording;
     use stepscope_sim::Experiment;
 
     #[test]

@@ -2,13 +2,13 @@
 
 use super::PacketTable;
 use crate::packets::dissector::decoded;
+use crate::packets::log::{LoggedPacket, RowOutcome};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::{
     device::Faults,
     protocol::{FrameOutcome, Reason, Reply},
     signal::PacketOutcome,
-    trace::{LoggedPacket, RowOutcome},
     wire::{
         frame::{CRC_LEN, MAX_DECODED, MIN_DECODED, Ticks},
         packet::{ChannelCommand, GAP_BITS},
@@ -178,7 +178,8 @@ fn count(number: usize, one: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepscope_peripheral::{trace::Recording, wire::frame::emit};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::wire::frame::emit;
     use stepscope_sim::Experiment;
 
     /// What is said of each row, and of the flags: name, times, row.

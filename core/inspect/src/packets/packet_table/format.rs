@@ -1,5 +1,6 @@
 //! Texts and numbers of the packet table: outcomes, marks, hex, times.
 
+use crate::packets::log::RowOutcome;
 use alloc::{
     borrow::ToOwned,
     format,
@@ -9,7 +10,6 @@ use core::fmt::Write;
 use stepscope_peripheral::{
     protocol::{FrameOutcome, Reply},
     signal::PacketOutcome,
-    trace::RowOutcome,
     units::Cycles,
 };
 

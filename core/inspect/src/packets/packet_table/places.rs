@@ -1,9 +1,9 @@
 //! Positions of bytes on the line, and gaps between rows.
 
 use super::PacketTable;
+use crate::packets::log::RowOutcome;
 use alloc::vec::Vec;
 use stepscope_peripheral::{
-    trace::RowOutcome,
     units::{Cycles, Instant},
     wire::{BitTimes, bit_times::BYTE_BITS},
 };

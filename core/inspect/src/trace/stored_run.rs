@@ -1,11 +1,21 @@
-//! Everything that a view needs of a run: its records, their digest, and its packets.
+//! A run as the views need it: its records, their digest, and its packets.
+//!
+//! ```
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_sim::Experiment;
+//!
+//! let mut recording = Recording::default();
+//! Experiment::from_json("{}").expect("no problems").run(&mut recording);
+//! assert_eq!(recording.trace.len() as u64, recording.digest.records());
+//! ```
 
-use crate::trace::{Digest, PacketLog};
-use crate::{
-    signal::{Event, Levels, Record, Sink},
+use crate::packets::log::PacketLog;
+use alloc::vec::Vec;
+use stepscope_peripheral::{
+    signal::{Event, Record, Sink},
+    trace::Digest,
     units::Instant,
 };
-use alloc::vec::Vec;
 
 /// A run for the views.
 #[derive(Clone, Default)]
@@ -33,11 +43,4 @@ impl Recording {
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
     }
-}
-
-/// The levels in a cycle.
-#[must_use]
-pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
-    let after = trace.partition_point(|record| record.cycle <= at);
-    after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }

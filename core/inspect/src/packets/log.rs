@@ -1,13 +1,23 @@
 //! The packets of a run, one row each: when, which bytes, what the controller did with it.
+//!
+//! ```
+//! use stepscope_inspect::packets::log::{PacketLog, RowOutcome};
+//! use stepscope_peripheral::{signal::{Event, PacketOutcome, Sink}, units::Instant};
+//!
+//! let mut log = PacketLog::default();
+//! log.event(Instant(15), Event::Byte { seen: Instant(10), byte: 0x85 });
+//! log.event(Instant(15), Event::Packet(PacketOutcome::Queued));
+//! assert_eq!((log.rows()[0].outcome, log.bytes(0)), (RowOutcome::Packet(PacketOutcome::Queued), &[0x85][..]));
+//! ```
 
-use crate::{
+use alloc::{collections::VecDeque, vec::Vec};
+use core::fmt;
+use stepscope_peripheral::{
     protocol::{FrameOutcome, Kind, Reply},
     signal::{Event, PacketOutcome, Record, Sink},
     units::{Cycles, Instant},
     wire::packet::Tick,
 };
-use alloc::{collections::VecDeque, vec::Vec};
-use core::fmt;
 
 /// How a row came to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,7 +188,6 @@ impl PacketLog {
 
     /// Puts replies that were recorded, in the order of their starts, in the place of those that controllers made: the rows
     /// that `is_made` has. The log is finished.
-    #[inline(never)]
     pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_made: &[bool]) {
         let mut recorded = recorded.iter().peekable();
         let rows = core::mem::take(&mut self.rows);
@@ -201,7 +210,6 @@ impl PacketLog {
         self.finish();
     }
 
-    #[inline(never)]
     fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply<'_>) {
         let bytes_start = self.bytes.len();
         self.bytes.extend_from_slice(bytes);
@@ -226,7 +234,6 @@ impl PacketLog {
     }
 
     /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
-    #[inline(never)]
     pub fn finish(&mut self) {
         debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
@@ -358,14 +365,14 @@ impl Sink for PacketLog {
                 }
                 self.ticks.push(LoggedTick { start: at, commands, row });
             }
-            // Stand-alone controllers have no packets.
-            Event::Panel { .. } | Event::Input { .. } => {}
             Event::TickEnd => {
                 let row = self.ticks.last().and_then(|tick| tick.row);
                 if let Some(row) = row.and_then(|index| self.rows.get_mut(index)) {
                     row.tick_end = Some(at);
                 }
             }
+            // Stand-alone controllers have no packets.
+            _ => {}
         }
     }
 }
@@ -395,8 +402,8 @@ mod tests {
 
     #[test]
     fn recorded_replies_take_the_place_of_those_that_were_made_and_ticks_keep_their_rows() {
-        let status = crate::protocol::Status {
-            state: crate::protocol::State::Ready,
+        let status = stepscope_peripheral::protocol::Status {
+            state: stepscope_peripheral::protocol::State::Ready,
             free: 1,
             expected_seq: 2,
             faults: 0,
