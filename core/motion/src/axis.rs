@@ -7,7 +7,13 @@
 //!            dwell cosine  constant
 //! ```
 
-use crate::{Curve, Peaks, Profile, round_half_up};
+use crate::{
+    Curve, Peaks, Profile,
+    cycle_time::CycleTime,
+    round_half_up,
+    run::Schedule,
+    step_loop::{MoveSteps, ScheduledStep},
+};
 use alloc::vec::Vec;
 
 /// A move in its place on the axis.
@@ -63,6 +69,27 @@ impl AxisPlan {
     #[must_use]
     pub fn steps(&self) -> i64 {
         self.steps
+    }
+
+    /// Steps of all moves, whichever way they go.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        self.moves.iter().fold(0, |sum: u64, planned| sum.saturating_add(planned.profile.step_count()))
+    }
+
+    /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
+    pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = ScheduledStep> + '_ {
+        self.due_instants(clock_hz).map(|(_, due)| due)
+    }
+
+    /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
+    pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
+        let mut start = CycleTime::default();
+        self.moves.iter().flat_map(move |PlannedMove { profile, .. }| {
+            let steps = MoveSteps::new(profile, start, clock_hz);
+            start = start.plus(profile.length(clock_hz));
+            steps
+        })
     }
 
     /// The move at `t` and the time in it; of moves that begin at the same time the last.

@@ -62,13 +62,13 @@ pub(crate) fn least_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u6
     let (mut from, mut to, mut width) = (near, near, 1);
     while to < end && !holds(to) {
         from = to + 1;
-        to = end.min(to + width);
-        width *= 2;
+        to = end.min(to.saturating_add(width));
+        width = width.saturating_mul(2);
     }
     while from > 0 && holds(from - 1) {
         to = from - 1;
         from = from.saturating_sub(width);
-        width *= 2;
+        width = width.saturating_mul(2);
     }
     least(from, to, holds)
 }

@@ -9,11 +9,8 @@
 //! An f64 decides unless its root is next to a half. There the squares are compared as whole numbers, so a tie of the
 //! decimals that a scenario gives is a tie.
 
-use crate::{
-    bisection::least_near,
-    exact::{Exact, Natural},
-    round_half_up, square_root,
-};
+use crate::{bisection::least_near, exact::Exact, round_half_up, square_root};
+use num_bigint::BigUint;
 
 /// How far a speed in f64 may be off, relative to it: 64 roundings.
 const MAX_OFF: f64 = 32.0 * f64::EPSILON;
@@ -39,9 +36,9 @@ pub(super) struct Climb {
     start: f64,
     acceleration: f64,
     /// The square of the speed after k steps is (base + slope*k)/unit.
-    base: Natural,
-    slope: Natural,
-    unit: Natural,
+    base: BigUint,
+    slope: BigUint,
+    unit: BigUint,
 }
 
 impl Climb {
@@ -49,17 +46,17 @@ impl Climb {
     pub(super) fn new(start: &Exact, acceleration: &Exact) -> Self {
         let (start_over, start_under) = start.magnitude();
         let (over, under) = acceleration.magnitude();
-        let square_under = start_under.times(start_under);
-        let base = start_over.times(start_over).times(under);
-        let slope = over.times(&square_under).times(&Natural::of(2));
-        let unit = square_under.times(under);
+        let square_under = start_under * start_under;
+        let base = start_over * start_over * under;
+        let slope = over * &square_under * 2_u8;
+        let unit = square_under * under;
         Self { start: start.nearest(), acceleration: acceleration.nearest(), base, slope, unit }
     }
 
     /// The speed after so many steps, in whole steps/s.
     pub(super) fn rate(&self, steps: u64) -> u64 {
         quick_rate(self.start, self.acceleration, steps).unwrap_or_else(|below| {
-            below + u64::from(self.reaches(steps, &Natural::of(2 * below + 1), &Natural::of(2)))
+            below + u64::from(self.reaches(steps, &(2 * below + 1).into(), &2_u8.into()))
         })
     }
 
@@ -76,9 +73,9 @@ impl Climb {
     }
 
     /// Whether the speed after so many steps is `over`/`under` or more.
-    fn reaches(&self, steps: u64, over: &Natural, under: &Natural) -> bool {
-        let square = self.slope.times(&Natural::of(steps)).plus(&self.base);
-        square.times(under).times(under).cmp(&over.times(over).times(&self.unit)).is_ge()
+    fn reaches(&self, steps: u64, over: &BigUint, under: &BigUint) -> bool {
+        let square = &self.slope * steps + &self.base;
+        square * under * under >= over * over * &self.unit
     }
 }
 

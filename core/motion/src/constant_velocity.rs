@@ -13,8 +13,17 @@
 //! assert_eq!(Dwell::new(0.1).position(0.05), 0.0);
 //! ```
 
-use crate::{Curve, Peaks, cycle_time::EvenSteps, double::Double, moves, quantities::Quantities};
-use alloc::{string::String, vec::Vec};
+use crate::{
+    Curve, Peaks,
+    cycle_time::CycleTime,
+    double::Double,
+    exact::Exact,
+    moves,
+    quantities::Quantities,
+    rounding::IsDueBefore,
+    run::{Runs, Schedule, one_run},
+};
+use alloc::{boxed::Box, string::String, vec::Vec};
 
 /// One rate from end to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,18 +49,6 @@ impl Constant {
         Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
     }
 
-    /// Magnitude in steps/s with all its digits.
-    pub(super) fn exact_speed(&self) -> Double {
-        self.exact_speed
-    }
-
-    /// The steps as whole numbers have them, of a clock of `clock_hz`; `None` where these are too long, or the speed is no
-    /// decimal.
-    pub(super) fn even_steps(&self, clock_hz: u32) -> Option<EvenSteps> {
-        let is_decimal = self.exact_speed == Double::decimal(self.speed);
-        is_decimal.then(|| EvenSteps::new(self.speed, clock_hz, self.steps.unsigned_abs())).flatten()
-    }
-
     /// From what is asked.
     pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Self> {
         let steps = quantities.distance("distance", &given.distance);
@@ -62,6 +59,22 @@ impl Constant {
 
     fn signed_speed(&self) -> f64 {
         if self.steps < 0 { -self.speed } else { self.speed }
+    }
+}
+
+impl Schedule for Constant {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(Double::from(self.steps.unsigned_abs()) / self.exact_speed * f64::from(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let cycles_per_step = f64::from(clock_hz) / self.speed;
+        one_run(self, clock_hz, move |step| (step + 0.5) * cycles_per_step)
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let cycles_per_step = Double::from(f64::from(clock_hz)) / self.exact_speed;
+        Box::new(move |k, since| since > cycles_per_step * (k as f64 - 0.5))
     }
 }
 
@@ -122,6 +135,20 @@ impl Dwell {
     pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Dwell) -> Option<Self> {
         let duration_s = quantities.pause("duration_s", given.duration_s);
         Some(Self::new(duration_s?))
+    }
+}
+
+impl Schedule for Dwell {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::exact(&Exact::of(self.duration_s).times(clock_hz.into()))
+    }
+
+    fn runs(&self, _: u32) -> Runs<'_> {
+        Box::new(core::iter::empty())
+    }
+
+    fn is_due_before(&self, _: u32) -> IsDueBefore<'_> {
+        Box::new(|_, _| false)
     }
 }
 

@@ -23,15 +23,17 @@
 
 use crate::{
     Curve, Peaks,
-    crossing::is_due_before,
-    double::{self, Double},
+    cycle_time::CycleTime,
+    double::Double,
     exact::Exact,
     format::ramp_up_to,
     mirrored::{Mirrored, RAMP_PARTS, parts_s},
+    number::Number,
     ramp::longest_ramp_s,
-    series::{Expansion, Series, TERMS},
+    rounding::{IsDueBefore, is_mirrored_due_before},
+    run::{Runs, Schedule, one_searched_run},
 };
-use alloc::{string::String, vec::Vec};
+use alloc::{boxed::Box, string::String, vec::Vec};
 use core::f64::consts::PI;
 
 /// A cosine S-curve.
@@ -79,89 +81,56 @@ impl Cosine {
         })
     }
 
-    /// When the first half is at `place`: the phase solves x - sin(x) = pi*place/(steps of the ramp).
-    fn climb_s(&self, place: f64) -> f64 {
-        let ramp_steps = self.top_speed * self.ramp_s / 2.0;
-        if place >= ramp_steps {
-            self.ramp_s / 2.0 + place / self.top_speed
+    fn ramp_steps(&self) -> f64 {
+        self.top_speed * self.ramp_s / 2.0
+    }
+
+    pub(super) fn joints(&self) -> Vec<f64> {
+        self.halves.joints(&[self.ramp_steps()])
+    }
+
+    /// When the first half is at a position: the phase solves x - sin(x) = pi*position/(steps of the ramp).
+    fn climb_s(&self, position: f64) -> f64 {
+        let ramp_steps = self.ramp_steps();
+        if position >= ramp_steps {
+            self.ramp_s / 2.0 + position / self.top_speed
         } else {
-            self.ramp_s * phase_at(PI * place / ramp_steps) / PI
-        }
-    }
-
-    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain.
-    ///
-    /// Of a time in f64 the level has 10 u, three of them of T - t_s, which the phase passes on, and its two formulas for
-    /// x - sin(x) another 4; Newton's method leaves 2. With the products by the ramp's time and the clock, and the
-    /// difference from the end, it is off by less than 32 u.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
-        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
-        let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
-        let count = self.halves.steps.unsigned_abs();
-        let top_speed = Double::from(count) / (duration - ramp);
-        move |k, since| {
-            is_due_before((k, count), since, duration, |time, place| {
-                let travelled = if ramp.exceeds(time) {
-                    let phase = double::PI * time / ramp;
-                    top_speed * ramp / (double::PI * 2.0.into()) * phase.less_its_sine()
-                } else {
-                    top_speed * (time - ramp * 0.5.into())
-                };
-                travelled.exceeds(place.into())
-            })
-        }
-    }
-
-    /// s(t) of the first half, in steps without sign.
-    fn first_half(&self, t: f64) -> f64 {
-        match self.phase(t) {
-            Some(phase) => self.top_speed * self.ramp_s / (2.0 * PI) * minus_sine(phase),
-            None => self.top_speed * (t - self.ramp_s / 2.0),
+            self.ramp_s * phase_at(PI * position / ramp_steps) / PI
         }
     }
 }
 
-impl Series for Cosine {
-    fn stretch(&self, place: f64) -> (f64, f64) {
-        let ramp_steps = self.top_speed * self.ramp_s / 2.0;
-        self.halves.stretch(place, |place| {
-            if place < ramp_steps { (0.0, ramp_steps) } else { (ramp_steps, f64::INFINITY) }
-        })
+/// s(t) of the first half, in steps without sign.
+fn first_half<N: Number>(t: N, top_speed: N, ramp: N) -> N {
+    if t < ramp {
+        top_speed * ramp / (N::PI * 2.0) * (N::PI * t / ramp).minus_its_sine()
+    } else {
+        top_speed * (t - ramp * 0.5)
+    }
+}
+
+/// Of a time in f64 the level has 10 u, three of them of T - t_s, which the phase passes on, and its two formulas for
+/// x - sin(x) another 4; Newton's method leaves 2. With the products by the ramp's time and the clock, and the
+/// difference from the end, it is off by less than 32 u.
+impl Schedule for Cosine {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
     }
 
-    /// In the ramp the speed's derivatives are f_max/2*(pi/t_s)^m of a sine or a cosine, at an imaginary time of t_s/pi no
-    /// more than cosh(1) of 1.
-    fn expansion(&self, place: f64) -> Expansion {
-        self.halves.expansion(place, |place| {
-            let time_s = self.climb_s(place);
-            let Some(phase) = self.phase(time_s) else { return Expansion::straight(time_s, self.top_speed) };
-            let turning = PI / self.ramp_s;
-            let half = libm::sin(phase / 2.0);
-            let (sine, cosine) = libm::sincos(phase);
-            let mut terms = [0.0; TERMS];
-            terms[0] = self.top_speed * half * half;
-            let mut scale = self.top_speed / 2.0;
-            for (m, term) in (1_u8..).zip(terms.iter_mut().skip(1)) {
-                scale *= turning / f64::from(m + 1);
-                *term = scale
-                    * match m % 4 {
-                        1 => sine,
-                        2 => cosine,
-                        3 => -sine,
-                        _ => -cosine,
-                    };
-            }
-            Expansion {
-                time_s,
-                terms,
-                rest: 1.6 * scale * turning / (TERMS + 1) as f64,
-                reach_s: 1.0 / turning,
-            }
-        })
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        one_searched_run(self, clock_hz, self.joints())
     }
 
-    fn search_s(&self, place: f64) -> f64 {
-        self.time_s(place)
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
+        let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
+        let count = self.halves.steps.unsigned_abs();
+        let top_speed = Double::from(count) / (duration - ramp);
+        Box::new(move |k, since| {
+            is_mirrored_due_before((k, count), since, duration, |t, position| {
+                first_half(t, top_speed, ramp) > position.into()
+            })
+        })
     }
 }
 
@@ -175,7 +144,7 @@ impl Curve for Cosine {
     }
 
     fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| self.first_half(t))
+        self.halves.position(t, |t| first_half(t, self.top_speed, self.ramp_s))
     }
 
     fn speed(&self, t: f64) -> f64 {
@@ -231,28 +200,13 @@ fn phase_at(level: f64) -> f64 {
     let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
     for _ in 0..MAX_NEWTON_STEPS {
         let half = libm::sin(phase / 2.0);
-        let correction = (minus_sine(phase) - level) / (2.0 * half * half);
+        let correction = (phase.minus_its_sine() - level) / (2.0 * half * half);
         if libm::fabs(correction) <= phase * f64::EPSILON {
             break;
         }
         phase -= correction;
     }
     phase
-}
-
-/// x - sin(x) for x in 0..=pi, with all digits also where both nearly cancel.
-fn minus_sine(x: f64) -> f64 {
-    if x > 1.0 {
-        return x - libm::sin(x);
-    }
-    // x^3/3! - x^5/5! + …, eight terms; the ninth is under 2^-53 of the sum.
-    let square = x * x;
-    let mut sum = 1.0;
-    for k in (1..8).rev() {
-        let k = f64::from(k);
-        sum = 1.0 - sum * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0));
-    }
-    sum * square * x / 6.0
 }
 
 #[cfg(test)]
@@ -320,15 +274,6 @@ mod tests {
                     "{place} of {steps}"
                 );
             }
-        }
-    }
-
-    #[test]
-    fn the_series_and_the_sine_agree_where_they_meet() {
-        for x in [1e-9, 1e-3, 0.5, 0.999, 1.0] {
-            let given = minus_sine(x);
-            let expected = if x < 1e-2 { x * x * x / 6.0 * (1.0 - x * x / 20.0) } else { x - libm::sin(x) };
-            assert!((given - expected).abs() <= 2e-15 * expected.max(x), "{x}: {given} {expected}");
         }
     }
 }

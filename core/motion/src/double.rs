@@ -1,35 +1,31 @@
 //! Numbers of 106 bits, as the sum of two f64 (Dekker 1971): for the few steps whose time in f64 is too near the middle
-//! of two cycles to tell which of them it is (DESIGN B1, `crossing`).
+//! of two cycles to decide between them (DESIGN B1, `rounding`).
 //!
 //! ```text
 //! high  |53 bits|                     high is the f64 nearest to the sum
 //! low            |53 bits|            at most half of high's last digit
 //! ```
 //!
-//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100 of it. All of it is + - * /
-//! and the square root, which has one result, so it has the same bits on every target; a
-//! cube root starts from `libm`'s. It is seldom called, so none of it is copied into its callers.
+//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100. Only + - * / and the
+//! square root are used, so every target gets the same bits; a cube root starts from `libm`'s.
 
-use crate::square_root;
+use crate::{number::Number, square_root};
 use core::ops::{Add, Div, Mul, Sub};
 
 /// A number of 106 bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+// Invariant: `high` is the f64 nearest to the sum, so comparing `high` and then `low` compares the sums.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(super) struct Double {
-    /// Invariant: the f64 nearest to the sum of both.
     pub(super) high: f64,
     pub(super) low: f64,
 }
 
-/// pi.
-pub(super) const PI: Double = Double { high: core::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
-
-/// 2^27 + 1, whose product with a number parts it into two halves of 26 bits.
+/// 2^27 + 1: multiplying by it splits a number into two halves of 26 bits.
 const SPLITTER: f64 = 134_217_729.0;
 
-/// Terms of a series smaller than this in parts of its sum are none.
-const NO_TERM: f64 = 1e-33;
-/// Terms after which a series is taken as it is; e^41 has all its digits after 200.
+/// A term of a series below this part of the sum ends it.
+const MIN_TERM: f64 = 1e-33;
+/// Maximum number of terms; e^41 has all its digits after 200.
 const MAX_TERMS: u32 = 400;
 
 impl From<f64> for Double {
@@ -47,7 +43,6 @@ impl From<u64> for Double {
 
 impl Double {
     /// a + b, exactly.
-    #[inline]
     pub(super) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let from_b = high - a;
@@ -55,7 +50,6 @@ impl Double {
     }
 
     /// a*b, exactly.
-    #[inline(never)]
     fn product(a: f64, b: f64) -> Self {
         let halves = |x: f64| {
             let scaled = SPLITTER * x;
@@ -72,19 +66,29 @@ impl Double {
         Self { high: -self.high, low: -self.low }
     }
 
-    /// Whether it is above 0.
-    pub(super) fn is_positive(self) -> bool {
-        self.high > 0.0
+    /// The sum of `power`/from! and the terms after it: each is `ratio` times the one before, over a factorial of
+    /// `more` more.
+    fn series(power: Self, from: u32, ratio: Self, more: u32) -> Self {
+        // 2! or 3!, of which one factor is 1.
+        let mut term = power / f64::from(from * (from - 1));
+        let (mut sum, mut factor) = (term, from);
+        for _ in 0..MAX_TERMS {
+            let divisor: f64 = (factor + 1..=factor + more).map(f64::from).product();
+            factor += more;
+            term = term / divisor * ratio;
+            sum = sum + term;
+            if libm::fabs(term.high) <= MIN_TERM * libm::fabs(sum.high) {
+                break;
+            }
+        }
+        sum
     }
+}
 
-    /// Whether it is more than another.
-    pub(super) fn exceeds(self, other: Self) -> bool {
-        (self - other).is_positive()
-    }
+impl Number for Double {
+    const PI: Self = Self { high: core::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
-    /// The square root, of a number from 0 on.
-    #[inline(never)]
-    pub(super) fn square_root(self) -> Self {
+    fn square_root(self) -> Self {
         let root = square_root(self.high);
         if root <= 0.0 {
             return Self::default();
@@ -94,60 +98,34 @@ impl Double {
         Self::sum(root, rest.high / (2.0 * root))
     }
 
-    /// The cube root, of a number above 0.
-    #[inline(never)]
-    pub(super) fn cube_root(self) -> Self {
+    fn cube_root(self) -> Self {
         let root = libm::cbrt(self.high);
-        let rest = self - Self::product(root, root) * root.into();
+        let rest = self - Self::product(root, root) * root;
         Self::sum(root, rest.high / (3.0 * root * root))
     }
 
-    /// x - sin(x), for x from 0 to a little over pi: x^3/3! - x^5/5! + …, whose terms are together at most three times
-    /// their sum.
-    #[inline(never)]
-    pub(super) fn less_its_sine(self) -> Self {
+    /// x^3/3! - x^5/5! + …, for x from 0 to a little over pi: its terms are together at most three times their sum.
+    fn minus_its_sine(self) -> Self {
         let square = self * self;
-        self.series(square * self, 3, square.negated(), 2)
+        Self::series(square * self, 3, square.negated(), 2)
     }
+}
 
+impl Double {
     /// e^x - 1 - x, for x from -20 to a little over 40, with all digits also where it is small.
-    #[inline(never)]
     pub(super) fn exponential_rest(self) -> Self {
         if self.high < -1.0 {
             // By e^-x, whose terms do not cancel.
             let opposite = self.negated();
-            let one = Self::from(1.0);
-            return opposite - one + one / (one + opposite + opposite.exponential_rest());
+            return opposite - 1.0 + Self::from(1.0) / (opposite + opposite.exponential_rest() + 1.0);
         }
-        self.series(self * self, 2, self, 1)
-    }
-
-    /// The sum of `power`/from! and of the terms after it, each `ratio` times the one before, with a factorial of so many
-    /// more.
-    fn series(self, power: Self, from: u32, ratio: Self, more: u32) -> Self {
-        // 2! or 3!: of the first term's factorial one factor is 1.
-        let first = f64::from(from * (from - 1));
-        let mut term = power / first.into();
-        let (mut sum, mut factor) = (term, from);
-        for _ in 0..MAX_TERMS {
-            // One division by whole numbers that an f64 holds.
-            let divisor: f64 = (factor + 1..=factor + more).map(f64::from).product();
-            factor += more;
-            term = term / divisor.into();
-            term = term * ratio;
-            sum = sum + term;
-            if libm::fabs(term.high) <= NO_TERM * libm::fabs(sum.high) {
-                break;
-            }
-        }
-        sum
+        Self::series(self * self, 2, self, 1)
     }
 }
 
 impl Add for Double {
     type Output = Self;
 
-    #[inline(never)]
     fn add(self, other: Self) -> Self {
         let (high, low) = (Self::sum(self.high, other.high), Self::sum(self.low, other.low));
         let sum = Self::sum(high.high, high.low + low.high);
@@ -167,7 +145,6 @@ impl Sub for Double {
 impl Mul for Double {
     type Output = Self;
 
-    #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let product = Self::product(self.high, other.high);
         Self::sum(product.high, product.low + (self.high * other.low + self.low * other.high))
@@ -177,16 +154,29 @@ impl Mul for Double {
 impl Div for Double {
     type Output = Self;
 
-    #[inline(never)]
     fn div(self, other: Self) -> Self {
         // Three digits of 53 bits, as by hand.
         let first = self.high / other.high;
-        let rest = self - other * first.into();
+        let rest = self - other * first;
         let second = rest.high / other.high;
-        let rest = rest - other * second.into();
-        Self::sum(first, second) + (rest.high / other.high).into()
+        let rest = rest - other * second;
+        Self::sum(first, second) + rest.high / other.high
     }
 }
+
+macro_rules! with_f64 {
+    ($($operation:ident $name:ident,)*) => {$(
+        impl $operation<f64> for Double {
+            type Output = Self;
+
+            fn $name(self, other: f64) -> Self {
+                $operation::$name(self, Self::from(other))
+            }
+        }
+    )*};
+}
+
+with_f64! { Add add, Sub sub, Mul mul, Div div, }
 
 #[cfg(test)]
 mod tests {
@@ -206,10 +196,10 @@ mod tests {
     fn a_decimal_is_more_than_its_number() {
         let tenth = number(0.1);
         assert!(tenth.high == 0.1 && tenth.low != 0.0);
-        check(tenth * 10.0.into(), 1.0.into());
+        check(tenth * 10.0, 1.0.into());
         check(number(-1e22), (-1e22).into());
         assert_eq!(number(0.0), Double::default());
-        check(Double::from(u64::MAX) + 1.0.into(), 18_446_744_073_709_551_616.0.into());
+        check(Double::from(u64::MAX) + 1.0, 18_446_744_073_709_551_616.0.into());
     }
 
     #[test]
@@ -222,34 +212,31 @@ mod tests {
             check(Double::from(1.0) / (Double::from(1.0) / a), a);
         }
         assert_eq!(Double::default().square_root(), Double::default());
-        assert!(number(0.3).exceeds(number(0.1) + number(0.1)) && !number(0.1).exceeds(number(0.1)));
+        assert!(number(0.3) > number(0.1) + number(0.1) && number(0.1) <= number(0.1));
     }
 
     /// sin(2x) = 2*sin(x)*sin(pi/2 - x), from an angle whose sine is known.
     #[test]
     fn a_sine_has_its_digits() {
-        let sine = |x: Double| x - x.less_its_sine();
-        check(sine(PI / 6.0.into()), 0.5.into());
-        check(PI.less_its_sine(), PI);
+        let sine = |x: Double| x - x.minus_its_sine();
+        check(sine(Double::PI / 6.0), 0.5.into());
+        check(Double::PI.minus_its_sine(), Double::PI);
         for i in 1..50 {
-            let x = PI * f64::from(i).into() / 200.0.into();
-            check(sine(x + x), sine(x) * sine(PI / 2.0.into() - x) * 2.0.into());
+            let x = Double::PI * f64::from(i) / 200.0;
+            check(sine(x + x), sine(x) * sine(Double::PI / 2.0 - x) * 2.0);
         }
         // 1e-9^3/6*(1 - 1e-18/20 + …).
         let small = number(1e-9);
-        check(
-            small.less_its_sine(),
-            small * small * small / 6.0.into() * (Double::from(1.0) - number(5e-20)),
-        );
+        check(small.minus_its_sine(), small * small * small / 6.0 * (Double::from(1.0) - number(5e-20)));
     }
 
     #[test]
     fn an_exponential_has_its_digits() {
-        let exponential = |x: Double| x.exponential_rest() + x + 1.0.into();
+        let exponential = |x: Double| x.exponential_rest() + x + 1.0;
         // ln(2), whose power it is.
         let logarithm = Double { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
         for i in [-28.0, -3.0, 1.0, 2.0, 10.0, 59.0] {
-            check(exponential(logarithm * i.into()), libm::exp2(i).into());
+            check(exponential(logarithm * i), libm::exp2(i).into());
         }
         // e^x - 1 - x from both sides of 0, and where its formula changes.
         for x in [1e-9, 0.3, 0.999, 1.001] {
@@ -258,7 +245,7 @@ mod tests {
             check((one + number(x) + above) * (one - number(x) + below), one);
         }
         // x^2/2*(1 + x/3 + x^2/12 + x^3/60 + …).
-        let terms = number(1e-9) / 3.0.into() + number(1e-18) / 12.0.into() + number(1e-27) / 60.0.into();
-        check(number(1e-9).exponential_rest(), number(5e-19) * (terms + 1.0.into()));
+        let terms = number(1e-9) / 3.0 + number(1e-18) / 12.0 + number(1e-27) / 60.0;
+        check(number(1e-9).exponential_rest(), number(5e-19) * (terms + 1.0));
     }
 }

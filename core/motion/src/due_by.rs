@@ -7,15 +7,15 @@
 //!        +------E------
 //! ```
 //!
-//! A step's own arithmetic judges (`scheduled_step`, `crossing`), so ticks and segments of a motion never tell of two
+//! A step's own arithmetic judges (`rounding`), so ticks and segments of a motion never tell of two
 //! curves.
 
 use crate::{
     AxisPlan, Curve, PlannedMove, Profile,
-    crossing::MAX_OFF,
     cycle_time::{CycleTime, tie},
     double::Double,
-    scheduled_step::IsDueBefore,
+    rounding::{IsDueBefore, MAX_OFF},
+    run::Schedule,
     sine::Sine,
     sine_segments::SineSegments,
     stepped::PAST_THE_STEP,
@@ -121,7 +121,7 @@ impl Profile {
         // The curve of a staircase keeps that far from the place of a step, before it and after it.
         let beside = if matches!(self, Self::Staircase(_)) { 2.0 * PAST_THE_STEP } else { 0.0 };
         // Both the time's own digits and those of the curve's formula.
-        let off_s = self.off(1.0) + MAX_OFF * self.duration_s();
+        let off_s = self.off_s() + MAX_OFF * self.duration_s();
         (self.peaks().speed * off_s + MAX_OFF * reach) * times + beside
     }
 }
@@ -166,7 +166,7 @@ impl<'p> Now<'p> {
                 };
                 if right { fallen as i64 } else { -(fallen as i64) }
             }
-            Profile::Points(points) => points.due_by(t, self.off, |right| since(right) / clock.into()),
+            Profile::Points(points) => points.due_by(t, self.off, |right| since(right) / clock),
             Profile::Sine(Sine { oscillation }) | Profile::SineSegments(SineSegments { oscillation, .. }) => {
                 let travel = 2 * oscillation.amplitude;
                 let half = (2.0 * t / oscillation.period_s) as u64;

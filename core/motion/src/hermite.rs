@@ -14,41 +14,43 @@
 //! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
 //! does a place have an uncertain time.
 
-use crate::{bisection::Bracket, curve::greater, series::Expansion, square_root};
+use crate::{bisection::Bracket, curve::greater, number::Number, square_root};
 
 /// Newton's steps after which a root has all its digits; at most eight do.
 const MAX_NEWTON_STEPS: u32 = 64;
 
 /// A cubic from one point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cubic {
+pub(super) struct Cubic<N = f64> {
     /// Time of its start in s.
-    pub(super) from_s: f64,
+    pub(super) from_s: N,
     /// Time of its end, later.
-    pub(super) to_s: f64,
+    pub(super) to_s: N,
     /// Position at its start in steps.
-    pub(super) from: f64,
+    pub(super) from: N,
     /// Position at its end.
-    pub(super) to: f64,
+    pub(super) to: N,
     /// Speed at its start in steps/s.
-    pub(super) from_speed: f64,
+    pub(super) from_speed: N,
     /// Speed at its end.
-    pub(super) to_speed: f64,
+    pub(super) to_speed: N,
 }
 
 /// The cubic as seen from one of its ends: x from there on, the travel without sign.
 #[derive(Clone, Copy)]
-struct Seen {
-    near_speed: f64,
-    square: f64,
-    cube: f64,
+pub(super) struct Seen<N = f64> {
+    near_speed: N,
+    square: N,
+    cube: N,
+}
+
+impl<N: Number> Seen<N> {
+    pub(super) fn travel(self, x: N) -> N {
+        (self.near_speed + (self.square + self.cube * x) * x) * x
+    }
 }
 
 impl Seen {
-    fn travel(self, x: f64) -> f64 {
-        (self.near_speed + (self.square + self.cube * x) * x) * x
-    }
-
     fn speed(self, x: f64) -> f64 {
         self.near_speed + (2.0 * self.square + 3.0 * self.cube * x) * x
     }
@@ -79,32 +81,45 @@ impl Seen {
     }
 }
 
-impl Cubic {
-    fn length_s(&self) -> f64 {
+impl<N: Number> Cubic<N> {
+    pub(super) fn length_s(&self) -> N {
         self.to_s - self.from_s
     }
 
-    fn mean_speed(&self) -> f64 {
+    fn mean_speed(&self) -> N {
         (self.to - self.from) / self.length_s()
     }
 
-    fn seen(&self, near_speed: f64, far_speed: f64) -> Seen {
+    fn seen(&self, near_speed: N, far_speed: N) -> Seen<N> {
         let (mean, length) = (self.mean_speed(), self.length_s());
         Seen {
             near_speed,
-            square: (2.0 * (mean - near_speed) + (mean - far_speed)) / length,
+            square: ((mean - near_speed) * 2.0 + (mean - far_speed)) / length,
             cube: ((near_speed - mean) + (far_speed - mean)) / (length * length),
         }
     }
 
-    fn seen_from_start(&self) -> Seen {
+    pub(super) fn seen_from_start(&self) -> Seen<N> {
         self.seen(self.from_speed, self.to_speed)
     }
 
-    fn seen_from_end(&self) -> Seen {
+    pub(super) fn seen_from_end(&self) -> Seen<N> {
         self.seen(self.to_speed, self.from_speed)
     }
+}
 
+/// Steffen's slope between two straight lines, each of a length and a mean slope.
+pub(super) fn slope_between<N: Number>((h0, d0): (N, N), (h1, d1): (N, N)) -> N {
+    let none = N::from(0.0);
+    if !((d0 > none && d1 > none) || (d0 < none && d1 < none)) {
+        return none;
+    }
+    let parabola = (d0 * h1 + d1 * h0) / (h0 + h1);
+    let least = |a: N, b: N| if b.magnitude() < a.magnitude() { b } else { a };
+    least(least(d0 * 2.0, d1 * 2.0), parabola)
+}
+
+impl Cubic {
     /// Position at `t`, within the cubic.
     pub(super) fn position(&self, t: f64) -> f64 {
         let (since, until) = (t - self.from_s, self.to_s - t);
@@ -144,7 +159,6 @@ impl Cubic {
     }
 
     /// When it is at `place`, which lies within it.
-    #[inline]
     pub(super) fn crossing(&self, place: f64) -> Crossing {
         let travel = self.to - self.from;
         let (behind, ahead) = (place - self.from, self.to - place);
@@ -161,28 +175,6 @@ impl Cubic {
             let travel = libm::fabs(ahead);
             let x = right(self.seen_from_end()).time(travel, self.length_s());
             Crossing { time_s: self.to_s - x, s_per_step: x / travel }
-        }
-    }
-
-    /// When it has made so much of its way.
-    pub(super) fn at_travel(&self, travel: f64) -> Crossing {
-        self.crossing(if self.to < self.from { self.from - travel } else { self.from + travel })
-    }
-
-    /// The way from its start on, to the right, around where it has made so much of it; of the nearer end's formula.
-    pub(super) fn expansion(&self, travel: f64) -> Expansion {
-        let time_s = self.at_travel(travel).time_s;
-        let (since, until) = (time_s - self.from_s, self.to_s - time_s);
-        let around = |seen: Seen, x: f64| {
-            let sign = if self.to < self.from { -1.0 } else { 1.0 };
-            let (square, cube) = (sign * seen.square, sign * seen.cube);
-            let speed = sign * seen.near_speed + (2.0 * square + 3.0 * cube * x) * x;
-            Expansion::polynomial(x, [speed, square + 3.0 * cube * x, cube, 0.0])
-        };
-        if since <= until {
-            Expansion { time_s, ..around(self.seen_from_start(), since) }
-        } else {
-            Expansion { time_s, ..around(self.seen_from_end(), until).mirrored(0.0) }
         }
     }
 }

@@ -36,20 +36,20 @@
 //! assert_eq!((go.position(go.duration_s()), go.speed(0.0)), (3200.0, 0.0));
 //! ```
 
-mod exactly;
-
 use crate::{
     Curve, Peaks,
-    curve::greater,
+    cycle_time::CycleTime,
     double::Double,
     format::grouped,
     mirrored::Mirrored,
     moves,
+    number::Number,
     quantities::Quantities,
-    series::{Expansion, Series},
+    rounding::{IsDueBefore, is_mirrored_due_before},
+    run::{Runs, Schedule, one_searched_run},
     square_root,
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// Newton's steps after which a root has all its digits; at most six do.
 const MAX_NEWTON_STEPS: u32 = 12;
@@ -58,39 +58,111 @@ const JERK_PARTS: u32 = 16;
 
 /// Limits of a move, each above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct Limits<N = f64> {
     /// In steps/s.
-    pub speed: f64,
+    pub speed: N,
     /// In steps/s^2.
-    pub acceleration: f64,
+    pub acceleration: N,
     /// In steps/s^3.
-    pub jerk: f64,
-}
-
-/// Limits of a move with all their digits: in f64 neither a decimal nor a quotient by mechanics is what it means.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct ExactLimits {
-    speed: Double,
-    acceleration: Double,
-    jerk: Double,
+    pub jerk: N,
 }
 
 /// A jerk-limited move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JerkLimited {
     halves: Mirrored,
-    jerk: f64,
+    phases: Phases<f64>,
+    /// With all their digits: in f64 neither a decimal nor a quotient by mechanics has them.
+    limits: Limits<Double>,
+}
+
+/// The phases of the first half.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Phases<N> {
+    jerk: N,
     /// t_j.
-    jerk_s: f64,
+    jerk_s: N,
     /// t_a.
-    steady_s: f64,
+    steady_s: N,
     /// v, the highest speed that is reached.
-    peak_speed: f64,
+    peak_speed: N,
     /// t_r.
-    ramp_s: f64,
+    ramp_s: N,
     /// s_r, at most half of all steps.
-    ramp_steps: f64,
-    limits: ExactLimits,
+    ramp_steps: N,
+    /// Of the whole move.
+    duration_s: N,
+}
+
+impl<N: Number> Phases<N> {
+    fn new(steps: i64, Limits { speed, acceleration, jerk }: Limits<N>) -> Self {
+        let all = N::from(steps.unsigned_abs() as f64);
+        // To the top speed: with a phase of constant acceleration, where that is reached before.
+        let full_jerk_s = acceleration / jerk;
+        let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
+            (full_jerk_s, (speed / acceleration - full_jerk_s).or_zero())
+        } else {
+            ((speed / jerk).square_root(), 0.0.into())
+        };
+        let ramp_s = jerk_s * 2.0 + steady_s;
+        let ramp_steps = speed * ramp_s * 0.5;
+        if ramp_steps * 2.0 <= all {
+            let duration_s = all / speed + ramp_s;
+            return Self { jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, duration_s };
+        }
+        // No plateau: the two ramps are the whole travel.
+        let (jerk_s, steady_s, peak_speed) = if all > acceleration * 2.0 * full_jerk_s * full_jerk_s {
+            // v*(v/A + t_j) = n, solved without a difference.
+            let root = (full_jerk_s * full_jerk_s + all * 4.0 / acceleration).square_root();
+            let peak_speed = all * 2.0 / (full_jerk_s + root);
+            (full_jerk_s, (peak_speed / acceleration - full_jerk_s).or_zero(), peak_speed)
+        } else {
+            let jerk_s = (all / (jerk * 2.0)).cube_root();
+            (jerk_s, 0.0.into(), jerk * jerk_s * jerk_s)
+        };
+        let ramp_s = jerk_s * 2.0 + steady_s;
+        Self { jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all * 0.5, duration_s: ramp_s * 2.0 }
+    }
+
+    /// J*t_j, the greatest acceleration that is reached.
+    fn peak_acceleration(&self) -> N {
+        self.jerk * self.jerk_s
+    }
+
+    /// Ends of the first three phases in s; the third is t_r.
+    fn joints_s(&self) -> [N; 3] {
+        [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
+    }
+
+    /// Steps of the first phase.
+    fn first_steps(&self) -> N {
+        self.jerk * self.jerk_s * self.jerk_s * self.jerk_s / 6.0
+    }
+
+    /// Speed at the end of the first phase.
+    fn first_speed(&self) -> N {
+        self.jerk * self.jerk_s * self.jerk_s * 0.5
+    }
+
+    /// s(t) in steps without sign.
+    fn position(&self, t: N) -> N {
+        let [rising, steady, ramp] = self.joints_s();
+        if t < rising {
+            self.jerk * t * t * t / 6.0
+        } else if t < steady {
+            let x = t - rising;
+            self.first_steps() + (self.first_speed() + self.peak_acceleration() * x * 0.5) * x
+        } else if t < ramp {
+            self.ramp_steps - self.travel_left(ramp - t)
+        } else {
+            self.ramp_steps + self.peak_speed * (t - ramp)
+        }
+    }
+
+    /// Steps of the third phase from `left_s` before its end on.
+    fn travel_left(&self, left_s: N) -> N {
+        (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
+    }
 }
 
 impl JerkLimited {
@@ -99,40 +171,15 @@ impl JerkLimited {
     pub fn new(steps: i64, limits: Limits) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
-        Self::within(steps, ExactLimits { speed, acceleration, jerk })
+        Self::within(steps, Limits { speed, acceleration, jerk })
     }
 
     /// [`Self::new`], of numbers with all their digits.
-    fn within(steps: i64, limits: ExactLimits) -> Self {
-        let all = steps.unsigned_abs() as f64;
+    fn within(steps: i64, limits: Limits<Double>) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
-        // To the top speed: with a phase of constant acceleration, where that is reached before.
-        let full_jerk_s = acceleration / jerk;
-        let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
-            (full_jerk_s, greater(0.0, speed / acceleration - full_jerk_s))
-        } else {
-            (square_root(speed / jerk), 0.0)
-        };
-        let ramp_s = 2.0 * jerk_s + steady_s;
-        let ramp_steps = speed * ramp_s / 2.0;
-        if 2.0 * ramp_steps <= all {
-            let halves = Mirrored { steps, duration_s: all / speed + ramp_s };
-            return Self { halves, jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, limits };
-        }
-        // No plateau: the two ramps are the whole travel.
-        let (jerk_s, steady_s, peak_speed) = if all > 2.0 * acceleration * full_jerk_s * full_jerk_s {
-            // v*(v/A + t_j) = n, solved without a difference.
-            let root = square_root(full_jerk_s * full_jerk_s + 4.0 * all / acceleration);
-            let peak_speed = 2.0 * all / (full_jerk_s + root);
-            (full_jerk_s, greater(0.0, peak_speed / acceleration - full_jerk_s), peak_speed)
-        } else {
-            let jerk_s = libm::cbrt(all / (2.0 * jerk));
-            (jerk_s, 0.0, jerk * jerk_s * jerk_s)
-        };
-        let ramp_s = 2.0 * jerk_s + steady_s;
-        let halves = Mirrored { steps, duration_s: 2.0 * ramp_s };
-        Self { halves, jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all / 2.0, limits }
+        let phases = Phases::new(steps, Limits { speed, acceleration, jerk });
+        Self { halves: Mirrored { steps, duration_s: phases.duration_s }, phases, limits }
     }
 
     /// From what is asked.
@@ -143,7 +190,7 @@ impl JerkLimited {
         let jerk = quantities.jerk("max_jerk", &given.max_jerk);
         let (steps, _, _, _) = (steps?, speed?, acceleration?, jerk?);
         let mechanics = quantities.mechanics();
-        let limits = ExactLimits {
+        let limits = Limits {
             speed: given.max_speed.exact_in_steps(mechanics).ok()?,
             acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
             jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,
@@ -154,129 +201,75 @@ impl JerkLimited {
     /// Highest speed that is reached, in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
-        self.peak_speed
+        self.phases.peak_speed
     }
 
     /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other
     /// three are the first three backwards.
     #[must_use]
     pub fn phases_s(&self) -> [f64; 4] {
-        let plateau_s = greater(0.0, self.halves.duration_s - 2.0 * self.ramp_s);
-        [self.jerk_s, self.steady_s, self.jerk_s, plateau_s]
+        let Phases { jerk_s, steady_s, ramp_s, duration_s, .. } = self.phases;
+        [jerk_s, steady_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]
     }
 
-    /// J*t_j, the greatest acceleration that is reached.
-    fn peak_acceleration(&self) -> f64 {
-        self.jerk * self.jerk_s
+    pub(super) fn joints(&self) -> Vec<f64> {
+        let last = self.phases.ramp_steps - self.phases.travel_left(self.phases.jerk_s);
+        self.halves.joints(&[self.phases.first_steps(), last, self.phases.ramp_steps])
     }
 
-    /// Ends of the first three phases in s; the third is t_r.
-    fn joints_s(&self) -> [f64; 3] {
-        [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
-    }
-
-    /// Steps of the first phase.
-    fn first_steps(&self) -> f64 {
-        self.jerk * self.jerk_s * self.jerk_s * self.jerk_s / 6.0
-    }
-
-    /// Speed at the end of the first phase.
-    fn first_speed(&self) -> f64 {
-        self.jerk * self.jerk_s * self.jerk_s / 2.0
-    }
-
-    /// s(t) of the first half, in steps without sign.
-    fn first_half(&self, t: f64) -> f64 {
-        let [rising, steady, ramp] = self.joints_s();
-        if t < rising {
-            self.jerk * t * t * t / 6.0
-        } else if t < steady {
-            let x = t - rising;
-            self.first_steps() + (self.first_speed() + self.peak_acceleration() * x / 2.0) * x
-        } else if t < ramp {
-            let left_s = ramp - t;
-            self.ramp_steps - self.travel_left(left_s)
-        } else {
-            self.ramp_steps + self.peak_speed * (t - ramp)
-        }
-    }
-
-    /// Steps of the third phase from `left_s` before its end on.
-    fn travel_left(&self, left_s: f64) -> f64 {
-        (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
-    }
-
-    /// When the first half is at `place`.
-    fn climb_s(&self, place: f64) -> f64 {
-        let past_first = place - self.first_steps();
+    /// When the first half is at a position.
+    fn climb_s(&self, position: f64) -> f64 {
+        let Phases { jerk, jerk_s, peak_speed, ramp_s, ramp_steps, .. } = self.phases;
+        let past_first = position - self.phases.first_steps();
         if past_first <= 0.0 {
-            return libm::cbrt(6.0 * place / self.jerk);
+            return libm::cbrt(6.0 * position / jerk);
         }
-        let left = self.ramp_steps - place;
+        let left = ramp_steps - position;
         if left <= 0.0 {
-            return self.ramp_s - left / self.peak_speed;
+            return ramp_s - left / peak_speed;
         }
-        if left > self.travel_left(self.jerk_s) {
-            let (speed, acceleration) = (self.first_speed(), self.peak_acceleration());
+        if left > self.phases.travel_left(jerk_s) {
+            let (speed, acceleration) = (self.phases.first_speed(), self.phases.peak_acceleration());
             let root = square_root(speed * speed + 2.0 * acceleration * past_first);
-            return self.jerk_s + 2.0 * past_first / (speed + root);
+            return jerk_s + 2.0 * past_first / (speed + root);
         }
         // v*u - J*u^3/6 rises and is concave up to t_j, and its slope stays above v/2: from below,
         // each of Newton's steps comes nearer and none passes the root.
-        let mut u = left / self.peak_speed;
+        let mut u = left / peak_speed;
         for _ in 0..MAX_NEWTON_STEPS {
-            let slope = self.peak_speed - self.jerk * u * u / 2.0;
-            let correction = (left - self.travel_left(u)) / slope;
+            let slope = peak_speed - jerk * u * u / 2.0;
+            let correction = (left - self.phases.travel_left(u)) / slope;
             u += correction;
             if correction <= u * f64::EPSILON {
                 break;
             }
         }
-        self.ramp_s - u
+        ramp_s - u
     }
 }
 
-impl Series for JerkLimited {
-    fn stretch(&self, place: f64) -> (f64, f64) {
-        let (first, last) = (self.first_steps(), self.ramp_steps - self.travel_left(self.jerk_s));
-        self.halves.stretch(place, |place| {
-            if place <= first {
-                (0.0, first)
-            } else if place >= self.ramp_steps {
-                (self.ramp_steps, f64::INFINITY)
-            } else if place < last {
-                (first, last)
-            } else {
-                (last, self.ramp_steps)
-            }
-        })
+/// Of a time in f64 the phases before it have at most 6 u each, and what is left of the way at a joint 14 u of its steps,
+/// which the speed there makes a third as much of the time. With the root's end, the difference from the end and the
+/// product with the clock it is off by less than 48 u.
+impl Schedule for JerkLimited {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(Phases::new(self.halves.steps, self.limits).duration_s * f64::from(clock_hz))
     }
 
-    fn expansion(&self, place: f64) -> Expansion {
-        self.halves.expansion(place, |place| {
-            let time_s = self.climb_s(place);
-            let [rising, steady, ramp] = self.joints_s();
-            let (jerk, left_s) = (self.jerk, ramp - time_s);
-            if time_s < rising {
-                Expansion::polynomial(
-                    time_s,
-                    [jerk * time_s * time_s / 2.0, jerk * time_s / 2.0, jerk / 6.0, 0.0],
-                )
-            } else if time_s < steady {
-                let acceleration = self.peak_acceleration();
-                let speed = self.first_speed() + acceleration * (time_s - rising);
-                Expansion::polynomial(time_s, [speed, acceleration / 2.0, 0.0, 0.0])
-            } else if left_s > 0.0 {
-                let speed = self.peak_speed - jerk * left_s * left_s / 2.0;
-                Expansion::polynomial(time_s, [speed, jerk * left_s / 2.0, -jerk / 6.0, 0.0])
-            } else {
-                Expansion::straight(time_s, self.peak_speed)
-            }
-        })
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        one_searched_run(self, clock_hz, self.joints())
     }
 
-    fn search_s(&self, place: f64) -> f64 {
-        self.time_s(place)
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let (phases, count) = (Phases::new(self.halves.steps, self.limits), self.halves.steps.unsigned_abs());
+        Box::new(move |k, since| {
+            is_mirrored_due_before(
+                (k, count),
+                since / f64::from(clock_hz),
+                phases.duration_s,
+                |t, position| phases.position(t) > position.into(),
+            )
+        })
     }
 }
 
@@ -290,32 +283,32 @@ impl Curve for JerkLimited {
     }
 
     fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| self.first_half(t))
+        self.halves.position(t, |t| self.phases.position(t))
     }
 
     fn speed(&self, t: f64) -> f64 {
         let t = self.halves.nearer_end(t);
-        let [rising, steady, ramp] = self.joints_s();
+        let [rising, steady, ramp] = self.phases.joints_s();
         self.halves.signed(if t < rising {
-            self.jerk * t * t / 2.0
+            self.phases.jerk * t * t / 2.0
         } else if t < steady {
-            self.first_speed() + self.peak_acceleration() * (t - rising)
+            self.phases.first_speed() + self.phases.peak_acceleration() * (t - rising)
         } else if t < ramp {
-            self.peak_speed - self.jerk * (ramp - t) * (ramp - t) / 2.0
+            self.phases.peak_speed - self.phases.jerk * (ramp - t) * (ramp - t) / 2.0
         } else {
-            self.peak_speed
+            self.phases.peak_speed
         })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
         let near = self.halves.nearer_end(t);
-        let [rising, steady, ramp] = self.joints_s();
+        let [rising, steady, ramp] = self.phases.joints_s();
         let magnitude = if near < rising {
-            self.jerk * near
+            self.phases.jerk * near
         } else if near < steady {
-            self.peak_acceleration()
+            self.phases.peak_acceleration()
         } else if near < ramp {
-            self.jerk * (ramp - near)
+            self.phases.jerk * (ramp - near)
         } else {
             0.0
         };
@@ -323,13 +316,19 @@ impl Curve for JerkLimited {
     }
 
     fn peaks(&self) -> Peaks {
-        let acceleration = self.peak_acceleration();
-        Peaks { speed: self.peak_speed, acceleration, jump: 0.0, jerk: self.jerk, acceleration_jump: 0.0 }
+        let acceleration = self.phases.peak_acceleration();
+        Peaks {
+            speed: self.phases.peak_speed,
+            acceleration,
+            jump: 0.0,
+            jerk: self.phases.jerk,
+            acceleration_jump: 0.0,
+        }
     }
 
     /// The ends of the first three phases, the parts of those of constant jerk, and their mirror images.
     fn breakpoints_s(&self) -> Vec<f64> {
-        let [rising_s, steady_s, ramp_s] = self.joints_s();
+        let [rising_s, steady_s, ramp_s] = self.phases.joints_s();
         let parts = |from_s: f64, to_s: f64| {
             (1..=JERK_PARTS)
                 .map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
@@ -346,7 +345,7 @@ impl Curve for JerkLimited {
         format!(
             "{}, {} steps/s\u{b3}; phases of {} s and back",
             self.peaks().to_text(),
-            grouped(self.jerk),
+            grouped(self.phases.jerk),
             phases.join(", ")
         )
     }
@@ -424,7 +423,7 @@ mod tests {
             assert!(peaks.speed <= speed * most && peaks.acceleration <= acceleration * most, "{steps}");
             assert_eq!(peaks.jerk, jerk);
             // In no phase is there room under all three limits.
-            let [rising, steady, _] = made.joints_s();
+            let [rising, steady, _] = made.phases.joints_s();
             assert!(steady <= rising || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12, "{steps}");
             assert!(made.phases_s()[3] <= 0.0 || peaks.speed == speed, "{steps}");
         }

@@ -8,7 +8,7 @@
 //!       T/2      T
 //! ```
 
-use crate::{curve::greater, series::Expansion};
+use crate::curve::greater;
 use alloc::vec::Vec;
 
 /// Parts that a cosine's ramp is cut into; even, so that the middle of the ramp, where its acceleration is greatest, is
@@ -65,18 +65,12 @@ impl Mirrored {
         if place <= left { climb_s(place) } else { self.duration_s - climb_s(left) }
     }
 
-    /// From which place to which one formula holds around a place, from those of the first half.
-    pub(super) fn stretch(&self, place: f64, first_half: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
-        let (count, left) = (self.count(), self.count() - place);
-        let ((from, to), middle) = (first_half(if place <= left { place } else { left }), count / 2.0);
-        let to = if to < middle { to } else { middle };
-        if place <= left { (from, to) } else { (count - to, count - from) }
-    }
-
-    /// The curve around a place, from that of the first half.
-    pub(super) fn expansion(&self, place: f64, first_half: impl Fn(f64) -> Expansion) -> Expansion {
-        let left = self.count() - place;
-        if place <= left { first_half(place) } else { first_half(left).mirrored(self.duration_s) }
+    /// The positions at which the formula changes, of those in the first half.
+    pub(super) fn joints(&self, first_half: &[f64]) -> Vec<f64> {
+        let count = self.count();
+        let before = first_half.iter().copied().filter(|joint| *joint < count / 2.0);
+        let after: Vec<f64> = before.clone().map(|joint| count - joint).collect();
+        before.chain([count / 2.0]).chain(after.into_iter().rev()).collect()
     }
 
     /// The acceleration at `t`, of its magnitude there.

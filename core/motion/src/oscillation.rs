@@ -51,10 +51,3 @@ impl Oscillation {
         if self.starts_right { rightwards } else { -rightwards }
     }
 }
-
-/// Its steps in their order, which go the same way for a while.
-pub(super) trait Runs {
-    /// Writes the next steps' times from the block's beginning on, and no further than to the end of such a while; with how
-    /// many these are, none at the end, and whether they go to the right.
-    fn next_run(&mut self, block: &mut [f64]) -> (usize, bool);
-}

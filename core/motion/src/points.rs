@@ -31,15 +31,16 @@ mod off;
 
 use crate::{
     Curve, Peaks,
-    crossing::{MAX_OFF, Rounding},
     curve::greater,
     cycle_time::CycleTime,
     double::Double,
     exact::Exact,
     format::grouped,
-    hermite::{Crossing, Cubic},
+    hermite::{Crossing, Cubic, slope_between},
+    interpolated::Interpolated,
     round_half_up,
-    series::{BySeries, Expansion, Series},
+    rounding::{IsDueBefore, MAX_OFF},
+    run::{Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use off::{Off, off};
@@ -121,11 +122,6 @@ impl Points {
         self.counted().map(|(_, from, to)| from.abs_diff(to)).sum()
     }
 
-    /// How long it takes in s, with all its digits.
-    pub(super) fn exact_duration(&self) -> Double {
-        self.exact.last().map_or_else(Double::default, |(end_s, _)| *end_s)
-    }
-
     /// The greatest distance from the start, in steps.
     #[must_use]
     pub fn reach(&self) -> f64 {
@@ -151,21 +147,16 @@ impl Points {
         self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
-    /// The steps of each piece, in their order.
-    pub(super) fn due(&self) -> impl Iterator<Item = PieceSteps<'_>> + '_ {
-        let steps = |(index, (_, from, to))| PieceSteps { points: self, index, from, to };
-        self.counted().enumerate().map(steps)
-    }
-
-    /// Where step `k` (from 1) of all falls due.
-    pub(super) fn step(&self, k: u64) -> Option<Due<'_>> {
-        let mut before = 0;
-        let (index, (_, from, to)) = self.counted().enumerate().find(|(_, (_, from, to))| {
-            let among = k <= before + from.abs_diff(*to);
-            before += if among { 0 } else { from.abs_diff(*to) };
-            among
-        })?;
-        Some(Due { points: self, index, place: place(from, to, k - before - 1) })
+    /// The piece of step `k` (from 1) of all, and its place.
+    fn step(&self, k: u64) -> Option<(usize, f64)> {
+        let mut past = k - 1;
+        for (index, (_, from, to)) in self.counted().enumerate() {
+            if past < from.abs_diff(to) {
+                return Some((index, place(from, to, past as f64)));
+            }
+            past -= from.abs_diff(to);
+        }
+        None
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {
@@ -173,89 +164,37 @@ impl Points {
     }
 }
 
-/// A place in which a step falls due.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Due<'p> {
-    points: &'p Points,
-    /// Of the piece.
-    index: usize,
-    place: f64,
-}
+impl Schedule for Points {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        let duration_s = self.exact.last().map_or_else(Double::default, |(end_s, _)| *end_s);
+        CycleTime::of(duration_s * f64::from(clock_hz))
+    }
 
-impl Due<'_> {
-    /// When, in cycles of a clock of `clock_hz`, and its cycle, of a move that begins at `start`.
-    #[inline]
-    pub(super) fn cycle(&self, start: CycleTime, clock_hz: u32) -> (f64, u64) {
-        let (points, clock) = (self.points, f64::from(clock_hz));
-        let (Some(piece), Some(off)) = (points.pieces.get(self.index), points.off.get(self.index)) else {
-            return (0.0, 0);
-        };
-        let Crossing { time_s, s_per_step } = piece.crossing(self.place);
-        let cycles = time_s * clock;
-        let rounding = Rounding::new(start, (off.time_s + off.way * s_per_step) * clock);
-        let cycle =
-            rounding.cycle((0, cycles), |since| points.is_past(self.index, self.place, since / clock.into()));
-        (start.cycles() + cycles, cycle)
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let clock = f64::from(clock_hz);
+        let pieces = self.counted().zip(&self.off).filter(|((_, from, to), _)| from != to);
+        Box::new(pieces.map(move |((piece, from, to), off)| {
+            let count = from.abs_diff(to);
+            let times = Interpolated::new(count, Vec::new(), move |step| {
+                let Crossing { time_s, s_per_step } = piece.crossing(place(from, to, step));
+                // At the end of a piece there is no mean speed, so the time is uncertain.
+                let s_per_step = if s_per_step >= 0.0 { s_per_step } else { f64::INFINITY };
+                (time_s * clock, (off.time_s + off.way * s_per_step) * clock)
+            });
+            Run { count, right: to > from, times: Box::new(times) }
+        }))
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        Box::new(move |k, since| {
+            self.step(k).is_some_and(|(index, place)| self.is_past(index, place, since / f64::from(clock_hz)))
+        })
     }
 }
 
-/// The steps of a piece.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PieceSteps<'p> {
-    points: &'p Points,
-    index: usize,
-    /// Steps due before it and after it, from the start.
-    from: i64,
-    to: i64,
-}
-
-impl<'p> PieceSteps<'p> {
-    /// Whether they go to the right.
-    pub(super) fn right(self) -> bool {
-        self.to > self.from
-    }
-
-    /// A step (from 0).
-    pub(super) fn due(self, step: u64) -> Due<'p> {
-        Due { points: self.points, index: self.index, place: place(self.from, self.to, step) }
-    }
-
-    /// Their times, many at once.
-    pub(super) fn by_series(self, clock_hz: u32) -> BySeries<'p> {
-        let cubic = self.points.pieces.get(self.index);
-        let first = cubic.map_or(0.0, |cubic| libm::fabs(place(self.from, self.to, 0) - cubic.from));
-        BySeries::new(Box::new(Piece(cubic)), clock_hz.into(), first, self.from.abs_diff(self.to))
-    }
-
-    /// How far a time in f64 may be off, in s, where the speed is no less than this.
-    pub(super) fn off_s(self, least_speed: f64) -> f64 {
-        // A way's error, twice: that of the middle's place and those of the series.
-        self.points.off.get(self.index).map_or(0.0, |off| off.time_s + off.way / least_speed)
-    }
-}
-
-/// A piece, as the way from its start on.
-#[derive(Clone, Copy, Debug)]
-struct Piece<'p>(Option<&'p Cubic>);
-
-impl Series for Piece<'_> {
-    fn stretch(&self, _: f64) -> (f64, f64) {
-        (0.0, self.0.map_or(0.0, |cubic| libm::fabs(cubic.to - cubic.from)))
-    }
-
-    fn expansion(&self, place: f64) -> Expansion {
-        self.0.map_or(Expansion::straight(0.0, 0.0), |cubic| cubic.expansion(place))
-    }
-
-    fn search_s(&self, place: f64) -> f64 {
-        self.0.map_or(0.0, |cubic| cubic.at_travel(place).time_s)
-    }
-}
-
-/// Where step `index` (from 0) of those between two counts of steps falls due.
-fn place(from: i64, to: i64, index: u64) -> f64 {
-    let past = index as f64 + 0.5;
-    from as f64 + if to > from { past } else { -past }
+/// Where step `index` (from 0) of those between two counts of steps is due.
+fn place(from: i64, to: i64, index: f64) -> f64 {
+    from as f64 + if to > from { index + 0.5 } else { -0.5 - index }
 }
 
 /// Steps that are made by the end of each piece.
@@ -274,7 +213,7 @@ fn made(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
         let due = round_half_up(to.high);
         let half = Double::from(due as f64 - 0.5);
         // The nearest f64 may be the half where the point is less. A half that is touched from below alone is not crossed.
-        if half.exceeds(*to) || (rose && falls && !to.exceeds(half)) { due - 1 } else { due }
+        if half > *to || (rose && falls && *to <= half) { due - 1 } else { due }
     });
     made.collect()
 }
@@ -284,11 +223,7 @@ fn smoothen(pieces: &mut [Cubic]) {
     let mean: Vec<(f64, f64)> =
         pieces.iter().map(|piece| (piece.to_s - piece.from_s, piece.to_speed)).collect();
     let inner = mean.windows(2).map(|pair| match pair {
-        &[(h0, d0), (h1, d1)] if (d0 > 0.0 && d1 > 0.0) || (d0 < 0.0 && d1 < 0.0) => {
-            let parabola = (d0 * h1 + d1 * h0) / (h0 + h1);
-            let least = |a: f64, b: f64| if libm::fabs(b) < libm::fabs(a) { b } else { a };
-            least(least(2.0 * d0, 2.0 * d1), parabola)
-        }
+        &[before, after] => slope_between(before, after),
         _ => 0.0,
     });
     let slopes: Vec<f64> = core::iter::once(0.0).chain(inner).chain([0.0]).collect();
@@ -390,10 +325,11 @@ impl Curve for Points {
 
 #[cfg(test)]
 impl Points {
-    /// Every step, and whether it goes to the right.
-    fn all_due(&self) -> impl Iterator<Item = (Due<'_>, bool)> + '_ {
-        self.due().flat_map(|steps| {
-            (0..steps.from.abs_diff(steps.to)).map(move |step| (steps.due(step), steps.right()))
+    /// The piece and the place of every step, and whether it goes to the right.
+    fn all_due(&self) -> impl Iterator<Item = (usize, f64, bool)> + '_ {
+        (1..=self.step_count()).filter_map(|k| {
+            let (index, place) = self.step(k)?;
+            Some((index, place, self.pieces[index].to > self.pieces[index].from))
         })
     }
 }
@@ -406,7 +342,7 @@ mod tests {
         let curve = Points::new(points, between).unwrap();
         let due: Vec<(f64, bool)> = curve
             .all_due()
-            .map(|(due, right)| (curve.pieces[due.index].crossing(due.place).time_s, right))
+            .map(|(index, place, right)| (curve.pieces[index].crossing(place).time_s, right))
             .collect();
         assert_eq!(due.len() as u64, curve.step_count());
         let made: i64 = due.iter().map(|(_, right)| if *right { 1 } else { -1 }).sum();

@@ -13,15 +13,19 @@ use crate::{
     constant_velocity::{Constant, Dwell},
     cosine::Cosine,
     curve::{Curve, Peaks},
+    cycle_time::CycleTime,
     jerk_limited::JerkLimited,
     moves::{CosineMethod, Move, TrapezoidMethod},
     points::Points,
     quantities::Quantities,
     ramps::Ramps,
+    rounding::IsDueBefore,
+    run::{Runs, Schedule},
     sine::Sine,
     sine_segments::SineSegments,
     sliced::Sliced,
     staircase::Staircase,
+    step_loop::MoveSteps,
     trapezoid::Trapezoid,
     trapezoid_table::TrapezoidTable,
 };
@@ -132,6 +136,13 @@ impl Profile {
 }
 
 impl Profile {
+    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`; `None` past the last one.
+    #[must_use]
+    pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
+        let steps = MoveSteps::new(self, CycleTime::default(), clock_hz);
+        steps.after(k.checked_sub(1)?).map(|step| step.cycle)
+    }
+
     /// Whether its last step falls in the very instant of its end: of a table.
     pub(crate) fn ends_with_a_step(&self) -> bool {
         matches!(self, Self::TrapezoidTable(_) | Self::Staircase(_))
@@ -140,6 +151,24 @@ impl Profile {
     /// Whether that step is not due yet in that instant: of one to the left (B7).
     pub(crate) fn last_step_waits(&self) -> bool {
         self.ends_with_a_step() && self.steps() < 0
+    }
+}
+
+impl Schedule for Profile {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        each!(self, curve => curve.length(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        each!(self, curve => curve.runs(clock_hz))
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        each!(self, curve => curve.is_due_before(clock_hz))
+    }
+
+    fn off_s(&self) -> f64 {
+        each!(self, curve => curve.off_s())
     }
 }
 

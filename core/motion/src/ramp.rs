@@ -32,7 +32,6 @@
 //! ```
 
 mod exactly;
-mod series;
 
 use crate::{bisection::Bracket, square_root};
 

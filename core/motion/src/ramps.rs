@@ -25,15 +25,16 @@
 
 use crate::{
     Curve, Peaks,
-    crossing::is_due_before,
+    cycle_time::CycleTime,
     double::Double,
     exact::Exact,
     format::{grouped, ramp_up_to},
     mirrored::{Mirrored, RAMP_PARTS, parts_s},
     ramp::{Ramp, longest_ramp_s},
-    series::{Expansion, Series, TERMS},
+    rounding::{IsDueBefore, is_mirrored_due_before},
+    run::{Runs, Schedule, one_searched_run},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// A move with ramps of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,34 +77,13 @@ impl Ramps {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, self.area)
     }
 
+    pub(super) fn joints(&self) -> Vec<f64> {
+        self.halves.joints(&[self.top_speed * self.ramp_s * self.area])
+    }
+
     /// x of the ramp at `t` after the start or before the end, 0 to 1; `None` in the plateau.
     fn part(&self, t: f64) -> Option<f64> {
         (t < self.ramp_s).then(|| t / self.ramp_s)
-    }
-
-    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain.
-    ///
-    /// Of a time in f64 the place in parts of the ramp's travel has 9 u, and a shape's travel at most 25 for what cancels
-    /// in the sigmoid's logarithm: the time has half of these, as its way begins with its square. A sigmoid's range r that
-    /// is off by u shifts its steep start by r/2 of them, at most 10. With those of Newton's end, of the products by the
-    /// ramp's time and the clock, and of the difference from the end, it is off by less than 48 u.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
-        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
-        let (duration, ramp, shape) =
-            (cycles(self.halves.duration_s), cycles(self.ramp_s), self.ramp.exactly());
-        let count = self.halves.steps.unsigned_abs();
-        // Both ramps lose as much time against a start at top speed.
-        let lost = ramp * (Double::from(1.0) - shape.area());
-        let top_speed = Double::from(count) / (duration - lost * 2.0.into());
-        move |k, since| {
-            is_due_before((k, count), since, duration, |time, place| {
-                if ramp.exceeds(time) {
-                    shape.is_past(time / ramp, Double::from(place) / (top_speed * ramp))
-                } else {
-                    (top_speed * (time - lost)).exceeds(place.into())
-                }
-            })
-        }
     }
 
     /// When the first half is at `place`.
@@ -130,30 +110,35 @@ impl Ramps {
     }
 }
 
-impl Series for Ramps {
-    fn stretch(&self, place: f64) -> (f64, f64) {
-        let ramp_steps = self.top_speed * self.ramp_s * self.area;
-        self.halves.stretch(place, |place| {
-            if place < ramp_steps { (0.0, ramp_steps) } else { (ramp_steps, f64::INFINITY) }
-        })
+/// Of a time in f64 the place in parts of the ramp's travel has 9 u, and a shape's travel at most 25 for what cancels in
+/// the sigmoid's logarithm: the time has half of these, as its way begins with its square. A sigmoid's range r that is
+/// off by u shifts its steep start by r/2 of them, at most 10. With those of Newton's end, of the products by the ramp's
+/// time and the clock, and of the difference from the end, it is off by less than 48 u.
+impl Schedule for Ramps {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
     }
 
-    fn expansion(&self, place: f64) -> Expansion {
-        self.halves.expansion(place, |place| {
-            let time_s = self.climb_s(place);
-            let Some(x) = self.part(time_s) else { return Expansion::straight(time_s, self.top_speed) };
-            let shape = self.ramp.series(x);
-            let (mut terms, mut scale) = ([0.0; TERMS], self.top_speed);
-            for ((n, term), own) in (1_u8..).zip(&mut terms).zip(shape.speed) {
-                *term = own * scale / f64::from(n);
-                scale /= self.ramp_s;
-            }
-            Expansion { time_s, terms, rest: shape.rest * scale, reach_s: shape.reach * self.ramp_s }
-        })
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        one_searched_run(self, clock_hz, self.joints())
     }
 
-    fn search_s(&self, place: f64) -> f64 {
-        self.time_s(place)
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
+        let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
+        let (shape, count) = (self.ramp.exactly(), self.halves.steps.unsigned_abs());
+        // Both ramps lose as much time against a start at top speed.
+        let lost = ramp * (Double::from(1.0) - shape.area());
+        let top_speed = Double::from(count) / (duration - lost * 2.0);
+        Box::new(move |k, since| {
+            is_mirrored_due_before((k, count), since, duration, |t, position| {
+                if t < ramp {
+                    shape.is_past(t / ramp, Double::from(position) / (top_speed * ramp))
+                } else {
+                    top_speed * (t - lost) > position.into()
+                }
+            })
+        })
     }
 }
 

@@ -27,18 +27,20 @@ use crate::{
     Curve, Peaks,
     budget::{Budget, MAX_SEGMENTS, hold_speed},
     curve::greater,
+    cycle_time::CycleTime,
     double::Double,
     exact::Exact,
     format::grouped,
     limits, moves,
-    oscillation::{Oscillation, Runs},
+    oscillation::Oscillation,
     polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     problem::ValueError,
     quantities::Quantities,
     round_half_up,
-    series::{BLOCK, COUNTED},
+    rounding::IsDueBefore,
+    run::{Run, Runs, Schedule},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// Segments that are told one by one.
 const MAX_TOLD: usize = 12;
@@ -208,43 +210,6 @@ impl SineSegments {
         })
     }
 
-    /// When each step falls due from the start, in what there are `per_point` of in a point of the angle, and whether it goes
-    /// to the right.
-    pub(super) fn due_points(&self, per_point: f64) -> DuePoints {
-        let period = self.pieces().take(4 * self.segments.len());
-        let period = period.filter(|piece| piece.steps > 0).map(Run::of).collect();
-        let end = f64::from(self.oscillation.periods) * f64::from(POINTS);
-        DuePoints { period, at: 0, past: 0, origin: 0.0, end, per_point }
-    }
-
-    /// When each step (from 1) of all falls due, in cycles of a clock of `clock_hz`, in 106 bits: a quotient of the period's
-    /// decimal. In f64 it is off by at most 6 u.
-    pub(super) fn exact_times(&self, clock_hz: u32) -> impl Fn(u64) -> Double + use<> {
-        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
-        let of_period = 4 * self.oscillation.amplitude;
-        let intervals: Vec<Interval> = self.pieces().take(4 * self.segments.len()).collect();
-        let ends: Vec<u64> = intervals
-            .iter()
-            .scan(0, |end, interval| {
-                *end += interval.steps;
-                Some(*end)
-            })
-            .collect();
-        move |k| {
-            let (periods, step) = ((k - 1) / of_period, (k - 1) % of_period);
-            let index = ends.partition_point(|end| *end <= step);
-            let (Some(&end), Some(&Interval { from, to, steps, .. })) =
-                (ends.get(index), intervals.get(index))
-            else {
-                debug_assert!(false, "step {k} is in no segment");
-                return period * Double::from(periods);
-            };
-            let halves = 2 * (step - (end - steps)) + 1;
-            let along = Double::from(halves) * (to - from).into() / Double::from(2 * steps);
-            period * (Double::from(periods) + (along + from.into()) / f64::from(POINTS).into())
-        }
-    }
-
     /// Time of a point of the angle in s.
     #[must_use]
     pub fn point_s(&self) -> f64 {
@@ -277,57 +242,46 @@ impl SineSegments {
     }
 }
 
-/// An interval's steps, which are equally far apart.
-struct Run {
-    /// The interval's beginning in points of the angle.
-    from: f64,
-    /// From step to step.
-    each: f64,
-    steps: u64,
-    right: bool,
-}
-
-impl Run {
-    fn of(Interval { from, to, steps, right }: Interval) -> Self {
-        Self { from, each: (to - from) / steps as f64, steps, right }
+impl Schedule for SineSegments {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        let periods = Exact::of(self.oscillation.period_s).times(self.oscillation.periods.into());
+        CycleTime::exact(&periods.times(clock_hz.into()))
     }
-}
 
-/// The steps of the segments, one after another.
-pub(super) struct DuePoints {
-    /// Those of a period; the others have the same.
-    period: Vec<Run>,
-    /// The one where it is, and how many of its steps are past.
-    at: usize,
-    past: u64,
-    /// Where this period begins in points of the angle, and where the last one ends.
-    origin: f64,
-    end: f64,
-    per_point: f64,
-}
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let per_point = self.point_s() * clock;
+        let intervals = self.pieces().filter(|interval| interval.steps > 0);
+        Box::new(intervals.map(move |Interval { from, to, steps, right }| {
+            let each = (to - from) / steps as f64;
+            Run::new(steps, right, off, move |step| (from + (step + 0.5) * each) * per_point)
+        }))
+    }
 
-impl Runs for DuePoints {
-    /// No further than to the end of a segment.
-    fn next_run(&mut self, block: &mut [f64]) -> (usize, bool) {
-        let run = loop {
-            match self.period.get(self.at) {
-                Some(run) if self.past < run.steps => break run,
-                Some(_) => (self.at, self.past) = (self.at + 1, 0),
-                None if self.origin + f64::from(POINTS) < self.end => {
-                    (self.at, self.origin) = (0, self.origin + f64::from(POINTS));
-                }
-                None => return (0, false),
-            }
-        };
-        let len = block.len().min(BLOCK).min(usize::try_from(run.steps - self.past).unwrap_or(usize::MAX));
-        let (from, each, per_point) = (self.origin + run.from, run.each, self.per_point);
-        // A half more than what is past, as the sum with an index has no rounding either way.
-        let first = self.past as f64 + 0.5;
-        for (index, due) in COUNTED.iter().zip(block.iter_mut().take(len)) {
-            *due = (from + (first + index) * each) * per_point;
-        }
-        self.past += len as u64;
-        (len, run.right)
+    /// A step's time is a quotient of the period's decimal. In f64 it is off by at most 6 u.
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        let of_period = 4 * self.oscillation.amplitude;
+        let mut before = 0;
+        let intervals: Vec<(u64, Interval)> = self
+            .pieces()
+            .take(4 * self.segments.len())
+            .map(|interval| {
+                before += interval.steps;
+                (before, interval)
+            })
+            .collect();
+        Box::new(move |k, since| {
+            let (periods, step) = ((k - 1) / of_period, (k - 1) % of_period);
+            let index = intervals.partition_point(|(end, _)| *end <= step);
+            let Some((end, Interval { from, to, steps, .. })) = intervals.get(index) else {
+                debug_assert!(false, "step {k} is in no segment");
+                return false;
+            };
+            let halves = 2 * (step - (end - steps)) + 1;
+            let along = Double::from(halves) * (to - from) / Double::from(2 * steps);
+            since > period * (Double::from(periods) + (along + *from) / f64::from(POINTS))
+        })
     }
 }
 
@@ -441,25 +395,21 @@ mod tests {
 
     #[test]
     fn every_period_has_its_steps_and_after_the_last_there_are_none() {
-        for (amplitude, periods) in [(1000, 3), (-7, 1), (1, 2), (64, 5)] {
+        for (amplitude, periods) in [(500, 3), (-7, 1), (1, 2), (64, 5)] {
             let sine = SineSegments::new(amplitude, 0.5, periods, 0.006);
-            let (mut due, mut block, mut made) = (sine.due_points(1.0), [0.0; BLOCK], 0);
-            let mut last = 0.0;
-            loop {
-                let (len, right) = due.next_run(&mut block);
-                if len == 0 {
-                    break;
-                }
-                let half = (block[0] / f64::from(2 * QUARTER)) as u64;
-                assert_eq!(right, sine.oscillation.goes_right(half), "{amplitude}: {}", block[0]);
+            let (mut made, mut last, mut times) = (0, 0.0, [0.0; 512]);
+            for mut run in sine.runs(2048) {
+                // 2048 points in half a second: twice as many points as cycles.
+                run.times.fill(0.0, &mut times[..run.count as usize]);
+                let half = (times[0] / 512.0) as u64;
+                assert_eq!(run.right, sine.oscillation.goes_right(half), "{amplitude}: {}", times[0]);
                 assert!(
-                    block[..len].iter().all(|at| core::mem::replace(&mut last, *at) < *at),
+                    times[..run.count as usize].iter().all(|at| core::mem::replace(&mut last, *at) < *at),
                     "{amplitude}"
                 );
-                made += len as u64;
+                made += run.count;
             }
             assert_eq!(made, sine.step_count(), "{amplitude}");
-            assert_eq!(due.next_run(&mut block), (0, false), "{amplitude}: asked again");
         }
     }
 

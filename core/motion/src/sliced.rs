@@ -36,11 +36,13 @@ mod compensation;
 use crate::{
     Curve, Peaks,
     cosine::Cosine,
-    crossing::{MAX_OFF, ROUNDING},
+    cycle_time::CycleTime,
     double::Double,
     format::{grouped, ramp_up_to},
+    rounding::{IsDueBefore, MAX_OFF, ROUNDING},
+    run::{Run, Runs, Schedule},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 use compensation::{NEARLY, Slices, slices_in};
 
 /// A cosine S-curve in slices.
@@ -160,13 +162,6 @@ impl Sliced {
         starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
     }
 
-    /// Time of each step in s, one after another.
-    pub(super) fn due_s(&self) -> impl Iterator<Item = f64> + '_ {
-        self.slices().flat_map(|(from, to, count)| {
-            (0..count).map(move |step| from + (f64::from(step) + 0.5) * (to - from) / f64::from(count))
-        })
-    }
-
     /// How much earlier it is than requested, and than the exact curve.
     #[must_use]
     pub fn time_error(&self) -> TimeError {
@@ -175,32 +170,6 @@ impl Sliced {
         let last = self.exact.steps().unsigned_abs() as f64 - 0.5;
         let last_step_s = self.time_s(last) - self.exact.time_s(last);
         TimeError { end_s, relative: end_s / requested_s, last_step_s }
-    }
-
-    /// How long it lasts in s.
-    pub(super) fn exact_duration(&self) -> Double {
-        self.exact_starts.last().copied().unwrap_or_default()
-    }
-
-    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain: its time is a
-    /// quotient of decimals.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
-        move |k, since| {
-            let index = self.slice_of(k as f64 - 0.5);
-            let (Some(&[from, to]), Some((_, _, before, count))) =
-                (self.exact_starts.get(index..index + 2), self.slice(index))
-            else {
-                return false;
-            };
-            let halves = Double::from(2 * (k - u64::from(before)) - 1);
-            let step_s = from + (to - from) * halves / f64::from(2 * count.max(1)).into();
-            since.exceeds(step_s * Double::from(u64::from(clock_hz)))
-        }
-    }
-
-    /// How far a time in s may be off in f64: each slice that is cut adds its own roundings to those before.
-    pub(super) fn off_s(&self) -> f64 {
-        (MAX_OFF + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
     }
 
     /// The slice that `place` lies in.
@@ -224,6 +193,41 @@ impl Sliced {
 
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps() < 0 { -magnitude } else { magnitude }
+    }
+}
+
+impl Schedule for Sliced {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        let duration_s = self.exact_starts.last().copied().unwrap_or_default();
+        CycleTime::of(duration_s * f64::from(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        Box::new(self.slices().map(move |(from, to, count)| {
+            let each = (to - from) / f64::from(count.max(1));
+            Run::new(count.into(), self.steps() >= 0, off, move |step| (from + (step + 0.5) * each) * clock)
+        }))
+    }
+
+    /// A step's time is a quotient of decimals.
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        Box::new(move |k, since| {
+            let index = self.slice_of(k as f64 - 0.5);
+            let (Some(&[from, to]), Some((_, _, before, count))) =
+                (self.exact_starts.get(index..index + 2), self.slice(index))
+            else {
+                return false;
+            };
+            let halves = Double::from(2 * (k - u64::from(before)) - 1);
+            let step_s = from + (to - from) * halves / f64::from(2 * count.max(1));
+            since > step_s * f64::from(clock_hz)
+        })
+    }
+
+    /// Each slice that is cut adds its own roundings to those before.
+    fn off_s(&self) -> f64 {
+        (MAX_OFF + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
     }
 }
 

@@ -25,15 +25,17 @@ use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
     bisection::least,
-    crossing::{MAX_OFF, ROUNDING},
     curve::greater,
+    cycle_time::CycleTime,
     double::Double,
     format::{count, grouped},
     mirrored::Mirrored,
+    rounding::{IsDueBefore, MAX_OFF, ROUNDING},
+    run::{Run, Runs, Schedule},
     staircase_table::StaircaseTable,
     stepped::{self, Counts},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// A move by a staircase of rates.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,34 +160,10 @@ impl Staircase {
         }
     }
 
-    /// Time of each step in s, one after another: as [`Self::step_s`] has it, without a search for each one's row.
-    pub(super) fn due_s(&self) -> impl Iterator<Item = f64> + '_ {
-        // Rate, start and steps of row `n` (from 1).
-        let row = |n: u64| {
-            let start_s = self.starts_s.get(n as usize - 1).copied().unwrap_or(0.0);
-            (self.table.rate(n) as f64, start_s, StaircaseTable::steps_in(n))
-        };
-        let rows = self.ramp_rows();
-        let up = (1..=rows).flat_map(move |n| {
-            let (rate, start_s, steps) = row(n);
-            (1..=steps).map(move |k| start_s + k as f64 / rate)
-        });
-        let (rate, start_s) = (self.plateau_rate as f64, self.ramp_s());
-        let plateau = (1..=self.plateau_steps()).map(move |k| start_s + k as f64 / rate);
-        let down = (1..=rows).rev().flat_map(move |n| {
-            let (rate, start_s, steps) = row(n);
-            // The last step of the ramp up is the first from which it goes down.
-            (1..=steps - u64::from(n == rows))
-                .rev()
-                .map(move |k| self.duration_s - (start_s + k as f64 / rate))
-        });
-        up.chain(plateau).chain(down).chain((rows > 0).then_some(self.duration_s))
-    }
-
     /// How long it lasts in s.
-    pub(super) fn exact_duration(&self) -> Double {
+    fn exact_duration(&self) -> Double {
         let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
-        self.exact_starts().last().copied().unwrap_or_default() * 2.0.into() + plateau
+        self.exact_starts().last().copied().unwrap_or_default() * 2.0 + plateau
     }
 
     /// Start of each row of the ramp, and its end, in s.
@@ -196,35 +174,6 @@ impl Staircase {
             Some(*end)
         });
         core::iter::once(Double::default()).chain(ends).collect()
-    }
-
-    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain: its time is a sum
-    /// of quotients of whole numbers.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + '_ {
-        let (starts, duration) = (self.exact_starts(), self.exact_duration());
-        let ramp_s = starts.last().copied().unwrap_or_default();
-        let climbed = move |k: u64| {
-            let before = self.row(k) - 1;
-            let since = Double::from(k - StaircaseTable::steps_after(before));
-            let start = starts.get(before as usize).copied().unwrap_or_default();
-            start + since / Double::from(self.table.rate(before + 1))
-        };
-        move |k, since| {
-            let left = self.count().saturating_sub(k);
-            let step_s = if k <= self.ramp_steps {
-                climbed(k)
-            } else if left >= self.ramp_steps {
-                ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
-            } else {
-                duration - climbed(left)
-            };
-            since.exceeds(step_s * Double::from(u64::from(clock_hz)))
-        }
-    }
-
-    /// How far a time in s may be off in f64: each row adds its own roundings to those before.
-    pub(super) fn off_s(&self) -> f64 {
-        (MAX_OFF + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
     }
 
     /// Steps of the ramp that fit into `t`, as good as a division tells.
@@ -257,6 +206,65 @@ impl Staircase {
 
     fn signed(&self, magnitude: f64) -> f64 {
         if self.steps < 0 { -magnitude } else { magnitude }
+    }
+}
+
+impl Schedule for Staircase {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(self.exact_duration() * f64::from(clock_hz))
+    }
+
+    /// Each row, which saves the search for a step's row.
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let (right, rows) = (self.steps >= 0, self.ramp_rows());
+        let row = move |n: u64| {
+            let start_s = self.starts_s.get(n as usize - 1).copied().unwrap_or(0.0);
+            (self.table.rate(n) as f64, start_s, StaircaseTable::steps_in(n))
+        };
+        let up = (1..=rows).map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            Run::new(steps, right, off, move |step| (start_s + (step + 1.0) / rate) * clock)
+        });
+        let (rate, start_s) = (self.plateau_rate as f64, self.ramp_s());
+        let plateau =
+            Run::new(self.plateau_steps(), right, off, move |step| (start_s + (step + 1.0) / rate) * clock);
+        let down = (1..=rows).rev().map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            // The last step of the ramp up is the first of the ramp down, and the last step is at the end.
+            let steps = steps - u64::from(n == rows) + u64::from(n == 1);
+            let (first, duration_s) = (steps as f64 - if n == 1 { 1.0 } else { 0.0 }, self.duration_s);
+            Run::new(steps, right, off, move |step| (duration_s - (start_s + (first - step) / rate)) * clock)
+        });
+        Box::new(up.chain([plateau]).chain(down))
+    }
+
+    /// A step's time is a sum of quotients of whole numbers.
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let (starts, duration) = (self.exact_starts(), self.exact_duration());
+        let ramp_s = starts.last().copied().unwrap_or_default();
+        let climbed = move |k: u64| {
+            let before = self.row(k) - 1;
+            let since = Double::from(k - StaircaseTable::steps_after(before));
+            let start = starts.get(before as usize).copied().unwrap_or_default();
+            start + since / Double::from(self.table.rate(before + 1))
+        };
+        Box::new(move |k, since| {
+            let left = self.count().saturating_sub(k);
+            let step_s = if k <= self.ramp_steps {
+                climbed(k)
+            } else if left >= self.ramp_steps {
+                ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
+            } else {
+                duration - climbed(left)
+            };
+            since > step_s * f64::from(clock_hz)
+        })
+    }
+
+    /// Each row adds its own roundings to those before.
+    fn off_s(&self) -> f64 {
+        (MAX_OFF + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
     }
 }
 

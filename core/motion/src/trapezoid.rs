@@ -21,56 +21,71 @@
 //! assert!(Trapezoid::new(200, 250.0, 4000.0, 9000.0).peak_speed() < 4000.0);
 //! ```
 
-use crate::{Curve, Peaks, crossing::is_due_before, double::Double, mirrored::Mirrored, square_root};
-use alloc::vec::Vec;
+use crate::{
+    Curve, Peaks,
+    cycle_time::CycleTime,
+    double::Double,
+    mirrored::Mirrored,
+    number::Number,
+    rounding::{IsDueBefore, is_mirrored_due_before},
+    run::{Runs, Schedule, one_run},
+    step_loop::MoveSteps,
+};
+use alloc::{boxed::Box, vec::Vec};
 
 /// A trapezoid or triangle of uniform acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
-    pub(super) halves: Mirrored,
-    pub(super) start_speed: f64,
-    pub(super) acceleration: f64,
-    /// Highest speed that is reached: the top speed, or that of the triangle's tip.
-    pub(super) peak_speed: f64,
-    /// Steps of a ramp, at most half of all.
-    pub(super) ramp_steps: f64,
-    pub(super) ramp_s: f64,
-    limits: Limits,
+    halves: Mirrored,
+    half: Half<f64>,
+    limits: Limits<Double>,
 }
 
-/// What a trapezoid is made of, in 106 bits: in f64 neither a decimal nor a quotient by mechanics is what it means.
+/// Start speed, top speed and acceleration. In f64 neither a decimal nor a quotient by mechanics has all its digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limits {
-    pub(super) start_speed: Double,
-    pub(super) top_speed: Double,
-    pub(super) acceleration: Double,
+pub(super) struct Limits<N> {
+    pub(super) start_speed: N,
+    pub(super) top_speed: N,
+    pub(super) acceleration: N,
 }
 
-/// The curve in 106 bits, of times in s.
-#[derive(Clone, Copy)]
-struct Exactly {
-    count: Double,
-    start_speed: Double,
-    acceleration: Double,
-    peak_speed: Double,
-    ramp_steps: Double,
-    ramp: Double,
+/// The first half of the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Half<N> {
+    start_speed: N,
+    acceleration: N,
+    /// Highest speed that is reached: the top speed, or that of the triangle's tip.
+    peak_speed: N,
+    /// Steps of a ramp, at most half of all.
+    ramp_steps: N,
+    ramp_s: N,
+    duration_s: N,
 }
 
-impl Exactly {
-    fn duration(&self) -> Double {
-        let two = Double::from(2.0);
-        self.ramp * two + (self.count - self.ramp_steps * two) / self.peak_speed
+impl<N: Number> Half<N> {
+    fn new(steps: i64, limits: Limits<N>) -> Self {
+        let Limits { start_speed: v0, top_speed: v1, acceleration } = limits;
+        let all = N::from(steps.unsigned_abs() as f64);
+        // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
+        let whole_ramp = (v1 - v0) * (v1 + v0) / (acceleration * 2.0);
+        let (peak_speed, ramp_steps) = if whole_ramp * 2.0 <= all {
+            (v1, whole_ramp)
+        } else {
+            ((v0 * v0 + acceleration * all).square_root(), all * 0.5)
+        };
+        // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
+        let ramp_s = ramp_steps * 2.0 / (v0 + peak_speed);
+        let duration_s = ramp_s * 2.0 + (all - ramp_steps * 2.0) / peak_speed;
+        Self { start_speed: v0, acceleration, peak_speed, ramp_steps, ramp_s, duration_s }
     }
 
-    /// Whether the first half is past `place` at `t`.
-    fn is_past(&self, t: Double, place: f64) -> bool {
-        let travelled = if self.ramp.exceeds(t) {
-            (self.start_speed + self.acceleration * t * 0.5.into()) * t
+    /// s(t) in steps without sign.
+    fn position(&self, t: N) -> N {
+        if t < self.ramp_s {
+            (self.start_speed + self.acceleration * t * 0.5) * t
         } else {
-            self.ramp_steps + self.peak_speed * (t - self.ramp)
-        };
-        travelled.exceeds(place.into())
+            self.ramp_steps + self.peak_speed * (t - self.ramp_s)
+        }
     }
 }
 
@@ -85,76 +100,72 @@ impl Trapezoid {
     }
 
     /// [`Self::new`], of numbers with all their digits.
-    pub(super) fn within(steps: i64, limits: Limits) -> Self {
+    pub(super) fn within(steps: i64, limits: Limits<Double>) -> Self {
+        let Limits { start_speed, top_speed, acceleration } = limits;
         let [start_speed, top_speed, acceleration] =
-            [limits.start_speed, limits.top_speed, limits.acceleration].map(|number| number.high);
-        let all = steps.unsigned_abs() as f64;
-        let (v0, v1, a) = (start_speed, top_speed, acceleration);
-        // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
-        let whole_ramp = (v1 - v0) * (v1 + v0) / (2.0 * a);
-        let (peak_speed, ramp_steps) = if 2.0 * whole_ramp <= all {
-            (v1, whole_ramp)
-        } else {
-            (square_root(v0 * v0 + a * all), all / 2.0)
-        };
-        // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
-        let ramp_s = if ramp_steps > 0.0 { 2.0 * ramp_steps / (v0 + peak_speed) } else { 0.0 };
-        let plateau_s = (all - 2.0 * ramp_steps) / peak_speed;
-        let duration_s = 2.0 * ramp_s + plateau_s;
-        let halves = Mirrored { steps, duration_s };
-        Self { halves, start_speed, acceleration, peak_speed, ramp_steps, ramp_s, limits }
+            [start_speed, top_speed, acceleration].map(|number| number.high);
+        let half = Half::new(steps, Limits { start_speed, top_speed, acceleration });
+        Self { halves: Mirrored { steps, duration_s: half.duration_s }, half, limits }
     }
 
     /// Highest speed that is reached, in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
-        self.peak_speed
+        self.half.peak_speed
     }
 
     /// Time of each ramp in s.
     #[must_use]
     pub fn ramp_s(&self) -> f64 {
-        self.ramp_s
+        self.half.ramp_s
     }
 
     /// Steps of each ramp, not rounded.
     #[must_use]
     pub fn ramp_steps(&self) -> f64 {
-        self.ramp_steps
+        self.half.ramp_steps
     }
 
-    fn exactly(&self) -> Exactly {
-        let Limits { start_speed: v0, top_speed: v1, acceleration } = self.limits;
-        let (count, two) = (Double::from(self.halves.steps.unsigned_abs()), Double::from(2.0));
-        let whole_ramp = (v1 - v0) * (v1 + v0) / (acceleration * two);
-        let (peak_speed, ramp_steps) = if (whole_ramp * two).exceeds(count) {
-            ((v0 * v0 + acceleration * count).square_root(), count / two)
+    /// The cycle of each step, of a clock of `clock_hz`, from the start of the move.
+    pub fn step_times(&self, clock_hz: u32) -> impl Iterator<Item = u64> + '_ {
+        MoveSteps::new(self, CycleTime::default(), clock_hz).map(|(_, step)| step.cycle)
+    }
+
+    fn exactly(&self) -> Half<Double> {
+        Half::new(self.halves.steps, self.limits)
+    }
+
+    /// When the first half is at a position: t = 2*s/(v0 + v), which keeps the digits that (v - v0)/a would lose.
+    fn climb_s(&self, position: f64) -> f64 {
+        let Half { start_speed, acceleration, peak_speed, ramp_steps, ramp_s, .. } = self.half;
+        if position < ramp_steps {
+            let speed = (start_speed * start_speed + 2.0 * acceleration * position).square_root();
+            2.0 * position / (start_speed + speed)
         } else {
-            (v1, whole_ramp)
-        };
-        let ramp = ramp_steps * two / (v0 + peak_speed);
-        Exactly { count, start_speed: v0, acceleration, peak_speed, ramp_steps, ramp }
-    }
-
-    /// How long it lasts in s.
-    pub(super) fn exact_duration(&self) -> Double {
-        self.exactly().duration()
-    }
-
-    /// Whether step `k` (from 1) falls due before a time in cycles of a clock of `clock_hz`, for certain.
-    pub(super) fn is_due_before(&self, clock_hz: u32) -> impl Fn(u64, Double) -> bool + use<> {
-        let (curve, count) = (self.exactly(), self.halves.steps.unsigned_abs());
-        let (duration, clock) = (curve.duration(), Double::from(u64::from(clock_hz)));
-        move |k, since| is_due_before((k, count), since / clock, duration, |t, place| curve.is_past(t, place))
-    }
-
-    /// s(t) of the first half, in steps without sign.
-    fn first_half(&self, t: f64) -> f64 {
-        if t < self.ramp_s {
-            (self.start_speed + self.acceleration * t / 2.0) * t
-        } else {
-            self.ramp_steps + self.peak_speed * (t - self.ramp_s)
+            ramp_s + (position - ramp_steps) / peak_speed
         }
+    }
+}
+
+impl Schedule for Trapezoid {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(self.exactly().duration_s * f64::from(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let clock = f64::from(clock_hz);
+        one_run(self, clock_hz, move |step| {
+            self.halves.time_s(step + 0.5, |position| self.climb_s(position)) * clock
+        })
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let (half, count) = (self.exactly(), self.halves.steps.unsigned_abs());
+        Box::new(move |k, since| {
+            is_mirrored_due_before((k, count), since / f64::from(clock_hz), half.duration_s, |t, position| {
+                half.position(t) > position.into()
+            })
+        })
     }
 }
 
@@ -168,33 +179,33 @@ impl Curve for Trapezoid {
     }
 
     fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| self.first_half(t))
+        self.halves.position(t, |t| self.half.position(t))
     }
 
     fn speed(&self, t: f64) -> f64 {
         let t = self.halves.nearer_end(t);
-        let climbed = self.start_speed + self.acceleration * t;
-        self.halves.signed(if t < self.ramp_s { climbed } else { self.peak_speed })
+        let climbed = self.half.start_speed + self.half.acceleration * t;
+        self.halves.signed(if t < self.half.ramp_s { climbed } else { self.half.peak_speed })
     }
 
     fn acceleration(&self, t: f64) -> f64 {
-        if self.halves.nearer_end(t) >= self.ramp_s {
+        if self.halves.nearer_end(t) >= self.half.ramp_s {
             0.0
         } else {
-            self.halves.acceleration(t, self.acceleration)
+            self.halves.acceleration(t, self.half.acceleration)
         }
     }
 
     fn peaks(&self) -> Peaks {
-        let acceleration = if self.ramp_s > 0.0 { self.acceleration } else { 0.0 };
+        let acceleration = if self.half.ramp_s > 0.0 { self.half.acceleration } else { 0.0 };
         // At the tip of a triangle the acceleration is reversed; else it ends where the plateau begins.
-        let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
+        let turns = 2.0 * self.half.ramp_s >= self.halves.duration_s;
         let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
-        Peaks { speed: self.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
+        Peaks { speed: self.half.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
-        self.halves.breakpoints_s([self.ramp_s].into_iter())
+        self.halves.breakpoints_s([self.half.ramp_s].into_iter())
     }
 }
 

@@ -35,10 +35,14 @@ use crate::{
     acceleration_table::AccelerationTable,
     bisection::least_near,
     curve::greater,
+    cycle_time::CycleTime,
+    double::Double,
     format::grouped,
+    rounding::IsDueBefore,
+    run::{Run, Runs, Schedule},
     stepped::{self, Counts},
 };
-use alloc::{format, string::String, vec::Vec};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// A trapezoid by acceleration table.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,47 +151,17 @@ impl TrapezoidTable {
         }
     }
 
-    /// The reload of so many intervals that come after those which are past, if one of the plateau serves them all.
-    pub(super) fn one_reload(&self, past: u64, intervals: usize) -> Option<u64> {
-        let end = past.saturating_add(intervals as u64);
-        (past >= self.ramp && end <= self.count() - self.ramp).then(|| self.plateau_reload())
-    }
-
-    /// Writes the timer ticks of the intervals that come after so many from the block's beginning on, and says of how many:
-    /// none at the end.
-    pub(super) fn reloads(&self, past: u64, block: &mut [u64]) -> usize {
-        let (count, ramp) = (self.count(), self.ramp);
-        let left = usize::try_from(count - past).unwrap_or(usize::MAX).min(block.len());
-        let mut len = 0;
-        while len < left {
-            let interval = past + len as u64;
-            let end = if interval < ramp {
-                ramp
-            } else if interval < count - ramp {
-                count - ramp
-            } else {
-                count
-            };
-            let part = block.get_mut(len..left).unwrap_or_default();
-            let part_len = part.len().min((end - interval) as usize);
-            let places = part.iter_mut().take(part_len);
-            if interval < ramp {
-                let sums = self.sums.get(interval as usize..).unwrap_or_default();
-                places.zip(sums.windows(2)).for_each(|(reload, pair)| *reload = between(pair));
-            } else if interval < count - ramp {
-                places.for_each(|reload| *reload = self.plateau_reload());
-            } else {
-                let sums = self.sums.get(..=(count - interval) as usize).unwrap_or_default();
-                places.zip(sums.windows(2).rev()).for_each(|(reload, pair)| *reload = between(pair));
-            }
-            len += part_len;
-        }
-        len
-    }
-
     /// Time of step `k` in s, rounded once.
     pub(super) fn step_s(&self, k: u64) -> f64 {
         self.step_ticks(k) as f64 / f64::from(self.table.timer_hz())
+    }
+
+    /// Time of step `k` in cycles.
+    fn step_time(&self, k: u64, clock_hz: u32) -> CycleTime {
+        let timer_hz = u128::from(self.table.timer_hz().max(1));
+        let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
+        let (whole, rest) = (product / timer_hz, product % timer_hz);
+        CycleTime { whole: whole as u64, part: Double::from(rest as u64) / Double::from(timer_hz as u64) }
     }
 
     /// The first of the sums that is not under `ticks`, or their number; looked for from `near` on.
@@ -251,11 +225,31 @@ impl TrapezoidTable {
     }
 }
 
-/// What one sum has more than the one before.
-fn between(pair: &[u64]) -> u64 {
-    match pair {
-        [before, after] => after - before,
-        _ => 0,
+impl Schedule for TrapezoidTable {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        self.step_time(self.count(), clock_hz)
+    }
+
+    /// Both ramps by the sums of reloads, the plateau by one reload.
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let per_tick = f64::from(clock_hz) / f64::from(self.table.timer_hz());
+        let (off, right) = (self.off_s() * f64::from(clock_hz), self.steps >= 0);
+        let by_sums =
+            move |past: u64| move |step: f64| self.step_ticks(past + step as u64 + 1) as f64 * per_tick;
+        let (start, each) = (self.sum(self.ramp) as f64, self.plateau_reload() as f64);
+        let plateau = self.count() - 2 * self.ramp;
+        Box::new(
+            [
+                Run::new(self.ramp, right, off, by_sums(0)),
+                Run::new(plateau, right, off, move |step| (start + (step + 1.0) * each) * per_tick),
+                Run::new(self.ramp, right, off, by_sums(self.ramp + plateau)),
+            ]
+            .into_iter(),
+        )
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        Box::new(move |k, since| since > self.step_time(k, clock_hz).double())
     }
 }
 

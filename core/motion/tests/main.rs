@@ -3,9 +3,7 @@
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod as_before;
 mod decimals;
-mod exact_cycles;
 mod fewest_entries;
 mod klipper;
 mod smallest_tables;

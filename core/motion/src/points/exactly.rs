@@ -2,18 +2,14 @@
 //! from the nearer end (`hermite`), whose slopes are formed anew of the points beside it.
 
 use super::{Between, Points};
-use crate::double::Double;
+use crate::{
+    double::Double,
+    hermite::{Cubic, slope_between},
+    number::Number,
+};
 
 /// What 106 bits lose of a position, and what is formed of it, in parts of it: 2^-98.
 const UNTOLD: f64 = f64::EPSILON * f64::EPSILON * 64.0;
-
-fn less(a: Double, b: Double) -> bool {
-    b.exceeds(a)
-}
-
-fn magnitude(a: Double) -> Double {
-    if less(a, Double::default()) { Double::default() - a } else { a }
-}
 
 impl Points {
     /// Whether piece `index` is past `place`, which lies in it, before `t` in s.
@@ -28,28 +24,32 @@ impl Points {
 
     /// Whether it is past `place` by more than `untold` in parts of a position, or less than that short of it.
     fn is_beyond(&self, index: usize, place: f64, t: Double, untold: f64) -> bool {
-        let Some(&[(from_s, from), (to_s, to)]) = self.exact.get(index..index + 2) else { return false };
-        let (mean, length) = ((to - from) / (to_s - from_s), to_s - from_s);
-        let [first, last] = match self.between {
-            Between::Straight => [mean, mean],
+        let Some(piece) = self.exact_piece(index) else { return false };
+        let (behind, ahead) =
+            ((Double::from(place) - piece.from).magnitude(), (piece.to - place).magnitude());
+        // The digits of a position end with those of the way from the first point, however short a step's own way is.
+        let untold = Double::from((libm::fabs(piece.from.high) + libm::fabs(piece.to.high)) * untold);
+        if behind < ahead {
+            let x = t - piece.from_s;
+            let has_made =
+                x >= piece.length_s() || piece.seen_from_start().travel(x).magnitude() > behind + untold;
+            x > 0.0.into() && has_made
+        } else {
+            let x = piece.to_s - t;
+            let is_left =
+                x >= piece.length_s() || piece.seen_from_end().travel(x).magnitude() > ahead - untold;
+            !(x > 0.0.into() && is_left)
+        }
+    }
+
+    /// Piece `index` with all its digits.
+    fn exact_piece(&self, index: usize) -> Option<Cubic<Double>> {
+        let &[(from_s, from), (to_s, to)] = self.exact.get(index..index + 2)? else { return None };
+        let [from_speed, to_speed] = match self.between {
+            Between::Straight => [(to - from) / (to_s - from_s); 2],
             Between::Smooth => [self.slope(index), self.slope(index + 1)],
         };
-        let (behind, ahead) = (magnitude(Double::from(place) - from), magnitude(to - place.into()));
-        // The digits of a position end with those of the way from the first point, however short a step's own way is.
-        let untold = Double::from((libm::fabs(from.high) + libm::fabs(to.high)) * untold);
-        // Whether it has made more than a travel in a time from one end, of the slopes there and at the other.
-        let has_made = |x: Double, travel: Double, [near, far]: [Double; 2]| {
-            let (near_less, far_less) = (mean - near, mean - far);
-            let square = (near_less * 2.0.into() + far_less) / length;
-            let cube = (near_less + far_less) / (length * length);
-            let made = (near + (square - cube * x) * x) * x;
-            x.is_positive() && (!less(x, length) || magnitude(made).exceeds(travel))
-        };
-        if less(behind, ahead) {
-            has_made(t - from_s, behind + untold, [first, last])
-        } else {
-            !has_made(to_s - t, ahead - untold, [last, first])
-        }
+        Some(Cubic { from_s, to_s, from, to, from_speed, to_speed })
     }
 
     /// B1's rounding of the position at a time, near `t`, no nearer to its place in f64 than `off`; `since` is the time in s,
@@ -61,13 +61,13 @@ impl Points {
             return libm::floor(past) as i64;
         }
         let (later, earlier) = (since(true), since(false));
-        let index = self.exact.partition_point(|(from_s, _)| !from_s.exceeds(later)).saturating_sub(1);
+        let index = self.exact.partition_point(|(from_s, _)| *from_s <= later).saturating_sub(1);
         let Some(index) = index.checked_sub(usize::from(index + 1 == self.exact.len())) else { return 0 };
         let Some(&[(_, from), (_, to)]) = self.exact.get(index..index + 2) else { return 0 };
         // Whether the position is no less than the half below a whole one.
         let has = |whole: i64| {
             let half = whole as f64 - 0.5;
-            let is_under = |end: Double| !Double::from(half).exceeds(end);
+            let is_under = |end: Double| Double::from(half) <= end;
             match (is_under(from), is_under(to)) {
                 (true, true) => true,
                 (false, false) => false,
@@ -85,21 +85,14 @@ impl Points {
         due
     }
 
-    /// Steffen's slope at a point.
+    /// Steffen's slope at a point; none at the first and the last.
     fn slope(&self, index: usize) -> Double {
-        let mean = |index: usize| match self.exact.get(index..index.wrapping_add(2)) {
-            Some(&[(from_s, from), (to_s, to)]) => Some(((to - from) / (to_s - from_s), to_s - from_s)),
+        let line = |index: usize| match self.exact.get(index..index.wrapping_add(2)) {
+            Some(&[(from_s, from), (to_s, to)]) => Some((to_s - from_s, (to - from) / (to_s - from_s))),
             _ => None,
         };
-        let none = Double::default();
-        let (Some((d0, h0)), Some((d1, h1))) = (mean(index.wrapping_sub(1)), mean(index)) else {
-            return none;
-        };
-        if !(d0 * d1).is_positive() {
-            return none;
-        }
-        let least = |a: Double, b: Double| if less(magnitude(b), magnitude(a)) { b } else { a };
-        least(least(d0, d1) * 2.0.into(), (d0 * h1 + d1 * h0) / (h0 + h1))
+        let lines = line(index.wrapping_sub(1)).zip(line(index));
+        lines.map_or_else(Double::default, |(before, after)| slope_between(before, after))
     }
 }
 

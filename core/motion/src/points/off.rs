@@ -13,9 +13,9 @@
 //! than that error, x is no less than the time that it makes.
 
 use crate::{
-    crossing::{MAX_OFF, ROUNDING},
     curve::greater,
     hermite::Cubic,
+    rounding::{MAX_OFF, ROUNDING},
 };
 use alloc::vec::Vec;
 

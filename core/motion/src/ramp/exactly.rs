@@ -28,7 +28,7 @@ impl Ramp {
             Self::Sigmoid(curve) => {
                 let range = Double::decimal(curve.range);
                 let past_one = range + range.exponential_rest();
-                let (twice_range, under) = (range * 2.0.into(), past_one + 2.0.into());
+                let (twice_range, under) = (range * 2.0, past_one + 2.0);
                 let low = Double::from(1.0) / under;
                 Exactly::Sigmoid { twice_range, low, scale: twice_range * past_one / under }
             }
@@ -56,17 +56,16 @@ impl Exactly {
 
     /// Whether G(x) is more than `travel`.
     pub(crate) fn is_past(self, x: Double, travel: Double) -> bool {
-        let half = Double::from(0.5);
         match self {
             Self::Sigmoid { twice_range, low, scale } => {
                 let (z, area) = (twice_range * x, scale * travel);
                 let rest = (low * z + area).exponential_rest();
-                (low * z.exponential_rest() - rest).exceeds(area)
+                low * z.exponential_rest() - rest > area
             }
-            Self::Bezier => (x * x * x * (Double::from(1.0) - x * half)).exceeds(travel),
-            Self::Straight => (x * x * half).exceeds(travel),
+            Self::Bezier => x * x * x * (Double::from(1.0) - x * 0.5) > travel,
+            Self::Straight => x * x * 0.5 > travel,
             Self::Exponential { constants, scale } => {
-                ((Double::default() - constants * x).exponential_rest() / scale).exceeds(travel)
+                (Double::default() - constants * x).exponential_rest() / scale > travel
             }
         }
     }

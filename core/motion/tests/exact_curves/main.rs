@@ -16,6 +16,7 @@
 mod fixed;
 mod ideal;
 mod judged;
+mod whole_numbers;
 
 use fixed::{decimal, whole};
 use ideal::Ideal;
@@ -43,9 +44,8 @@ const MOTIONS: u64 = 60;
 const MOST_STEPS: f64 = 60_000.0;
 /// How near an edge a step's time is looked at, in cycles and in parts of the time.
 const NEAR: (f64, f64) = (1e-6, 1e-14);
-/// How far the times of a curve's steps may be off that blocks of steps tell: 48 roundings of the longest, 64 of the way in
-/// a block, and 2^-20 cycles.
-const BY_SERIES: (f64, f64) = (48.0 + 64.0, 1.0 / 1_048_576.0);
+/// Greatest error of a time that blocks of steps give: four times 64 roundings of the longest, and 2^-17 cycles.
+const BY_BLOCKS: (f64, f64) = (4.0 * 64.0, 1.0 / 131_072.0);
 /// Of a motion whose times in f64 are all near an edge no more are looked at.
 const MOST_NEAR: u64 = 300;
 
@@ -262,7 +262,7 @@ fn cosine(draw: &mut Draw) -> (Move, Ideal) {
 
 #[test]
 fn cosines_have_every_step_in_its_cycle() {
-    hold(3, "cosine", BY_SERIES, cosine);
+    hold(3, "cosine", BY_BLOCKS, cosine);
 }
 
 /// Of an odd count the middle step is due after half of the time; in the plateau every step is a quotient.
@@ -303,7 +303,7 @@ fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
 fn ramps_of_every_shape_have_every_step_in_its_cycle() {
     let shapes = [RampShape::Bezier, RampShape::Straight, RampShape::Exponential, RampShape::Sigmoid];
     for (seed, shape) in (5..).zip(shapes) {
-        hold(seed, &format!("{shape:?}"), BY_SERIES, |draw| ramps(shape, draw));
+        hold(seed, &format!("{shape:?}"), BY_BLOCKS, |draw| ramps(shape, draw));
     }
 }
 
@@ -356,7 +356,7 @@ fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
 
 #[test]
 fn jerk_limited_moves_have_every_step_in_its_cycle() {
-    hold(9, "jerk-limited", BY_SERIES, jerk_limited);
+    hold(9, "jerk-limited", BY_BLOCKS, jerk_limited);
 }
 
 fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
