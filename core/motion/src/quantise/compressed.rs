@@ -6,22 +6,18 @@
 //! entry    \___ interval, add, count      one parabola through the windows of its steps
 //! ```
 //!
-//! The list is replayed as the segment engine replays it, in the integers of its format, so what is checked here is what
-//! comes out at the STEP line: the number of steps is exact, no step leaves its window, and no error is carried from one
-//! entry to the next but the one that the entry's last step has, which is in its window too.
+//! The list is replayed in the integers of its format, as the segment engine replays it: the number of steps is exact,
+//! no step leaves its window, and the only error that one entry passes on to the next is that of its last step.
 //!
-//! How few entries? The fewest that there are ([`super::fewest`]), where the windows are narrow enough for that search. For
-//! all other lists, and where they are to be made quickly, each entry is the longest that there is from the time at which
-//! the one before it ended, of those whose last step comes close to the middle of its window: an eighth of it and a cycle.
-//! (Where the windows are the due cycles alone their middles say nothing, so there it is the longest of all, less an eighth.)
-//! Without that condition the entries would be longer one by one and yet more in number, for an entry of greatest length
-//! ends at the edge of a window, the worst place for the next one to begin. Where the third derivative of time over steps
-//! hardly changes, let an entry that may begin and end anywhere in its windows have the length 1; then entries from middle
-//! to middle have 0.87, and those that are as long as they can be, one after another, have 0.75.
+//! The fewest entries are searched for ([`super::fewest`]) where the windows are narrow enough. Otherwise, and for the
+//! quick search, each entry is the longest from the end of the one before whose last step comes within an eighth of its
+//! window, and a cycle, of the middle. (Where windows are the due cycles alone it is the longest of all, less an eighth.)
+//! An entry of greatest length ends at the edge of a window, the worst position to begin the next one: lists of such
+//! entries have about an eighth more of them.
 
-use crate::quantise::{
+use super::{
     entry_format::EntryFormat,
-    fewest::{self, Piece, Stretch},
+    fewest::{self, Piece, Section},
     longest::{Ahead, Window},
     segments::START,
     timing_error::TimingError,
@@ -30,23 +26,25 @@ use crate::{
     ScheduledStep,
     problem::{Cause, ValueError},
 };
-use alloc::{boxed::Box, collections::VecDeque, vec::Vec};
+use alloc::{collections::VecDeque, vec::Vec};
 use core::num::NonZeroU32;
 use stepscope_peripheral::{
     segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
     units::Cycles,
 };
 
-/// Greatest tolerance in cycles.
+/// Maximum tolerance in cycles.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
-/// Most entries of a list: 64 MB.
+/// Maximum entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
-/// What the search for the fewest entries may look at, in steps of an interval and an add: two seconds or so, and for each
-/// step of the list ten microseconds more.
+/// Work of the search for the fewest entries, in steps of an interval and an add: about two seconds, and ten
+/// microseconds more for each step of the list.
 const WORK: u64 = 1 << 28;
-const WORK_A_STEP: u64 = 1 << 10;
+const WORK_PER_STEP: u64 = 1 << 10;
 /// The last cycle of a list from its start on.
 const LAST: u64 = LAST_CYCLE.0 - START.0;
+/// Windows that are read at a time.
+const READ: usize = 256;
 
 /// On which side of its due cycle a step may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,8 +61,8 @@ pub enum Side {
 pub struct Tolerance {
     /// In cycles, at most [`MAX_TOLERANCE`].
     pub cycles: Cycles,
-    /// Nor more than this part of the shorter of the intervals before and after it, or, of a step that is never late, of
-    /// the interval before it: 2 for a half.
+    /// At most this part of the shorter of the intervals before and after it (of [`Side::Early`] the one before): 2 for
+    /// a half.
     pub interval_part: Option<NonZeroU32>,
     /// Which way.
     pub side: Side,
@@ -77,36 +75,17 @@ impl Tolerance {
         Self { cycles, interval_part: None, side: Side::Both }
     }
 
-    /// That of a step between these intervals.
-    fn between(self, before: u64, after: Option<u64>) -> u64 {
+    /// The earliest and the latest cycle of a step between these intervals.
+    fn window(self, due: u64, before: u64, after: Option<u64>) -> (u64, u64) {
         let shorter = match (self.side, after) {
             (Side::Both, Some(after)) => after.min(before),
             (Side::Early, _) | (Side::Both, None) => before,
         };
-        let most = self.cycles.0;
-        match self.interval_part {
-            // Where the part is not the less it is not formed.
-            Some(part) if shorter < most.saturating_mul(part.get().into()) => {
-                quotient(shorter, part).min(most)
-            }
-            _ => most,
-        }
-    }
-
-    /// The earliest and the latest cycle of a step.
-    fn window(self, due: u64, before: u64, after: Option<u64>) -> (u64, u64) {
-        let off = self.between(before, after);
-        let late = match self.side {
-            Side::Both => off,
-            Side::Early => 0,
-        };
+        let part = self.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
+        let off = part.min(self.cycles.0);
+        let late = if self.side == Side::Both { off } else { 0 };
         (due.saturating_sub(off), due.saturating_add(late))
     }
-}
-
-/// A quotient; of numbers of 32 bits it is quicker, which not every target finds out by itself.
-fn quotient(over: u64, under: NonZeroU32) -> u64 {
-    u32::try_from(over).map_or_else(|_| over / u64::from(under.get()), |over| u64::from(over / under))
 }
 
 /// A compressed list and how good it is.
@@ -116,13 +95,13 @@ pub struct Compressed {
     pub list: SegmentList,
     /// How far its steps are from their due cycles.
     pub error: TimingError,
-    /// How many entries it may have more than the fewest: 0 where it is proven to have the fewest, more where it was cut
-    /// into stretches, None where the fewest were not searched for, or not to the end.
+    /// By how many entries it may exceed the fewest: 0 if it is proven to have the fewest, more if it was cut into
+    /// sections, None if the fewest were not searched for, or not to the end.
     pub surplus: Option<u64>,
 }
 
 /// Compresses the steps of one axis, whose cycles count from the motion's start, into the fewest entries of `format`, or,
-/// where its windows are too many units wide for that search, into those of [`compressed_quickly`].
+/// where its windows are too wide for that search, as [`compressed_quickly`] does.
 ///
 /// # Errors
 /// A tolerance that is too great; a step that comes too soon for `pulse`, or too late for 48.16 fixed point; too many
@@ -134,11 +113,9 @@ pub fn compressed(
     pulse: PulseTimes,
 ) -> Result<Compressed, Cause> {
     let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
-    let mut ready = VecDeque::new();
-    let (before, surplus) = compression.fewest(&mut ready)?;
-    let mut rest = compression.go_on(before, ready);
-    rest.quick()?;
-    Ok(Compressed { surplus, ..rest.end() })
+    let surplus = compression.fewest()?;
+    compression.quick()?;
+    Ok(Compressed { surplus, ..compression.end() })
 }
 
 /// The same in few entries, each the longest that ends near the middle of a window: in a part of the time.
@@ -168,20 +145,40 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             let (given, most) = (tolerance.cycles.0 as f64, MAX_TOLERANCE.0 as f64);
             return Err(ValueError::TooMuch { given, most, of: "cycles of tolerance" }.into());
         }
-        Ok(Self { windows: Windows::new(steps, tolerance, format, pulse), writer: Writer::new(format) })
+        let mut windows = Windows {
+            steps,
+            next: None,
+            returned: Vec::new(),
+            tolerance,
+            format,
+            pulse,
+            before: 0,
+            count: 0,
+        };
+        windows.read();
+        Ok(Self { windows, writer: Writer::new(format) })
     }
 
-    /// Stretch after stretch in the fewest entries: the cycle of the last step that was kept, and how many entries there
-    /// may be more than the fewest, or None where steps are left, `ready` those of them that were read.
-    fn fewest(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
-        let (format, pulse) = (self.windows.ready.format, self.windows.ready.pulse);
+    /// Section after section in the fewest entries; how many more than the fewest there may be, or None where steps are
+    /// left.
+    fn fewest(&mut self) -> Result<Option<u64>, Cause> {
+        let mut ready = VecDeque::new();
+        let (last, surplus) = self.sections(&mut ready)?;
+        self.windows.put_back(last, &ready);
+        Ok(surplus)
+    }
+
+    /// The same: the cycle of the last step that is in an entry, and the number; `ready` gets the steps that were read
+    /// but are in none.
+    fn sections(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
+        let (format, pulse) = (self.windows.format, self.windows.pulse);
         let least = pulse.min_interval().0 << format.fraction_bits;
         let (mut last, mut cuts, mut work) = (0, 0, WORK);
         loop {
-            while let Some(step) = self.windows.next().filter(|_| ready.len() < fewest::MAX_STEPS) {
+            while let Some(step) = self.windows.next.filter(|_| ready.len() < fewest::MAX_STEPS) {
                 ready.push_back((self.windows.window()?, step.right));
             }
-            let more = self.windows.next().is_some();
+            let more = self.windows.next.is_some();
             let steps = ready.make_contiguous();
             let Some((first, _)) = steps.first() else { return Ok((last, Some(cuts))) };
             if steps.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
@@ -201,56 +198,43 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 steps.get(there - 1).zip(steps.get(there)).is_some_and(|((before, _), (window, _))| {
                     window.low.saturating_sub(before.high) <= format.most_interval()
                 });
-            let stretch =
-                Stretch::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
+            let section =
+                Section::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
             let Some(left) = work.checked_sub(there as u64) else { return Ok((last, None)) };
             work = left;
-            let Some(pieces) = stretch.pieces(is_cut, &mut work) else { return Ok((last, None)) };
+            let Some(pieces) = section.pieces(is_cut, &mut work) else { return Ok((last, None)) };
             let mut done = 0;
             for Piece { count, interval, add } in pieces {
-                let kept = steps.get(done..done + count).unwrap_or_default();
-                let right = kept.first().is_some_and(|(_, right)| *right);
-                self.writer.steps(kept, |(window, _)| window, (interval as u64, add, right));
-                (done, last) = (done + count, kept.last().map_or(last, |(window, _)| window.due));
+                let of_piece = steps.get(done..done + count).unwrap_or_default();
+                let right = of_piece.first().is_some_and(|(_, right)| *right);
+                let windows = of_piece.iter().map(|(window, _)| window);
+                self.writer.steps(count, windows, (interval as u64, add, right));
+                (done, last) = (done + count, of_piece.last().map_or(last, |(window, _)| window.due));
             }
-            // Of steps that are kept, so that many short pieces of a stretch cannot ask for it again and again.
-            work += WORK_A_STEP * done as u64;
+            // Only for steps in entries, so that many short pieces of a section do not get it again and again.
+            work += WORK_PER_STEP * done as u64;
             cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
             ready.drain(..done);
-            self.writer.judge()?;
+            self.writer.check_length()?;
         }
-    }
-
-    /// The steps that are left, behind one that is due in the cycle `before`.
-    fn go_on(
-        self,
-        before: u64,
-        ready: VecDeque<(Window, bool)>,
-    ) -> Compression<impl Iterator<Item = ScheduledStep>> {
-        let Windows { steps, ready: Ready { tolerance, format, pulse, steps: read, at, end, count, .. } } =
-            self.windows;
-        let read = read.into_iter().take(end).skip(at);
-        let count = count - ready.len() as u64;
-        let ready = ready.into_iter().map(|(window, right)| ScheduledStep { cycle: window.due, right });
-        let ready = ready.chain(read).chain(steps);
-        let mut windows = Windows::new(ready, tolerance, format, pulse);
-        (windows.ready.before, windows.ready.count) = (before, count);
-        Compression { windows, writer: self.writer }
     }
 
     /// The rest, one entry after another.
     fn quick(&mut self) -> Result<(), Cause> {
         let Self { windows, writer } = self;
-        let mut ahead = Ahead::new(windows.ready.format, windows.ready.pulse.min_interval().0);
+        let mut ahead = Ahead::new(windows.format, windows.pulse.min_interval().0);
         let mut length = 64;
-        while windows.begin(&mut ahead)? {
-            while let Some(longest) = ahead.longest(writer.time, length, |ahead| windows.fill(ahead))? {
+        while let Some(ScheduledStep { right, .. }) = windows.next {
+            windows.fill(right, &mut ahead)?;
+            while let Some(longest) =
+                ahead.longest(writer.time, length, |ahead| windows.fill(right, ahead))?
+            {
                 writer.wait(longest.wait);
-                let entry = (longest.interval, longest.add, windows.ready.right);
-                writer.steps(ahead.taken(longest.count), |window| window, entry);
+                let taken = ahead.taken(longest.count);
+                writer.steps(taken.len(), taken.iter(), (longest.interval, longest.add, right));
                 ahead.take(longest.count);
                 length = longest.count;
-                writer.judge()?;
+                writer.check_length()?;
             }
         }
         Ok(())
@@ -262,196 +246,56 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
     }
 }
 
-/// Steps whose errors are summed at once: their squares stay in 64 bits.
-const AT_ONCE: usize = 1 << 12;
-const _: () = assert!(2 * MAX_TOLERANCE.0.ilog2() + AT_ONCE.ilog2() < u64::BITS);
-
-/// Steps that are read at once, and windows that a run is read on by.
-const READ: usize = 256;
-
-/// The windows of the steps, run after run: a run goes one way.
+/// The windows of the steps.
 struct Windows<I> {
     steps: I,
-    ready: Ready,
-}
-
-/// Steps that were read, and what makes windows of them.
-struct Ready {
+    /// The next step without a window.
+    next: Option<ScheduledStep>,
+    /// Steps after it that were read before, the last first.
+    returned: Vec<ScheduledStep>,
     tolerance: Tolerance,
     format: EntryFormat,
-    /// Of the format, in a cycle.
-    units: u64,
     pulse: PulseTimes,
-    /// Those before `at` have their windows; from `end` on there is room for the next.
-    ///
-    /// Invariant: two have none, as long as there are as many.
-    steps: Box<[ScheduledStep; READ + 1]>,
-    at: usize,
-    end: usize,
     /// Cycle of the step before the next.
     before: u64,
     /// Steps that have their windows.
     count: u64,
-    /// Which way the run goes.
-    right: bool,
 }
 
 impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
-    fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Self {
-        let ready = Ready {
-            tolerance,
-            format,
-            units: 1 << format.fraction_bits,
-            pulse,
-            steps: Box::new([ScheduledStep { cycle: 0, right: false }; READ + 1]),
-            at: 0,
-            end: 0,
-            before: 0,
-            count: 0,
-            right: false,
-        };
-        let mut windows = Self { steps, ready };
-        windows.read();
-        windows
-    }
-
-    /// Reads on where fewer than two steps have no window.
+    /// Goes on to the next step.
     fn read(&mut self) {
-        let Self { steps, ready } = self;
-        if ready.left().len() < 2 {
-            ready.steps.copy_within(ready.at..ready.end, 0);
-            let mut end = ready.end - ready.at;
-            // From within, and into places that are there: so nothing is asked or called for each but what forms it.
-            steps.by_ref().take(READ).for_each(|step| {
-                if let Some(place) = ready.steps.get_mut(end) {
-                    (*place, end) = (step, end + 1);
-                }
-            });
-            (ready.at, ready.end) = (0, end);
-        }
+        self.next = self.returned.pop().or_else(|| self.steps.next());
     }
 
-    /// The next step.
-    fn next(&self) -> Option<ScheduledStep> {
-        self.ready.left().first().copied()
+    /// Takes back the windows of the steps after cycle `before`.
+    fn put_back(&mut self, before: u64, steps: &VecDeque<(Window, bool)>) {
+        (self.before, self.count) = (before, self.count - steps.len() as u64);
+        self.returned.extend(self.next);
+        let steps = steps.iter().rev();
+        self.returned.extend(steps.map(|(window, right)| ScheduledStep { cycle: window.due, right: *right }));
+        self.read();
     }
 
-    /// Begins the next run; false where no step is left.
-    fn begin(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        let Some(next) = self.next() else { return Ok(false) };
-        self.ready.right = next.right;
-        self.fill(ahead)?;
-        Ok(true)
-    }
-
-    /// Reads on, some steps of the run; false at its end.
-    fn fill(&mut self, ahead: &mut Ahead) -> Result<bool, Cause> {
-        let mut left = READ;
-        while left > 0 {
-            if self.next().is_none_or(|step| step.right != self.ready.right) {
+    /// Reads some windows of steps that go one way; false where that ends.
+    fn fill(&mut self, right: bool, ahead: &mut Ahead) -> Result<bool, Cause> {
+        for _ in 0..READ {
+            if self.next.is_none_or(|step| step.right != right) {
                 return Ok(false);
             }
-            left -= self.ready.fill(left, ahead.more())?;
-            self.read();
+            let window = self.window()?;
+            ahead.more().push(window);
         }
         Ok(true)
     }
 
     /// The window of the next step.
     fn window(&mut self) -> Result<Window, Cause> {
-        let window = self.ready.window();
+        let step = self.next.ok_or(Cause::NoSegmentSteps)?;
         self.read();
-        window
-    }
-}
-
-impl Ready {
-    /// Steps without windows.
-    fn left(&self) -> &[ScheduledStep] {
-        self.steps.get(self.at..self.end).unwrap_or_default()
-    }
-
-    /// Makes the windows of the run's next steps, `most` of them at most; says how many.
-    #[inline(never)]
-    fn fill(&mut self, most: usize, windows: &mut Vec<Window>) -> Result<usize, Cause> {
-        let length = windows.len();
-        let mut count = most.min(self.left().len().saturating_sub(1));
-        if !self.make(count, windows) {
-            windows.truncate(length);
-            let run =
-                self.left().iter().take(count.max(1)).take_while(|step| step.right == self.right).count();
-            let is_shorter = run < count;
-            count = run;
-            if !(is_shorter && self.make(run, windows)) {
-                // One after another: the last of all, or to the one that does not hold.
-                windows.truncate(length);
-                for _ in 0..run {
-                    windows.push(self.window()?);
-                }
-                return Ok(run);
-            }
-        }
-        if let Some(last) = self.left().get(..count).and_then(<[_]>::last) {
-            (self.before, self.count, self.at) = (last.cycle, self.count + count as u64, self.at + count);
-        }
-        Ok(count)
-    }
-
-    /// Makes the windows of the next `count` steps, which a step follows; false where they may not hold, or not all of them
-    /// go one way.
-    fn make(&self, count: usize, windows: &mut Vec<Window>) -> bool {
-        let Tolerance { cycles: Cycles(most), interval_part, side } = self.tolerance;
-        let late = if side == Side::Both { u64::MAX } else { 0 };
-        match interval_part {
-            None => self.put(count, windows, |_, _| (most, most & late)),
-            Some(part) => {
-                let whole = most * u64::from(part.get());
-                self.put(count, windows, |before, after| {
-                    let shorter = before.min(after | !late);
-                    let off = if shorter < whole { quotient(shorter, part).min(most) } else { most };
-                    (off, off & late)
-                })
-            }
-        }
-    }
-
-    /// The same, of a step that may be `off` early and late between two intervals.
-    #[inline(always)]
-    fn put(&self, count: usize, windows: &mut Vec<Window>, off: impl Fn(u64, u64) -> (u64, u64)) -> bool {
-        let (steps, afters) = (self.left(), self.left().get(1..=count).unwrap_or_default());
-        let (Some(first), Some(last), [between @ .., _]) =
-            (steps.first(), steps.get(afters.len().wrapping_sub(1)), afters)
-        else {
-            return false;
-        };
-        let least = self.pulse.min_interval().0 as i64;
-        let (mut due, mut before) = (first.cycle, first.cycle.saturating_sub(self.before));
-        // As signed numbers, which a step that is due before the one before it makes negative.
-        let mut shortest = before as i64;
-        // Nothing is asked of a step and nothing called, so the loop keeps its numbers in registers.
-        windows.extend(afters.iter().map(|next| {
-            let after = next.cycle.wrapping_sub(due);
-            let (early, late) = off(before, after);
-            let (low, high) = (due.saturating_sub(early), due.wrapping_add(late));
-            let window = Window::of(due, (low, high), self.units);
-            shortest = shortest.min(before as i64);
-            (due, before) = (next.cycle, after);
-            window
-        }));
-        // None is due after one that is due later, so far as their cycles have no more than 63 bits: differences have a sign then.
-        let is_fit = |step: &ScheduledStep| step.right == self.right && step.cycle <= i64::MAX as u64;
-        shortest >= least && last.cycle <= LAST - MAX_TOLERANCE.0 && between.iter().chain([first]).all(is_fit)
-    }
-
-    /// The window of the next step.
-    fn window(&mut self) -> Result<Window, Cause> {
-        let (Some(&step), after) = (self.left().first(), self.left().get(1).copied()) else {
-            return Err(Cause::NoSegmentSteps);
-        };
-        self.at += 1;
+        let after = self.next.map(|after| after.cycle.saturating_sub(step.cycle));
         self.count += 1;
         let before = step.cycle.saturating_sub(self.before);
-        let after = after.map(|after| after.cycle.saturating_sub(step.cycle));
         if before < self.pulse.min_interval().0 {
             return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
         }
@@ -460,7 +304,7 @@ impl Ready {
         if latest > LAST {
             return Err(ValueError::TooMuch { given: latest as f64, most: LAST as f64, of: "cycles" }.into());
         }
-        Ok(Window::of(step.cycle, (earliest, latest), self.units))
+        Ok(Window::of(step.cycle, (earliest, latest), self.format))
     }
 }
 
@@ -490,7 +334,7 @@ impl Writer {
     }
 
     /// Refuses a list that is too long.
-    fn judge(&self) -> Result<(), Cause> {
+    fn check_length(&self) -> Result<(), Cause> {
         if self.segments.len() > MAX_ENTRIES {
             let (given, most) = (self.segments.len() as f64, MAX_ENTRIES as f64);
             return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
@@ -498,31 +342,21 @@ impl Writer {
         Ok(())
     }
 
-    /// Keeps steps, each with its window.
-    fn steps<T>(
+    /// Writes an entry of `count` steps with these windows.
+    fn steps<'w>(
         &mut self,
-        kept: &[T],
-        window: impl Fn(&T) -> &Window,
+        count: usize,
+        windows: impl Iterator<Item = &'w Window>,
         (interval, add, right): (u64, i64, bool),
     ) {
-        let (bits, count) = (self.format.fraction_bits, kept.len() as u32);
-        let (mut time, mut next) = (self.time, interval);
-        for kept in kept.chunks(AT_ONCE) {
-            let (mut greatest, mut squares) = (0, 0_u64);
-            for window in kept.iter().map(&window) {
-                time = time.wrapping_add(next);
-                next = next.wrapping_add_signed(add);
-                debug_assert!((window.low..=window.high).contains(&time), "{time} is not in {window:?}");
-                let off = ((time >> bits).wrapping_sub(window.due) as i64).unsigned_abs();
-                greatest = off.max(greatest);
-                squares += off.wrapping_mul(off);
-            }
-            self.error.steps(kept.len(), greatest, squares.into());
+        let mut next = interval;
+        for window in windows {
+            self.time = self.time.wrapping_add(next);
+            next = next.wrapping_add_signed(add);
+            debug_assert!((window.low..=window.high).contains(&self.time), "{} is not in {window:?}", self.time);
+            self.error.step((self.time >> self.format.fraction_bits).abs_diff(window.due));
         }
-        let adds = u64::from(count) * u64::from(count).saturating_sub(1) / 2;
-        let lasts = interval.wrapping_mul(count.into()).wrapping_add_signed(add.wrapping_mul(adds as i64));
-        self.time = self.time.wrapping_add(lasts);
-        let shift = self.shift();
+        let (count, shift) = (count as u32, self.shift());
         let (interval, add) = (interval << shift, add << shift);
         if !self.goes_on(count, interval, add, right) {
             self.segments.push(Segment::Steps { count, interval, add, right });

@@ -50,14 +50,9 @@ struct Look {
 }
 
 impl Look {
-    /// Looks at all gates; None if there are none. `short`: whether all are at this add ([`is_short`]).
-    fn at(gates: &[Gate], add: i64, short: bool) -> Option<Self> {
-        let (low, high) = if short {
-            tightest(gates, add, |(a, n), (b, m)| a * m > b * n)?
-        } else {
-            let wide = |a: i64, m: i64| i128::from(a) * i128::from(m);
-            tightest(gates, add, |(a, n), (b, m)| wide(a, m) > wide(b, n))?
-        };
+    /// Looks at all gates; None if there are none.
+    fn at(gates: &[Gate], add: i64) -> Option<Self> {
+        let (low, high) = tightest(gates, add)?;
         let least = ceiling(low.low, low.n);
         let most = high.high.div_euclid(high.n);
         let slope = low.n - high.n;
@@ -81,32 +76,21 @@ impl Look {
     }
 }
 
-/// The gates that leave the least and the greatest interval at an add, both shifted by it; None if there are none. `exceeds`
-/// says whether a quotient of a time and a step is greater than another.
-#[inline]
-fn tightest(
-    gates: &[Gate],
-    add: i64,
-    exceeds: impl Fn((i64, i64), (i64, i64)) -> bool,
-) -> Option<(Gate, Gate)> {
+/// The gates that leave the least and the greatest interval at an add, both shifted by it; None if there are none.
+fn tightest(gates: &[Gate], add: i64) -> Option<(Gate, Gate)> {
+    let wide = |time: i64, n: i64| i128::from(time) * i128::from(n);
     let first = gates.first()?.shifted(add);
     let (mut low, mut high) = (first, first);
     for gate in gates.iter().skip(1) {
         let gate = gate.shifted(add);
-        if exceeds((gate.low, gate.n), (low.low, low.n)) {
+        if wide(gate.low, low.n) > wide(low.low, gate.n) {
             low = gate;
         }
-        if exceeds((high.high, high.n), (gate.high, gate.n)) {
+        if wide(high.high, gate.n) > wide(gate.high, high.n) {
             high = gate;
         }
     }
     Some((low, high))
-}
-
-/// Whether what is formed of such times and of steps up to `n` stays in 64 bits: seldom is one longer, and numbers of 128
-/// bits are slow where a target has none.
-pub(super) fn is_short(n: i64, times: [i64; 2]) -> bool {
-    n < 1 << 21 && times.iter().all(|time| time.unsigned_abs() < 1 << 40)
 }
 
 /// A quotient, rounded up.
@@ -136,16 +120,13 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
     let (mut left, mut right) = adds;
     let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);
     let mut best: Option<Fit> = None;
-    // Times go over adds in straight lines.
-    let is_short_at = |gate: Gate| is_short(gate.n, [gate.low, gate.high]);
-    let short = gates.iter().all(|gate| [left, right].iter().all(|add| is_short_at(gate.shifted(*add))));
     let mut add = guess;
     for _ in 0..MAX_LOOKS {
         if left > right {
             break;
         }
         add = add.clamp(left, right);
-        let look = Look::at(gates, add, short)?;
+        let look = Look::at(gates, add)?;
         if let Some(fit) = look.fit()
             && best.is_none_or(|best| look.room() > best.most - best.least)
         {
@@ -230,7 +211,7 @@ mod tests {
         for _ in 0..20_000 {
             let gate = |n, low| Gate { n, low, high: low + 3 };
             let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
-            let look = Look::at(&[first, second], 0, seen % 2 == 0).expect("there are gates");
+            let look = Look::at(&[first, second], 0).expect("there are gates");
             // The interval that one asks for at least, less what the other has at most.
             let gap = |low: Gate, high: Gate, add: i64| {
                 let (low, high) = (low.shifted(add), high.shifted(add));

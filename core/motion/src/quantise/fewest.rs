@@ -13,15 +13,15 @@
 //!    entry without its first steps, so no entry needs to begin before the layer's full step: whatever passes that step can
 //!    begin there instead, at whatever time it passes. What is left to begin at are the steps from full to last.
 //! 2. From each of these every interval and add is tried that the windows leave. For a given interval and add the times to
-//!    begin at are a range that each further window narrows ([`Stretch::narrowed`]), so all of them go together, as a
+//!    begin at are a range that each further window narrows ([`Section::narrowed`]), so all of them go together, as a
 //!    shifted copy of the step's bits; and only where the parabola leaves the layer: one that stands in it at the next step,
 //!    too, is found from there.
-//! 3. Where entries of one and of two steps end is told in closed form ([`Stretch::one_and_two`]), of some more steps time
-//!    by time ([`Stretch::short`]), and entries to steps that can have any time already are not looked at: so few intervals
+//! 3. Where entries of one and of two steps end is told in closed form ([`Section::one_and_two`]), of some more steps time
+//!    by time ([`Section::short`]), and entries to steps that can have any time already are not looked at: so few intervals
 //!    and adds are left, about the square of a window's width over the cube of the count.
 //!
-//! A list that is long is cut into stretches, each with the fewest entries to its last step. A cut costs an entry at most
-//! (where the windows of neighbours do not overlap): instead of the best entry across it one leads from the stretch's last
+//! A list that is long is cut into sections, each with the fewest entries to its last step. A cut costs an entry at most
+//! (where the windows of neighbours do not overlap): instead of the best entry across it one leads from the section's last
 //! step to the next one, in whose time that best entry goes on.
 
 use crate::quantise::{entry_format::EntryFormat, longest::Window};
@@ -29,11 +29,11 @@ use alloc::{vec, vec::Vec};
 
 /// Widest window in units: the work grows with the square of it.
 pub(super) const MAX_WIDTH: u64 = 1 << 12;
-/// Most steps of a stretch.
+/// Most steps of a section.
 pub(super) const MAX_STEPS: usize = 1 << 17;
 /// Most steps of the entries whose ends are told one by one.
 const SHORT: usize = 4;
-/// Words of a stretch's layers together, 32 MB: where there are more it is cut.
+/// Words of a section's layers together, 32 MB: where there are more it is cut.
 const MAX_WORDS: usize = 1 << 22;
 
 /// An entry of the list.
@@ -44,7 +44,7 @@ pub(super) struct Piece {
     pub(super) add: i64,
 }
 
-/// Where a step may come, in units from the stretch's start.
+/// Where a step may come, in units from the section's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place {
     low: i64,
@@ -62,7 +62,7 @@ impl Place {
 }
 
 /// Steps that are looked at together. Step 0 is where they start.
-pub(super) struct Stretch {
+pub(super) struct Section {
     format: EntryFormat,
     /// Least interval in units.
     least: i64,
@@ -89,7 +89,7 @@ struct Begin<'a> {
     last: i64,
 }
 
-impl Stretch {
+impl Section {
     /// The steps of `windows`, each with its direction, after the time `from`. No window is wider than [`MAX_WIDTH`], nor
     /// further from the one before than an entry's interval holds.
     pub(super) fn new(format: EntryFormat, least: u64, from: u64, windows: &[(Window, bool)]) -> Self {
@@ -545,11 +545,11 @@ mod tests {
     }
 
     #[test]
-    fn a_stretch_with_more_behind_it_leaves_its_last_entry_to_the_next_stretch() {
+    fn a_section_with_more_behind_it_leaves_its_last_entry_to_the_next_section() {
         let windows = two_rates();
-        let stretch = Stretch::new(EntryFormat::TICKS, 1, 0, &windows);
+        let section = Section::new(EntryFormat::TICKS, 1, 0, &windows);
         let counts = |more| {
-            let pieces = stretch.pieces(more, &mut 1_000_000).unwrap();
+            let pieces = section.pieces(more, &mut 1_000_000).unwrap();
             pieces.iter().map(|piece| piece.count).collect::<Vec<_>>()
         };
         assert_eq!(counts(false).iter().sum::<usize>(), 15);
@@ -562,9 +562,9 @@ mod tests {
     #[test]
     fn an_entry_that_alone_reaches_the_end_is_kept_whatever_is_behind_it() {
         let windows = two_rates();
-        let stretch = Stretch::new(EntryFormat::TICKS, 1, 0, &windows[..10]);
+        let section = Section::new(EntryFormat::TICKS, 1, 0, &windows[..10]);
         for more in [false, true] {
-            let pieces = stretch.pieces(more, &mut 1_000_000).unwrap();
+            let pieces = section.pieces(more, &mut 1_000_000).unwrap();
             assert_eq!(pieces.iter().map(|piece| piece.count).collect::<Vec<_>>(), [10], "{more}");
         }
     }

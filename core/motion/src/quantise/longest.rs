@@ -8,7 +8,7 @@
 use crate::problem::Cause;
 use crate::quantise::{
     entry_format::EntryFormat,
-    feasible_window::{self, Fit, Gate, is_short},
+    feasible_window::{self, Fit, Gate},
 };
 use alloc::vec::Vec;
 
@@ -16,8 +16,6 @@ use alloc::vec::Vec;
 const MAX_AHEAD: usize = 1 << 20;
 /// Steps of an entry that are tried at first.
 const SAMPLES: usize = 8;
-/// Steps of an entry that are replayed at once.
-const AT_ONCE: usize = 64;
 /// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
 // Gates reach to the double of it, and the steepest add a unit further.
@@ -32,12 +30,10 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// From the cycle `earliest` to the end of `latest`, of so many units each: by products, as shifts by a number of bits take
-    /// browsers longer.
-    #[inline]
-    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), units: u64) -> Self {
-        let [low, last] = [earliest, latest].map(|cycle| cycle.wrapping_mul(units));
-        Self { due, low, high: last.wrapping_add(units - 1) }
+    /// From the cycle `earliest` to the end of `latest`.
+    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), format: EntryFormat) -> Self {
+        let [low, last] = [earliest, latest].map(|cycle| cycle << format.fraction_bits);
+        Self { due, low, high: last | ((1 << format.fraction_bits) - 1) }
     }
 
     /// An entry of this step alone from a time on, in the middle of its window or as near as the least interval lets it be.
@@ -217,30 +213,16 @@ impl Ahead {
     fn missed(&self, n: usize, interval: i64, add: i64) -> [Option<usize>; 2] {
         let (mut early, mut late) = ((0, None), (0, None));
         let (mut time, mut next) = (self.from, interval);
-        for (first, windows) in (1..).step_by(AT_ONCE).zip(self.taken(n).chunks(AT_ONCE)) {
-            let begin = (time, next);
-            // Most are within: one sign tells it of all of them.
-            let mut outside = 0;
-            for window in windows {
-                time = time.wrapping_add_signed(next);
-                next += add;
-                outside |= time.wrapping_sub(window.low) | window.high.wrapping_sub(time);
+        for (step, window) in (1..).zip(self.taken(n)) {
+            time = time.wrapping_add_signed(next);
+            next += add;
+            let before = window.low.wrapping_sub(time) as i64;
+            let after = time.wrapping_sub(window.high) as i64;
+            if before > early.0 {
+                early = (before, Some(step));
             }
-            if outside as i64 >= 0 {
-                continue;
-            }
-            (time, next) = begin;
-            for (step, window) in (first..).zip(windows) {
-                time = time.wrapping_add_signed(next);
-                next += add;
-                let before = window.low.wrapping_sub(time) as i64;
-                let after = time.wrapping_sub(window.high) as i64;
-                if before > early.0 {
-                    early = (before, Some(step));
-                }
-                if after > late.0 {
-                    late = (after, Some(step));
-                }
+            if after > late.0 {
+                late = (after, Some(step));
             }
         }
         [early.1, late.1]
@@ -270,11 +252,7 @@ impl Ahead {
         };
         let half = n / 2;
         let (Some(far), Some(near)) = (middle(n), middle(half)) else { return 0 };
-        let (n, half) = (n as i64, half as i64);
-        if is_short(n, [far, near]) {
-            return 2 * (far * half - near * n) / (n * half * (n - half));
-        }
-        let [far, near, n, half] = [far, near, n, half].map(i128::from);
+        let [far, near, n, half] = [far, near, n as i64, half as i64].map(i128::from);
         let add = 2 * (far * half - near * n) / (n * half * (n - half));
         i64::try_from(add).unwrap_or(0)
     }

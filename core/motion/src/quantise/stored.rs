@@ -99,9 +99,7 @@ pub fn stored(
     pulse: PulseTimes,
     clock_hz: u32,
 ) -> Result<Stored, Cause> {
-    judge_count(plan.step_count(), form)?;
-    let own = || document(plan, format, clock_hz);
-    kept(|| plan.due_steps(clock_hz), own, compressed, form, format, pulse, document_bytes(plan))
+    of_plan(plan, form, Target { format, pulse, search: Search::Fewest }, clock_hz)
 }
 
 /// The same, with a compressed list by [`compressed_quickly`].
@@ -115,9 +113,7 @@ pub fn stored_quickly(
     pulse: PulseTimes,
     clock_hz: u32,
 ) -> Result<Stored, Cause> {
-    judge_count(plan.step_count(), form)?;
-    let own = || document(plan, format, clock_hz);
-    kept(|| plan.due_steps(clock_hz), own, compressed_quickly, form, format, pulse, document_bytes(plan))
+    of_plan(plan, form, Target { format, pulse, search: Search::Quick }, clock_hz)
 }
 
 /// Keeps step times of any origin in a form; they count from the start on and do not fall.
@@ -141,8 +137,7 @@ pub fn stored_steps(
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
-    judge_count(steps.len() as u64, form)?;
-    kept(|| steps.iter().copied(), no_document, compressed, form, format, pulse, None)
+    of_list(steps, form, Target { format, pulse, search: Search::Fewest })
 }
 
 /// The same, with a compressed list by [`compressed_quickly`].
@@ -155,49 +150,74 @@ pub fn stored_steps_quickly(
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
-    judge_count(steps.len() as u64, form)?;
-    kept(|| steps.iter().copied(), no_document, compressed_quickly, form, format, pulse, None)
+    of_list(steps, form, Target { format, pulse, search: Search::Quick })
 }
 
-fn no_document() -> Result<SegmentList, Cause> {
-    let detail = "a list of steps has no table of its own; give the form exact or compressed";
-    Err(ValueError::Conflict { detail }.into())
+/// How a compressed list is made.
+#[derive(Clone, Copy)]
+enum Search {
+    Fewest,
+    Quick,
 }
 
-fn judge_count(steps: u64, form: Form) -> Result<(), Cause> {
-    let most = form.most_steps();
-    if steps > most {
-        return Err(
-            ValueError::TooMuch { given: steps as f64, most: most as f64, of: "steps of a table" }.into()
-        );
-    }
-    Ok(())
-}
-
-fn kept<I: Iterator<Item = ScheduledStep>>(
-    due: impl Fn() -> I,
-    document: impl Fn() -> Result<SegmentList, Cause>,
-    compressed: impl Fn(I, Tolerance, EntryFormat, PulseTimes) -> Result<Compressed, Cause>,
-    form: Form,
+/// What a table is made for.
+#[derive(Clone, Copy)]
+struct Target {
     format: EntryFormat,
     pulse: PulseTimes,
-    document_bytes: Option<u64>,
+    search: Search,
+}
+
+fn of_plan(plan: &AxisPlan, form: Form, target: Target, clock_hz: u32) -> Result<Stored, Cause> {
+    check_count(plan.step_count(), form)?;
+    let own_table = || document(plan, target.format, clock_hz);
+    Ok(Stored {
+        document_bytes: document_bytes(plan),
+        ..table(|| plan.due_steps(clock_hz), own_table, form, target)?
+    })
+}
+
+fn of_list(steps: &[ScheduledStep], form: Form, target: Target) -> Result<Stored, Cause> {
+    check_count(steps.len() as u64, form)?;
+    let own_table = || {
+        let detail = "a list of steps has no table of its own; give the form exact or compressed";
+        Err(ValueError::Conflict { detail }.into())
+    };
+    table(|| steps.iter().copied(), own_table, form, target)
+}
+
+fn check_count(steps: u64, form: Form) -> Result<(), Cause> {
+    let most = form.most_steps();
+    if steps <= most {
+        return Ok(());
+    }
+    Err(ValueError::TooMuch { given: steps as f64, most: most as f64, of: "steps of a table" }.into())
+}
+
+fn table<I: Iterator<Item = ScheduledStep>>(
+    due: impl Fn() -> I,
+    own_table: impl Fn() -> Result<SegmentList, Cause>,
+    form: Form,
+    Target { format, pulse, search }: Target,
 ) -> Result<Stored, Cause> {
     let (list, error, surplus) = match form {
         Form::Exact => (smallest_exact(&due, format, pulse)?, None, None),
-        Form::Document => (document()?, None, None),
+        Form::Document => (own_table()?, None, None),
         Form::Compressed(tolerance) => {
-            let made = compressed(due(), tolerance, format, pulse)?;
-            (made.list, Some(made.error), made.surplus)
+            let found = match search {
+                Search::Fewest => compressed(due(), tolerance, format, pulse),
+                Search::Quick => compressed_quickly(due(), tolerance, format, pulse),
+            }?;
+            (found.list, Some(found.error), found.surplus)
         }
     };
-    let list = judged(list, pulse)?;
+    let list = checked(list, pulse)?;
     let error = match error {
         Some(error) => error,
         None => TimingError::of(&list, due()).ok_or(Cause::NoSegmentSteps)?,
     };
     let entries = format.pack(&list)?;
-    Ok(Stored { list, format, entries, document_bytes, error, surplus })
+    Ok(Stored { list, format, entries, document_bytes: None, error, surplus })
 }
 
 /// Every step in its cycle, in as few entries as whole intervals allow, or, where these are fewer, in those that a search
@@ -224,9 +244,9 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
 }
 
 /// The list, if the segment engine runs it.
-fn judged(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
+fn checked(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
     match CheckedSegments::new(pulse, vec![list], 1) {
-        Ok(checked) => Ok(checked.into_lists().pop().ok_or(Cause::NoSegmentSteps)?),
+        Ok(found) => Ok(found.into_lists().pop().ok_or(Cause::NoSegmentSteps)?),
         Err(refused) => Err(match refused.first().map(|refused| refused.refusal) {
             Some(Refusal::Interval { step, interval }) => Cause::SegmentInterval { step, interval, pulse },
             Some(Refusal::End { next }) => Cause::SegmentEnd { next },

@@ -3,11 +3,6 @@
 use crate::ScheduledStep;
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
-/// Steps whose errors are summed at once, and cycles below which each of them is for the sum of their squares to have 64 bits.
-const AT_ONCE: usize = 256;
-const MANY: u64 = 1 << 28;
-const _: () = assert!(2 * MANY.ilog2() + AT_ONCE.ilog2() <= u64::BITS);
-
 /// How far steps are from their due cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimingError {
@@ -20,11 +15,11 @@ pub struct TimingError {
 }
 
 impl TimingError {
-    /// Takes so many steps into account, with the greatest of their errors and the sum of their squares.
-    #[inline]
-    pub(super) fn steps(&mut self, steps: usize, greatest: u64, squares: u128) {
-        (self.steps, self.greatest) = (self.steps + steps as u64, self.greatest.max(greatest));
-        self.squares = self.squares.saturating_add(squares);
+    /// Adds a step that is so many cycles off.
+    pub(super) fn step(&mut self, off: u64) {
+        self.steps += 1;
+        self.greatest = self.greatest.max(off);
+        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
     }
 
     /// Root of the mean square in cycles; 0 of no steps.
@@ -33,106 +28,25 @@ impl TimingError {
         if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
     }
 
-    /// That of a list whose steps are to come at `due`, in cycles from the list's start; None if it has another number of
-    /// steps, or one goes the other way.
+    /// The error of a list whose steps are due at `due`, in cycles from the list's start; None if it has another number
+    /// of steps, or one goes the other way.
     #[must_use]
     pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
-        let mut due = due.into_iter();
-        let mut listed = Listed::new(&list.segments);
-        let mut steps = [ScheduledStep { cycle: 0, right: false }; AT_ONCE];
-        loop {
-            // Into places that are there, and with nothing else: either loop keeps its numbers in registers.
-            let mut len = 0;
-            due.by_ref().take(AT_ONCE).for_each(|step| {
-                if let Some(place) = steps.get_mut(len) {
-                    (*place, len) = (step, len + 1);
+        let (mut error, mut time, mut due) = (Self::default(), 0_u64, due.into_iter());
+        for segment in &list.segments {
+            match *segment {
+                Segment::Dwell(dwell) => time = time.wrapping_add(dwell),
+                Segment::Steps { count, mut interval, add, right } => {
+                    for _ in 0..count {
+                        let step = due.next().filter(|step| step.right == right)?;
+                        time = time.wrapping_add(interval);
+                        interval = interval.wrapping_add_signed(add);
+                        error.step((time >> FRACTION_BITS).abs_diff(step.cycle));
+                    }
                 }
-            });
-            if !listed.take(steps.get(..len)?) {
-                return None;
-            }
-            if len < AT_ONCE {
-                listed.next_segment();
-                return (listed.left == 0).then_some(listed.error);
             }
         }
-    }
-}
-
-/// The steps of a list, one after another.
-struct Listed<'l> {
-    segments: core::slice::Iter<'l, Segment>,
-    /// Of the segment where it is: the steps to come, the interval to the next and what each is longer, and their way.
-    left: usize,
-    interval: u64,
-    add: i64,
-    right: bool,
-    /// Of the last step, in 1/65536 cycle.
-    time: u64,
-    error: TimingError,
-}
-
-impl<'l> Listed<'l> {
-    fn new(segments: &'l [Segment]) -> Self {
-        let (segments, error) = (segments.iter(), TimingError::default());
-        Self { segments, left: 0, interval: 0, add: 0, right: true, time: 0, error }
-    }
-
-    /// Goes on to the next segment with steps, where this one has none left.
-    fn next_segment(&mut self) {
-        while self.left == 0 {
-            match self.segments.next() {
-                Some(&Segment::Dwell(dwell)) => self.time = self.time.wrapping_add(dwell),
-                Some(&Segment::Steps { count, interval, add, right }) => {
-                    (self.left, self.interval) = (count as usize, interval);
-                    (self.add, self.right) = (add, right);
-                }
-                None => return,
-            }
-        }
-    }
-
-    /// Takes the next steps into account, which are due then; whether there are as many that go those ways.
-    #[inline(never)]
-    fn take(&mut self, mut due: &[ScheduledStep]) -> bool {
-        let mut go_that_way = true;
-        while !due.is_empty() {
-            self.next_segment();
-            if self.left == 0 {
-                return false;
-            }
-            let (steps, rest) = due.split_at(self.left.min(due.len()));
-            let (mut time, mut interval, add, right) = (self.time, self.interval, self.add, self.right);
-            let (mut greatest, mut squares, mut seen) = (0, 0_u64, 0);
-            for step in steps {
-                time = time.wrapping_add(interval);
-                interval = interval.wrapping_add_signed(add);
-                let off = ((time >> FRACTION_BITS).wrapping_sub(step.cycle) as i64).unsigned_abs();
-                greatest = off.max(greatest);
-                squares = squares.wrapping_add(off.wrapping_mul(off));
-                seen |= step.cycle;
-                go_that_way &= step.right == right;
-            }
-            self.left -= steps.len();
-            let is_near = greatest < MANY && seen < 1 << 63;
-            let (greatest, squares) = if is_near { (greatest, squares.into()) } else { self.far_off(steps) };
-            self.error.steps(steps.len(), greatest, squares);
-            (self.time, self.interval) = (time, interval);
-            due = rest;
-        }
-        go_that_way
-    }
-
-    /// The greatest of the next steps' errors and the sum of their squares, which 64 bits may not hold.
-    #[cold]
-    fn far_off(&self, steps: &[ScheduledStep]) -> (u64, u128) {
-        let (mut time, mut interval) = (self.time, self.interval);
-        steps.iter().fold((0, 0), |(greatest, sum): (u64, u128), step| {
-            time = time.wrapping_add(interval);
-            interval = interval.wrapping_add_signed(self.add);
-            let off = (time >> FRACTION_BITS).abs_diff(step.cycle);
-            (greatest.max(off), sum.saturating_add(u128::from(off) * u128::from(off)))
-        })
+        due.next().is_none().then_some(error)
     }
 }
 
