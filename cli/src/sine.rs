@@ -22,8 +22,8 @@ use stepscope_core::{
     },
     motion::{
         Profile,
+        curves::{Memory, Segment, SineSegments},
         moves::Move,
-        sine_segments::{Memory, Segment, SineSegments},
     },
     scenario::{Problem, Scenario, Source, ValueError},
 };

@@ -23,12 +23,11 @@ use stepscope_core::{
         step_tables::{scheduled, tolerance_cycles},
     },
     motion::{
-        AxisPlan, Cause, ScheduledStep, plan_lists,
-        quantise::{
+        AxisPlan, Cause, ScheduledStep, plan_lists, round_half_up,
+        step_tables::{
             EntryFormat, Form, Side, Stored, Tolerance, stored, stored_quickly, stored_steps,
             stored_steps_quickly,
         },
-        round_half_up,
     },
     peripheral::{config::Config, segment::PulseTimes, trace::steps},
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},

@@ -11,9 +11,8 @@ use stepscope_core::{
             Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
             Points, Ramps, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
         },
-        plan_axis,
-        quantise::{AxesPath, exact_segments, ticks},
-        round_half_up,
+        plan_axis, round_half_up,
+        step_tables::{AxesPath, exact_segments, ticks},
     },
     peripheral::{
         device::SegmentEngine,

@@ -9,7 +9,7 @@ use stepscope_core::{
     motion::{
         mechanics::{Distance, Speed},
         moves::{Constant, Cosine, Dwell, Move, SineSegments},
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored},
+        step_tables::{EntryFormat, Form, Stored, Tolerance, stored},
     },
     peripheral::{
         segment::{FRACTION_BITS, PulseTimes, Segment},

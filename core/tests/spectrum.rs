@@ -6,7 +6,7 @@ use stepscope_core::{
         actual_motion::Pulses,
         spectrum::{AnalysisWindow, Spectrum},
     },
-    motion::quantise::TickClock,
+    motion::step_tables::TickClock,
     peripheral::trace::{Step, steps},
     sim::Experiment,
 };

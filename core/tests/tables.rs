@@ -8,7 +8,7 @@ use stepscope_core::{
         Cause, ScheduledStep, ValueError,
         mechanics::{Acceleration, Distance, Speed},
         moves::{Constant, Cosine, Dwell, Move, SineSegments, Staircase, Trapezoid, TrapezoidMethod},
-        quantise::{
+        step_tables::{
             EntryFormat, Form, MAX_TOLERANCE, Side, Stored, TimingError, Tolerance, compressed,
             compressed_quickly, stored, stored_quickly,
         },

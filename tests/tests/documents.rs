@@ -9,10 +9,10 @@ use stepscope_core::{
     inspect::motion::spectrum::Spectrum,
     motion::{
         Profile,
+        curves::SineSegments,
         mechanics::Distance,
         moves::{self, Axis, Move},
         plan_axis,
-        sine_segments::SineSegments,
     },
     peripheral::{
         config::PulsePhasing,

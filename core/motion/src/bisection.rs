@@ -1,23 +1,6 @@
-//! Searches that halve: where something begins to hold, among whole numbers and between two numbers.
-//!
-//! ```text
-//!  no   no   no   yes  yes  yes
-//! |----|----|----|----|----|----|      least, climbed, least_near: the first yes, exactly
-//! from                          to
-//!
-//! |=========|-------------------|      border: the two sides of the one change, HALVINGS times nearer each other
-//! from      ^                   to
-//!
-//! |-----x---|----------|               Bracket: keeps Newton's steps where the root is known to be
-//! low                  high
-//! ```
-//!
-//! What is asked changes once, from no to yes; where it changes more often, one of its changes is found. All of it is
-//! integers or + - * /, so it has the same bits on every target.
-//!
-//! Two searches of this crate are not among these: `quantise::feasible_window` goes by the slope of a concave function,
-//! and `quantise::longest` has three answers (refused, sampled, replayed) and tries that cost unequally. A place in a list
-//! that is there already is found by the standard library's `partition_point`.
+//! Searches by halving: the first whole number for which something holds, and the border between two numbers. A predicate
+//! changes once, from no to yes; of several changes one is found. All of it is integers or + - * /, so every target gets
+//! the same bits.
 //!
 //! ```
 //! use stepscope_motion::bisection::border;
@@ -31,7 +14,6 @@
 /// unless one of them is 0.
 pub const HALVINGS: u32 = 60;
 
-/// Where [`climbed`] gives up.
 const MAX_CLIMBED: u64 = 1 << 32;
 
 /// The least number of `from..to` for which `holds`, or `to` where there is none; it holds for all that follow.
@@ -85,7 +67,6 @@ pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
     (from, to)
 }
 
-/// Where the root of a rising function is known to be, while Newton's steps look for it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bracket {
     /// Below the root, or at it.
@@ -97,13 +78,11 @@ pub(crate) struct Bracket {
 }
 
 impl Bracket {
-    /// From `low` to `high`.
     pub(crate) fn new(low: f64, high: f64) -> Self {
         debug_assert!(low <= high, "{low} to {high} holds no root");
         Self { low, high }
     }
 
-    /// `x` within it has been tried: the root is above it, or not.
     pub(crate) fn narrow(&mut self, x: f64, is_above: bool) {
         debug_assert!(self.low <= x && x <= self.high, "{x} is not within {self:?}");
         if is_above { self.low = x } else { self.high = x }

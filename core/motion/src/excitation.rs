@@ -1,5 +1,4 @@
-//! Phase sequences of a two-phase motor (DESIGN B2, Sonobe 2011): which currents its phases A and B have after k
-//! steps.
+//! Phase sequences of a two-phase motor (DESIGN B2, Sonobe 2011): which currents its phases A and B have after k steps.
 //!
 //! ```text
 //!               k   0   1   2   3   4   5   6   7   8

@@ -1,26 +1,16 @@
-//! Motions: what an axis is asked to do, as position, speed and acceleration over time (DESIGN
-//! Part B), and the ticks, segments and tables that its steps become ([`quantise`]).
-//!
-//! [`plan_lists`] turns axes into an [`AxisPlan`] each: moves one after another, each a
-//! [`Profile`]. One file a family:
+//! Motions: what an axis is to do, as position, speed and acceleration over time, and the ticks, segments and tables
+//! that its steps become (DESIGN Part B).
 //!
 //! ```text
-//! trapezoid        B2, exact:  / uniform \   every step where the curve crosses its half-integer
-//! trapezoid_table  B2, table:  / staircase \ whole pulse rates and a timer's whole reloads
-//! staircase        B3          _-_           rates that are each held for some steps
-//! cosine           B4, exact:  ( S-curve )   so many steps in so much time
-//! sliced           B4, sliced: ( _-^-_ )     the same in slices of whole steps, as the document runs it
-//! ramps            B4          ( _/ \\_ )  the same with ramps of another shape (`ramp`)
-//! sine_segments    B5          \/\/          a sine as segments of fixed rate
-//! sine             B6          ~~            a sine with every step in its place
-//! jerk_limited     B6          ( 7 phases )  rest to rest under limits of speed, acceleration and jerk
-//! points           B6          . ' .         a curve through points, straight or smooth
-//! constant_velocity B6          ---           constant rate, dwell
+//! moves, mechanics, motor, limits    what a scenario gives
+//! curves                             position over time, one file per kind of move
+//! timing                             when each step is due, to the cycle
+//! planners                           moves to curves, axis by axis
+//! step_tables                        steps to ticks, segments and tables
 //! ```
 //!
-//! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R),
-//! and `quantise` is where it decides. All mathematics that is more than + - * / and the square root
-//! comes from `libm`, so a plan has the same bits on every target.
+//! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R). All mathematics beyond
+//! + - * / and the square root comes from `libm`, so a plan has the same bits on every target.
 //!
 //! ```
 //! use stepscope_motion::{moves::Axis, plan_axis};
@@ -38,68 +28,33 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub mod problem;
-
-pub mod limits;
-
-mod parameters;
-
-pub mod mechanics;
-
-pub mod motor;
-
-pub mod moves;
-
-pub mod acceleration_table;
-mod axis;
 pub mod bisection;
-mod breakpoints;
-mod budget;
-mod climb;
-pub mod constant_velocity;
-pub mod cosine;
-mod curve;
-mod cycle_time;
-mod double;
-mod due_by;
-mod exact;
+pub mod curves;
 pub mod excitation;
 mod format;
-mod hermite;
-mod interpolated;
-pub mod jerk_limited;
-mod mirrored;
-mod number;
-mod oscillation;
-mod plan;
-pub mod points;
-pub mod polyline;
-mod profile;
-pub mod quantise;
-mod quantities;
-pub mod ramp;
-pub mod ramps;
-mod rounding;
-mod run;
-pub mod sine;
-pub mod sine_segments;
-pub mod sliced;
-pub mod staircase;
-pub mod staircase_table;
-mod step_loop;
-mod stepped;
-pub mod trapezoid;
-pub mod trapezoid_table;
+pub mod limits;
+pub mod mechanics;
+pub mod motor;
+pub mod moves;
+mod parameters;
+mod planners;
+pub mod problem;
+pub mod step_tables;
+mod timing;
 
-pub use axis::{AxisPlan, PlannedMove};
-pub use breakpoints::{Breakpoints, Interval};
-pub use curve::{Curve, Peaks};
-pub use due_by::DueBy;
+pub use curves::{
+    breakpoints::{Breakpoints, Interval},
+    curve::{Curve, Peaks},
+};
 pub use format::grouped;
-pub use plan::{plan_axis, plan_lists, plan_move};
+pub use planners::{
+    axis::{AxisPlan, PlannedMove},
+    due_by::DueBy,
+    plan::{plan_axis, plan_lists, plan_move},
+    profile::Profile,
+};
 pub use problem::{Cause, Problem, Validator, ValueError};
-pub use profile::Profile;
-pub use step_loop::ScheduledStep;
+pub use timing::ScheduledStep;
 
 /// Highest speed that a plan may have, in steps/s.
 pub const MAX_SPEED: f64 = 1e7;

@@ -1,5 +1,4 @@
-//! Lengths, speeds, accelerations and jerks with their units, and the mechanics that turn them into steps
-//! (DESIGN B1).
+//! Lengths, speeds, accelerations and jerks with their units, and the mechanics that turn them into steps (DESIGN B1).
 //!
 //! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimetres and degrees need mechanics
 //! that have them; where an axis has none, the quantity is refused with the remedy.
@@ -14,7 +13,11 @@
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
-use crate::{double::Double, exact::Exact, parameters::parameters, round_half_up};
+use crate::{
+    parameters::parameters,
+    round_half_up,
+    timing::{Double, Exact},
+};
 use core::f64::consts::PI;
 
 /// What one step is.

@@ -17,7 +17,7 @@
 
 use crate::parameters::parameters;
 
-/// Most of the peak phase current, in parts of the rated current: a little over the square root of two,
+/// Maximum of the peak phase current, in parts of the rated current: a little over the square root of two,
 /// with which a sine heats the windings as much as the rated current in both does.
 pub const MAX_PEAK_CURRENT: f64 = 1.4143;
 
@@ -43,7 +43,7 @@ parameters! {
         /// Torque that opposes the motion (friction, cutting), seen from the rotor's shaft, in mN*m.
         pub load_torque_mn_m: f64 = 0.0,
         /// Highest rate in steps/s at which the motor is known to work with its load, as its maker or a
-        /// test gives it (the document's f_s); without it only the torque limits the rate.
+        /// test gives it (the paper's f_s); without it only the torque limits the rate.
         pub working_rate_hz: Option<f64> = None,
         /// Coulomb friction of the rotor in mN*m.
         pub friction_mn_m: f64 = 5.0,
@@ -79,7 +79,7 @@ parameters! {
         pub decay_share: f64 = 0.31,
         /// Off-time of a chopper in us.
         pub off_us: f64 = 20.0,
-        /// Least on-time of a chopper in us.
+        /// Minimum on-time of a chopper in us.
         pub blank_us: f64 = 1.0,
         /// Steps of the driver's converter from 0 to the peak current; without it they are as fine as numbers.
         pub dac_levels: Option<u16> = None,

@@ -92,7 +92,7 @@ parameters! {
 /// Whose step times a trapezoid has (B2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TrapezoidMethod {
-    /// The document's: a table of whole pulse rates, one a step, and a timer's whole reload.
+    /// the paper's: a table of whole pulse rates, one a step, and a timer's whole reload.
     #[default]
     Table,
     /// Every step where the ideal curve crosses its half-integer (B1).
@@ -102,7 +102,7 @@ pub enum TrapezoidMethod {
 parameters! {
     /// Fixed length by a staircase of rates (B3, Zhang 2012).
     pub struct Staircase {
-        /// How far, the document's L; negative is left.
+        /// How far, the paper's L; negative is left.
         pub distance: Distance = Distance::Steps(10_000.0),
         /// Speed of the plateau, f_s; at or below the start speed that of the whole move.
         pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
@@ -120,7 +120,7 @@ parameters! {
 /// What becomes of a move that is too short to reach its top speed (B3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortMove {
-    /// The document's: the whole move at the start speed.
+    /// the paper's: the whole move at the start speed.
     #[default]
     Document,
     /// Up as many rows of the table as fit, and down again.
@@ -138,7 +138,7 @@ parameters! {
         pub ramp_s: f64 = 0.2,
         /// Whose step times.
         pub method: CosineMethod = CosineMethod::Exact,
-        /// Length of a slice in s, the document's TS, 0.00001 to 0.1; only `sliced` uses it.
+        /// Length of a slice in s, the paper's TS, 0.00001 to 0.1; only `sliced` uses it.
         pub slice_s: f64 = 0.001,
     }
 }
@@ -149,7 +149,7 @@ pub enum CosineMethod {
     /// Every step where the ideal curve crosses its half-integer (B1).
     #[default]
     Exact,
-    /// The document's: slices of whole steps, compensated until their sum is right.
+    /// the paper's: slices of whole steps, compensated until their sum is right.
     Sliced,
 }
 
@@ -217,11 +217,11 @@ parameters! {
     pub struct JerkLimited {
         /// How far; negative is left.
         pub distance: Distance = Distance::Steps(3200.0),
-        /// Greatest speed.
+        /// Maximum speed.
         pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
-        /// Greatest acceleration and deceleration.
+        /// Maximum acceleration and deceleration.
         pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
-        /// Greatest change of the acceleration in a second.
+        /// Maximum change of the acceleration in a second.
         pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
     }
 }
@@ -244,7 +244,7 @@ parameters! {
     }
 }
 
-/// Most points of a move.
+/// Maximum points of a move.
 pub const MAX_POINTS: usize = 4096;
 
 parameters! {

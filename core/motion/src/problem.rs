@@ -19,7 +19,7 @@ use core::{
 };
 use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 
-/// Most problems of one scenario that are listed.
+/// Maximum problems of one scenario that are listed.
 pub const MAX_PROBLEMS: usize = 100;
 
 /// One problem, at the path of the field that has to change.
@@ -238,9 +238,9 @@ pub enum ValueError {
     Range {
         /// The number.
         given: f64,
-        /// Least allowed.
+        /// Minimum allowed.
         least: f64,
-        /// Greatest allowed.
+        /// Maximum allowed.
         most: f64,
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
@@ -249,9 +249,9 @@ pub enum ValueError {
     Length {
         /// Its length.
         given: usize,
-        /// Least allowed.
+        /// Minimum allowed.
         least: usize,
-        /// Greatest allowed.
+        /// Maximum allowed.
         most: usize,
         /// What is counted: `characters`, `bytes`, `axes`, …
         of: &'static str,
@@ -348,7 +348,7 @@ pub enum Cause {
     TopAboveTable {
         /// Top speed in steps/s.
         top: f64,
-        /// Greatest speed of the table in steps/s.
+        /// Maximum speed of the table in steps/s.
         most: f64,
     },
     /// A rate that the table's timer cannot give (B2).
@@ -362,7 +362,7 @@ pub enum Cause {
     TooFast {
         /// Rate in steps/s.
         rate: f64,
-        /// Greatest allowed.
+        /// Maximum allowed.
         most: f64,
     },
     /// Slices so short that at top speed none has a step (B4).
@@ -444,8 +444,7 @@ impl From<ValueError> for Cause {
 }
 
 impl Cause {
-    /// Whether it follows from several fields together, so that it means nothing while one of them
-    /// cannot be read.
+    /// Whether it follows from several fields together, so that it means nothing while one of them cannot be read.
     #[must_use]
     pub const fn joins_fields(&self) -> bool {
         !matches!(self, Self::Value(ValueError::Range { .. }) | Self::NoSteps { .. } | Self::NoSegmentSteps)
@@ -548,7 +547,6 @@ impl fmt::Display for Cause {
     }
 }
 
-/// The least interval of a pulse, and what it is made of.
 struct Least(PulseTimes);
 
 impl fmt::Display for Least {
@@ -587,7 +585,6 @@ impl fmt::Display for Short {
     }
 }
 
-/// A unit as people write it.
 fn shown(unit: &str) -> &str {
     match unit {
         "steps_s" => "steps/s",

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use std::{collections::BTreeSet, num::NonZeroU32};
 use stepscope_motion::{
     ScheduledStep,
-    quantise::{EntryFormat, Side, Tolerance, compressed, compressed_quickly},
+    step_tables::{EntryFormat, Side, Tolerance, compressed, compressed_quickly},
 };
 use stepscope_peripheral::{
     segment::{PulseTimes, Segment},

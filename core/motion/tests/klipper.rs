@@ -11,7 +11,7 @@ use stepscope_motion::{
     mechanics::{Acceleration, Distance, Speed},
     moves::{Axis, JerkLimited, Move, Sine, SineSegments, Trapezoid},
     plan_axis,
-    quantise::{EntryFormat, Side, Tolerance, compressed},
+    step_tables::{EntryFormat, Side, Tolerance, compressed},
 };
 use stepscope_peripheral::{
     segment::{PulseTimes, Segment},

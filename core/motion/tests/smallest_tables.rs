@@ -8,7 +8,7 @@ use rand_xoshiro::{
 use std::num::NonZeroU32;
 use stepscope_motion::{
     ScheduledStep,
-    quantise::{EntryFormat, Form, Tolerance, stored_steps},
+    step_tables::{EntryFormat, Form, Tolerance, stored_steps},
 };
 use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
 

@@ -9,7 +9,7 @@ use stepscope_motion::{
         TrapezoidMethod,
     },
     plan_axis,
-    quantise::{AxesPath, ticks},
+    step_tables::{AxesPath, ticks},
 };
 
 /// Steps of each tick of 1 ms, left negative.

@@ -8,7 +8,7 @@ use crate::{
 use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
 use stepscope_motion::{
     AxisPlan, plan_lists,
-    quantise::{AxesPath, exact_segments, ticks},
+    step_tables::{AxesPath, exact_segments, ticks},
 };
 use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::{

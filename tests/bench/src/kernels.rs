@@ -8,9 +8,10 @@ use stepscope_core::{
         sine_polyline::sweep,
     },
     motion::{
-        AxisPlan, Cause, ScheduledStep, plan_axis,
-        quantise::{Compressed, EntryFormat, Form, Side, Stored, Tolerance, compressed_quickly, stored},
-        trapezoid::Trapezoid,
+        AxisPlan, Cause, ScheduledStep,
+        curves::Trapezoid,
+        plan_axis,
+        step_tables::{Compressed, EntryFormat, Form, Side, Stored, Tolerance, compressed_quickly, stored},
     },
     peripheral::{
         segment::PulseTimes,

@@ -16,13 +16,13 @@ use proptest::prelude::*;
 use std::collections::BTreeSet;
 use stepscope_core::motion::{
     AxisPlan, Profile,
+    curves::Trapezoid,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
         Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
         RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, TrapezoidMethod,
     },
     plan_axis,
-    trapezoid::Trapezoid,
 };
 use stepscope_tests::effort;
 use wide::Wide;

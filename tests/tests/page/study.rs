@@ -16,7 +16,7 @@ use stepscope_core::{
     },
     motion::{
         motor::Motor,
-        quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
+        step_tables::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
     },
     peripheral::{segment::PulseTimes, trace::steps, units::Cycles},
     scenario::{Scenario, link::decode},

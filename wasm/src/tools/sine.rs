@@ -14,7 +14,7 @@ use stepscope_core::{
     },
     motion::{
         Profile,
-        sine_segments::{Memory, Segment},
+        curves::{Memory, Segment},
     },
     sim::SelectedAxis,
 };

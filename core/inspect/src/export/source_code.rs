@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use stepscope_inspect::export::source_code::{Language, Source, is_name};
-//! use stepscope_motion::{moves::Axis, plan_axis, quantise::{EntryFormat, Form, stored}};
+//! use stepscope_motion::{moves::Axis, plan_axis, step_tables::{EntryFormat, Form, stored}};
 //! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
 //!
 //! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
@@ -21,7 +21,7 @@
 use crate::export::plain_text::is_unsafe;
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
-use stepscope_motion::quantise::{Entry, EntryFormat, Stored};
+use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
 use stepscope_motion::round_half_up;
 
 const IN_A_LINE: usize = 8;
@@ -356,7 +356,7 @@ impl fmt::Display for Capitals<'_> {
 mod tests {
     use super::*;
     use alloc::{string::String, vec, vec::Vec};
-    use stepscope_motion::quantise::{EntryFormat, TimingError};
+    use stepscope_motion::step_tables::{EntryFormat, TimingError};
     use stepscope_peripheral::{segment::SegmentList, units::Instant};
 
     fn table(entries: Vec<Entry>, format: EntryFormat) -> Stored {

@@ -20,7 +20,7 @@ use alloc::{
 use serde::Serialize;
 use stepscope_motion::{
     AxisPlan, ScheduledStep,
-    quantise::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
+    step_tables::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
 };
 use stepscope_peripheral::{
     config::{Bus, Config},

@@ -42,7 +42,7 @@ use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{due_steps, placed};
 use serde::Serialize;
 use stepscope_motion::ValueError;
-use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, moves::Axis, sine_segments};
+use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, curves::SineSegments, moves::Axis};
 use stepscope_peripheral::trace::Step;
 
 /// Maximum steps of a measured run; each takes about 82 bytes.
@@ -202,7 +202,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
     }
 }
 
-fn polyline(sine: &sine_segments::SineSegments) -> SineMeasures {
+fn polyline(sine: &SineSegments) -> SineMeasures {
     let segments = sine.segments();
     let amplitude = segments.iter().map(|segment| segment.steps).sum::<u64>() as f64;
     let points: Vec<u16> = segments

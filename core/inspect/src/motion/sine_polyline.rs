@@ -23,7 +23,7 @@
 
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
-use stepscope_motion::polyline::{POINTS, QUARTER, breakpoints, cosine_at, next_deviation};
+use stepscope_motion::curves::polyline::{POINTS, QUARTER, breakpoints, cosine_at, next_deviation};
 
 /// A vertex of a quarter: angle in rad from the extreme, height in parts of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -128,9 +128,8 @@ mod tests {
     use stepscope_motion::{
         mechanics::{Distance, Speed},
         moves::{Axis, Constant, Cosine, Dwell, Move, SineSegments},
-        plan_axis,
-        quantise::TickClock,
-        round_half_up,
+        plan_axis, round_half_up,
+        step_tables::TickClock,
     };
 
     /// All harmonics of the document's transform of 2048 points. The document does not state its

@@ -25,7 +25,7 @@ use alloc::{format, string::String, vec::Vec};
 use core::fmt;
 use stepscope_motion::{
     Cause, ScheduledStep,
-    quantise::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps_quickly},
+    step_tables::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps_quickly},
 };
 use stepscope_peripheral::{
     config::{Bus, Protocol, SerialLine, limits::PULSE_WIDTH_CYCLES},

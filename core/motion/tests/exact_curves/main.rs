@@ -28,13 +28,13 @@ use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
     AxisPlan, Curve, Profile,
+    curves::StaircaseTable,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
         Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
         Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
     },
     plan_axis,
-    staircase_table::StaircaseTable,
 };
 
 const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_000_000_000];
@@ -535,7 +535,7 @@ fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
         let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(0));
         for clock_hz in [16_000_000, 1_000_000_000] {
             Tally::default().hold(&mut draw, &plan, &ideals, clock_hz, "a trapezoid");
-            let curve = stepscope_motion::trapezoid::Trapezoid::new(20_001, start, top, acceleration);
+            let curve = stepscope_motion::curves::Trapezoid::new(20_001, start, top, acceleration);
             assert!(curve.step_times(clock_hz).eq(plan.due_steps(clock_hz).map(|due| due.cycle)));
             let profile = &plan.moves()[0].profile;
             for (k, cycle) in (1..).zip(curve.step_times(clock_hz)).step_by(500) {

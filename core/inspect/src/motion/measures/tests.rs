@@ -302,8 +302,8 @@ fn the_documents_distance_and_its_list_come_from_its_512_points() {
         );
         // A chord lies below the cosine: the area between is the difference of the areas, 1 - the chords'.
         close(found.quarter.area_steps_s, -found.quarter.area_difference_steps_s, 1e-12, "areas");
-        let points: Vec<u16> = stepscope_motion::polyline::breakpoints(d1);
-        let height = |point: u16| stepscope_motion::polyline::cosine_at(point);
+        let points: Vec<u16> = stepscope_motion::curves::polyline::breakpoints(d1);
+        let height = |point: u16| stepscope_motion::curves::polyline::cosine_at(point);
         let chords: f64 = points
             .windows(2)
             .map(|p| f64::from(p[1] - p[0]) * (height(p[0]) + height(p[1])) / 2.0)

@@ -4,7 +4,7 @@
 
 use crate::motion::torque::Machine;
 use serde::Serialize;
-use stepscope_motion::{Curve, Profile, bisection::border, cosine::Cosine};
+use stepscope_motion::{Curve, Profile, bisection::border, curves::Cosine};
 
 /// Ramps that are tried, evenly up to half of the time.
 const TRIED: u32 = 512;

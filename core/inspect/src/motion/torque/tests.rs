@@ -1,7 +1,7 @@
 use super::*;
 use alloc::format;
 use core::f64::consts::PI;
-use stepscope_motion::{Curve, Profile, cosine::Cosine, moves::Axis, plan_axis};
+use stepscope_motion::{Curve, Profile, curves::Cosine, moves::Axis, plan_axis};
 
 fn axis(motor: &str, moves: &str) -> Axis {
     stepscope_scenario::part_from_json(&format!(r#"{{"motor":{motor},"moves":[{moves}]}}"#)).unwrap()

@@ -1,0 +1,84 @@
+//! The acceleration table itself (DESIGN B2, Sonobe 2011): one pulse rate a step, in whole pps, and
+//! the whole reload of a timer for each.
+//!
+//! ```text
+//! rate[k]   = round_half_up(sqrt(v0^2 + 2*a*k))     k = 0 .. top - 1
+//! rate[top] = round_half_up(v1)                     top = first k with v0^2 + 2*a*k >= v1^2
+//! reload[k] = floor(timer_hz/rate[k])
+//! ```
+//!
+//! The document goes over to constant speed as soon as v >= v_max; so the first row that reaches
+//! the top speed has the top speed itself, and is the last.
+
+use crate::{curves::climb::Climb, timing::Exact};
+
+/// The rows of an acceleration table, each computed when it is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AccelerationTable {
+    climb: Climb,
+    /// Rate of the last row.
+    top_rate: u64,
+    timer_hz: u32,
+    top: u64,
+}
+
+impl AccelerationTable {
+    /// From `start_speed` >= 1/2 to `top_speed` >= `start_speed` with `acceleration` > 0, in steps,
+    /// s; `timer_hz` counts the reloads. Each number means the decimal that is printed for it.
+    #[must_use]
+    pub fn new(start_speed: f64, top_speed: f64, acceleration: f64, timer_hz: u32) -> Self {
+        let [start_speed, top_speed, acceleration] = [start_speed, top_speed, acceleration].map(Exact::of);
+        Self::exact([&start_speed, &top_speed], &acceleration, timer_hz)
+    }
+
+    pub(crate) fn exact([start, top]: [&Exact; 2], acceleration: &Exact, timer_hz: u32) -> Self {
+        let climb = Climb::new(start, acceleration);
+        Self { top: climb.steps_to(top), climb, top_rate: top.rounded().unsigned_abs(), timer_hz }
+    }
+
+    /// Clock of the timer in Hz.
+    #[must_use]
+    pub fn timer_hz(&self) -> u32 {
+        self.timer_hz
+    }
+
+    /// The last row, that of the top speed; there is one more row than this.
+    #[must_use]
+    pub fn top(&self) -> u64 {
+        self.top
+    }
+
+    /// Pulse rate of a row in whole pps, not falling from row to row; rows after the last are as the last.
+    #[must_use]
+    pub fn rate(&self, row: u64) -> u64 {
+        if row < self.top { self.climb.rate(row) } else { self.top_rate }
+    }
+
+    /// The timer's reload of a row; 0 where the timer is slower than the rate.
+    #[must_use]
+    pub fn reload(&self, row: u64) -> u64 {
+        u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_rates_come_out() {
+        let step_mm = 0.393;
+        let table = AccelerationTable::new(100.0 / step_mm, 1000.0 / step_mm, 3500.0 / step_mm, 1_000_000);
+        for (row, rate) in (0..).zip([254, 287, 317, 344, 369, 392, 414, 435]) {
+            assert_eq!(table.rate(row), rate, "row {row}");
+        }
+        assert_eq!(table.reload(0), 3937);
+        // The first row at or above the top speed has the top speed itself.
+        assert_eq!((table.top(), table.rate(359), table.rate(360)), (360, 2541, 2545));
+        assert_eq!(AccelerationTable::new(600.0, 600.0, 1.0, 599).reload(0), 0);
+        // Row 1 is at a half exactly, and the top speed at another.
+        let table = AccelerationTable::new(6.1, 10.5, 9.52, 1_000_000);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|row| table.rate(row)), [6, 8, 9, 10, 11, 11]);
+        assert_eq!(table.top(), 4);
+    }
+}

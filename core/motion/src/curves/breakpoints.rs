@@ -1,0 +1,135 @@
+//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration are smooth, and
+//! each rises or falls or stays. So the values at both ends of such a stretch are its least and its greatest, and three
+//! points of Gauss and Legendre integrate it and its square. Each curve knows its own ([`Curve::breakpoints_s`]); here
+//! they stand one move after another.
+//!
+//! ```text
+//! |   .----.     | a trapezoid has a breakpoint at each end of its ramps and in its middle,
+//! |  /|  | |\    | a table or a staircase at each change of its rate,
+//! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more, a sine 128 a period:
+//!                | these are no polynomials, so they are cut small
+//! ```
+
+use crate::{AxisPlan, Curve};
+use alloc::vec::Vec;
+
+/// An interval of time in which a motion is smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Its start in s on the axis' time.
+    pub from_s: f64,
+    /// Its end in s.
+    pub to_s: f64,
+    /// How many such stretches, one whole period of a sine apart, it stands for.
+    pub times: f64,
+}
+
+#[derive(Clone, Debug)]
+struct MoveBreakpoints {
+    start_s: f64,
+    end_s: f64,
+    /// Breakpoints of the first period, from the move's start, rising.
+    breakpoints: Vec<f64>,
+    /// The time after which the move repeats itself, where it does.
+    period_s: Option<f64>,
+}
+
+/// The breakpoints of an axis' whole motion.
+#[derive(Clone, Debug)]
+pub struct Breakpoints {
+    moves: Vec<MoveBreakpoints>,
+}
+
+impl Breakpoints {
+    /// Of a plan.
+    #[must_use]
+    pub fn of(plan: &AxisPlan) -> Self {
+        let moves = plan.moves().iter().map(|planned| {
+            let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
+            let end_s = planned.start_s + planned.profile.duration_s();
+            let breakpoints = planned.profile.breakpoints_s();
+            debug_assert!(breakpoints.is_sorted(), "breakpoints go back in time: {breakpoints:?}");
+            MoveBreakpoints { start_s: planned.start_s, end_s, breakpoints, period_s }
+        });
+        Self { moves: moves.collect() }
+    }
+
+    /// The first period of the move that the stretch lies in, as (start, end) in s, where it has one and
+    /// the stretch is no shorter: then a curve's extremes in both are the same.
+    #[must_use]
+    pub fn period_within(&self, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
+        let planned_move = self.moves.get(self.moves.partition_point(|each| each.end_s <= from_s))?;
+        let period_s = planned_move.period_s.filter(|period_s| to_s - from_s >= *period_s)?;
+        let inside = from_s >= planned_move.start_s && to_s <= planned_move.end_s;
+        inside.then_some((planned_move.start_s, planned_move.start_s + period_s))
+    }
+
+    /// The smooth intervals of a stretch of time, in order but for a sine's whole periods, of which only
+    /// the first is cut and stands for all.
+    pub fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
+        let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)| {
+            if to_s > from_s {
+                each(Interval { from_s, to_s, times: 1.0 });
+            }
+        };
+        let begin = self.moves.first().map_or(f64::INFINITY, |first| first.start_s);
+        let end = self.moves.last().map_or(f64::INFINITY, |last| last.end_s);
+        once(from_s, least(begin, to_s), each);
+        let first = self.moves.partition_point(|each| each.end_s <= from_s);
+        for planned_move in
+            self.moves.iter().skip(first).take_while(|planned_move| planned_move.start_s < to_s)
+        {
+            planned_move.intervals(
+                greatest(from_s, planned_move.start_s),
+                least(to_s, planned_move.end_s),
+                each,
+            );
+        }
+        once(greatest(from_s, end), to_s, each);
+    }
+}
+
+impl MoveBreakpoints {
+    fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
+        let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
+        // Whole periods from the end of the one that is begun to the start of the one not ended.
+        let (first, last) =
+            (libm::ceil((from_s - self.start_s) / period_s), libm::floor((to_s - self.start_s) / period_s));
+        if last - first < 1.0 {
+            let middle = least(to_s, greatest(from_s, self.start_s + first * period_s));
+            self.cut(from_s, middle, (first - 1.0) * period_s, 1.0, each);
+            return self.cut(middle, to_s, first * period_s, 1.0, each);
+        }
+        let (begin, end) = (first * period_s, last * period_s);
+        self.cut(from_s, self.start_s + begin, begin - period_s, 1.0, each);
+        self.cut(self.start_s + begin, self.start_s + begin + period_s, begin, last - first, each);
+        self.cut(self.start_s + end, to_s, end, 1.0, each);
+    }
+
+    /// Cuts at the breakpoints, which begin anew `shift_s` after the start of the move.
+    fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Interval)) {
+        let zero_s = self.start_s + shift_s;
+        let mut from = from_s;
+        let first = self.breakpoints.partition_point(|breakpoint| zero_s + breakpoint <= from_s);
+        for breakpoint in self.breakpoints.iter().skip(first).map(|breakpoint| zero_s + breakpoint) {
+            if breakpoint >= to_s {
+                break;
+            }
+            if breakpoint > from {
+                each(Interval { from_s: from, to_s: breakpoint, times });
+                from = breakpoint;
+            }
+        }
+        if to_s > from {
+            each(Interval { from_s: from, to_s, times });
+        }
+    }
+}
+
+fn least(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+fn greatest(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}

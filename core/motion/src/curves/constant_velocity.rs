@@ -1,0 +1,172 @@
+//! The steady moves: constant rate and dwell (DESIGN B6).
+//!
+//! ```text
+//! speed  |-------|            constant: from the first instant to the last
+//!        |       |_________   dwell: none
+//! ```
+
+use crate::{
+    Curve, Peaks, moves,
+    planners::quantities::Quantities,
+    timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run},
+};
+use alloc::{boxed::Box, string::String, vec::Vec};
+
+/// One rate from end to end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constant {
+    steps: i64,
+    /// Magnitude in steps/s, above 0.
+    speed: f64,
+    /// The same with all its digits: of a quotient by mechanics more than are printed.
+    exact_speed: Double,
+    duration_s: f64,
+}
+
+impl Constant {
+    /// `steps` (left negative) at `speed` steps/s, which is above 0.
+    #[must_use]
+    pub fn new(steps: i64, speed: f64) -> Self {
+        Self::within(steps, Double::decimal(speed))
+    }
+
+    /// [`Self::new`], of a number with all its digits.
+    fn within(steps: i64, exact_speed: Double) -> Self {
+        let speed = exact_speed.high;
+        Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
+    }
+
+    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Self> {
+        let steps = quantities.distance("distance", &given.distance);
+        let speed = quantities.speed("speed", &given.speed);
+        let (steps, _) = (steps?, speed?);
+        Some(Self::within(steps, given.speed.exact_in_steps(quantities.mechanics()).ok()?))
+    }
+
+    fn signed_speed(&self) -> f64 {
+        if self.steps < 0 { -self.speed } else { self.speed }
+    }
+}
+
+impl Schedule for Constant {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(Double::from(self.steps.unsigned_abs()) / self.exact_speed * f64::from(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let cycles_per_step = f64::from(clock_hz) / self.speed;
+        one_run(self, clock_hz, move |step| (step + 0.5) * cycles_per_step)
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let cycles_per_step = Double::from(f64::from(clock_hz)) / self.exact_speed;
+        Box::new(move |k, since| since > cycles_per_step * (k as f64 - 0.5))
+    }
+}
+
+impl Curve for Constant {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t >= self.duration_s {
+            self.steps as f64
+        } else if t > 0.0 {
+            self.signed_speed() * t
+        } else {
+            0.0
+        }
+    }
+
+    fn speed(&self, _: f64) -> f64 {
+        self.signed_speed()
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn peaks(&self) -> Peaks {
+        Peaks { speed: self.speed, ..Peaks::default() }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
+    }
+}
+
+/// Standing still for a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dwell {
+    duration_s: f64,
+}
+
+impl Dwell {
+    /// `duration_s` from 0 on.
+    #[must_use]
+    pub fn new(duration_s: f64) -> Self {
+        Self { duration_s }
+    }
+
+    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::Dwell) -> Option<Self> {
+        let duration_s = quantities.pause("duration_s", given.duration_s);
+        Some(Self::new(duration_s?))
+    }
+}
+
+impl Schedule for Dwell {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::exact(&Exact::of(self.duration_s).times(clock_hz.into()))
+    }
+
+    fn runs(&self, _: u32) -> Runs<'_> {
+        Box::new(core::iter::empty())
+    }
+
+    fn is_due_before(&self, _: u32) -> IsDueBefore<'_> {
+        Box::new(|_, _| false)
+    }
+}
+
+impl Curve for Dwell {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        0
+    }
+
+    fn position(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn speed(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    fn peaks(&self) -> Peaks {
+        Peaks::default()
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn detail(&self, _: f64) -> String {
+        String::new()
+    }
+}

@@ -1,0 +1,269 @@
+//! Cosine S-curve with exact distance and exact time (DESIGN B4, `exact`; Song, Han, Lu 2021).
+//!
+//! Given n steps, the time T of the move and the time t_s of each ramp, 0 <= t_s <= T/2:
+//!
+//! ```text
+//!  f_max |     .--------.       f_max = n/(T - t_s)
+//!        |    /          \      f(t)  = f_max/2*(1 - cos(pi*t/t_s))            in the ramp
+//!        | .-'            '-.   s(t)  = f_max/2*(t - t_s/pi*sin(pi*t/t_s))     in the ramp
+//!        +-----------------------       = f_max*(t - t_s/2)                    in the plateau
+//!         t_s           T-t_s  T         = n - s(T - t)                        from T/2 on
+//! ```
+//!
+//! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
+
+use crate::{
+    Curve, Peaks,
+    curves::{
+        mirrored::{Mirrored, RAMP_PARTS, parts_s},
+        ramp::longest_ramp_s,
+    },
+    format::ramp_up_to,
+    timing::{
+        CycleTime, Double, Exact, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before,
+        one_searched_run,
+    },
+};
+use alloc::{boxed::Box, string::String, vec::Vec};
+use core::f64::consts::PI;
+
+/// A cosine S-curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cosine {
+    halves: Mirrored,
+    pub(crate) ramp_s: f64,
+    /// f_max in steps/s.
+    top_speed: f64,
+}
+
+impl Cosine {
+    /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
+    #[must_use]
+    pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
+        debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
+        let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
+        Self { halves: Mirrored { steps, duration_s }, ramp_s, top_speed }
+    }
+
+    /// f_max in steps/s, the speed of the plateau.
+    #[must_use]
+    pub fn top_speed(&self) -> f64 {
+        self.top_speed
+    }
+
+    /// The longest ramp in s with which this move keeps its top speed at or under `speed`:
+    /// T - n/speed (B4), of which it can use up to T/2; `None` where even no ramp is too fast.
+    #[must_use]
+    pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
+        longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
+    }
+
+    /// Phase of the ramp at `t` after the start or before the end, 0 to pi; `None` in the plateau.
+    fn phase(&self, t: f64) -> Option<f64> {
+        (t < self.ramp_s).then(|| PI * t / self.ramp_s)
+    }
+
+    pub(crate) fn part(&self, t: f64) -> f64 {
+        // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
+        self.phase(self.halves.nearer_end(t)).map_or(1.0, |phase| {
+            let sine = libm::sin(phase / 2.0);
+            sine * sine
+        })
+    }
+
+    fn ramp_steps(&self) -> f64 {
+        self.top_speed * self.ramp_s / 2.0
+    }
+
+    pub(crate) fn joints(&self) -> Vec<f64> {
+        self.halves.joints(&[self.ramp_steps()])
+    }
+
+    /// When the first half is at a position: the phase solves x - sin(x) = pi*position/(steps of the ramp).
+    fn climb_s(&self, position: f64) -> f64 {
+        let ramp_steps = self.ramp_steps();
+        if position >= ramp_steps {
+            self.ramp_s / 2.0 + position / self.top_speed
+        } else {
+            self.ramp_s * phase_at(PI * position / ramp_steps) / PI
+        }
+    }
+}
+
+/// s(t) of the first half, in steps without sign.
+fn first_half<N: Number>(t: N, top_speed: N, ramp: N) -> N {
+    if t < ramp {
+        top_speed * ramp / (N::PI * 2.0) * (N::PI * t / ramp).minus_its_sine()
+    } else {
+        top_speed * (t - ramp * 0.5)
+    }
+}
+
+/// Of a time in f64 the level has 10 u, three of them of T - t_s, which the phase passes on, and its two formulas for
+/// x - sin(x) another 4; Newton's method leaves 2. With the products by the ramp's time and the clock, and the
+/// difference from the end, it is off by less than 32 u.
+impl Schedule for Cosine {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        one_searched_run(self, clock_hz, self.joints())
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
+        let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
+        let count = self.halves.steps.unsigned_abs();
+        let top_speed = Double::from(count) / (duration - ramp);
+        Box::new(move |k, since| {
+            is_mirrored_due_before((k, count), since, duration, |t, position| {
+                first_half(t, top_speed, ramp) > position.into()
+            })
+        })
+    }
+}
+
+impl Curve for Cosine {
+    fn duration_s(&self) -> f64 {
+        self.halves.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.halves.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        self.halves.position(t, |t| first_half(t, self.top_speed, self.ramp_s))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        self.halves.signed(match self.phase(self.halves.nearer_end(t)) {
+            Some(phase) => {
+                // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
+                let sine = libm::sin(phase / 2.0);
+                self.top_speed * sine * sine
+            }
+            None => self.top_speed,
+        })
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let Some(phase) = self.phase(self.halves.nearer_end(t)) else { return 0.0 };
+        self.halves.acceleration(t, self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase))
+    }
+
+    fn peaks(&self) -> Peaks {
+        let speed = self.top_speed;
+        if self.ramp_s > 0.0 {
+            let acceleration = speed * PI / (2.0 * self.ramp_s);
+            // f_max*pi^2/(2*t_s^2), at both ends of each ramp.
+            Peaks { speed, acceleration, jerk: acceleration * PI / self.ramp_s, ..Peaks::default() }
+        } else {
+            Peaks { speed, ..Peaks::default() }
+        }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        self.halves.breakpoints_s(parts_s(self.ramp_s, RAMP_PARTS))
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
+    }
+
+    fn detail(&self, limit_steps_s: f64) -> String {
+        let longest_s = self.longest_ramp_s(limit_steps_s);
+        self.peaks().to_text() + &ramp_up_to(longest_s, self.duration_s())
+    }
+}
+
+/// Newton's steps after which a phase has all its digits; two or three do.
+const MAX_NEWTON_STEPS: u32 = 10;
+
+/// The x of 0..=pi with x - sin(x) = `level`.
+fn phase_at(level: f64) -> f64 {
+    // The series of the inverse is a little low; x - sin(x) rises and is convex, so from Newton's
+    // first step on all are above the root and fall towards it.
+    let root = libm::cbrt(6.0 * level);
+    let square = root * root;
+    let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
+    for _ in 0..MAX_NEWTON_STEPS {
+        let half = libm::sin(phase / 2.0);
+        let correction = (phase.minus_its_sine() - level) / (2.0 * half * half);
+        if libm::fabs(correction) <= phase * f64::EPSILON {
+            break;
+        }
+        phase -= correction;
+    }
+    phase
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_top_speed_and_longest_ramp_come_out() {
+        assert_eq!(Cosine::new(6400, 0.4, 0.2).top_speed(), 32_000.0);
+        let curve = Cosine::new(3200, 0.4, 0.2);
+        let longest = curve.longest_ramp_s(19_200.0).unwrap();
+        assert!((longest - 0.233_333_3).abs() < 1e-6, "{longest}");
+        assert_eq!(curve.longest_ramp_s(8000.0), Some(0.0));
+        assert_eq!(curve.longest_ramp_s(7999.0), None);
+    }
+
+    #[test]
+    fn position_is_the_integral_of_speed_and_speed_of_acceleration() {
+        for (steps, duration_s, ramp_s) in [(6400, 0.4, 0.2), (-6400, 0.4, 0.1), (1, 2.0, 0.5)] {
+            let curve = Cosine::new(steps, duration_s, ramp_s);
+            let slots = 20_000;
+            let dt = duration_s / f64::from(slots);
+            let (mut position, mut speed) = (0.0, 0.0);
+            let scale = f64::from(steps as i32).abs();
+            for slot in 0..slots {
+                let middle = (f64::from(slot) + 0.5) * dt;
+                position += curve.speed(middle) * dt;
+                speed += curve.acceleration(middle) * dt;
+                let end = f64::from(slot + 1) * dt;
+                assert!((position - curve.position(end)).abs() < 1e-6 * scale, "position at {end}");
+                assert!((speed - curve.speed(end)).abs() < 1e-6 * scale / duration_s, "speed at {end}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_end_is_exact_and_the_middle_is_half_of_the_way() {
+        for steps in [1, -1, 3, 6400, 999_999_999, -1_000_000_000] {
+            for ramp_s in [0.0, 0.05, 0.15] {
+                let curve = Cosine::new(steps, 0.3, ramp_s);
+                let end = curve.duration_s();
+                assert_eq!(curve.position(0.0), 0.0);
+                assert_eq!(curve.position(end), steps as f64);
+                assert_eq!(curve.position(9.0), steps as f64);
+                let middle = curve.position(end / 2.0) * 2.0 / steps as f64;
+                assert!((middle - 1.0).abs() < 1e-14, "{middle}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_curve_is_at_each_place_at_its_time() {
+        for (steps, ramp_s) in [(1, 0.15), (7, 0.05), (-6400, 0.15), (6401, 0.0), (1_000_000_000, 0.1)] {
+            let curve = Cosine::new(steps, 0.3, ramp_s);
+            let count = curve.halves.count();
+            for i in 0..=5000 {
+                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 5000.0 };
+                let place = if place > count { count } else { place };
+                let t = curve.time_s(place);
+                // Within a cycle of 1 GHz, and the digits of the position.
+                let at = |t: f64| libm::fabs(curve.position(t));
+                let digits = count * 1e-15;
+                assert!(
+                    at(t - 1e-9) <= place + digits && at(t + 1e-9) >= place - digits,
+                    "{place} of {steps}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! A monotone cubic between two points (DESIGN B6, points): where it is at a time, and when at a place.
+//!
+//! With the length h, the mean slope d and the slopes m0 and m1 at its ends, none of them against d and none above 2*d:
+//!
+//! ```text
+//!  y1 |        .-'    from its start   (m0 + (c2 + c3*x)*x)*x   c2 = (2*(d - m0) + (d - m1))/h
+//!     |     /                                                   c3 = ((m0 - d) + (m1 - d))/h^2
+//!  y0 | _.-'          from its end     the same with m0 and m1 exchanged
+//!     0         h     straight         m0 = m1 = d: c2 = c3 = 0, exactly
+//! ```
+//!
+//! Position and time are formed from the nearer end, where both are small, so a step beside a turn
+//! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
+//! does a place have an uncertain time.
+
+use crate::{bisection::Bracket, curves::curve::greater, square_root, timing::Number};
+
+/// Newton's steps after which a root has all its digits; at most eight do.
+const MAX_NEWTON_STEPS: u32 = 64;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cubic<N = f64> {
+    /// Time of its start in s.
+    pub(crate) from_s: N,
+    /// Time of its end, later.
+    pub(crate) to_s: N,
+    /// Position at its start in steps.
+    pub(crate) from: N,
+    /// Position at its end.
+    pub(crate) to: N,
+    /// Speed at its start in steps/s.
+    pub(crate) from_speed: N,
+    /// Speed at its end.
+    pub(crate) to_speed: N,
+}
+
+/// The cubic as seen from one of its ends: x from there on, the travel without sign.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen<N = f64> {
+    near_speed: N,
+    square: N,
+    cube: N,
+}
+
+impl<N: Number> Seen<N> {
+    pub(crate) fn travel(self, x: N) -> N {
+        (self.near_speed + (self.square + self.cube * x) * x) * x
+    }
+}
+
+impl Seen {
+    fn speed(self, x: f64) -> f64 {
+        self.near_speed + (2.0 * self.square + 3.0 * self.cube * x) * x
+    }
+
+    /// The x of 0..=`length` at which the travel is `travel`, from 0 to half of all.
+    fn time(self, travel: f64, length: f64) -> f64 {
+        // Without the cube; exact for a straight line, and near enough for Newton in the nearer half.
+        let square = self.near_speed * self.near_speed + 4.0 * self.square * travel;
+        let slope = self.near_speed + square_root(greater(0.0, square));
+        let mut x = if slope > 0.0 { 2.0 * travel / slope } else { length };
+        let mut bracket = Bracket::new(0.0, length);
+        if x > length {
+            x = bracket.middle();
+        }
+        for _ in 0..MAX_NEWTON_STEPS {
+            let missing = travel - self.travel(x);
+            bracket.narrow(x, missing >= 0.0);
+            let next = x + missing / self.speed(x);
+            // Also where there is no slope to divide by.
+            let next = if next >= bracket.low && next <= bracket.high { next } else { bracket.middle() };
+            let done = libm::fabs(next - x) <= x * f64::EPSILON;
+            x = next;
+            if done {
+                break;
+            }
+        }
+        x
+    }
+}
+
+impl<N: Number> Cubic<N> {
+    pub(crate) fn length_s(&self) -> N {
+        self.to_s - self.from_s
+    }
+
+    fn mean_speed(&self) -> N {
+        (self.to - self.from) / self.length_s()
+    }
+
+    fn seen(&self, near_speed: N, far_speed: N) -> Seen<N> {
+        let (mean, length) = (self.mean_speed(), self.length_s());
+        Seen {
+            near_speed,
+            square: ((mean - near_speed) * 2.0 + (mean - far_speed)) / length,
+            cube: ((near_speed - mean) + (far_speed - mean)) / (length * length),
+        }
+    }
+
+    pub(crate) fn seen_from_start(&self) -> Seen<N> {
+        self.seen(self.from_speed, self.to_speed)
+    }
+
+    pub(crate) fn seen_from_end(&self) -> Seen<N> {
+        self.seen(self.to_speed, self.from_speed)
+    }
+}
+
+pub(crate) fn slope_between<N: Number>((h0, d0): (N, N), (h1, d1): (N, N)) -> N {
+    let none = N::from(0.0);
+    if !((d0 > none && d1 > none) || (d0 < none && d1 < none)) {
+        return none;
+    }
+    let parabola = (d0 * h1 + d1 * h0) / (h0 + h1);
+    let least = |a: N, b: N| if b.magnitude() < a.magnitude() { b } else { a };
+    least(least(d0 * 2.0, d1 * 2.0), parabola)
+}
+
+impl Cubic {
+    pub(crate) fn position(&self, t: f64) -> f64 {
+        let (since, until) = (t - self.from_s, self.to_s - t);
+        if since <= until {
+            self.from + self.seen_from_start().travel(greater(0.0, since))
+        } else {
+            self.to - self.seen_from_end().travel(greater(0.0, until))
+        }
+    }
+
+    pub(crate) fn speed(&self, t: f64) -> f64 {
+        let (since, until) = (t - self.from_s, self.to_s - t);
+        if since <= until {
+            self.seen_from_start().speed(greater(0.0, since))
+        } else {
+            self.seen_from_end().speed(greater(0.0, until))
+        }
+    }
+
+    pub(crate) fn acceleration(&self, t: f64) -> f64 {
+        let seen = self.seen_from_start();
+        2.0 * seen.square + 6.0 * seen.cube * (t - self.from_s)
+    }
+
+    /// Acceleration's rate, the same everywhere in it.
+    pub(crate) fn jerk(&self) -> f64 {
+        6.0 * self.seen_from_start().cube
+    }
+
+    pub(crate) fn turn_s(&self) -> Option<f64> {
+        let seen = self.seen_from_start();
+        let turn_s = self.from_s - seen.square / (3.0 * seen.cube);
+        (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
+    }
+
+    /// When it is at `place`, which lies within it.
+    pub(crate) fn crossing(&self, place: f64) -> Crossing {
+        let travel = self.to - self.from;
+        let (behind, ahead) = (place - self.from, self.to - place);
+        // Mirrored so that the travel is to the right.
+        let right = |seen: Seen| {
+            let sign = if travel < 0.0 { -1.0 } else { 1.0 };
+            Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
+        };
+        if libm::fabs(behind) <= libm::fabs(ahead) {
+            let travel = libm::fabs(behind);
+            let x = right(self.seen_from_start()).time(travel, self.length_s());
+            Crossing { time_s: self.from_s + x, s_per_step: x / travel }
+        } else {
+            let travel = libm::fabs(ahead);
+            let x = right(self.seen_from_end()).time(travel, self.length_s());
+            Crossing { time_s: self.to_s - x, s_per_step: x / travel }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// In s.
+    pub(crate) time_s: f64,
+    /// Time since the nearer end or until it, in parts of the travel; no number at the end itself.
+    pub(crate) s_per_step: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_has_the_time_at_which_the_cubic_is_there() {
+        // Slopes in parts of the mean one, from 0 to 2.
+        let parts = [0.0, 1e-12, 0.3, 1.0, 1.7, 2.0];
+        for (from, to) in [(0.0, 1000.0), (7.25, 7.5), (-3.0, -1e9), (1e9, -1e9)] {
+            for (first, last) in parts.iter().flat_map(|first| parts.map(|last| (*first, last))) {
+                let mean = (to - from) / 0.5;
+                let (from_s, to_s) = (86_000.0, 86_000.5);
+                let (from_speed, to_speed) = (first * mean, last * mean);
+                let cubic = Cubic { from_s, to_s, from, to, from_speed, to_speed };
+                assert_eq!((cubic.crossing(from).time_s, cubic.crossing(to).time_s), (from_s, to_s));
+                let mut before = from_s;
+                for part in [1e-15, 1e-9, 1e-3, 0.2, 0.49, 0.5, 0.51, 0.9, 0.999, 1.0 - 1e-9] {
+                    let place = from + (to - from) * part;
+                    let t = cubic.crossing(place).time_s;
+                    assert!(t >= before && t <= to_s, "{from} {to} {first} {last} {part}: {t}");
+                    // The time has 1.5e-11 s as its last digit there.
+                    let off = libm::fabs(cubic.position(t) - place);
+                    let digit = (libm::fabs(mean) + 1.0) * 4e-11 + 4e-16 * libm::fabs(place);
+                    assert!(off <= digit, "{from} {to} {first} {last} {part}: {off} {digit}");
+                    before = t;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beside_a_turn_the_time_keeps_its_digits() {
+        // y = 3*x^2 - 2*x^3 from its bottom: half a step of a billion is at sqrt(0.5/3e9) and a little.
+        let cubic = Cubic { from_s: 0.0, to_s: 1.0, from: 0.0, to: 1e9, from_speed: 0.0, to_speed: 0.0 };
+        let root = libm::sqrt(0.5 / 3e9);
+        let expected = root * (1.0 + root / 3.0 + 5.0 / 18.0 * root * root);
+        let found = cubic.crossing(0.5).time_s;
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+        // And from its top down.
+        let falls = Cubic { from: 1e9, to: 0.0, ..cubic };
+        assert!((1.0 - falls.crossing(0.5).time_s - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_straight_line_has_no_curvature_at_all() {
+        let speed = 0.1 / 0.3;
+        let line = Cubic { from_s: 0.1, to_s: 0.4, from: 0.2, to: 0.3, from_speed: speed, to_speed: speed };
+        let mean = line.mean_speed();
+        let line = Cubic { from_speed: mean, to_speed: mean, ..line };
+        assert_eq!((line.acceleration(0.2), line.jerk(), line.turn_s()), (0.0, 0.0, None));
+    }
+}

@@ -1,0 +1,444 @@
+//! Jerk-limited move from rest to rest in seven phases (DESIGN B6): the fastest that keeps under a speed V, an
+//! acceleration A and a jerk J.
+//!
+//! ```text
+//!  jerk    |--.   .--.        .--.  .--   +J  0  -J  0  -J  0  +J
+//!          |  '-'-|  |--------|  '--'     t_j  time of a jerk phase         J*t_j is at most A
+//!  accel.  | .---.                        t_a  constant acceleration, or 0
+//!          |/     \__________             t_v  plateau, or 0
+//!          |                 \     /      v  = J*t_j*(t_j + t_a)            at most V
+//!          |                  '---'       t_r = 2*t_j + t_a                 time of a ramp
+//!            t_j t_a t_j t_v t_j t_a t_j  s_r = v*t_r/2                     steps of a ramp
+//! ```
+//!
+//! | what the distance n allows | v | t_j |
+//! | --- | --- | --- |
+//! | the speed, and on the way to it the acceleration | V | A/J |
+//! | the speed, below A: no constant acceleration | V | sqrt(V/J) |
+//! | the acceleration, below V: no plateau | from v*(v/A + A/J) = n | A/J |
+//! | neither: jerk phases alone | J*t_j^2 | cbrt(n/(2*J)) |
+//!
+//! A step's time is the root of its phase's own polynomial, from the end at which it is small, so no digits cancel.
+
+use crate::{
+    Curve, Peaks,
+    curves::mirrored::Mirrored,
+    format::grouped,
+    moves,
+    planners::quantities::Quantities,
+    square_root,
+    timing::{
+        CycleTime, Double, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
+    },
+};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
+
+/// Newton's steps after which a root has all its digits; at most six do.
+const MAX_NEWTON_STEPS: u32 = 12;
+/// Parts that a phase of constant jerk is cut into: the speed bends in it.
+const JERK_PARTS: u32 = 16;
+
+/// Limits of a move, each above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits<N = f64> {
+    /// In steps/s.
+    pub speed: N,
+    /// In steps/s^2.
+    pub acceleration: N,
+    /// In steps/s^3.
+    pub jerk: N,
+}
+
+/// A jerk-limited move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JerkLimited {
+    halves: Mirrored,
+    phases: Phases<f64>,
+    /// With all their digits: in f64 neither a decimal nor a quotient by mechanics has them.
+    limits: Limits<Double>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Phases<N> {
+    jerk: N,
+    /// t_j.
+    jerk_s: N,
+    /// t_a.
+    steady_s: N,
+    /// v, the highest speed that is reached.
+    peak_speed: N,
+    /// t_r.
+    ramp_s: N,
+    /// s_r, at most half of all steps.
+    ramp_steps: N,
+    /// Of the whole move.
+    duration_s: N,
+}
+
+impl<N: Number> Phases<N> {
+    fn new(steps: i64, Limits { speed, acceleration, jerk }: Limits<N>) -> Self {
+        let all = N::from(steps.unsigned_abs() as f64);
+        // To the top speed: with a phase of constant acceleration, where that is reached before.
+        let full_jerk_s = acceleration / jerk;
+        let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
+            (full_jerk_s, (speed / acceleration - full_jerk_s).or_zero())
+        } else {
+            ((speed / jerk).square_root(), 0.0.into())
+        };
+        let ramp_s = jerk_s * 2.0 + steady_s;
+        let ramp_steps = speed * ramp_s * 0.5;
+        if ramp_steps * 2.0 <= all {
+            let duration_s = all / speed + ramp_s;
+            return Self { jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, duration_s };
+        }
+        // No plateau: the two ramps are the whole travel.
+        let (jerk_s, steady_s, peak_speed) = if all > acceleration * 2.0 * full_jerk_s * full_jerk_s {
+            // v*(v/A + t_j) = n, solved without a difference.
+            let root = (full_jerk_s * full_jerk_s + all * 4.0 / acceleration).square_root();
+            let peak_speed = all * 2.0 / (full_jerk_s + root);
+            (full_jerk_s, (peak_speed / acceleration - full_jerk_s).or_zero(), peak_speed)
+        } else {
+            let jerk_s = (all / (jerk * 2.0)).cube_root();
+            (jerk_s, 0.0.into(), jerk * jerk_s * jerk_s)
+        };
+        let ramp_s = jerk_s * 2.0 + steady_s;
+        Self { jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all * 0.5, duration_s: ramp_s * 2.0 }
+    }
+
+    /// J*t_j, the greatest acceleration that is reached.
+    fn peak_acceleration(&self) -> N {
+        self.jerk * self.jerk_s
+    }
+
+    fn joints_s(&self) -> [N; 3] {
+        [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
+    }
+
+    fn first_steps(&self) -> N {
+        self.jerk * self.jerk_s * self.jerk_s * self.jerk_s / 6.0
+    }
+
+    fn first_speed(&self) -> N {
+        self.jerk * self.jerk_s * self.jerk_s * 0.5
+    }
+
+    /// s(t) in steps without sign.
+    fn position(&self, t: N) -> N {
+        let [rising, steady, ramp] = self.joints_s();
+        if t < rising {
+            self.jerk * t * t * t / 6.0
+        } else if t < steady {
+            let x = t - rising;
+            self.first_steps() + (self.first_speed() + self.peak_acceleration() * x * 0.5) * x
+        } else if t < ramp {
+            self.ramp_steps - self.travel_left(ramp - t)
+        } else {
+            self.ramp_steps + self.peak_speed * (t - ramp)
+        }
+    }
+
+    fn travel_left(&self, left_s: N) -> N {
+        (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
+    }
+}
+
+impl JerkLimited {
+    /// `steps` (left negative, not 0) from rest to rest.
+    #[must_use]
+    pub fn new(steps: i64, limits: Limits) -> Self {
+        let [speed, acceleration, jerk] =
+            [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
+        Self::within(steps, Limits { speed, acceleration, jerk })
+    }
+
+    /// [`Self::new`], of numbers with all their digits.
+    fn within(steps: i64, limits: Limits<Double>) -> Self {
+        let [speed, acceleration, jerk] =
+            [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
+        let phases = Phases::new(steps, Limits { speed, acceleration, jerk });
+        Self { halves: Mirrored { steps, duration_s: phases.duration_s }, phases, limits }
+    }
+
+    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) -> Option<Self> {
+        let steps = quantities.distance("distance", &given.distance);
+        let speed = quantities.speed("max_speed", &given.max_speed);
+        let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
+        let jerk = quantities.jerk("max_jerk", &given.max_jerk);
+        let (steps, _, _, _) = (steps?, speed?, acceleration?, jerk?);
+        let mechanics = quantities.mechanics();
+        let limits = Limits {
+            speed: given.max_speed.exact_in_steps(mechanics).ok()?,
+            acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
+            jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,
+        };
+        Some(Self::within(steps, limits))
+    }
+
+    /// Highest speed that is reached, in steps/s.
+    #[must_use]
+    pub fn peak_speed(&self) -> f64 {
+        self.phases.peak_speed
+    }
+
+    /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other
+    /// three are the first three backwards.
+    #[must_use]
+    pub fn phases_s(&self) -> [f64; 4] {
+        let Phases { jerk_s, steady_s, ramp_s, duration_s, .. } = self.phases;
+        [jerk_s, steady_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]
+    }
+
+    pub(crate) fn joints(&self) -> Vec<f64> {
+        let last = self.phases.ramp_steps - self.phases.travel_left(self.phases.jerk_s);
+        self.halves.joints(&[self.phases.first_steps(), last, self.phases.ramp_steps])
+    }
+
+    fn climb_s(&self, position: f64) -> f64 {
+        let Phases { jerk, jerk_s, peak_speed, ramp_s, ramp_steps, .. } = self.phases;
+        let past_first = position - self.phases.first_steps();
+        if past_first <= 0.0 {
+            return libm::cbrt(6.0 * position / jerk);
+        }
+        let left = ramp_steps - position;
+        if left <= 0.0 {
+            return ramp_s - left / peak_speed;
+        }
+        if left > self.phases.travel_left(jerk_s) {
+            let (speed, acceleration) = (self.phases.first_speed(), self.phases.peak_acceleration());
+            let root = square_root(speed * speed + 2.0 * acceleration * past_first);
+            return jerk_s + 2.0 * past_first / (speed + root);
+        }
+        // v*u - J*u^3/6 rises and is concave up to t_j, and its slope stays above v/2: from below,
+        // each of Newton's steps comes nearer and none passes the root.
+        let mut u = left / peak_speed;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let slope = peak_speed - jerk * u * u / 2.0;
+            let correction = (left - self.phases.travel_left(u)) / slope;
+            u += correction;
+            if correction <= u * f64::EPSILON {
+                break;
+            }
+        }
+        ramp_s - u
+    }
+}
+
+/// Of a time in f64 the phases before it have at most 6 u each, and what is left of the way at a joint 14 u of its steps,
+/// which the speed there makes a third as much of the time. With the root's end, the difference from the end and the
+/// product with the clock it is off by less than 48 u.
+impl Schedule for JerkLimited {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(Phases::new(self.halves.steps, self.limits).duration_s * f64::from(clock_hz))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        one_searched_run(self, clock_hz, self.joints())
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let (phases, count) = (Phases::new(self.halves.steps, self.limits), self.halves.steps.unsigned_abs());
+        Box::new(move |k, since| {
+            is_mirrored_due_before(
+                (k, count),
+                since / f64::from(clock_hz),
+                phases.duration_s,
+                |t, position| phases.position(t) > position.into(),
+            )
+        })
+    }
+}
+
+impl Curve for JerkLimited {
+    fn duration_s(&self) -> f64 {
+        self.halves.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.halves.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        self.halves.position(t, |t| self.phases.position(t))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let t = self.halves.nearer_end(t);
+        let [rising, steady, ramp] = self.phases.joints_s();
+        self.halves.signed(if t < rising {
+            self.phases.jerk * t * t / 2.0
+        } else if t < steady {
+            self.phases.first_speed() + self.phases.peak_acceleration() * (t - rising)
+        } else if t < ramp {
+            self.phases.peak_speed - self.phases.jerk * (ramp - t) * (ramp - t) / 2.0
+        } else {
+            self.phases.peak_speed
+        })
+    }
+
+    fn acceleration(&self, t: f64) -> f64 {
+        let near = self.halves.nearer_end(t);
+        let [rising, steady, ramp] = self.phases.joints_s();
+        let magnitude = if near < rising {
+            self.phases.jerk * near
+        } else if near < steady {
+            self.phases.peak_acceleration()
+        } else if near < ramp {
+            self.phases.jerk * (ramp - near)
+        } else {
+            0.0
+        };
+        self.halves.acceleration(t, magnitude)
+    }
+
+    fn peaks(&self) -> Peaks {
+        let acceleration = self.phases.peak_acceleration();
+        Peaks {
+            speed: self.phases.peak_speed,
+            acceleration,
+            jump: 0.0,
+            jerk: self.phases.jerk,
+            acceleration_jump: 0.0,
+        }
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let [rising_s, steady_s, ramp_s] = self.phases.joints_s();
+        let parts = |from_s: f64, to_s: f64| {
+            (1..=JERK_PARTS)
+                .map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
+        };
+        self.halves.breakpoints_s(parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)))
+    }
+
+    fn time_s(&self, place: f64) -> f64 {
+        self.halves.time_s(place, |place| self.climb_s(place))
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
+        format!(
+            "{}, {} steps/s\u{b3}; phases of {} s and back",
+            self.peaks().to_text(),
+            grouped(self.phases.jerk),
+            phases.join(", ")
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(steps: i64, speed: f64, acceleration: f64, jerk: f64) -> JerkLimited {
+        JerkLimited::new(steps, Limits { speed, acceleration, jerk })
+    }
+
+    /// One of each row of the module's table, the borders between them, and their mirror images.
+    const MOVES: [(i64, f64, f64, f64); 9] = [
+        (10_000, 4000.0, 20_000.0, 400_000.0),
+        (10_000, 1000.0, 20_000.0, 100_000.0),
+        (600, 4000.0, 20_000.0, 400_000.0),
+        (50, 4000.0, 20_000.0, 400_000.0),
+        (1000, 4000.0, 20_000.0, 400_000.0),
+        (100, 4000.0, 20_000.0, 400_000.0),
+        (-10_000, 1000.0, 10_000.0, 100_000.0),
+        (1, 1e7, 1e13, 1e-6),
+        (-1_000_000_000, 1e7, 1e-6, 1e19),
+    ];
+
+    #[test]
+    fn a_limit_out_of_its_range_is_refused_at_its_field() {
+        use crate::mechanics::{Acceleration, Distance, Jerk, Speed};
+        let speed = Speed::StepsPerSecond;
+        let (acceleration, jerk) = (Acceleration::StepsPerSecond2, Jerk::StepsPerSecond3);
+        let fits = moves::JerkLimited::default;
+        let rows = [
+            (moves::JerkLimited { distance: Distance::Steps(0.0), ..fits() }, "distance"),
+            (moves::JerkLimited { max_speed: speed(0.0), ..fits() }, "max_speed"),
+            (moves::JerkLimited { max_acceleration: acceleration(1e14), ..fits() }, "max_acceleration"),
+            (moves::JerkLimited { max_jerk: jerk(0.0), ..fits() }, "max_jerk"),
+            (moves::JerkLimited { max_jerk: jerk(1e20), ..fits() }, "max_jerk"),
+        ];
+        for (given, field) in rows {
+            let axis = moves::Axis { moves: vec![moves::Move::JerkLimited(given)], ..Default::default() };
+            let problems = crate::plan_axis(&axis, "x").expect_err(field);
+            let paths: Vec<&str> = problems.iter().map(|problem| problem.path.as_str()).collect();
+            assert_eq!(paths, [format!("x.moves[0].jerk_limited.{field}")]);
+        }
+    }
+
+    #[test]
+    fn each_row_of_the_table_has_its_phases() {
+        // Phases in s, peak speed.
+        let rows = [
+            ([0.05, 0.15, 0.05, 2.25], 4000.0),
+            ([0.1, 0.0, 0.1, 9.8], 1000.0),
+            ([0.05, 0.100_000_0, 0.05, 0.0], 3000.0),
+            ([0.039_685_0, 0.0, 0.039_685_0, 0.0], 629.960_52),
+            ([0.05, 0.15, 0.05, 0.0], 4000.0),
+            ([0.05, 0.0, 0.05, 0.0], 1000.0),
+            ([0.1, 0.0, 0.1, 9.8], 1000.0),
+        ];
+        for ((steps, speed, acceleration, jerk), (phases_s, peak)) in MOVES.into_iter().zip(rows) {
+            let made = curve(steps, speed, acceleration, jerk);
+            for (found, expected) in made.phases_s().into_iter().zip(phases_s) {
+                assert!((found - expected).abs() < 1e-7, "{steps}: {found} {expected}");
+            }
+            assert!((made.peak_speed() - peak).abs() < 1e-4, "{steps}: {}", made.peak_speed());
+            assert_eq!(made.position(made.duration_s()), steps as f64);
+        }
+    }
+
+    #[test]
+    fn no_limit_is_passed_and_one_is_reached_at_every_time() {
+        for (steps, speed, acceleration, jerk) in MOVES {
+            let made = curve(steps, speed, acceleration, jerk);
+            let (peaks, most) = (made.peaks(), 1.0 + 1e-12);
+            assert!(peaks.speed <= speed * most && peaks.acceleration <= acceleration * most, "{steps}");
+            assert_eq!(peaks.jerk, jerk);
+            // In no phase is there room under all three limits.
+            let [rising, steady, _] = made.phases.joints_s();
+            assert!(steady <= rising || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12, "{steps}");
+            assert!(made.phases_s()[3] <= 0.0 || peaks.speed == speed, "{steps}");
+        }
+    }
+
+    #[test]
+    fn position_is_the_integral_of_speed_and_speed_of_acceleration() {
+        for (steps, speed, acceleration, jerk) in MOVES.into_iter().take(7) {
+            let made = curve(steps, speed, acceleration, jerk);
+            let (slots, end) = (40_000, made.duration_s());
+            let dt = end / f64::from(slots);
+            let (mut at, mut rate) = (0.0, 0.0);
+            for slot in 0..slots {
+                let middle = (f64::from(slot) + 0.5) * dt;
+                at += made.speed(middle) * dt;
+                rate += made.acceleration(middle) * dt;
+                let t = f64::from(slot + 1) * dt;
+                assert!((at - made.position(t)).abs() < 1e-4 * (1.0 + at.abs()), "{steps} at {t}");
+                assert!((rate - made.speed(t)).abs() < 1e-2 * made.peak_speed(), "{steps} at {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_curve_is_at_each_place_at_its_time() {
+        for (steps, speed, acceleration, jerk) in MOVES {
+            let made = curve(steps, speed, acceleration, jerk);
+            let count = steps.unsigned_abs() as f64;
+            let mut before = (0.0, 0.0);
+            for i in 0..=4000 {
+                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 4000.0 };
+                if place > count {
+                    continue;
+                }
+                let t = made.time_s(place);
+                let off = (made.position(t).abs() - place).abs();
+                // Of the position its digits, and of the time what the speed makes of its digits.
+                assert!(off <= 4e-15 * (count + made.peak_speed() * t), "{place} of {steps}: {off} off");
+                assert!(place < before.0 || t >= before.1, "{place} of {steps}");
+                before = (place, t);
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Curves: where an axis is over time, and when its steps are due (DESIGN Part B). One file per kind of move:
+//!
+//! ```text
+//! trapezoid, trapezoid_table     B2    / uniform acceleration, exact or by a table of a timer's reloads \
+//! staircase                      B3    _-_     rates that are each held for some steps
+//! cosine, sliced, ramps          B4    ( S )   a distance in a given time, with ramps of some shape
+//! sine_segments, sine            B5 B6 \/\/    about a middle position
+//! jerk_limited, points           B6    within limits, or through points
+//! constant_velocity              B6    ---     one rate, or a dwell
+//! ```
+//!
+//! ```
+//! use stepscope_motion::{Curve, curves::{Cosine, JerkLimited, JerkLimits}};
+//!
+//! // One turn of 3200 steps in 0.4 s, half of it speeding up.
+//! let turn = Cosine::new(3200, 0.4, 0.2);
+//! assert_eq!((turn.top_speed(), turn.position(0.2)), (16_000.0, 1600.0));
+//! let limits = JerkLimits { speed: 10_000.0, acceleration: 100_000.0, jerk: 2_000_000.0 };
+//! assert!(JerkLimited::new(3200, limits).peaks().speed <= 10_000.0);
+//! ```
+
+pub(crate) mod acceleration_table;
+pub(crate) mod breakpoints;
+mod climb;
+pub(crate) mod constant_velocity;
+pub(crate) mod cosine;
+mod cubic;
+pub(crate) mod curve;
+pub(crate) mod jerk_limited;
+mod mirrored;
+pub(crate) mod oscillation;
+pub(crate) mod points;
+pub mod polyline;
+pub(crate) mod ramp;
+pub(crate) mod ramps;
+pub(crate) mod sine;
+pub(crate) mod sine_segments;
+pub(crate) mod sliced;
+pub(crate) mod staircase;
+pub(crate) mod staircase_table;
+pub(crate) mod stepped;
+pub(crate) mod trapezoid;
+pub(crate) mod trapezoid_table;
+
+pub use acceleration_table::AccelerationTable;
+pub use constant_velocity::{Constant, Dwell};
+pub use cosine::Cosine;
+pub use jerk_limited::{JerkLimited, Limits as JerkLimits};
+pub use points::{Between, Points};
+pub use ramp::{Exponential, Ramp, Sigmoid, longest_ramp_s};
+pub use ramps::Ramps;
+pub use sine::Sine;
+pub use sine_segments::{Memory, Segment, SineSegments};
+pub use sliced::{NotSliced, Sliced, TimeError};
+pub use staircase::Staircase;
+pub use staircase_table::StaircaseTable;
+pub use trapezoid::Trapezoid;
+pub use trapezoid_table::{NoTable, TrapezoidTable};

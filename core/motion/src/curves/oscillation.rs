@@ -1,0 +1,49 @@
+//! What motions to and fro about a middle share (DESIGN B5, B6): whole periods, from one extreme to the other and back.
+//!
+//! ```text
+//!  0   |\        /\        /   position from the start: the right extreme, or with a negative
+//!      |  \    /    \    /     amplitude the left one
+//! -2*A |    \/        \/       4*A steps a period, 0 at the end of each
+//! ```
+
+use crate::curves::curve::greater;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Oscillation {
+    /// Distance from the middle to an extreme in whole steps.
+    pub(crate) amplitude: u64,
+    /// The motion starts at the right extreme; with a negative amplitude at the left one.
+    pub(crate) starts_right: bool,
+    pub(crate) period_s: f64,
+    pub(crate) periods: u32,
+}
+
+impl Oscillation {
+    /// `periods` of `period_s` > 0 between `amplitude` steps on either side of the middle.
+    pub(crate) fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
+        Self { amplitude: amplitude.unsigned_abs(), starts_right: amplitude >= 0, period_s, periods }
+    }
+
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.period_s * f64::from(self.periods)
+    }
+
+    pub(crate) fn step_count(&self) -> u64 {
+        4 * self.amplitude * u64::from(self.periods)
+    }
+
+    /// Whether half period `half` (from 0) goes to the right.
+    pub(crate) fn goes_right(&self, half: u64) -> bool {
+        self.starts_right == (half % 2 == 1)
+    }
+
+    /// Part of a period that has passed at `t`, 0 to 1.
+    pub(crate) fn part(&self, t: f64) -> f64 {
+        let turns = t / self.period_s;
+        greater(0.0, turns - libm::floor(turns))
+    }
+
+    pub(crate) fn signed(&self, rightwards: f64) -> f64 {
+        if self.starts_right { rightwards } else { -rightwards }
+    }
+}

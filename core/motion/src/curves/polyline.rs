@@ -1,0 +1,154 @@
+//! The polyline that stands for a cosine (DESIGN B5, SWorldJournal issue 11): its breakpoints, and
+//! the symmetry that makes a period of a quarter.
+//!
+//! ```text
+//!  1 |-._                 y = cos(pi*i/1024), i = 0..=512, 2048 points a period
+//!    |   '-._             a chord goes from its breakpoint as far as its greatest deviation
+//!    |       '-._         from the cosine stays within d1
+//!  0 +-----------'- 512
+//! ```
+//!
+//! ```
+//! use stepscope_motion::polyline::{breakpoints, next_deviation};
+//!
+//! // the paper's six segments a quarter.
+//! let six = breakpoints(0.0054);
+//! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
+//! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
+//! ```
+
+use crate::{bisection::least_near, curves::curve::greater, round_half_up};
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+/// Points of the angle in a period; breakpoints lie on them.
+pub const POINTS: u16 = 2048;
+/// Points of the angle in a quarter.
+pub const QUARTER: u16 = POINTS / 4;
+const CHORD_PARTS: u16 = 100;
+// Four quarters are a period, to the point.
+const _: () = assert!(4 * QUARTER == POINTS);
+
+/// y = cos at a point of the angle, 0..=[`QUARTER`].
+pub fn cosine_at(point: u16) -> f64 {
+    // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
+    if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
+}
+
+/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the largest deviation `d1` in parts of the amplitude (B5).
+///
+/// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
+/// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
+/// breakpoint, and at least the very next point is. A longer chord deviates more, so not each point is
+/// tried: the search begins at a chord as long as the one before, which is seldom far off.
+pub fn breakpoints(d1: f64) -> Vec<u16> {
+    let mut points = Vec::from([0]);
+    let (mut from, mut longer) = (0, 0);
+    while from < QUARTER {
+        let next = from + 1;
+        let y_from = cosine_at(from);
+        let holds = |to: u16| deviation((from, y_from), to) <= d1;
+        longer = least_near(longer, (QUARTER - next).into(), |longer| !holds(next + longer as u16 + 1));
+        from = next + longer as u16;
+        points.push(from);
+    }
+    points
+}
+
+/// The least `d1` above the one of these breakpoints that gives others; None where none does.
+pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
+    let chords = breakpoints.iter().zip(breakpoints.iter().skip(1));
+    chords
+        .filter(|(_, to)| **to < QUARTER)
+        .map(|(from, to)| deviation((*from, cosine_at(*from)), to + 1))
+        .reduce(|least, deviation| if deviation < least { deviation } else { least })
+}
+
+/// Greatest |chord - cosine| between two points of the angle, over the 101 that cut the chord.
+///
+/// In a quarter the difference rises to one summit, where the cosine runs along the chord, and
+/// falls; so of the 101 only those next to the summit are looked at.
+fn deviation((from, y_from): (u16, f64), to: u16) -> f64 {
+    let y_to = cosine_at(to);
+    let length = f64::from(to - from);
+    let summit = libm::asin((y_from - y_to) * 1024.0 / (PI * length)) * 1024.0 / PI;
+    let nearest = round_half_up((summit - f64::from(from)) / length * f64::from(CHORD_PARTS)) as u16;
+    (nearest.saturating_sub(1)..=CHORD_PARTS.min(nearest + 1))
+        .fold(0.0, |greatest, k| greater(greatest, deviation_at(k, from, to, y_from, y_to)))
+}
+
+fn deviation_at(k: u16, from: u16, to: u16, y_from: f64, y_to: f64) -> f64 {
+    let part = f64::from(k) / f64::from(CHORD_PARTS);
+    let chord = y_from + (y_to - y_from) * part;
+    let point = f64::from(from) + f64::from(to - from) * part;
+    libm::fabs(chord - libm::cos(PI * point / 1024.0))
+}
+
+pub(crate) struct Folded {
+    /// 0..=512.
+    pub(crate) point: f64,
+    /// Right of the middle.
+    pub(crate) right: bool,
+    /// On the way to the left.
+    pub(crate) leftwards: bool,
+}
+
+/// Folds a point of a period, 0..=2048, into the first quarter.
+pub(crate) fn fold(point: f64) -> Folded {
+    let leftwards = point < f64::from(2 * QUARTER);
+    let half = if leftwards { point } else { f64::from(POINTS) - point };
+    let right = half <= f64::from(QUARTER);
+    let point = if right { half } else { f64::from(2 * QUARTER) - half };
+    Folded { point: greater(0.0, point), right, leftwards }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_breakpoints_come_out() {
+        let rows: [(f64, &[u16]); 4] = [
+            (0.0054, &[0, 67, 136, 208, 287, 381, 512]),
+            (0.006, &[0, 71, 144, 221, 307, 413, 512]),
+            (0.015, &[0, 113, 234, 381, 512]),
+            (1.0, &[0, 512]),
+        ];
+        for (d1, expected) in rows {
+            assert_eq!(breakpoints(d1), expected, "{d1}");
+        }
+        assert_eq!(breakpoints(0.002).len() - 1, 10);
+        assert_eq!(breakpoints(0.0).len() - 1, 512);
+        assert_eq!(breakpoints(f64::NAN).len() - 1, 512);
+    }
+
+    #[test]
+    fn the_next_deviation_is_the_least_that_gives_other_breakpoints() {
+        for d1 in [0.002, 0.0054, 0.006, 0.015, 0.1] {
+            let points = breakpoints(d1);
+            let next = next_deviation(&points).expect("a chord can be longer");
+            assert_eq!(breakpoints(next * (1.0 - 1e-12)), points, "{d1}");
+            assert_ne!(breakpoints(next), points, "{d1}");
+        }
+        assert_eq!(next_deviation(&[0, 512]), None);
+    }
+
+    #[test]
+    fn a_longer_chord_deviates_more() {
+        for from in 0..QUARTER {
+            let deviations = (from + 1..=QUARTER).map(|to| deviation((from, cosine_at(from)), to));
+            assert!(deviations.is_sorted_by(|shorter, longer| shorter < longer), "from {from}");
+        }
+    }
+
+    #[test]
+    fn the_summits_neighbours_stand_for_all_101_points_of_every_chord() {
+        for from in 0..QUARTER {
+            for to in from + 1..=QUARTER {
+                let (y_from, y_to) = (cosine_at(from), cosine_at(to));
+                let all = (0..=CHORD_PARTS).map(|k| deviation_at(k, from, to, y_from, y_to));
+                assert_eq!(deviation((from, y_from), to), all.fold(0.0, f64::max), "{from} to {to}");
+            }
+        }
+    }
+}

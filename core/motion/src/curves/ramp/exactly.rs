@@ -1,0 +1,71 @@
+//! The shapes of a ramp in 106 bits (DESIGN B1, B4): whether their travel at a time is more than a given one.
+//!
+//! With R(z) = e^z - 1 - z, of which no terms cancel, z = k*x of an exponential and z = 2*r*x of a sigmoid:
+//!
+//! ```text
+//! exponential   G = R(-z)/(k*(k - R(-k)))          A = G(1)
+//! sigmoid       G > g   where   p*R(z) - R(w) > c*g,   w = p*z + c*g
+//!               p = 1/(2 + r + R(r)),  c = 2*r*(r + R(r))/(2 + r + R(r))
+//! ```
+//!
+//! The sigmoid's is ln(1 + p*(e^z - 1)) - p*z > c*g (`ramp`) without its logarithm.
+
+use super::Ramp;
+use crate::timing::Double;
+
+/// A shape with its parameter as it is printed.
+#[derive(Clone, Copy)]
+pub(crate) enum Exactly {
+    Sigmoid { twice_range: Double, low: Double, scale: Double },
+    Bezier,
+    Straight,
+    Exponential { constants: Double, scale: Double },
+}
+
+impl Ramp {
+    pub(crate) fn exactly(&self) -> Exactly {
+        match self {
+            Self::Sigmoid(curve) => {
+                let range = Double::decimal(curve.range);
+                let past_one = range + range.exponential_rest();
+                let (twice_range, under) = (range * 2.0, past_one + 2.0);
+                let low = Double::from(1.0) / under;
+                Exactly::Sigmoid { twice_range, low, scale: twice_range * past_one / under }
+            }
+            Self::Bezier => Exactly::Bezier,
+            Self::Straight => Exactly::Straight,
+            Self::Exponential(curve) => {
+                let constants = Double::decimal(curve.constants);
+                let part = constants - (Double::default() - constants).exponential_rest();
+                Exactly::Exponential { constants, scale: constants * part }
+            }
+        }
+    }
+}
+
+impl Exactly {
+    /// A = G(1).
+    pub(crate) fn area(self) -> Double {
+        match self {
+            Self::Exponential { constants, scale } => {
+                (Double::default() - constants).exponential_rest() / scale
+            }
+            _ => 0.5.into(),
+        }
+    }
+
+    pub(crate) fn is_past(self, x: Double, travel: Double) -> bool {
+        match self {
+            Self::Sigmoid { twice_range, low, scale } => {
+                let (z, area) = (twice_range * x, scale * travel);
+                let rest = (low * z + area).exponential_rest();
+                low * z.exponential_rest() - rest > area
+            }
+            Self::Bezier => x * x * x * (Double::from(1.0) - x * 0.5) > travel,
+            Self::Straight => x * x * 0.5 > travel,
+            Self::Exponential { constants, scale } => {
+                (Double::default() - constants * x).exponential_rest() / scale > travel
+            }
+        }
+    }
+}

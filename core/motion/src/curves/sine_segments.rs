@@ -1,0 +1,426 @@
+//! Sine as segments of fixed rate (DESIGN B5, SWorldJournal issue 11).
+//!
+//! On a quarter of y = cos(pi*i/1024), i = 0..=512, the breakpoints are as far apart as the largest
+//! deviation d1 lets them be. The other quarters follow by symmetry; a motion starts at the right
+//! extreme, goes left to the other one and comes back:
+//!
+//! ```text
+//!   +A |\_                _/      vertex    round_half_up(A*y), whole steps
+//!      |  \              /        time      i*T/2048
+//!    0 |---\------------/---      segment   (difference of vertices)/(difference of times),
+//!      |    \_        _/                    one rate, so one interval a segment
+//!   -A |      \______/            position  from the start: 0, down to -2*A, up to 0
+//!      0     512 1024 1536 2048 i
+//! ```
+
+use crate::{
+    Curve, Peaks,
+    curves::{
+        curve::greater,
+        oscillation::Oscillation,
+        polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
+    },
+    format::grouped,
+    limits, moves,
+    planners::budget::{Budget, MAX_SEGMENTS, hold_speed},
+    planners::quantities::Quantities,
+    problem::ValueError,
+    round_half_up,
+    timing::{CycleTime, Double, Exact, IsDueBefore, Run, Runs, Schedule},
+};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
+
+const MAX_TOLD: usize = 12;
+
+/// One segment of a quarter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Point of the angle where it begins, of 2048 a period.
+    pub from: u16,
+    /// Point where it ends.
+    pub to: u16,
+    /// Angle of the beginning in degrees.
+    pub from_deg: f64,
+    /// Angle of the end in degrees.
+    pub to_deg: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Steps a second.
+    pub rate: f64,
+    /// How long, in s.
+    pub duration_s: f64,
+    /// Distance of its beginning from the middle, in steps.
+    from_steps: u64,
+}
+
+/// A segment in its place in the motion; its steps stand in the middles of as many equal parts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interval {
+    /// Its beginning in points of the angle from the start.
+    pub(crate) from: f64,
+    /// Its end.
+    pub(crate) to: f64,
+    /// Steps.
+    pub(crate) steps: u64,
+    /// Which way they go.
+    pub(crate) right: bool,
+}
+
+/// Memory that a controller needs for a quarter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Bytes of the segments: a 4-byte interval and a count of steps each, which takes 2 bytes, or
+    /// 4 where a segment has more than 65535 steps.
+    pub segments: u64,
+    /// Bytes of one 4-byte interval for each step.
+    pub intervals: u64,
+}
+
+/// A sine by segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SineSegments {
+    pub(crate) oscillation: Oscillation,
+    /// The first quarter.
+    ///
+    /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
+    segments: Vec<Segment>,
+}
+
+impl SineSegments {
+    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps on either side of the middle; a negative
+    /// amplitude starts at the left extreme. `d1` is the largest deviation in parts of the amplitude.
+    #[must_use]
+    pub fn new(amplitude: i64, period_s: f64, periods: u32, d1: f64) -> Self {
+        let steps = amplitude.unsigned_abs();
+        let vertex = |point| round_half_up(steps as f64 * cosine_at(point)).unsigned_abs();
+        let segments = breakpoints(d1)
+            .windows(2)
+            .filter_map(|pair| {
+                let &[from, to] = pair else { return None };
+                let duration_s = f64::from(to - from) * period_s / f64::from(POINTS);
+                let count = vertex(from) - vertex(to);
+                Some(Segment {
+                    from,
+                    to,
+                    from_deg: f64::from(from) * 360.0 / f64::from(POINTS),
+                    to_deg: f64::from(to) * 360.0 / f64::from(POINTS),
+                    steps: count,
+                    rate: count as f64 / duration_s,
+                    duration_s,
+                    from_steps: vertex(from),
+                })
+            })
+            .collect::<Vec<_>>();
+        debug_assert!(
+            segments.first().is_some_and(|first| first.from == 0)
+                && segments.last().is_some_and(|last| last.to == QUARTER)
+                && segments
+                    .is_sorted_by(|segment, next| segment.from < segment.to && segment.to == next.from),
+            "the segments do not cover the quarter"
+        );
+        Self { oscillation: Oscillation::new(amplitude, period_s, periods), segments }
+    }
+
+    pub(crate) fn plan(
+        quantities: &mut Quantities<'_>,
+        given: &moves::SineSegments,
+        budget: &mut Budget,
+    ) -> Option<Self> {
+        let amplitude = quantities.distance("amplitude", &given.amplitude);
+        let period_s = quantities.duration("period_s", given.period_s);
+        let periods = quantities.range("periods", given.periods.into(), limits::PERIODS, "");
+        let deviation = quantities.range("max_deviation", given.max_deviation, limits::MAX_DEVIATION, "");
+        let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
+        periods?;
+        let curve = Self::new(amplitude, period_s, given.periods, deviation);
+        let segments = curve.segments.len();
+        let Some(still_left) = budget.segments.checked_sub(segments) else {
+            let (given, most) = (MAX_SEGMENTS - budget.segments + segments, MAX_SEGMENTS);
+            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
+            quantities.refuse("", cause);
+            return None;
+        };
+        budget.segments = still_left;
+        hold_speed(quantities, "period_s", curve.peaks().speed)?;
+        Some(curve)
+    }
+
+    /// The segments of the first quarter, from the extreme to the middle.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Memory for a quarter, by segments and by intervals.
+    #[must_use]
+    pub fn memory(&self) -> Memory {
+        let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
+        let each = if long { 8 } else { 6 };
+        Memory { segments: self.segments.len() as u64 * each, intervals: self.oscillation.amplitude * 4 }
+    }
+
+    /// Time of a period in s.
+    #[must_use]
+    pub fn period_s(&self) -> f64 {
+        self.oscillation.period_s
+    }
+
+    /// How many periods.
+    #[must_use]
+    pub fn periods(&self) -> u32 {
+        self.oscillation.periods
+    }
+
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
+        let quarters =
+            (0..self.oscillation.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
+        quarters.flat_map(move |(period, quarter)| {
+            let origin = f64::from(period) * f64::from(POINTS);
+            let right = self.oscillation.starts_right == (quarter >= 2);
+            (0..self.segments.len()).map(move |index| {
+                // Every other quarter goes through the segments from the middle to the extreme.
+                let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
+                let segment = self.segments.get(if mirrored { last - index } else { index });
+                let (near, far, steps) = segment.map_or((0, 0, 0), |s| (s.from, s.to, s.steps));
+                let (base, from, to) = match quarter {
+                    0 => (0, near, far),
+                    1 => (0, 2 * QUARTER - far, 2 * QUARTER - near),
+                    2 => (2 * QUARTER, near, far),
+                    _ => (2 * QUARTER, 2 * QUARTER - far, 2 * QUARTER - near),
+                };
+                let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
+                Interval { from, to, steps, right }
+            })
+        })
+    }
+
+    /// Time of a point of the angle in s.
+    #[must_use]
+    pub fn point_s(&self) -> f64 {
+        self.oscillation.period_s / f64::from(POINTS)
+    }
+
+    /// Steps of all periods, there and back.
+    #[must_use]
+    pub fn step_count(&self) -> u64 {
+        self.oscillation.step_count()
+    }
+
+    fn place(&self, t: f64) -> (Folded, Option<&Segment>) {
+        let folded = fold(self.oscillation.part(t) * f64::from(POINTS));
+        let found = self.segments.partition_point(|segment| {
+            // A boundary belongs to the segment after it in time.
+            let end = f64::from(segment.to);
+            if folded.leftwards == folded.right { end <= folded.point } else { end < folded.point }
+        });
+        let segment = self.segments.get(found).or(self.segments.last());
+        (folded, segment)
+    }
+
+    /// Speed in the segment at `t`, right positive where the start is the right extreme.
+    fn rate_at(&self, t: f64) -> f64 {
+        let (folded, segment) = self.place(t);
+        let rate = segment.map_or(0.0, |segment| segment.rate);
+        if folded.leftwards { -rate } else { rate }
+    }
+}
+
+impl Schedule for SineSegments {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        let periods = Exact::of(self.oscillation.period_s).times(self.oscillation.periods.into());
+        CycleTime::exact(&periods.times(clock_hz.into()))
+    }
+
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let per_point = self.point_s() * clock;
+        let intervals = self.pieces().filter(|interval| interval.steps > 0);
+        Box::new(intervals.map(move |Interval { from, to, steps, right }| {
+            let each = (to - from) / steps as f64;
+            Run::new(steps, right, off, move |step| (from + (step + 0.5) * each) * per_point)
+        }))
+    }
+
+    /// A step's time is a quotient of the period's decimal. In f64 it is off by at most 6 u.
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        let of_period = 4 * self.oscillation.amplitude;
+        let mut before = 0;
+        let intervals: Vec<(u64, Interval)> = self
+            .pieces()
+            .take(4 * self.segments.len())
+            .map(|interval| {
+                before += interval.steps;
+                (before, interval)
+            })
+            .collect();
+        Box::new(move |k, since| {
+            let (periods, step) = ((k - 1) / of_period, (k - 1) % of_period);
+            let index = intervals.partition_point(|(end, _)| *end <= step);
+            let Some((end, Interval { from, to, steps, .. })) = intervals.get(index) else {
+                debug_assert!(false, "step {k} is in no segment");
+                return false;
+            };
+            let halves = 2 * (step - (end - steps)) + 1;
+            let along = Double::from(halves) * (to - from) / Double::from(2 * steps);
+            since > period * (Double::from(periods) + (along + *from) / f64::from(POINTS))
+        })
+    }
+}
+
+impl Curve for SineSegments {
+    fn duration_s(&self) -> f64 {
+        self.oscillation.duration_s()
+    }
+
+    fn steps(&self) -> i64 {
+        0
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t <= 0.0 || t >= self.duration_s() {
+            return 0.0;
+        }
+        let (folded, segment) = self.place(t);
+        let Some(segment) = segment else { return 0.0 };
+        let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
+        let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
+        let place = if folded.right { from_middle } else { -from_middle };
+        self.oscillation.signed(place - self.oscillation.amplitude as f64)
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let last = self.segments.first().map_or(0.0, |segment| segment.rate);
+        self.oscillation.signed(if t >= self.duration_s() { last } else { self.rate_at(t) })
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    /// Between two segments the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    fn peaks(&self) -> Peaks {
+        let mut peaks = Peaks::default();
+        let mut before = None;
+        for &Segment { rate, .. } in &self.segments {
+            // At the extreme the first segment runs into its mirror image, the other way.
+            let jump = before.map_or(2.0 * rate, |before: f64| libm::fabs(rate - before));
+            peaks.speed = greater(peaks.speed, rate);
+            peaks.jump = greater(peaks.jump, jump);
+            before = Some(rate);
+        }
+        peaks
+    }
+
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let count = self.segments.len();
+        (0..4_u16)
+            .flat_map(|index| {
+                (0..count).filter_map(move |place| {
+                    // Every other quarter goes from the middle to the extreme.
+                    let point = if index % 2 == 0 {
+                        self.segments.get(place)?.to
+                    } else {
+                        QUARTER - self.segments.get(count - 1 - place)?.from
+                    };
+                    Some(f64::from(index * QUARTER + point) * self.point_s())
+                })
+            })
+            .collect()
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let points: Vec<String> = self
+            .segments
+            .iter()
+            .take(MAX_TOLD)
+            .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
+            .collect();
+        let memory = self.memory();
+        format!(
+            "{} segments a quarter: {}{}; {} bytes, against {} with an interval a step",
+            self.segments.len(),
+            points.join(", "),
+            if self.segments.len() > MAX_TOLD { ", \u{2026}" } else { "" },
+            grouped(memory.segments as f64),
+            grouped(memory.intervals as f64)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_vertex_of_a_period_is_a_whole_step_in_its_time() {
+        for amplitude in [1000, -1000, 1, 70_001] {
+            let sine = SineSegments::new(amplitude, 0.5, 3, 0.006);
+            let steps = amplitude.unsigned_abs() as f64;
+            for point in [0, 71, 144, 221, 307, 413, 512_u16] {
+                let height = round_half_up(steps * cosine_at(point)) as f64;
+                for (at, y) in [
+                    (point, height),
+                    (1024 - point, -height),
+                    (1024 + point, -height),
+                    (2048 - point, height),
+                ] {
+                    let t = 0.5 * (1.0 + f64::from(at) / 2048.0);
+                    let expected = (y - steps) * f64::from(amplitude.signum() as i32);
+                    let found = sine.position(t);
+                    assert!((found - expected).abs() < 1e-7, "{amplitude} at {at}: {found} {expected}");
+                }
+            }
+            assert_eq!(sine.position(1.5), 0.0);
+        }
+    }
+
+    #[test]
+    fn every_period_has_its_steps_and_after_the_last_there_are_none() {
+        for (amplitude, periods) in [(500, 3), (-7, 1), (1, 2), (64, 5)] {
+            let sine = SineSegments::new(amplitude, 0.5, periods, 0.006);
+            let (mut made, mut last, mut times) = (0, 0.0, [0.0; 512]);
+            for mut run in sine.runs(2048) {
+                // 2048 points in half a second: twice as many points as cycles.
+                run.times.fill(0.0, &mut times[..run.count as usize]);
+                let half = (times[0] / 512.0) as u64;
+                assert_eq!(run.right, sine.oscillation.goes_right(half), "{amplitude}: {}", times[0]);
+                assert!(
+                    times[..run.count as usize].iter().all(|at| core::mem::replace(&mut last, *at) < *at),
+                    "{amplitude}"
+                );
+                made += run.count;
+            }
+            assert_eq!(made, sine.step_count(), "{amplitude}");
+        }
+    }
+
+    #[test]
+    fn segments_add_up_to_the_quarter_and_fit_in_little_memory() {
+        let sine = SineSegments::new(1000, 0.5, 1, 0.006);
+        assert_eq!(sine.segments().iter().map(|s| s.steps).sum::<u64>(), 1000);
+        let whole: f64 = sine.segments().iter().map(|s| s.duration_s).sum();
+        assert!((whole - 0.125).abs() < 1e-15);
+        let first = sine.segments()[0];
+        assert_eq!((first.from, first.to, first.steps), (0, 71, 24));
+        assert!((first.to_deg - 12.480_468_75).abs() < 1e-12);
+        assert!((first.rate - 24.0 / (71.0 * 0.5 / 2048.0)).abs() < 1e-9);
+        assert_eq!(sine.memory(), Memory { segments: 36, intervals: 4000 });
+        let long = SineSegments::new(1_000_000, 10.0, 1, 0.006).memory();
+        assert_eq!(long, Memory { segments: 48, intervals: 4_000_000 });
+    }
+
+    #[test]
+    fn the_speed_is_the_slope_of_the_position() {
+        let sine = SineSegments::new(-1000, 0.5, 2, 0.006);
+        for i in 0..2048 {
+            let t = (f64::from(i) + 0.5) / 2048.0 * sine.period_s();
+            let slope = (sine.position(t + 1e-7) - sine.position(t - 1e-7)) / 2e-7;
+            assert!((slope - sine.speed(t)).abs() < 1e-2, "{i}: {slope} {}", sine.speed(t));
+        }
+        let peaks = sine.peaks();
+        assert!((peaks.speed - 1000.0 * core::f64::consts::TAU / 0.5).abs() < 200.0, "{peaks:?}");
+        // At the extremes the first segment's rate is reversed.
+        assert_eq!(peaks.jump.max(2.0 * sine.segments()[0].rate), peaks.jump);
+    }
+}

@@ -1,0 +1,442 @@
+//! Fixed length by a staircase of rates (DESIGN B3, Zhang 2012).
+//!
+//! The rows of the [`StaircaseTable`] up to the top speed, the plateau at the top speed, and the
+//! same rows down again; each step comes one period of its rate after the one before:
+//!
+//! ```text
+//! rate |       ________          L steps, S in the rows up to f_s
+//!      |     _|        |_        f_s <= f_1   all at f_s
+//!      |   _|            |_      L > 2S       as drawn
+//!      | _|                |_    L = 2S       without the plateau
+//!      ||S               S| |    L < 2S       all at f_1 (the document), or as many rows as fit
+//!      +---------------------    twice, and what is left of the way at the rate after them
+//! ```
+
+use crate::moves::ShortMove;
+use crate::{
+    Curve, Peaks,
+    bisection::least,
+    curves::{
+        curve::greater,
+        mirrored::Mirrored,
+        staircase_table::StaircaseTable,
+        stepped::{self, Counts},
+    },
+    format::{count, grouped},
+    timing::{CycleTime, Double, IsDueBefore, MAX_OFF, ROUNDING, Run, Runs, Schedule},
+};
+use alloc::{boxed::Box, format, string::String, vec::Vec};
+
+/// A move by a staircase of rates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Staircase {
+    steps: i64,
+    table: StaircaseTable,
+    /// Steps of the rows up, and of those down.
+    ramp_steps: u64,
+    /// Rate between the rows up and down; where there is no plateau no step has it.
+    plateau_rate: u64,
+    /// Start of each row of the ramp, and its end, in s.
+    ///
+    /// Invariant: at least one entry, the first 0, rising.
+    starts_s: Vec<f64>,
+    duration_s: f64,
+}
+
+impl Staircase {
+    /// `steps` (left negative, not 0, at most 1e9) to `top_rate` whole steps/s, from 1 on.
+    ///
+    /// # Errors
+    /// The rows that the move has to keep, where they are more than `most_rows`.
+    pub fn new(
+        steps: i64,
+        table: StaircaseTable,
+        top_rate: u64,
+        short_move: ShortMove,
+        most_rows: u64,
+    ) -> Result<Self, u64> {
+        let count = steps.unsigned_abs();
+        let (to_top, fit) = (table.rows_to(top_rate), StaircaseTable::rows_that_fit(count));
+        let (rows, plateau_rate) = if to_top <= fit {
+            (to_top, top_rate)
+        } else {
+            match short_move {
+                ShortMove::Document => (0, table.rate(1)),
+                ShortMove::Reverse => (fit, table.rate(fit + 1)),
+            }
+        };
+        if rows >= most_rows {
+            return Err(rows + 1);
+        }
+        let mut starts_s = Vec::with_capacity(rows as usize + 1);
+        let mut start_s = 0.0;
+        starts_s.push(start_s);
+        for n in 1..=rows {
+            start_s += StaircaseTable::steps_in(n) as f64 / table.rate(n) as f64;
+            starts_s.push(start_s);
+        }
+        debug_assert!(starts_s.is_sorted_by(|a, b| a < b), "a row without a length");
+        let ramp_steps = StaircaseTable::steps_after(rows);
+        let duration_s = 2.0 * start_s + (count - 2 * ramp_steps) as f64 / plateau_rate as f64;
+        Ok(Self { steps, table, ramp_steps, plateau_rate, starts_s, duration_s })
+    }
+
+    /// The whole table, also the rows that the move does not use.
+    #[must_use]
+    pub fn table(&self) -> &StaircaseTable {
+        &self.table
+    }
+
+    /// Rows of each ramp; 0 where the move has one rate.
+    #[must_use]
+    pub fn ramp_rows(&self) -> u64 {
+        self.starts_s.len().saturating_sub(1) as u64
+    }
+
+    /// Steps of each ramp, the paper's S.
+    #[must_use]
+    pub fn ramp_steps(&self) -> u64 {
+        self.ramp_steps
+    }
+
+    /// Time of each ramp in s.
+    #[must_use]
+    pub fn ramp_s(&self) -> f64 {
+        self.starts_s.last().copied().unwrap_or(0.0)
+    }
+
+    /// Steps between the ramps.
+    #[must_use]
+    pub fn plateau_steps(&self) -> u64 {
+        self.count() - 2 * self.ramp_steps
+    }
+
+    /// Rate between the ramps in whole steps/s; `None` where there is no step between them.
+    #[must_use]
+    pub fn plateau_rate(&self) -> Option<u64> {
+        (self.plateau_steps() > 0).then_some(self.plateau_rate)
+    }
+
+    /// Steps of the move, without sign.
+    fn count(&self) -> u64 {
+        self.steps.unsigned_abs()
+    }
+
+    /// Row of step `k` of the ramp, from 1.
+    fn row(&self, k: u64) -> u64 {
+        least(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
+    }
+
+    fn ramp_time(&self, k: u64) -> f64 {
+        if k == 0 {
+            return 0.0;
+        }
+        let before = self.row(k) - 1;
+        let start_s = self.starts_s.get(before as usize).copied().unwrap_or(0.0);
+        start_s + (k - StaircaseTable::steps_after(before)) as f64 / self.table.rate(before + 1) as f64
+    }
+
+    /// Time of step `k` (from 1; 0 is the start, from the last step on the end) in s.
+    #[must_use]
+    pub fn step_s(&self, k: u64) -> f64 {
+        let left = self.count().saturating_sub(k);
+        if k <= self.ramp_steps {
+            self.ramp_time(k)
+        } else if left >= self.ramp_steps {
+            self.ramp_s() + (k - self.ramp_steps) as f64 / self.plateau_rate as f64
+        } else {
+            self.duration_s - self.ramp_time(left)
+        }
+    }
+
+    /// How long it lasts in s.
+    fn exact_duration(&self) -> Double {
+        let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
+        self.exact_starts().last().copied().unwrap_or_default() * 2.0 + plateau
+    }
+
+    /// Start of each row of the ramp, and its end, in s.
+    fn exact_starts(&self) -> Vec<Double> {
+        let row_s = |n| Double::from(StaircaseTable::steps_in(n)) / Double::from(self.table.rate(n));
+        let ends = (1..=self.ramp_rows()).scan(Double::default(), |end, n| {
+            *end = *end + row_s(n);
+            Some(*end)
+        });
+        core::iter::once(Double::default()).chain(ends).collect()
+    }
+
+    fn guess_in_ramp(&self, t: f64) -> u64 {
+        let row = self.starts_s.partition_point(|&start_s| start_s <= t).saturating_sub(1);
+        let since = t - self.starts_s.get(row).copied().unwrap_or(0.0);
+        let row = row as u64;
+        StaircaseTable::steps_after(row) + (since * self.table.rate(row + 1) as f64) as u64
+    }
+
+    fn fallen(&self, t: f64) -> u64 {
+        let (ramp_s, left_s) = (self.ramp_s(), self.duration_s - t);
+        let guess = if t < ramp_s {
+            self.guess_in_ramp(t)
+        } else if left_s > ramp_s {
+            self.ramp_steps + ((t - ramp_s) * self.plateau_rate as f64) as u64
+        } else {
+            self.count().saturating_sub(self.guess_in_ramp(greater(0.0, left_s)))
+        };
+        stepped::fallen(t, guess, self.count(), Counts::Then, |k| self.step_s(k))
+    }
+
+    /// Rate of interval `i`, from 0.
+    fn rate(&self, i: u64) -> u64 {
+        let from_end = self.count().saturating_sub(i).max(1);
+        let nearer = from_end.min(i + 1);
+        if nearer <= self.ramp_steps { self.table.rate(self.row(nearer)) } else { self.plateau_rate }
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.steps < 0 { -magnitude } else { magnitude }
+    }
+}
+
+impl Schedule for Staircase {
+    fn length(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(self.exact_duration() * f64::from(clock_hz))
+    }
+
+    /// Each row, which saves the search for a step's row.
+    fn runs(&self, clock_hz: u32) -> Runs<'_> {
+        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let (right, rows) = (self.steps >= 0, self.ramp_rows());
+        let row = move |n: u64| {
+            let start_s = self.starts_s.get(n as usize - 1).copied().unwrap_or(0.0);
+            (self.table.rate(n) as f64, start_s, StaircaseTable::steps_in(n))
+        };
+        let up = (1..=rows).map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            Run::new(steps, right, off, move |step| (start_s + (step + 1.0) / rate) * clock)
+        });
+        let (rate, start_s) = (self.plateau_rate as f64, self.ramp_s());
+        let plateau =
+            Run::new(self.plateau_steps(), right, off, move |step| (start_s + (step + 1.0) / rate) * clock);
+        let down = (1..=rows).rev().map(move |n| {
+            let (rate, start_s, steps) = row(n);
+            // The last step of the ramp up is the first of the ramp down, and the last step is at the end.
+            let steps = steps - u64::from(n == rows) + u64::from(n == 1);
+            let (first, duration_s) = (steps as f64 - if n == 1 { 1.0 } else { 0.0 }, self.duration_s);
+            Run::new(steps, right, off, move |step| (duration_s - (start_s + (first - step) / rate)) * clock)
+        });
+        Box::new(up.chain([plateau]).chain(down))
+    }
+
+    fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
+        let (starts, duration) = (self.exact_starts(), self.exact_duration());
+        let ramp_s = starts.last().copied().unwrap_or_default();
+        let climbed = move |k: u64| {
+            let before = self.row(k) - 1;
+            let since = Double::from(k - StaircaseTable::steps_after(before));
+            let start = starts.get(before as usize).copied().unwrap_or_default();
+            start + since / Double::from(self.table.rate(before + 1))
+        };
+        Box::new(move |k, since| {
+            let left = self.count().saturating_sub(k);
+            let step_s = if k <= self.ramp_steps {
+                climbed(k)
+            } else if left >= self.ramp_steps {
+                ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
+            } else {
+                duration - climbed(left)
+            };
+            since > step_s * f64::from(clock_hz)
+        })
+    }
+
+    /// Each row adds its own roundings to those before.
+    fn off_s(&self) -> f64 {
+        (MAX_OFF + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
+    }
+}
+
+impl Curve for Staircase {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn steps(&self) -> i64 {
+        self.steps
+    }
+
+    fn position(&self, t: f64) -> f64 {
+        if t >= self.duration_s {
+            return self.steps as f64;
+        }
+        let fallen = self.fallen(t);
+        self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        let interval = self.fallen(t).min(self.count().saturating_sub(1));
+        self.signed(self.rate(interval) as f64)
+    }
+
+    fn acceleration(&self, _: f64) -> f64 {
+        0.0
+    }
+
+    /// Between two rows the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    fn peaks(&self) -> Peaks {
+        let rates = (1..=self.ramp_rows()).map(|n| self.table.rate(n)).chain(self.plateau_rate());
+        let mut peaks = Peaks::default();
+        let mut before = None;
+        for rate in rates {
+            let jump = before.map_or(0.0, |before| rate.abs_diff(before) as f64);
+            peaks = peaks.or(Peaks { speed: rate as f64, jump, ..Peaks::default() });
+            before = Some(rate);
+        }
+        peaks
+    }
+
+    /// The first interval climbs half a step only.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        let rows = self.starts_s.iter().skip(1).copied();
+        let halves = Mirrored { steps: self.steps, duration_s: self.duration_s };
+        halves.breakpoints_s([self.step_s(1)].into_iter().chain(rows))
+    }
+
+    fn detail(&self, _: f64) -> String {
+        let plateau = self.plateau_rate().map(|rate| {
+            format!("{} at {}/s", count(self.plateau_steps(), "step", "steps"), grouped(rate as f64))
+        });
+        match (self.ramp_rows(), plateau) {
+            (0, plateau) => format!("no ramp: {}", plateau.unwrap_or_default()),
+            (rows, plateau) => format!(
+                "{} with {} each way, {} between",
+                count(rows, "row", "rows"),
+                count(self.ramp_steps, "step", "steps"),
+                plateau.as_deref().unwrap_or("none")
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::round_half_up;
+
+    fn table(level: f64) -> StaircaseTable {
+        StaircaseTable::new(1000.0, 20_000.0, 1000.0 * level)
+    }
+
+    fn staircase(steps: i64, level: f64, rate: u64, short_move: ShortMove) -> Staircase {
+        Staircase::new(steps, table(level), rate, short_move, 1_000_000).unwrap()
+    }
+
+    #[test]
+    fn the_four_cases_of_a_move_are_the_documents() {
+        use ShortMove::{Document, Reverse};
+        // At level 1 the rows to 1100 steps/s are 1000, 1030, 1058, 1086: S = 120.
+        // steps, f_s, rule; rows, S, plateau's steps, its rate
+        let rows = [
+            ((500, 1000, Document), (0, 0, 500, Some(1000))),
+            ((500, 10, Reverse), (0, 0, 500, Some(10))),
+            ((500, 1100, Document), (4, 120, 260, Some(1100))),
+            ((241, 1100, Reverse), (4, 120, 1, Some(1100))),
+            ((240, 1100, Document), (4, 120, 0, None)),
+            ((239, 1100, Document), (0, 0, 239, Some(1000))),
+            ((239, 1100, Reverse), (3, 90, 59, Some(1086))),
+            ((180, 1100, Reverse), (3, 90, 0, None)),
+            ((59, 1100, Reverse), (0, 0, 59, Some(1000))),
+            ((-60, 1100, Reverse), (1, 30, 0, None)),
+        ];
+        for ((steps, rate, rule), expected) in rows {
+            let made = staircase(steps, 1.0, rate, rule);
+            let found = (made.ramp_rows(), made.ramp_steps(), made.plateau_steps(), made.plateau_rate());
+            assert_eq!(found, expected, "{steps} steps at {rate}, {rule:?}");
+        }
+    }
+
+    /// t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s.
+    #[test]
+    fn the_times_are_the_documents_formulas() {
+        // L, level, f_s
+        let rows = [(17_233, 3.0, 5000), (17_233, 1.0, 3000), (500_000, 5.0, 20_000), (2000, 2.0, 1500)];
+        for (steps, level, rate) in rows {
+            let made = staircase(steps, level, rate, ShortMove::Document);
+            let (f_s, f_1, a) = (rate as f64, 1000.0, 1000.0 * level);
+            let t_r = (f_s - f_1) / a;
+            let t_m = (steps as f64 - (f_1 + f_s) * t_r) / f_s;
+            // A row holds the rate that uniform acceleration has at its start, and the last one may
+            // go past f_s; a whole rate is off by half a step/s.
+            let rate = |n: u64| made.table().rate(n) as f64;
+            let dwell = |n: u64, rate: f64| StaircaseTable::steps_in(n) as f64 / rate;
+            let late: f64 = (1..=made.ramp_rows()).map(|n| dwell(n, rate(n)) - dwell(n, rate(n + 1))).sum();
+            let past = dwell(made.ramp_rows(), f_s);
+            let ramp_s = made.ramp_s();
+            assert!(ramp_s > t_r * 0.9995 && ramp_s < (t_r + late + past) * 1.0005, "{ramp_s} is not {t_r}");
+            let t_m_made = made.plateau_steps() as f64 / f_s;
+            assert!((made.duration_s() - 2.0 * ramp_s - t_m_made).abs() < 1e-12);
+            // The plateau is shorter by what the ramps go past f_s.
+            assert!(t_m_made <= t_m * 1.001 && t_m - t_m_made < 2.0 * past, "{t_m_made} is not {t_m}");
+            let all = made.duration_s() / (2.0 * t_r + t_m);
+            assert!((0.999..1.05).contains(&all), "{all}");
+        }
+        // Alone at f_1 or below: L/f.
+        assert_eq!(staircase(1500, 3.0, 5000, ShortMove::Document).duration_s(), 1.5);
+        assert_eq!(staircase(1500, 3.0, 500, ShortMove::Document).duration_s(), 3.0);
+    }
+
+    #[test]
+    fn each_step_comes_a_period_of_its_rate_after_the_one_before() {
+        for (steps, rate, rule) in [
+            (1, 900, ShortMove::Document),
+            (500, 1100, ShortMove::Document),
+            (240, 1100, ShortMove::Document),
+            (-239, 1100, ShortMove::Reverse),
+            (-5000, 9000, ShortMove::Reverse),
+        ] {
+            let made = staircase(steps, 2.0, rate, rule);
+            let count = steps.unsigned_abs();
+            let mut t = 0.0;
+            for k in 1..=count {
+                t += 1.0 / made.rate(k - 1) as f64;
+                assert!((made.step_s(k) - t).abs() < 1e-9, "step {k} of {steps}: {} {t}", made.step_s(k));
+                let due = |t: f64| round_half_up(made.position(t)).unsigned_abs();
+                let at = made.step_s(k);
+                // In its own instant one to the left is not due yet (B7), but for the end, which is where the move ends.
+                let then = if steps < 0 && k < count { k - 1 } else { k };
+                assert_eq!(
+                    (due(at - 1e-7), due(at), due(at + 1e-7)),
+                    (k - 1, then, k),
+                    "step {k} of {steps}"
+                );
+            }
+            assert_eq!(made.step_s(count), made.duration_s());
+            assert_eq!(made.position(made.duration_s()), steps as f64);
+            // Up and down through the same rates.
+            assert!((0..count).all(|i| made.rate(i) == made.rate(count - 1 - i)), "{steps}");
+            assert_eq!(made.rate(0), made.rate(0).min(1000));
+        }
+    }
+
+    #[test]
+    fn what_there_is_to_say_of_a_move_fits_all_of_its_cases() {
+        let rows = [
+            (500, 1100, "4 rows with 120 steps each way, 260 steps at 1\u{202f}100/s between"),
+            (240, 1100, "4 rows with 120 steps each way, none between"),
+            (239, 1100, "no ramp: 239 steps at 1\u{202f}000/s"),
+            (500, 900, "no ramp: 500 steps at 900/s"),
+        ];
+        for (steps, top, expected) in rows {
+            assert_eq!(staircase(steps, 1.0, top, ShortMove::Document).detail(1e6), expected);
+        }
+    }
+
+    #[test]
+    fn peaks_are_the_highest_rate_and_the_greatest_jump() {
+        let made = staircase(-500, 1.0, 1100, ShortMove::Document);
+        assert_eq!(made.peaks(), Peaks { speed: 1100.0, jump: 30.0, ..Peaks::default() });
+        assert_eq!((made.speed(0.0), made.speed(made.duration_s())), (-1000.0, -1000.0));
+        assert_eq!(made.speed(made.duration_s() / 2.0), -1100.0);
+        let made = staircase(240, 1.0, 1100, ShortMove::Document);
+        assert_eq!(made.peaks().speed, 1086.0);
+        assert_eq!(Staircase::new(500, table(1.0), 1100, ShortMove::Document, 4), Err(5));
+    }
+}

@@ -1,0 +1,123 @@
+//! The staircase table itself (DESIGN B3, Zhang 2012): rates that are each held for some steps.
+//!
+//! ```text
+//! row n (from 1)   dS_n = 30*(1 + floor((n - 1)/5))      steps
+//!                  S_n  = dS_1 + … + dS_n
+//!                  f_n  = round_half_up(sqrt(f_1^2 + 2*a*S_(n-1)))
+//! ```
+//!
+//! The document lists S_n with the rate that follows it, f_(n+1); its table ends with the first
+//! such rate above f_max. All of it has a closed form, so no row is kept.
+
+use crate::{
+    bisection::climbed,
+    curves::climb::{Climb, quick_rate},
+    timing::Exact,
+};
+
+const FIRST_STEPS: u64 = 30;
+const EQUAL_ROWS: u64 = 5;
+
+/// A staircase of rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaircaseTable {
+    start_speed: f64,
+    max_speed: f64,
+    acceleration: f64,
+}
+
+impl StaircaseTable {
+    /// From `start_speed` >= 1/2 up to the first rate above `max_speed` >= `start_speed`, with
+    /// `acceleration` > 0, in steps, s.
+    #[must_use]
+    pub fn new(start_speed: f64, max_speed: f64, acceleration: f64) -> Self {
+        Self { start_speed, max_speed, acceleration }
+    }
+
+    /// Rate of row `n` (from 1) in whole steps/s, not falling from row to row.
+    #[must_use]
+    pub fn rate(&self, n: u64) -> u64 {
+        let steps = Self::steps_after(n.saturating_sub(1));
+        quick_rate(self.start_speed, self.acceleration, steps).unwrap_or_else(|_| {
+            Climb::new(&Exact::of(self.start_speed), &Exact::of(self.acceleration)).rate(steps)
+        })
+    }
+
+    /// Steps of row `n` (from 1).
+    #[must_use]
+    pub fn steps_in(n: u64) -> u64 {
+        FIRST_STEPS * (1 + n.saturating_sub(1) / EQUAL_ROWS)
+    }
+
+    /// Steps of the rows 1 to `n` together; 0 after none.
+    #[must_use]
+    pub fn steps_after(n: u64) -> u64 {
+        let (blocks, rest) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
+        FIRST_STEPS * (EQUAL_ROWS * blocks * (blocks + 1) / 2 + rest * (blocks + 1))
+    }
+
+    /// Rows whose steps are made before the rate is `rate` or more: the rows of a ramp to it.
+    #[must_use]
+    pub fn rows_to(&self, rate: u64) -> u64 {
+        climbed(|rows| self.rate(rows + 1) >= rate)
+    }
+
+    /// The most rows of which a move of `steps` has room for as many up and down again.
+    #[must_use]
+    pub fn rows_that_fit(steps: u64) -> u64 {
+        climbed(|rows| 2 * Self::steps_after(rows + 1) > steps)
+    }
+
+    /// Rows of the whole table.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        climbed(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_rows_come_out() {
+        let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
+        // n, dS_n, S_n, the rate after it
+        let rows = [
+            (1, 30, 30, 1030),
+            (2, 30, 60, 1058),
+            (3, 30, 90, 1086),
+            (255, 1530, 198_900, 19_970),
+            (256, 1560, 200_460, 20_048),
+        ];
+        for (n, steps, all, rate) in rows {
+            let found = (StaircaseTable::steps_in(n), StaircaseTable::steps_after(n), table.rate(n + 1));
+            assert_eq!(found, (steps, all, rate), "row {n}");
+        }
+        assert_eq!((table.rate(1), table.rows()), (1000, 256));
+        // The other levels end earlier.
+        let rows = [2000.0, 3000.0, 4000.0, 5000.0].map(|a| StaircaseTable::new(1000.0, 20_000.0, a).rows());
+        assert_eq!(rows, [180, 147, 127, 113]);
+    }
+
+    #[test]
+    fn rows_add_up() {
+        let mut sum = 0;
+        for n in 1..1000 {
+            sum += StaircaseTable::steps_in(n);
+            assert_eq!(StaircaseTable::steps_after(n), sum, "row {n}");
+            for (steps, fit) in [(2 * sum - 1, n - 1), (2 * sum, n), (2 * sum + 1, n)] {
+                assert_eq!(StaircaseTable::rows_that_fit(steps), fit, "{steps} steps");
+            }
+        }
+    }
+
+    #[test]
+    fn a_ramp_has_the_rows_below_its_rate() {
+        let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
+        let rows = [(1, 0), (1000, 0), (1001, 1), (1030, 1), (1031, 2), (19_970, 255), (20_000, 256)];
+        for (rate, expected) in rows {
+            assert_eq!(table.rows_to(rate), expected, "{rate} steps/s");
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Plans a curve through points (DESIGN B6).
+
+use crate::{
+    curves::points::{Between, Point, Points},
+    limits,
+    moves::{self, Interpolation},
+    planners::budget::hold_speed,
+    planners::quantities::Quantities,
+    problem::Cause,
+    timing::Exact,
+};
+use alloc::vec::Vec;
+
+/// Minimum time from point to point in s: a cycle of the fastest clock.
+const MIN_TIME_S: f64 = 1e-9;
+/// Problems of single points that are reported; in a table of another kind every row would be one.
+const MAX_TOLD: usize = 16;
+
+pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Points> {
+    let count = given.points.len();
+    quantities.validator.length("points", count, limits::POINTS, "points");
+    if !limits::POINTS.contains(&count) {
+        return None;
+    }
+    let size = quantities.step_of("unit", &given.unit.of(0.0))?;
+    let points = quantities.at("points", |here| check(here, given, size))?;
+    // Before the curve is made: times that differ by less than the digits of so long a one would be no curve.
+    quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| since_s.high))?;
+    let between = match given.interpolation {
+        Interpolation::Straight => Between::Straight,
+        Interpolation::Smooth => Between::Smooth,
+    };
+    let curve = Points::through(points, between)?;
+    if curve.step_count() == 0 {
+        quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
+        return None;
+    }
+    // The point that the curve is on its way to when it is too fast.
+    let (piece, speed) = curve.quickest();
+    quantities.at("points", |here| here.at_entry(piece + 1, |here| hold_speed(here, "", speed)))?;
+    Some(curve)
+}
+
+/// Times and positions in steps of points that hold, both counted from the first as their decimals have it (DESIGN B1).
+fn check(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<Point>> {
+    let earlier = quantities.validator.count();
+    let mut points = Vec::with_capacity(given.points.len());
+    let mut before = None;
+    let first =
+        given.points.first().map(|first| first.position).filter(|first| first.is_finite()).unwrap_or(0.0);
+    let first_s =
+        given.points.first().map(|first| first.time_s).filter(|first_s| first_s.is_finite()).unwrap_or(0.0);
+    let since = |time_s: f64| match time_s.is_finite() {
+        true => Exact::difference(time_s, first_s).double(),
+        false => time_s.into(),
+    };
+    for (index, point) in given.points.iter().enumerate() {
+        quantities.at_entry(index, |here| {
+            if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
+                here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
+            }
+            let way = here.way(first, &given.unit.of(point.position), size);
+            points.extend(way.map(|way| (since(point.time_s), way)));
+        });
+        before = Some(point.time_s);
+        if quantities.validator.count() >= earlier + MAX_TOLD {
+            break;
+        }
+    }
+    (quantities.validator.count() == earlier).then_some(points)
+}
+
+fn is_after(given: f64, before: f64) -> bool {
+    given - before >= MIN_TIME_S
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        moves::{Axis, Interpolation, MAX_POINTS, Move, Point, PointUnit, Points},
+        plan_axis,
+    };
+    use alloc::{string::ToString, vec, vec::Vec};
+
+    /// Unit, points, and the problems that they have.
+    type Row<'a> = (PointUnit, Vec<(f64, f64)>, &'a [&'a str]);
+
+    #[test]
+    fn every_problem_of_points_is_reported_with_its_place() {
+        let straight = Interpolation::Straight;
+        let rows: [Row; 10] = [
+            (
+                PointUnit::Steps,
+                vec![(-1e12, 0.0), (-1e-6, 0.0), (0.0, 5.0)],
+                &["points: 1000000000000 s is out of range; give 1e-6 to 86400 s"],
+            ),
+            (PointUnit::Steps, vec![(5.0, 3.0), (5.5, 4.0)], &[]),
+            (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; give 2 to 4096"]),
+            (PointUnit::Steps, vec![(0.0, 0.0); MAX_POINTS + 1], &["points: 4097 points; give 2 to 4096"]),
+            (
+                PointUnit::Millimetres,
+                vec![(0.0, 0.0), (1.0, 1.0)],
+                &[
+                    "unit: 0 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
+                ],
+            ),
+            (
+                PointUnit::Steps,
+                vec![(0.0, 0.0), (0.0, 1e10), (0.5, 4.0), (0.25, 1.0)],
+                &[
+                    "points[1]: a time of 0 s after one of 0 s; give times that rise by 1e-9 s at least",
+                    "points[1]: 10000000000 steps is out of range; give -1000000000 to 1000000000 steps",
+                    "points[3]: a time of 0.25 s after one of 0.5 s; give times that rise by 1e-9 s at least",
+                ],
+            ),
+            (
+                PointUnit::Steps,
+                vec![(0.0, 0.0), (f64::NAN, 1.0)],
+                &["points[1]: a time of NaN s after one of 0 s; give times that rise by 1e-9 s at least"],
+            ),
+            (
+                PointUnit::Steps,
+                vec![(0.0, 0.0), (86_401.0, 1.0)],
+                &["points: 86401 s is out of range; give 1e-6 to 86400 s"],
+            ),
+            (
+                PointUnit::Steps,
+                vec![(0.0, 0.0), (1.0, 0.49), (2.0, -0.3)],
+                &["points: 0.49 steps is less than one step; give at least one step, or a dwell"],
+            ),
+            (
+                PointUnit::Steps,
+                vec![(0.0, 0.0), (1.0, 10.0), (1.001, 20_000.0)],
+                &[
+                    "points[2]: this needs 19990001 steps/s, at most 10000000 are allowed; give more time or less distance",
+                ],
+            ),
+        ];
+        for (unit, points, expected) in rows {
+            let points = points.into_iter().map(|(time_s, position)| Point { time_s, position }).collect();
+            let given = Points { unit, interpolation: straight, points };
+            let axis = Axis { moves: vec![Move::Points(given)], ..Axis::default() };
+            let found: Vec<_> =
+                plan_axis(&axis, "axis").err().unwrap_or_default().iter().map(ToString::to_string).collect();
+            let expected: Vec<_> =
+                expected.iter().map(|text| alloc::format!("axis.moves[0].points.{text}")).collect();
+            assert_eq!(found, expected);
+        }
+    }
+}

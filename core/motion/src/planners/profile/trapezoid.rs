@@ -1,0 +1,84 @@
+//! Plans a trapezoid, exact or by table (DESIGN B2).
+
+use crate::{
+    MAX_SPEED,
+    curves::{
+        acceleration_table::AccelerationTable,
+        trapezoid::{Limits, Trapezoid},
+        trapezoid_table::{NoTable, TrapezoidTable},
+    },
+    limits,
+    moves::{self, TrapezoidMethod},
+    planners::budget::{Budget, MAX_TABLE_ROWS},
+    planners::quantities::Quantities,
+    problem::{Cause, ValueError},
+};
+
+/// Steps, start speed, top speed and acceleration, in steps and s.
+type Front = (i64, f64, f64, f64);
+
+/// Every step where the curve has it.
+pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Trapezoid> {
+    let (steps, ..) = front(quantities, given)?;
+    let mechanics = quantities.mechanics();
+    let limits = Limits {
+        start_speed: given.start_speed.exact_in_steps(mechanics).ok()?,
+        top_speed: given.top_speed.exact_in_steps(mechanics).ok()?,
+        acceleration: given.acceleration.exact_in_steps(mechanics).ok()?,
+    };
+    Some(Trapezoid::within(steps, limits))
+}
+
+pub(super) fn table(
+    quantities: &mut Quantities<'_>,
+    given: &moves::Trapezoid,
+    budget: &mut Budget,
+) -> Option<TrapezoidTable> {
+    let (steps, ..) = front(quantities, given)?;
+    let mechanics = quantities.mechanics();
+    let (start, top) = (given.start_speed.exact(mechanics).ok()?, given.top_speed.exact(mechanics).ok()?);
+    let table =
+        AccelerationTable::exact([&start, &top], &given.acceleration.exact(mechanics).ok()?, given.timer_hz);
+    match TrapezoidTable::new(steps, table, budget.table_rows) {
+        Ok(table) => {
+            budget.table_rows -= table.kept_rows();
+            Some(table)
+        }
+        Err(NoTable::Rows { needed }) => {
+            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
+            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
+            quantities.refuse("", cause);
+            None
+        }
+        Err(NoTable::Timer { rate }) => {
+            let cause = Cause::TimerTooSlow { rate, timer_hz: given.timer_hz };
+            quantities.refuse("timer_hz", cause);
+            None
+        }
+    }
+}
+
+/// Judges the numbers, those of the table only where it is asked for.
+fn front(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Front> {
+    // The table's first rate has to round to a pulse a second; the exact curve may start from rest.
+    let starts = match given.method {
+        TrapezoidMethod::Table => limits::TABLE_RATE_STEPS_S,
+        TrapezoidMethod::Exact => 0.0..=MAX_SPEED,
+    };
+    let steps = quantities.distance("distance", &given.distance);
+    let start = quantities.speed_within("start_speed", &given.start_speed, starts);
+    let top = quantities.speed("top_speed", &given.top_speed);
+    let acceleration = quantities.acceleration("acceleration", &given.acceleration);
+    let timer_hz = match given.method {
+        TrapezoidMethod::Table => quantities.range("timer_hz", given.timer_hz.into(), limits::TIMER_HZ, "Hz"),
+        TrapezoidMethod::Exact => Some(0.0),
+    };
+    if let (Some(start), Some(top)) = (start, top)
+        && top < start
+    {
+        quantities.refuse("top_speed", Cause::TopBelowStart { top, start });
+        return None;
+    }
+    timer_hz?;
+    Some((steps?, start?, top?, acceleration?))
+}

@@ -1,0 +1,460 @@
+//! A step table with few entries (DESIGN B8): no step is off by more than a given number of cycles.
+//!
+//! ```text
+//! due      |    |   |  |  | | | |         a window around each due cycle
+//! window  [ ]  [ ] [ ][ ] …               error <= tolerance
+//! entry    \___ interval, add, count      one parabola through the windows of its steps
+//! ```
+//!
+//! The list is replayed in the integers of its format, as the segment engine replays it: the number of steps is exact,
+//! no step leaves its window, and the only error that one entry passes on to the next is that of its last step.
+//!
+//! The fewest entries are searched for ([`super::fewest`]) where the windows are narrow enough. Otherwise, and for the
+//! quick search, each entry is the longest from the end of the one before whose last step comes within an eighth of its
+//! window, and a cycle, of the middle. (Where windows are the due cycles alone it is the longest of all, less an eighth.)
+//! An entry of greatest length ends at the edge of a window, the worst position to begin the next one: lists of such
+//! entries have about an eighth more of them.
+
+use super::{
+    entry_format::EntryFormat,
+    fewest::{self, Piece, Section},
+    longest::{Ahead, Window},
+    segments::START,
+    timing_error::TimingError,
+};
+use crate::{
+    ScheduledStep,
+    problem::{Cause, ValueError},
+};
+use alloc::{collections::VecDeque, vec::Vec};
+use core::num::NonZeroU32;
+use stepscope_peripheral::{
+    segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
+    units::Cycles,
+};
+
+/// Maximum tolerance in cycles.
+pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
+/// Maximum entries of a list: 64 MB.
+pub(super) const MAX_ENTRIES: usize = 2_000_000;
+/// Work of the search for the fewest entries, in steps of an interval and an add: about two seconds, and ten
+/// microseconds more for each step of the list.
+const WORK: u64 = 1 << 28;
+const WORK_PER_STEP: u64 = 1 << 10;
+const LAST: u64 = LAST_CYCLE.0 - START.0;
+const READ: usize = 256;
+
+/// On which side of its due cycle a step may be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Early or late.
+    #[default]
+    Both,
+    /// Early, never late: the window of Klipper's step compression.
+    Early,
+}
+
+/// How far a step may be from its due cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tolerance {
+    /// In cycles, at most [`MAX_TOLERANCE`].
+    pub cycles: Cycles,
+    /// At most this part of the shorter of the intervals before and after it (of [`Side::Early`] the one before): 2 for
+    /// a half.
+    pub interval_part: Option<NonZeroU32>,
+    /// Which way.
+    pub side: Side,
+}
+
+impl Tolerance {
+    /// So many cycles either way, whatever the intervals are.
+    #[must_use]
+    pub const fn of(cycles: Cycles) -> Self {
+        Self { cycles, interval_part: None, side: Side::Both }
+    }
+
+    fn window(self, due: u64, before: u64, after: Option<u64>) -> (u64, u64) {
+        let shorter = match (self.side, after) {
+            (Side::Both, Some(after)) => after.min(before),
+            (Side::Early, _) | (Side::Both, None) => before,
+        };
+        let part = self.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
+        let off = part.min(self.cycles.0);
+        let late = if self.side == Side::Both { off } else { 0 };
+        (due.saturating_sub(off), due.saturating_add(late))
+    }
+}
+
+/// A compressed list and how good it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compressed {
+    /// What the segment engine runs.
+    pub list: SegmentList,
+    /// How far its steps are from their due cycles.
+    pub error: TimingError,
+    /// By how many entries it may exceed the fewest: 0 if it is proven to have the fewest, more if it was cut into
+    /// sections, None if the fewest were not searched for, or not to the end.
+    pub surplus: Option<u64>,
+}
+
+/// Compresses the steps of one axis, whose cycles count from the motion's start, into the fewest entries of `format`, or,
+/// where its windows are too wide for that search, as [`compressed_quickly`] does.
+///
+/// # Errors
+/// A tolerance that is too great; a step that comes too soon for `pulse`, or too late for 48.16 fixed point; too many
+/// entries.
+pub fn compressed(
+    steps: impl IntoIterator<Item = ScheduledStep>,
+    tolerance: Tolerance,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<Compressed, Cause> {
+    let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
+    let surplus = compression.fewest()?;
+    compression.quick()?;
+    Ok(Compressed { surplus, ..compression.end() })
+}
+
+/// The same in few entries, each the longest that ends near the middle of a window: in a part of the time.
+///
+/// # Errors
+/// As [`compressed`].
+pub fn compressed_quickly(
+    steps: impl IntoIterator<Item = ScheduledStep>,
+    tolerance: Tolerance,
+    format: EntryFormat,
+    pulse: PulseTimes,
+) -> Result<Compressed, Cause> {
+    let mut compression = Compression::new(steps.into_iter(), tolerance, format, pulse)?;
+    compression.quick()?;
+    Ok(compression.end())
+}
+
+struct Compression<I> {
+    windows: Windows<I>,
+    writer: Writer,
+}
+
+impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
+    fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Result<Self, Cause> {
+        if tolerance.cycles > MAX_TOLERANCE {
+            let (given, most) = (tolerance.cycles.0 as f64, MAX_TOLERANCE.0 as f64);
+            return Err(ValueError::TooMuch { given, most, of: "cycles of tolerance" }.into());
+        }
+        let mut windows = Windows {
+            steps,
+            next: None,
+            returned: Vec::new(),
+            tolerance,
+            format,
+            pulse,
+            before: 0,
+            count: 0,
+        };
+        windows.read();
+        Ok(Self { windows, writer: Writer::new(format) })
+    }
+
+    /// Section after section in the fewest entries; how many more than the fewest there may be, or None where steps are
+    /// left.
+    fn fewest(&mut self) -> Result<Option<u64>, Cause> {
+        let mut ready = VecDeque::new();
+        let (last, surplus) = self.sections(&mut ready)?;
+        self.windows.put_back(last, &ready);
+        Ok(surplus)
+    }
+
+    /// The same: the cycle of the last step that is in an entry, and the number; `ready` gets the steps that were read
+    /// but are in none.
+    fn sections(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
+        let (format, pulse) = (self.windows.format, self.windows.pulse);
+        let least = pulse.min_interval().0 << format.fraction_bits;
+        let (mut last, mut cuts, mut work) = (0, 0, WORK);
+        loop {
+            while let Some(step) = self.windows.next.filter(|_| ready.len() < fewest::MAX_STEPS) {
+                ready.push_back((self.windows.window()?, step.right));
+            }
+            let more = self.windows.next.is_some();
+            let steps = ready.make_contiguous();
+            let Some((first, _)) = steps.first() else { return Ok((last, Some(cuts))) };
+            if steps.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
+                return Ok((last, None));
+            }
+            let near =
+                |before: u64, window: &Window| window.high.saturating_sub(before) <= format.most_interval();
+            if !near(self.writer.time, first) {
+                self.writer.wait(first.first(self.writer.time, least, format).wait);
+            }
+            // Up to a rest that no interval holds.
+            let pairs = steps.iter().zip(steps.iter().skip(1));
+            let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
+            let is_cut = more && there == steps.len();
+            // Where some times are near enough the wait may be one that another list does without.
+            let waits =
+                steps.get(there - 1).zip(steps.get(there)).is_some_and(|((before, _), (window, _))| {
+                    window.low.saturating_sub(before.high) <= format.most_interval()
+                });
+            let section =
+                Section::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
+            let Some(left) = work.checked_sub(there as u64) else { return Ok((last, None)) };
+            work = left;
+            let Some(pieces) = section.pieces(is_cut, &mut work) else { return Ok((last, None)) };
+            let mut done = 0;
+            for Piece { count, interval, add } in pieces {
+                let of_piece = steps.get(done..done + count).unwrap_or_default();
+                let right = of_piece.first().is_some_and(|(_, right)| *right);
+                let windows = of_piece.iter().map(|(window, _)| window);
+                self.writer.steps(count, windows, (interval as u64, add, right));
+                (done, last) = (done + count, of_piece.last().map_or(last, |(window, _)| window.due));
+            }
+            // Only for steps in entries, so that many short pieces of a section do not get it again and again.
+            work += WORK_PER_STEP * done as u64;
+            cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
+            ready.drain(..done);
+            self.writer.check_length()?;
+        }
+    }
+
+    fn quick(&mut self) -> Result<(), Cause> {
+        let Self { windows, writer } = self;
+        let mut ahead = Ahead::new(windows.format, windows.pulse.min_interval().0);
+        let mut length = 64;
+        while let Some(ScheduledStep { right, .. }) = windows.next {
+            windows.fill(right, &mut ahead)?;
+            while let Some(longest) =
+                ahead.longest(writer.time, length, |ahead| windows.fill(right, ahead))?
+            {
+                writer.wait(longest.wait);
+                let taken = ahead.taken(longest.count);
+                writer.steps(taken.len(), taken.iter(), (longest.interval, longest.add, right));
+                ahead.take(longest.count);
+                length = longest.count;
+                writer.check_length()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn end(self) -> Compressed {
+        let list = SegmentList { start: START, segments: self.writer.segments };
+        Compressed { list, error: self.writer.error, surplus: None }
+    }
+}
+
+struct Windows<I> {
+    steps: I,
+    /// The next step without a window.
+    next: Option<ScheduledStep>,
+    /// Steps after it that were read before, the last first.
+    returned: Vec<ScheduledStep>,
+    tolerance: Tolerance,
+    format: EntryFormat,
+    pulse: PulseTimes,
+    /// Cycle of the step before the next.
+    before: u64,
+    /// Steps that have their windows.
+    count: u64,
+}
+
+impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
+    fn read(&mut self) {
+        self.next = self.returned.pop().or_else(|| self.steps.next());
+    }
+
+    fn put_back(&mut self, before: u64, steps: &VecDeque<(Window, bool)>) {
+        (self.before, self.count) = (before, self.count - steps.len() as u64);
+        self.returned.extend(self.next);
+        let steps = steps.iter().rev();
+        self.returned.extend(steps.map(|(window, right)| ScheduledStep { cycle: window.due, right: *right }));
+        self.read();
+    }
+
+    /// Reads some windows of steps that go one way; false where that ends.
+    fn fill(&mut self, right: bool, ahead: &mut Ahead) -> Result<bool, Cause> {
+        for _ in 0..READ {
+            if self.next.is_none_or(|step| step.right != right) {
+                return Ok(false);
+            }
+            let window = self.window()?;
+            ahead.more().push(window);
+        }
+        Ok(true)
+    }
+
+    fn window(&mut self) -> Result<Window, Cause> {
+        let step = self.next.ok_or(Cause::NoSegmentSteps)?;
+        self.read();
+        let after = self.next.map(|after| after.cycle.saturating_sub(step.cycle));
+        self.count += 1;
+        let before = step.cycle.saturating_sub(self.before);
+        if before < self.pulse.min_interval().0 {
+            return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
+        }
+        self.before = step.cycle;
+        let (earliest, latest) = self.tolerance.window(step.cycle, before, after);
+        if latest > LAST {
+            return Err(ValueError::TooMuch { given: latest as f64, most: LAST as f64, of: "cycles" }.into());
+        }
+        Ok(Window::of(step.cycle, (earliest, latest), self.format))
+    }
+}
+
+struct Writer {
+    format: EntryFormat,
+    segments: Vec<Segment>,
+    error: TimingError,
+    /// Time of the last step from the start, in units.
+    time: u64,
+}
+
+impl Writer {
+    fn new(format: EntryFormat) -> Self {
+        Self { format, segments: Vec::new(), error: TimingError::default(), time: 0 }
+    }
+
+    fn shift(&self) -> u32 {
+        FRACTION_BITS - self.format.fraction_bits
+    }
+
+    fn wait(&mut self, wait: u64) {
+        if wait > 0 {
+            self.time += wait;
+            self.segments.push(Segment::Dwell(wait << self.shift()));
+        }
+    }
+
+    fn check_length(&self) -> Result<(), Cause> {
+        if self.segments.len() > MAX_ENTRIES {
+            let (given, most) = (self.segments.len() as f64, MAX_ENTRIES as f64);
+            return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
+        }
+        Ok(())
+    }
+
+    fn steps<'w>(
+        &mut self,
+        count: usize,
+        windows: impl Iterator<Item = &'w Window>,
+        (interval, add, right): (u64, i64, bool),
+    ) {
+        let mut next = interval;
+        for window in windows {
+            self.time = self.time.wrapping_add(next);
+            next = next.wrapping_add_signed(add);
+            debug_assert!(
+                (window.low..=window.high).contains(&self.time),
+                "{} is not in {window:?}",
+                self.time
+            );
+            self.error.step((self.time >> self.format.fraction_bits).abs_diff(window.due));
+        }
+        let (count, shift) = (count as u32, self.shift());
+        let (interval, add) = (interval << shift, add << shift);
+        if !self.goes_on(count, interval, add, right) {
+            self.segments.push(Segment::Steps { count, interval, add, right });
+        }
+    }
+
+    /// Adds the steps to the last segment where they are its next ones.
+    fn goes_on(&mut self, more: u32, interval: u64, add: i64, right: bool) -> bool {
+        let most = self.format.most_count();
+        let Some(Segment::Steps { count, interval: first, add: grows, right: same }) =
+            self.segments.last_mut()
+        else {
+            return false;
+        };
+        let next = first.wrapping_add_signed(grows.wrapping_mul(i64::from(*count)));
+        let all = count.checked_add(more).filter(|all| *all <= most);
+        match all {
+            Some(all) if next == interval && *grows == add && *same == right => {
+                *count = all;
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
+
+    fn right(cycles: &[u64]) -> Vec<ScheduledStep> {
+        cycles.iter().map(|&cycle| ScheduledStep { cycle, right: true }).collect()
+    }
+
+    /// Climbs and falls by about 2^63, which as differences of 64 bits look like climbs alone.
+    #[test]
+    fn a_list_that_falls_from_beyond_all_cycles_is_refused_as_too_long() {
+        let far = 1 << 63;
+        for climbs in [[2_000_000, far + 1_999_000, 1_998_000], [far, far + 5_000_000, 6_000_000]] {
+            let cycles = [&[1_000_000][..], &climbs, &[7_000_000, 8_000_000, 9_000_000]].concat();
+            for format in [EntryFormat::Q16, EntryFormat::TICKS] {
+                let tolerance = Tolerance::of(Cycles(100));
+                let made = compressed_quickly(right(&cycles), tolerance, format, PULSE);
+                let Err(Cause::Value(ValueError::TooMuch { of: "cycles", .. })) = made else {
+                    panic!("{cycles:?}: {:?}", made.err());
+                };
+            }
+        }
+    }
+
+    fn entries(due: &[u64], tolerance: u64) -> usize {
+        let tolerance = Tolerance::of(Cycles(tolerance));
+        let made = compressed(right(due), tolerance, EntryFormat::TICKS, PULSE).unwrap();
+        assert!(made.error.greatest <= tolerance.cycles.0 && made.error.steps == due.len() as u64);
+        assert_eq!(made.surplus, Some(0));
+        made.list.segments.len()
+    }
+
+    #[test]
+    fn what_is_a_parabola_is_one_entry() {
+        let rows: [(Vec<u64>, usize); 5] = [
+            (vec![], 0),
+            (vec![7], 1),
+            ((1..=1000).map(|k| k * 80).collect(), 1),
+            ((1..=1000).map(|k| k * 20_000 - k * (k - 1) / 2 * 3).collect(), 1),
+            // 5/3 cycles of rounding only.
+            ((1..=70_000).map(|k| k * 80).collect(), 2),
+        ];
+        for (due, expected) in rows {
+            assert_eq!(entries(&due, 0), expected, "{:?}", due.get(..3));
+        }
+    }
+
+    #[test]
+    fn a_turn_and_a_long_rest_end_an_entry() {
+        let mut due: Vec<ScheduledStep> = right(&[10, 20, 30]);
+        due.extend([40, 50, 1 << 40].map(|cycle| ScheduledStep { cycle, right: false }));
+        let made = compressed(due.clone(), Tolerance::of(Cycles(0)), EntryFormat::TICKS, PULSE).unwrap();
+        let ways: Vec<Option<bool>> = made
+            .list
+            .segments
+            .iter()
+            .map(|segment| match segment {
+                Segment::Steps { right, .. } => Some(*right),
+                Segment::Dwell(_) => None,
+            })
+            .collect();
+        assert_eq!(ways, [Some(true), Some(false), None, Some(false)]);
+        assert_eq!(TimingError::of(&made.list, due), Some(made.error));
+    }
+
+    #[test]
+    fn the_last_cycles_that_there_are_can_be_reached() {
+        let last = LAST_CYCLE.0 - 1;
+        let due = [last - 20, last - 10, last];
+        for format in EntryFormat::ALL {
+            let made = compressed(right(&due), Tolerance::of(Cycles(0)), format, PULSE);
+            assert_eq!(made.map(|made| made.error.greatest), Ok(0), "{}", format.name);
+        }
+        let late = compressed(right(&due), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
+        let cause = ValueError::TooMuch { given: last as f64 + 1.0, most: last as f64, of: "cycles" };
+        assert_eq!(late, Err(cause.into()));
+        let soon = compressed(right(&[5, 6]), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
+        assert_eq!(soon, Err(Cause::StepTooSoon { step: 2, interval: 1, pulse: PULSE }));
+    }
+}

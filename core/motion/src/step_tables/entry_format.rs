@@ -1,0 +1,231 @@
+//! How a firmware keeps the entries of a step table (DESIGN B8): the widths of an entry's numbers.
+//!
+//! ```text
+//! entry               interval, count, add
+//! count > 0           count steps; each comes `interval` after the one before, then interval += add
+//! count = 0           no step: waits `interval`, then DIR = add (0 left, 1 right)
+//! ```
+//!
+//! DIR is left at first, as A8 has it. Interval and add are in units of 1/2^fraction_bits cycle.
+
+use crate::problem::{Cause, ValueError};
+use alloc::vec::Vec;
+use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
+
+/// Widths of an entry's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EntryFormat {
+    /// Name, fit for a command line.
+    pub name: &'static str,
+    /// Bits of a cycle's fraction in interval and add, at most 16.
+    pub fraction_bits: u32,
+    /// Bits of the unsigned interval: 32 or 64.
+    pub interval_bits: u32,
+    /// Bits of the unsigned count: 16 or 32.
+    pub count_bits: u32,
+    /// Bits of the signed add: 16 or 64.
+    pub add_bits: u32,
+}
+
+impl EntryFormat {
+    /// All that the segment engine holds (A8): 48.16 fixed point.
+    pub const Q16: Self =
+        Self { name: "q16", fraction_bits: FRACTION_BITS, interval_bits: 64, count_bits: 32, add_bits: 64 };
+    /// 24.8 fixed point in 8 bytes.
+    pub const Q8: Self =
+        Self { name: "q8", fraction_bits: 8, interval_bits: 32, count_bits: 16, add_bits: 16 };
+    /// Whole cycles in 8 bytes, the numbers that Klipper's queue_step takes.
+    pub const TICKS: Self =
+        Self { name: "ticks", fraction_bits: 0, interval_bits: 32, count_bits: 16, add_bits: 16 };
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
+
+    /// Bytes of an entry.
+    #[must_use]
+    pub const fn bytes(self) -> u64 {
+        ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
+    }
+
+    /// Maximum interval in units.
+    #[must_use]
+    pub const fn most_interval(self) -> u64 {
+        u64::MAX >> (64 - self.interval_bits)
+    }
+
+    /// Maximum count.
+    #[must_use]
+    pub const fn most_count(self) -> u32 {
+        u32::MAX >> (32 - self.count_bits)
+    }
+
+    /// Minimum add in units.
+    #[must_use]
+    pub const fn least_add(self) -> i64 {
+        i64::MIN >> (64 - self.add_bits)
+    }
+
+    /// Maximum add in units.
+    #[must_use]
+    pub const fn most_add(self) -> i64 {
+        i64::MAX >> (64 - self.add_bits)
+    }
+
+    /// From 1/65536 cycle to this format's unit.
+    const fn shift(self) -> u32 {
+        FRACTION_BITS - self.fraction_bits
+    }
+
+    /// The list's segments as entries of this format.
+    ///
+    /// A segment that is more than an entry holds becomes several: a long interval a wait before the
+    /// step, a great add an entry for each step, a great count two or more.
+    ///
+    /// # Errors
+    /// The first time that is not a whole number of this format's units.
+    pub fn pack(self, list: &SegmentList) -> Result<Vec<Entry>, Cause> {
+        let mut packer = Packer { format: self, entries: Vec::new(), right: false };
+        for segment in &list.segments {
+            match *segment {
+                Segment::Dwell(dwell) => packer.wait(self.units(dwell)?),
+                Segment::Steps { count, interval, add, right } => {
+                    packer.turn(right);
+                    let add = if count == 1 { 0 } else { add };
+                    self.units(add.unsigned_abs())?;
+                    packer.steps(count, self.units(interval)?, add >> self.shift());
+                }
+            }
+        }
+        Ok(packer.entries)
+    }
+
+    /// Entries that [`Self::pack`] makes.
+    ///
+    /// # Errors
+    /// As [`Self::pack`].
+    pub fn entries(self, list: &SegmentList) -> Result<u64, Cause> {
+        self.pack(list).map(|entries| entries.len() as u64)
+    }
+
+    fn units(self, time: u64) -> Result<u64, Cause> {
+        if time.trailing_zeros() >= self.shift() {
+            Ok(time >> self.shift())
+        } else {
+            let detail =
+                "the format has fewer bits for a cycle's fraction than the list; give one with more (q16)";
+            Err(ValueError::Conflict { detail }.into())
+        }
+    }
+}
+
+// Every format's numbers fit into an [`Entry`], in whole bytes.
+const _: () = {
+    let mut index = 0;
+    while index < EntryFormat::ALL.len() {
+        let format = EntryFormat::ALL[index];
+        assert!(format.fraction_bits <= FRACTION_BITS);
+        assert!(format.interval_bits <= u64::BITS && format.interval_bits.is_multiple_of(8));
+        assert!(format.count_bits <= u32::BITS && format.count_bits.is_multiple_of(8));
+        assert!(format.add_bits <= i64::BITS && format.add_bits.is_multiple_of(8));
+        index += 1;
+    }
+};
+
+/// An entry of a step table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Time before the first step in units, or of the wait.
+    pub interval: u64,
+    /// Steps; 0 for a wait.
+    pub count: u32,
+    /// What each next interval is longer in units; of a wait the level of DIR after it.
+    pub add: i64,
+}
+
+struct Packer {
+    format: EntryFormat,
+    entries: Vec<Entry>,
+    /// Level of DIR so far.
+    right: bool,
+}
+
+impl Packer {
+    fn turn(&mut self, right: bool) {
+        if right != self.right {
+            self.right = right;
+            self.entries.push(Entry { interval: 0, count: 0, add: right.into() });
+        }
+    }
+
+    fn wait(&mut self, mut time: u64) {
+        while time > 0 {
+            let interval = time.min(self.format.most_interval());
+            self.entries.push(Entry { interval, count: 0, add: self.right.into() });
+            time -= interval;
+        }
+    }
+
+    fn steps(&mut self, mut count: u32, mut interval: u64, add: i64) {
+        let format = self.format;
+        let last = i128::from(interval) + i128::from(add) * i128::from(count.saturating_sub(1));
+        let fits = (format.least_add()..=format.most_add()).contains(&add)
+            && interval <= format.most_interval()
+            && last <= i128::from(format.most_interval());
+        let most = if fits { format.most_count() } else { 1 };
+        while count > 0 {
+            let part = count.min(most);
+            self.wait(interval.saturating_sub(format.most_interval()));
+            let kept = interval.min(format.most_interval());
+            self.entries.push(Entry { interval: kept, count: part, add: if part == 1 { 0 } else { add } });
+            interval = interval.wrapping_add_signed(add.wrapping_mul(part.into()));
+            count -= part;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+    use stepscope_peripheral::units::Instant;
+
+    fn pack(format: EntryFormat, segments: Vec<Segment>) -> Result<Vec<(u64, u32, i64)>, Cause> {
+        let list = SegmentList { start: Instant(1), segments };
+        let entries = format.pack(&list)?;
+        Ok(entries.iter().map(|entry| (entry.interval, entry.count, entry.add)).collect())
+    }
+
+    fn steps(count: u32, cycles: u64, add: i64, right: bool) -> Segment {
+        Segment::Steps { count, interval: cycles << 16, add: add << 16, right }
+    }
+
+    #[test]
+    fn what_an_entry_does_not_hold_becomes_several() {
+        let q16 = pack(EntryFormat::Q16, vec![steps(9, 100, -2, false), Segment::Dwell(7)]);
+        assert_eq!(q16, Ok(vec![(100 << 16, 9, -2 << 16), (7, 0, 0)]));
+        let rows = [
+            (steps(70_000, 50, 0, false), vec![(50, 65_535, 0), (50, 4465, 0)]),
+            (steps(70_000, 50, 1, false), vec![(50, 65_535, 1), (65_585, 4465, 1)]),
+            (steps(2, 50, 40_000, true), vec![(0, 0, 1), (50, 1, 0), (40_050, 1, 0)]),
+            (steps(1, 1 << 32, 5, false), vec![(1, 0, 0), (u64::from(u32::MAX), 1, 0)]),
+            (Segment::Dwell((1 << 48) + (5 << 16)), vec![(u64::from(u32::MAX), 0, 0), (6, 0, 0)]),
+            (Segment::Dwell(0), vec![]),
+        ];
+        for (segment, expected) in rows {
+            assert_eq!(pack(EntryFormat::TICKS, vec![segment]), Ok(expected), "{segment:?}");
+        }
+        let part = Segment::Steps { count: 2, interval: 3 << 15, add: 0, right: false };
+        assert_eq!(pack(EntryFormat::Q8, vec![part]), Ok(vec![(3 << 7, 2, 0)]));
+        assert!(matches!(
+            pack(EntryFormat::TICKS, vec![part]),
+            Err(Cause::Value(ValueError::Conflict { .. }))
+        ));
+    }
+
+    #[test]
+    fn an_entry_has_the_bytes_of_its_numbers() {
+        assert_eq!(EntryFormat::ALL.map(EntryFormat::bytes), [20, 8, 8]);
+        let ticks = EntryFormat::TICKS;
+        assert_eq!((ticks.most_interval(), ticks.most_count()), (0xffff_ffff, 0xffff));
+        assert_eq!((ticks.least_add(), ticks.most_add()), (-32_768, 32_767));
+    }
+}

@@ -1,0 +1,267 @@
+//! One entry of a step table through the windows of some of its steps (DESIGN B8).
+//!
+//! Step n of an entry comes n*interval + n*(n-1)/2*add after the entry's start. Over n this is a straight line of
+//! x = (n - 1)/2, and each step's window a gate in its way:
+//!
+//! ```text
+//! low_n/n <= interval + add*(n-1)/2 <= high_n/n          all numbers integers
+//! ```
+//!
+//! For a given add the intervals that pass all gates are a range, `room` long; over add the room is concave, so where
+//! there is none the two gates that leave none also say on which side of this add there may be some, and from where on.
+//! That bound is exact, whichever gates have been looked at: fewer gates never refuse what all gates would let pass.
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Gate {
+    /// The step, from 1.
+    pub(super) n: i64,
+    /// Earliest time in units.
+    pub(super) low: i64,
+    /// Latest time in units.
+    pub(super) high: i64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Fit {
+    /// Minimum interval in units.
+    pub(super) least: i64,
+    /// Maximum interval in units.
+    pub(super) most: i64,
+    /// What each next interval is longer, in units.
+    pub(super) add: i64,
+}
+
+/// Looks at different adds, at most. It is never reached but where the gates leave less than one unit.
+const MAX_LOOKS: u32 = 64;
+/// Maximum time of a gate in units, and greatest part of an add in one: so all sums stay in 64 bits.
+pub(super) const MAX_TIME: u64 = 1 << 60;
+
+struct Look {
+    add: i64,
+    least: i64,
+    most: i64,
+    /// Twice the slope of the room over add.
+    slope: i64,
+    /// How far the next add with any room is at least, on the side to which the room grows.
+    ahead: i64,
+}
+
+impl Look {
+    /// Looks at all gates; None if there are none.
+    fn at(gates: &[Gate], add: i64) -> Option<Self> {
+        let (low, high) = tightest(gates, add)?;
+        let least = ceiling(low.low, low.n);
+        let most = high.high.div_euclid(high.n);
+        let slope = low.n - high.n;
+        // low.low/low.n - high.high/high.n over a common denominator, which is what an add changes by the slope.
+        let [low_n, high_n] = [low.n, high.n].map(i128::from);
+        let missing = i128::from(low.low) * high_n - i128::from(high.high) * low_n;
+        let mut ahead = 1;
+        if missing > 0 && slope != 0 {
+            let each = low_n * high_n * i128::from(slope.abs());
+            ahead = i64::try_from((2 * missing + each - 1) / each).unwrap_or(i64::MAX);
+        }
+        Some(Self { add, least, most, slope, ahead })
+    }
+
+    fn room(&self) -> i64 {
+        self.most - self.least
+    }
+
+    fn fit(&self) -> Option<Fit> {
+        (self.room() >= 0).then_some(Fit { least: self.least, most: self.most, add: self.add })
+    }
+}
+
+/// The gates that leave the least and the greatest interval at an add, both shifted by it; None if there are none.
+fn tightest(gates: &[Gate], add: i64) -> Option<(Gate, Gate)> {
+    let wide = |time: i64, n: i64| i128::from(time) * i128::from(n);
+    let first = gates.first()?.shifted(add);
+    let (mut low, mut high) = (first, first);
+    for gate in gates.iter().skip(1) {
+        let gate = gate.shifted(add);
+        if wide(gate.low, low.n) > wide(low.low, gate.n) {
+            low = gate;
+        }
+        if wide(high.high, gate.n) > wide(gate.high, high.n) {
+            high = gate;
+        }
+    }
+    Some((low, high))
+}
+
+const fn ceiling(over: i64, under: i64) -> i64 {
+    over.div_euclid(under) + (over.rem_euclid(under) > 0) as i64
+}
+
+impl Gate {
+    /// The gate of interval alone, with add*(n-1)/2 taken off.
+    fn shifted(self, add: i64) -> Self {
+        let part = self.n * (self.n - 1) / 2 * add;
+        debug_assert!(
+            [self.low, self.high, part].iter().all(|time| time.unsigned_abs() <= MAX_TIME),
+            "{self:?} with add {add} leaves what 64 bits can sum"
+        );
+        Self { n: self.n, low: self.low - part, high: self.high - part }
+    }
+}
+
+/// An interval and an add of `adds` (least, greatest) that pass all gates; None if there are none.
+///
+/// `guess` is where it begins to look. With `centre` it goes on until the room is three quarters of the greatest or
+/// more, without it the first that passes does.
+///
+/// Its sums stay in 64 bits where every gate's times and add*n*(n-1)/2 for `adds` are within [`MAX_TIME`].
+pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) -> Option<Fit> {
+    let (mut left, mut right) = adds;
+    let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);
+    let mut best: Option<Fit> = None;
+    let mut add = guess;
+    for _ in 0..MAX_LOOKS {
+        if left > right {
+            break;
+        }
+        add = add.clamp(left, right);
+        let look = Look::at(gates, add)?;
+        if let Some(fit) = look.fit()
+            && best.is_none_or(|best| look.room() > best.most - best.least)
+        {
+            best = Some(fit);
+            if !centre {
+                break;
+            }
+        }
+        // Where nothing passed yet it goes beyond the bound by half, to come to the other side.
+        let far = if best.is_none() { look.ahead.saturating_add(look.ahead / 2) } else { look.step() };
+        if look.slope > 0 {
+            left = add.saturating_add(look.ahead);
+            add = add.saturating_add(far);
+            below = Some(look);
+        } else if look.slope < 0 {
+            right = add.saturating_sub(look.ahead);
+            add = add.saturating_sub(far);
+            above = Some(look);
+        } else {
+            break;
+        }
+        if let (Some(below), Some(above)) = (&below, &above) {
+            let (summit, most) = summit(below, above);
+            if best.is_some_and(|best| most - (best.most - best.least) <= most / 4) {
+                break;
+            }
+            add = summit;
+        }
+    }
+    best
+}
+
+impl Look {
+    /// How far to go on where there is room, towards more.
+    fn step(&self) -> i64 {
+        (2 * self.room()).checked_div(self.slope.abs()).unwrap_or(1).max(1)
+    }
+}
+
+fn summit(below: &Look, above: &Look) -> (i64, i64) {
+    let apart = i128::from(above.add) - i128::from(below.add);
+    let (up, down) = (i128::from(below.slope), i128::from(-above.slope));
+    let drop = 2 * (i128::from(above.room()) - i128::from(below.room()));
+    let along = (drop + down * apart) / (up + down).max(1);
+    let room = i128::from(below.room()) + up * along / 2;
+    let narrow = |x: i128| i64::try_from(x).unwrap_or(i64::MAX);
+    (narrow(i128::from(below.add) + along), narrow(room))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+    use rand_xoshiro::{
+        Xoshiro256StarStar,
+        rand_core::{Rng, SeedableRng},
+    };
+
+    /// All adds and their least and greatest interval, one after another.
+    fn all(gates: &[Gate], adds: (i64, i64)) -> Vec<Fit> {
+        let passes = |interval: i64, add: i64| {
+            gates.iter().all(|gate| {
+                let time = gate.n * interval + gate.n * (gate.n - 1) / 2 * add;
+                (gate.low..=gate.high).contains(&time)
+            })
+        };
+        let fit = |add| {
+            let intervals: Vec<i64> = (-400..400).filter(|&interval| passes(interval, add)).collect();
+            Some(Fit { least: *intervals.first()?, most: *intervals.last()?, add })
+        };
+        (adds.0..=adds.1).filter_map(fit).collect()
+    }
+
+    /// Where two gates leave no room, the look says how many adds further they are first without a gap: there, and not
+    /// one add before.
+    #[test]
+    fn a_look_ahead_is_the_least_that_closes_the_gap() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(2);
+        let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
+        let mut seen = 0;
+        for _ in 0..20_000 {
+            let gate = |n, low| Gate { n, low, high: low + 3 };
+            let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
+            let look = Look::at(&[first, second], 0).expect("there are gates");
+            // The interval that one asks for at least, less what the other has at most.
+            let gap = |low: Gate, high: Gate, add: i64| {
+                let (low, high) = (low.shifted(add), high.shifted(add));
+                low.low * high.n - high.high * low.n
+            };
+            let pairs = [(first, second), (second, first)];
+            let Some((low, high)) = pairs.into_iter().find(|(low, high)| gap(*low, *high, 0) > 0) else {
+                continue;
+            };
+            if low.n == high.n {
+                continue;
+            }
+            let further = |adds: i64| if look.slope > 0 { adds } else { -adds };
+            assert!(
+                gap(low, high, further(look.ahead)) <= 0,
+                "{first:?} {second:?}: {} is too few",
+                look.ahead
+            );
+            assert!(
+                gap(low, high, further(look.ahead - 1)) > 0,
+                "{first:?} {second:?}: {} is too many",
+                look.ahead
+            );
+            seen += 1;
+        }
+        assert!(seen > 5000, "{seen}");
+    }
+
+    #[test]
+    fn a_fit_is_found_where_trying_all_finds_one_and_nowhere_else() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(1);
+        let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
+        let (mut passed, mut refused) = (0, 0);
+        for _ in 0..20_000 {
+            let (interval, add) = (draw(20, 60), draw(-3, 3));
+            let (count, wide, off) = (draw(1, 8), draw(0, 9), draw(0, 12));
+            let gates: Vec<Gate> = (1..=count)
+                .map(|n| {
+                    let middle = n * interval + n * (n - 1) / 2 * add + draw(-off, off);
+                    Gate { n, low: middle - wide / 2, high: middle + wide - wide / 2 }
+                })
+                .collect();
+            let adds = (-12, 12);
+            let expected = all(&gates, adds);
+            let guess = draw(-20, 20);
+            for centre in [false, true] {
+                let found = fit(&gates, adds, guess, centre);
+                match found {
+                    Some(found) => assert!(expected.contains(&found), "{gates:?}: {found:?}"),
+                    None => assert!(expected.is_empty(), "{gates:?}: {expected:?}"),
+                }
+            }
+            passed += usize::from(!expected.is_empty());
+            refused += usize::from(expected.is_empty());
+        }
+        assert!(passed > 4000 && refused > 4000, "{passed} {refused}");
+    }
+}

@@ -1,0 +1,286 @@
+//! Quantising into ticks (DESIGN B7).
+//!
+//! ```text
+//! due[j]   = R(s(j*T)), R(x) = floor(x + 1/2)
+//! steps[j] = due[j + 1] - due[j]
+//! ```
+//!
+//! What has been ordered by the end of tick j is the rounded position there, so the error never
+//! adds up, is never above half a step, and the end is exact. That end is a whole cycle, (j + 1)*tick_cycles,
+//! and which steps are due by a cycle is decided for certain (`due_by`).
+
+use super::AxesPath;
+use crate::{
+    AxisPlan,
+    problem::{Cause, Problem, ValueError},
+};
+use alloc::{vec, vec::Vec};
+
+const MAX_TICKS: u64 = 2_000_000;
+/// Maximum ticks of all its channels together, which is what they take in bytes.
+const MAX_BYTES: u64 = 4_000_000;
+const RIGHT: u8 = 1 << 7;
+const MAX_STEPS: u8 = !RIGHT;
+
+/// Ticks for the whole peripheral: one byte a channel and tick, bit 7 = right, bits 6..=0 = steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ticks {
+    channels: u8,
+    /// Invariant: a whole number of ticks, at least one.
+    bytes: Vec<u8>,
+}
+
+impl Ticks {
+    /// Channels, which is also the bytes of a tick.
+    #[must_use]
+    pub fn channels(&self) -> u8 {
+        self.channels
+    }
+
+    /// How many ticks.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "there is always a tick")]
+    pub fn len(&self) -> usize {
+        self.bytes.len() / usize::from(self.channels.max(1))
+    }
+
+    /// All bytes, tick after tick.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The ticks in order, each as its bytes.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u8]> {
+        self.bytes.chunks_exact(usize::from(self.channels.max(1)))
+    }
+}
+
+/// Quantises the plans, plan i for channel i, into ticks of `tick_cycles` with up to `slots` steps.
+///
+/// There are as many ticks as it takes until every axis has ended, at least one. A byte without
+/// steps keeps the direction of the one before, at first left.
+///
+/// # Errors
+/// Too many ticks, or, for each axis that needs more steps in a tick than it has slots, the first such tick.
+pub fn ticks(
+    plans: &[AxisPlan],
+    at: AxesPath<'_>,
+    channels: u8,
+    slots: u8,
+    tick_cycles: u64,
+    clock_hz: u32,
+) -> Result<Ticks, Vec<Problem>> {
+    let (channels, tick_cycles) = (channels.max(1), tick_cycles.max(1));
+    if plans.len() > channels.into() {
+        let cause = ValueError::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
+        return Err(vec![Problem::new(at.axes, cause)]);
+    }
+    let needed = plans.iter().map(|plan| plan.spans(tick_cycles, clock_hz)).max().unwrap_or(1);
+    let all = needed.saturating_mul(channels.into());
+    for (given, most, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
+        if given > most {
+            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of };
+            return Err(vec![Problem::new(at.whole, cause)]);
+        }
+    }
+    let width = usize::from(channels);
+    let mut bytes = vec![0; all as usize];
+    let mut problems = Vec::new();
+    for (channel, plan) in plans.iter().enumerate() {
+        let column = bytes.iter_mut().skip(channel).step_by(width);
+        if let Err(cause) = fill(plan, column, (tick_cycles, clock_hz), slots.min(MAX_STEPS)) {
+            problems.push(Problem::new(at.axis(channel), cause));
+        }
+    }
+    debug_assert!(!bytes.is_empty() && bytes.len().is_multiple_of(width), "{} bytes of ticks", bytes.len());
+    if problems.is_empty() { Ok(Ticks { channels, bytes }) } else { Err(problems) }
+}
+
+fn fill<'b>(
+    plan: &AxisPlan,
+    column: impl Iterator<Item = &'b mut u8>,
+    (tick_cycles, clock_hz): (u64, u32),
+    slots: u8,
+) -> Result<(), Cause> {
+    let mut due_by = plan.due_by(clock_hz);
+    let (mut due, mut direction, mut end) = (0, 0, 0_u64);
+    for (tick, byte) in (0..).zip(column) {
+        end = end.saturating_add(tick_cycles);
+        let next = due_by.steps(end);
+        let steps = next.abs_diff(due);
+        let count = match u8::try_from(steps) {
+            Ok(count) if count <= slots => count,
+            _ => {
+                let tick_s = tick_cycles as f64 / f64::from(clock_hz.max(1));
+                let (rate, limit) = (steps as f64 / tick_s, f64::from(slots) / tick_s);
+                return Err(Cause::TooManySteps { tick, steps, slots, rate, limit });
+            }
+        };
+        if next != due {
+            direction = if next > due { RIGHT } else { 0 };
+        }
+        *byte = direction | count;
+        due = next;
+    }
+    Ok(())
+}
+
+/// The ticks' time, from integers: tick j is [j*T, (j + 1)*T) of the motion's time, in s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickClock {
+    tick_cycles: u64,
+    clock_hz: u32,
+}
+
+impl TickClock {
+    /// Ticks of `tick_cycles` of a clock of `clock_hz`; 0 of either is taken as 1.
+    #[must_use]
+    pub fn new(tick_cycles: u64, clock_hz: u32) -> Self {
+        Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
+    }
+
+    /// Cycles of a tick.
+    #[must_use]
+    pub fn tick_cycles(&self) -> u64 {
+        self.tick_cycles
+    }
+
+    /// A cycle, counted from the motion's start, in s.
+    #[must_use]
+    pub fn seconds(&self, cycle: u64) -> f64 {
+        cycle as f64 / f64::from(self.clock_hz)
+    }
+
+    /// End of tick `tick` (from 0) in cycles.
+    fn end(&self, tick: u64) -> u64 {
+        tick.saturating_add(1).saturating_mul(self.tick_cycles)
+    }
+
+    /// End of tick `tick` (from 0) in s.
+    #[must_use]
+    pub fn end_s(&self, tick: u64) -> f64 {
+        self.seconds(self.end(tick))
+    }
+
+    /// Steps due by the end of tick `tick` (from 0).
+    #[must_use]
+    pub fn due_by_end(&self, plan: &AxisPlan, tick: u64) -> i64 {
+        plan.due_by(self.clock_hz).steps(self.end(tick))
+    }
+
+    /// The fewest ticks, at least one, whose end is not before `duration_s`.
+    #[must_use]
+    pub fn ticks_until(&self, duration_s: f64) -> u64 {
+        let tick_s = self.end_s(0);
+        let mut ticks = libm::ceil(duration_s / tick_s) as u64;
+        // The division can be off by a rounding; the tick's own end decides.
+        if ticks > 0 && self.end_s(ticks - 1) < duration_s {
+            ticks += 1;
+        } else if ticks > 1 && self.end_s(ticks - 2) >= duration_s {
+            ticks -= 1;
+        }
+        ticks.max(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        mechanics::{Distance, Speed},
+        moves::{Axis, Constant, Dwell, Move, SineSegments},
+        plan_axis,
+    };
+
+    fn constant(steps: f64, steps_s: f64) -> Move {
+        let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(steps_s));
+        Move::Constant(Constant { distance, speed })
+    }
+
+    fn plan(moves: Vec<Move>) -> AxisPlan {
+        plan_axis(&Axis { moves, ..Axis::default() }, "axis").unwrap()
+    }
+
+    #[test]
+    fn a_tick_clock_tells_its_tick_and_where_each_ends() {
+        let clock = TickClock::new(32_000, 16_000_000);
+        assert_eq!((clock.tick_cycles(), clock.end_s(0), clock.end_s(4)), (32_000, 0.002, 0.01));
+        assert_eq!([0.0, 0.001, 0.002, 0.0021].map(|end_s| clock.ticks_until(end_s)), [1, 1, 1, 2]);
+    }
+
+    #[test]
+    fn each_byte_has_direction_and_steps_of_its_tick() {
+        // moves at 1 kHz in ticks of 1 ms of 1 MHz, bytes of one channel
+        let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
+        let rows: [(Vec<Move>, &[u8]); 7] = [
+            (vec![dwell(0.0)], &[0x00]),
+            (vec![dwell(0.002)], &[0x00, 0x00]),
+            (vec![constant(4.0, 2000.0)], &[0x82, 0x82]),
+            (vec![constant(-4.0, 2000.0)], &[0x02, 0x02]),
+            // Without steps the direction stays.
+            (vec![constant(2.0, 2000.0), dwell(0.002), constant(-2.0, 2000.0)], &[0x82, 0x80, 0x80, 0x02]),
+            // A step each 2 ms, due at 1 ms and 3 ms: to the right each at the end of the tick before.
+            (vec![constant(2.0, 500.0)], &[0x81, 0x80, 0x81, 0x80]),
+            // To the left R(-1/2) is still 0 at the end of the tick: each is of the next.
+            (vec![constant(-2.0, 500.0)], &[0x00, 0x01, 0x00, 0x01]),
+        ];
+        for (moves, expected) in rows {
+            let found = ticks(&[plan(moves.clone())], AxesPath::MOTION, 1, 100, 1000, 1_000_000).unwrap();
+            assert_eq!(found.bytes(), expected, "{moves:?}");
+            assert_eq!(found.len(), expected.len());
+        }
+    }
+
+    #[test]
+    fn channels_stand_side_by_side_until_the_last_has_ended() {
+        let plans = [plan(vec![constant(4.0, 2000.0)]), plan(vec![constant(-9.0, 3000.0)])];
+        let found = ticks(&plans, AxesPath::MOTION, 3, 100, 1000, 1_000_000).unwrap();
+        let expected: [&[u8]; 3] = [&[0x82, 0x03, 0], &[0x82, 0x03, 0], &[0x80, 0x03, 0]];
+        assert!(found.iter().eq(expected), "{found:?}");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_its_numbers() {
+        let one = [plan(vec![constant(100.0, 10_000.0)]), plan(vec![constant(100.0, 12_000.0)])];
+        assert!(ticks(&one, AxesPath::MOTION, 2, 12, 1000, 1_000_000).is_ok());
+        let found = ticks(&one, AxesPath::MOTION, 2, 9, 1000, 1_000_000).unwrap_err();
+        let cause = |steps, rate| Cause::TooManySteps { tick: 0, steps, slots: 9, rate, limit: 9000.0 };
+        let expected = [
+            Problem::new("source.motion.axes[0]", cause(10, 10_000.0)),
+            Problem::new("source.motion.axes[1]", cause(12, 12_000.0)),
+        ];
+        assert_eq!(found, expected);
+        let found = ticks(&one, AxesPath::MOTION, 2, 12, 1, 1_000_000_000).unwrap_err();
+        let cause = ValueError::TooMuch { given: 10_000_000.0, most: 2_000_000.0, of: "ticks" };
+        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        // 625 000 ticks, of which seven channels are the first too many.
+        let long = [plan(vec![Move::Dwell(Dwell { duration_s: 625.0 })])];
+        assert_eq!(
+            ticks(&long, AxesPath::MOTION, 6, 12, 1000, 1_000_000).map(|ticks| ticks.len()),
+            Ok(625_000)
+        );
+        let found = ticks(&long, AxesPath::MOTION, 7, 12, 1000, 1_000_000).unwrap_err();
+        let cause =
+            ValueError::TooMuch { given: 4_375_000.0, most: 4_000_000.0, of: "ticks of all channels" };
+        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        assert!(ticks(&one, AxesPath::MOTION, 1, 12, 1000, 1_000_000).is_err());
+        // Nothing of this is a scenario; nothing of it may panic.
+        assert_eq!(ticks(&one, AxesPath::MOTION, 2, 255, 0, 0).map(|ticks| ticks.len()), Ok(1));
+        assert_eq!(ticks(&[], AxesPath::MOTION, 0, 0, 0, 0).map(|ticks| ticks.len()), Ok(1));
+    }
+
+    #[test]
+    fn the_error_never_adds_up() {
+        let plan = plan(vec![Move::SineSegments(SineSegments::default()), constant(777.0, 1234.5)]);
+        let found = ticks(core::slice::from_ref(&plan), AxesPath::MOTION, 1, 127, 5000, 1_000_000).unwrap();
+        let mut made = 0;
+        for (tick, bytes) in (1_i32..).zip(found.iter()) {
+            let steps = i64::from(bytes[0] & !RIGHT);
+            made += if bytes[0] & RIGHT == 0 { -steps } else { steps };
+            let error = plan.position(f64::from(tick) * 0.005) - made as f64;
+            assert!(error.abs() <= 0.5, "{error} after tick {tick}");
+        }
+        assert_eq!(made, 777);
+    }
+}

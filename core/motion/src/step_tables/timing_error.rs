@@ -1,0 +1,137 @@
+//! How far the steps of a list are from where they are due (DESIGN B8).
+
+use crate::ScheduledStep;
+use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
+
+/// How far steps are from their due cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TimingError {
+    /// Steps.
+    pub steps: u64,
+    /// Maximum error of a step in cycles, early or late.
+    pub greatest: u64,
+    /// Sum of all errors' squares in cycles^2.
+    squares: u128,
+}
+
+impl TimingError {
+    pub(super) fn step(&mut self, off: u64) {
+        self.steps += 1;
+        self.greatest = self.greatest.max(off);
+        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
+    }
+
+    /// Root of the mean square in cycles; 0 of no steps.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
+    }
+
+    /// The error of a list whose steps are due at `due`, in cycles from the list's start; None if it has another number
+    /// of steps, or one goes the other way.
+    #[must_use]
+    pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
+        let (mut error, mut time, mut due) = (Self::default(), 0_u64, due.into_iter());
+        for segment in &list.segments {
+            match *segment {
+                Segment::Dwell(dwell) => time = time.wrapping_add(dwell),
+                Segment::Steps { count, mut interval, add, right } => {
+                    for _ in 0..count {
+                        let step = due.next().filter(|step| step.right == right)?;
+                        time = time.wrapping_add(interval);
+                        interval = interval.wrapping_add_signed(add);
+                        error.step((time >> FRACTION_BITS).abs_diff(step.cycle));
+                    }
+                }
+            }
+        }
+        due.next().is_none().then_some(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{vec, vec::Vec};
+    use stepscope_peripheral::{segment::SegmentList, units::Instant};
+
+    /// The steps of a list, each so many cycles away from where it stands.
+    fn away(list: &SegmentList, off: impl Fn(u64) -> u64) -> Vec<ScheduledStep> {
+        let (mut time, mut due) = (0, Vec::new());
+        for segment in &list.segments {
+            match *segment {
+                Segment::Dwell(dwell) => time += dwell,
+                Segment::Steps { count, mut interval, add, right } => {
+                    for _ in 0..count {
+                        time += interval;
+                        interval = interval.wrapping_add_signed(add);
+                        due.push(ScheduledStep {
+                            cycle: (time >> FRACTION_BITS) + off(due.len() as u64),
+                            right,
+                        });
+                    }
+                }
+            }
+        }
+        due
+    }
+
+    fn list() -> SegmentList {
+        let steps = |count, interval, add, right| Segment::Steps { count, interval, add, right };
+        let segments = vec![
+            steps(1, 3 << 20, 0, true),
+            Segment::Dwell(5 << 20),
+            Segment::Dwell(1),
+            steps(0, 1 << 20, 0, true),
+            steps(700, 1 << 20, 77, true),
+            steps(300, 2 << 20, -1000, false),
+        ];
+        SegmentList { start: Instant(1), segments }
+    }
+
+    #[test]
+    fn errors_of_every_size_are_summed_without_a_rounding() {
+        let list = list();
+        // Up to 16 cycles, up to about 2^28 within some steps and beyond in others, and so far that no 64 bits hold a square.
+        for bits in [4, 28, 29, 40] {
+            let off = |step: u64| step.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - bits);
+            let offs: Vec<u64> = (0..1001).map(off).collect();
+            let expected = TimingError {
+                steps: 1001,
+                greatest: *offs.iter().max().unwrap(),
+                squares: offs.iter().map(|off| u128::from(*off) * u128::from(*off)).sum(),
+            };
+            assert_eq!(TimingError::of(&list, away(&list, off)), Some(expected), "{bits} bits");
+        }
+    }
+
+    #[test]
+    fn a_step_that_is_due_in_the_last_cycles_of_all_is_as_far_off_as_it_is() {
+        let steps = Segment::Steps { count: 1, interval: 1 << FRACTION_BITS, add: 0, right: true };
+        let list = SegmentList { start: Instant(1), segments: vec![steps] };
+        for cycle in [u64::MAX, u64::MAX - 4, (1 << 63) + 2, 1 << 63, (1 << 63) - 1] {
+            let found = TimingError::of(&list, [ScheduledStep { cycle, right: true }]).unwrap();
+            let off = cycle - 1;
+            let expected =
+                TimingError { steps: 1, greatest: off, squares: u128::from(off) * u128::from(off) };
+            assert_eq!(found, expected, "{cycle}");
+        }
+    }
+
+    #[test]
+    fn another_number_of_steps_or_another_way_has_no_error() {
+        let list = list();
+        let due = away(&list, |_| 0);
+        assert_eq!(
+            TimingError::of(&list, due.iter().copied()).map(|error| (error.steps, error.greatest)),
+            Some((1001, 0))
+        );
+        for step in [0, 1, 255, 256, 257, 700, 701, 1000] {
+            let mut turned = due.clone();
+            turned[step].right = !turned[step].right;
+            assert_eq!(TimingError::of(&list, turned), None, "step {step} goes the other way");
+            assert_eq!(TimingError::of(&list, due.iter().copied().take(step)), None, "{step} steps");
+        }
+        assert_eq!(TimingError::of(&list, due.iter().copied().chain(due.last().copied())), None, "one more");
+    }
+}

@@ -1,0 +1,86 @@
+//! Times in cycles, with the digits that decide a rounding however late they are (DESIGN B1): whole cycles, and a part of
+//! one in 106 bits.
+//!
+//! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
+use crate::{timing::decimal::Exact, timing::double::Double};
+
+/// What 106 bits do not tell from a tie, in parts of a time: 2^-94.
+const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
+
+/// What 106 bits do not tell from a tie, of a time in cycles.
+pub(crate) fn tie(cycle: u64) -> Double {
+    ((cycle as f64 + 1.0) * TIE).into()
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CycleTime {
+    pub(crate) whole: u64,
+    /// 0 to below 1.
+    pub(crate) part: Double,
+}
+
+impl CycleTime {
+    /// A time from 0 on.
+    pub(crate) fn of(cycles: Double) -> Self {
+        // Two numbers whose sum it is, each with its own whole cycles; the second may be negative.
+        let mut whole = cycles.high as u64;
+        let mut part = Double::sum(cycles.high - whole as f64, cycles.low);
+        if part.high < 0.0 && whole > 0 {
+            (whole, part) = (whole - 1, part + 1.0);
+        }
+        Self { whole, part }
+    }
+
+    /// A quotient, from 0 on, in cycles.
+    pub(crate) fn exact(cycles: &Exact) -> Self {
+        let (whole, part) = cycles.whole_and_part();
+        Self::default().plus(Self { whole, part })
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        let (whole, part) = (self.whole.saturating_add(other.whole), self.part + other.part);
+        let past = part - 1.0;
+        if past.high < 0.0 {
+            Self { whole, part }
+        } else {
+            Self { whole: whole.saturating_add(1), part: past }
+        }
+    }
+
+    pub(crate) fn is_by(self, cycle: u64) -> bool {
+        self.whole < cycle || (self.whole == cycle && self.part <= tie(cycle))
+    }
+
+    /// Whether it is that cycle, but for a tie.
+    pub(crate) fn is_at(self, cycle: u64) -> bool {
+        let short = Double::from(1.0) - self.part;
+        self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && short <= tie(cycle)))
+    }
+
+    /// All of it in 106 bits.
+    pub(crate) fn double(self) -> Double {
+        Double::from(self.whole) + self.part
+    }
+
+    pub(crate) fn cycles(self) -> f64 {
+        self.whole as f64 + self.part.high
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_add_up_to_whole_cycles() {
+        let half = Double::from(0.5);
+        let time = CycleTime::of(3.75.into()).plus(CycleTime { whole: 1 << 60, part: half });
+        assert_eq!(time, CycleTime { whole: (1 << 60) + 4, part: 0.25.into() });
+        // The nearest f64 is 4, and the sum below it.
+        let below = CycleTime::of(Double { high: 4.0, low: -1e-20 });
+        assert!(below.whole == 3 && below.part == Double { high: 1.0, low: -1e-20 }, "{below:?}");
+        // A hair before 0 by rounding is in no cycle before it.
+        assert_eq!(CycleTime::of(Double { high: 0.0, low: -1e-30 }).whole, 0);
+        assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: half });
+    }
+}

@@ -1,0 +1,244 @@
+//! Numbers as they are printed (DESIGN B1): a number of a scenario means its printed decimal, and what mechanics make
+//! of it is a quotient of whole numbers, without rounding in between.
+//!
+//! ```text
+//! 88.35 mm at 0.1 mm per step    8835/100 : 1/10 = 883.5, and 884 steps; in f64 the quotient is 883.4999…
+//! ```
+
+use crate::timing::double::Double;
+use alloc::format;
+use num_bigint::{BigInt, BigUint};
+use num_integer::Integer;
+
+/// Bits of a quotient from which the nearest f64 is rounded: more than an f64 has, so the rest only matters if it is 0.
+const QUOTIENT_BITS: u32 = 64;
+const DOUBLE_BITS: u32 = 2 * HALF_BITS as u32;
+const HALF_BITS: i32 = 53;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Exact {
+    over: BigInt,
+    /// Invariant: above 0.
+    under: BigUint,
+}
+
+impl Exact {
+    /// The shortest decimal that reads back as `number`, which is finite.
+    pub(crate) fn of(number: f64) -> Self {
+        Self::difference(number, 0.0)
+    }
+
+    pub(crate) fn difference(number: f64, subtrahend: f64) -> Self {
+        let decimals = [decimal(number), decimal(subtrahend)];
+        let exponent = decimals[0].1.min(decimals[1].1);
+        let [first, second] = decimals.map(|(digits, own)| digits * power_of_ten(own.abs_diff(exponent)));
+        Self { over: first - second, under: 1_u8.into() }.scaled(exponent)
+    }
+
+    pub(crate) fn times(mut self, number: f64) -> Self {
+        let (digits, exponent) = decimal(number);
+        self.over *= digits;
+        self.scaled(exponent)
+    }
+
+    pub(crate) fn divided_by(mut self, number: f64) -> Self {
+        let (digits, exponent) = decimal(number);
+        debug_assert!(digits > 0, "divided by {number}");
+        self.under *= digits.unsigned_abs().max(1);
+        self.scaled(-exponent)
+    }
+
+    /// Times 10 to this power.
+    fn scaled(mut self, exponent: i32) -> Self {
+        let power = power_of_ten(exponent.unsigned_abs());
+        if exponent < 0 {
+            self.under *= power.magnitude();
+        } else {
+            self.over *= power;
+        }
+        self
+    }
+
+    /// B1's R: floor(x + 1/2), or the end of the range of i64.
+    pub(crate) fn rounded(&self) -> i64 {
+        let (two, under) = (BigInt::from(2), BigInt::from(self.under.clone()));
+        let floor = (&self.over * &two + &under).div_floor(&(under * &two));
+        i64::try_from(&floor).unwrap_or(if floor < BigInt::ZERO { i64::MIN } else { i64::MAX })
+    }
+
+    pub(crate) fn nearest(&self) -> f64 {
+        let (quotient, scale, is_more) = self.digits(QUOTIENT_BITS);
+        // What is left counts as a little more than the last bit.
+        self.signed(libm::scalbn((quotient as u64 | u64::from(is_more)) as f64, scale))
+    }
+
+    /// The quotient in 106 bits.
+    pub(crate) fn double(&self) -> Double {
+        let (quotient, scale, _) = self.digits(DOUBLE_BITS);
+        let half = |digits: u128, scale: i32| self.signed(libm::scalbn(digits as u64 as f64, scale));
+        Double::sum(
+            half(quotient >> HALF_BITS, scale + HALF_BITS),
+            half(quotient & ((1 << HALF_BITS) - 1), scale),
+        )
+    }
+
+    fn signed(&self, magnitude: f64) -> f64 {
+        if self.over < BigInt::ZERO { -magnitude } else { magnitude }
+    }
+
+    /// The first `bits` bits of the magnitude, or one fewer, as a whole number; the power of two to multiply it by; and
+    /// whether there is more.
+    fn digits(&self, bits: u32) -> (u128, i32, bool) {
+        let over = self.over.magnitude();
+        let scale = over.bits() as i32 - self.under.bits() as i32 - (bits as i32 - 1);
+        let shift = scale.unsigned_abs();
+        let (quotient, rest) = if scale < 0 {
+            (over << shift).div_rem(&self.under)
+        } else {
+            over.div_rem(&(&self.under << shift))
+        };
+        (u128::try_from(quotient).unwrap_or(u128::MAX), scale, rest != BigUint::ZERO)
+    }
+
+    /// The whole part and the rest in 106 bits, of a quotient from 0 to below 2^64.
+    pub(crate) fn whole_and_part(&self) -> (u64, Double) {
+        let (whole, rest) = self.over.magnitude().div_rem(&self.under);
+        let part = Self { over: rest.into(), under: self.under.clone() };
+        (u64::try_from(whole).unwrap_or(u64::MAX), part.double())
+    }
+
+    pub(crate) fn magnitude(&self) -> (&BigUint, &BigUint) {
+        (self.over.magnitude(), &self.under)
+    }
+}
+
+impl Double {
+    /// The printed decimal of a number, which is finite.
+    pub(crate) fn decimal(number: f64) -> Self {
+        Exact::of(number).double()
+    }
+}
+
+fn power_of_ten(exponent: u32) -> BigInt {
+    BigInt::from(10).pow(exponent)
+}
+
+/// The shortest decimal that reads back as a number: its digits as a whole number, and the power of 10.
+fn decimal(number: f64) -> (i64, i32) {
+    debug_assert!(number.is_finite(), "{number} has no decimal");
+    let text = format!("{number:e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+    let parsed = (format!("{whole}{fraction}").parse(), exponent.parse::<i32>());
+    let (Ok(digits), Ok(exponent)) = parsed else { return (0, 0) };
+    (digits, exponent - fraction.len() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::{
+        Xoshiro256StarStar,
+        rand_core::{Rng, SeedableRng},
+    };
+
+    #[test]
+    fn a_number_is_its_printed_decimal() {
+        let rows = [
+            (0.0, (0, 0)),
+            (88.35, (8835, -2)),
+            (-0.1, (-1, -1)),
+            (1e22, (1, 22)),
+            (1e-7, (1, -7)),
+            (9_007_199_254_740_992.0, (9_007_199_254_740_992, 0)),
+        ];
+        for (number, expected) in rows {
+            assert_eq!(decimal(number), expected);
+        }
+        for number in [1.0, -0.1, 5e-324, 1e-310, f64::MAX, f64::MIN_POSITIVE, 0.3, 123_456.789] {
+            assert_eq!(Exact::of(number).nearest(), number);
+        }
+    }
+
+    #[test]
+    fn halves_are_rounded_up_as_they_are_printed() {
+        let rows =
+            [(88.35, 0.1, 884), (-88.35, 0.1, -883), (0.145, 0.01, 15), (0.1449, 0.01, 14), (2.0, 0.01, 200)];
+        for (number, unit, expected) in rows {
+            assert_eq!(Exact::of(number).divided_by(unit).rounded(), expected, "{number} of {unit}");
+        }
+        assert_eq!([0.5, -0.5, 0.49, -0.51].map(|number| Exact::of(number).rounded()), [1, 0, 0, -1]);
+        assert_eq!(Exact::of(1e300).rounded(), i64::MAX);
+        assert_eq!(Exact::of(-1e300).rounded(), i64::MIN);
+        assert_eq!(Exact::difference(20.45, 46.95).rounded(), -26, "-26.5, half up");
+    }
+
+    /// Digits, exponent and number of a random decimal.
+    fn drawn(noise: &mut Xoshiro256StarStar, signed: bool) -> (BigInt, i32, f64) {
+        let bits = 1 + noise.next_u64() % 50;
+        let digits = 1 + (noise.next_u64() >> (64 - bits)) as i64;
+        let digits = if signed && noise.next_u64().is_multiple_of(2) { -digits } else { digits };
+        let exponent = (noise.next_u64() % 24) as i32 - 16;
+        let number: f64 = format!("{digits}e{exponent}").parse().expect("a number");
+        (digits.into(), exponent, number)
+    }
+
+    /// Held against a library's whole numbers of any length: (a - b)*c/d.
+    #[test]
+    fn quotients_are_those_of_whole_numbers_of_any_length() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(5);
+        let ten = |exponent: i32| BigInt::from(10).pow(exponent.unsigned_abs());
+        for round in 0..20_000 {
+            let (a, b) = (drawn(&mut noise, true), drawn(&mut noise, true));
+            let (c, d) = (drawn(&mut noise, false), drawn(&mut noise, false));
+            // In parts of 10^-40.
+            let parts = |(digits, exponent, _): &(BigInt, i32, f64)| digits * ten(exponent + 40);
+            let other = if round % 3 == 0 { (BigInt::from(0), 0, 0.0) } else { b };
+            let over = (parts(&a) - parts(&other)) * parts(&c);
+            let under = parts(&d) * ten(40);
+            let exact = Exact::difference(a.2, other.2).times(c.2).divided_by(d.2);
+            let doubled: BigInt = &over * 2 + &under;
+            let floor = doubled.div_floor(&(&under * 2));
+            let expected =
+                i64::try_from(&floor).unwrap_or(if floor < BigInt::from(0) { i64::MIN } else { i64::MAX });
+            if expected.unsigned_abs() < 1 << 52 {
+                assert_eq!(exact.rounded(), expected, "({} - {})*{}/{}", a.2, other.2, c.2, d.2);
+            }
+            // No f64 beside it is nearer.
+            let found = exact.nearest();
+            let distance = |number: f64| {
+                let (digits, exponent) = decimal_of_bits(number);
+                // |number - over/under| in parts of under*10^-1100.
+                let own = BigInt::from(digits) * (BigInt::from(1) << (exponent + 1100)) * &under;
+                let other: BigInt = &over << 1100;
+                BigInt::from((own - other).magnitude().clone())
+            };
+            assert!(distance(found) <= distance(found.next_up()), "{found}");
+            assert!(distance(found) <= distance(found.next_down()), "{found}");
+        }
+    }
+
+    /// A number as a whole one times 2 to a power.
+    fn decimal_of_bits(number: f64) -> (i64, i32) {
+        let bits = number.to_bits();
+        let (exponent, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
+        let (digits, exponent) =
+            if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+        (if number < 0.0 { -digits } else { digits }, exponent)
+    }
+
+    /// Whole numbers below 2^53 are exact in f64, and IEEE 754 rounds one quotient of two to the nearest.
+    #[test]
+    fn the_nearest_number_is_that_of_a_single_division() {
+        let mut noise = Xoshiro256StarStar::seed_from_u64(6);
+        for _ in 0..20_000 {
+            let mut whole = || {
+                let bits = 1 + noise.next_u64() % 53;
+                (1 + (noise.next_u64() >> (64 - bits))).min((1 << 53) - 1) as f64
+            };
+            let (over, under, sign) = (whole(), whole(), if whole() > 1e3 { 1.0 } else { -1.0 });
+            let found = Exact::of(sign * over).divided_by(under).nearest();
+            assert_eq!(found, sign * over / under, "{over} by {under}");
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! Numbers of 106 bits, as the sum of two f64 (Dekker 1971): for the few steps whose time in f64 is too near the middle
+//! of two cycles to decide between them (DESIGN B1, `rounding`).
+//!
+//! ```text
+//! high  |53 bits|                     high is the f64 nearest to the sum
+//! low            |53 bits|            at most half of high's last digit
+//! ```
+//!
+//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100. Only + - * / and the
+//! square root are used, so every target gets the same bits; a cube root starts from `libm`'s.
+
+use crate::{square_root, timing::number::Number};
+use core::ops::{Add, Div, Mul, Sub};
+
+/// A number of 106 bits.
+// Invariant: `high` is the f64 nearest to the sum, so comparing `high` and then `low` compares the sums.
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+pub(crate) struct Double {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
+}
+
+/// 2^27 + 1: multiplying by it splits a number into two halves of 26 bits.
+const SPLITTER: f64 = 134_217_729.0;
+
+const MIN_TERM: f64 = 1e-33;
+/// Maximum number of terms; e^41 has all its digits after 200.
+const MAX_TERMS: u32 = 400;
+
+impl From<f64> for Double {
+    fn from(number: f64) -> Self {
+        Self { high: number, low: 0.0 }
+    }
+}
+
+impl From<u64> for Double {
+    fn from(whole: u64) -> Self {
+        let upper = (whole >> 32) as f64 * 4_294_967_296.0;
+        Self::sum(upper, (whole & 0xffff_ffff) as f64)
+    }
+}
+
+impl Double {
+    /// a + b, exactly.
+    pub(crate) fn sum(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let from_b = high - a;
+        Self { high, low: (a - (high - from_b)) + (b - from_b) }
+    }
+
+    /// a*b, exactly.
+    fn product(a: f64, b: f64) -> Self {
+        let halves = |x: f64| {
+            let scaled = SPLITTER * x;
+            let upper = scaled - (scaled - x);
+            (upper, x - upper)
+        };
+        let ((a_upper, a_lower), (b_upper, b_lower)) = (halves(a), halves(b));
+        let high = a * b;
+        let low = ((a_upper * b_upper - high) + a_upper * b_lower + a_lower * b_upper) + a_lower * b_lower;
+        Self { high, low }
+    }
+
+    fn negated(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+
+    /// The sum of `power`/from! and the terms after it: each is `ratio` times the one before, over a factorial of
+    /// `more` more.
+    fn series(power: Self, from: u32, ratio: Self, more: u32) -> Self {
+        // 2! or 3!, of which one factor is 1.
+        let mut term = power / f64::from(from * (from - 1));
+        let (mut sum, mut factor) = (term, from);
+        for _ in 0..MAX_TERMS {
+            let divisor: f64 = (factor + 1..=factor + more).map(f64::from).product();
+            factor += more;
+            term = term / divisor * ratio;
+            sum = sum + term;
+            if libm::fabs(term.high) <= MIN_TERM * libm::fabs(sum.high) {
+                break;
+            }
+        }
+        sum
+    }
+}
+
+impl Number for Double {
+    const PI: Self = Self { high: core::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
+
+    fn square_root(self) -> Self {
+        let root = square_root(self.high);
+        if root <= 0.0 {
+            return Self::default();
+        }
+        // One of Newton's steps doubles the digits.
+        let rest = self - Self::product(root, root);
+        Self::sum(root, rest.high / (2.0 * root))
+    }
+
+    fn cube_root(self) -> Self {
+        let root = libm::cbrt(self.high);
+        let rest = self - Self::product(root, root) * root;
+        Self::sum(root, rest.high / (3.0 * root * root))
+    }
+
+    /// x^3/3! - x^5/5! + …, for x from 0 to a little over pi: its terms are together at most three times their sum.
+    fn minus_its_sine(self) -> Self {
+        let square = self * self;
+        Self::series(square * self, 3, square.negated(), 2)
+    }
+}
+
+impl Double {
+    /// e^x - 1 - x, for x from -20 to a little over 40, with all digits also where it is small.
+    pub(crate) fn exponential_rest(self) -> Self {
+        if self.high < -1.0 {
+            // By e^-x, whose terms do not cancel.
+            let opposite = self.negated();
+            return opposite - 1.0 + Self::from(1.0) / (opposite + opposite.exponential_rest() + 1.0);
+        }
+        Self::series(self * self, 2, self, 1)
+    }
+}
+
+impl Add for Double {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (high, low) = (Self::sum(self.high, other.high), Self::sum(self.low, other.low));
+        let sum = Self::sum(high.high, high.low + low.high);
+        Self::sum(sum.high, sum.low + low.low)
+    }
+}
+
+impl Sub for Double {
+    type Output = Self;
+
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the difference is the sum with the opposite")]
+    fn sub(self, other: Self) -> Self {
+        self + other.negated()
+    }
+}
+
+impl Mul for Double {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = Self::product(self.high, other.high);
+        Self::sum(product.high, product.low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for Double {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        // Three digits of 53 bits, as by hand.
+        let first = self.high / other.high;
+        let rest = self - other * first;
+        let second = rest.high / other.high;
+        let rest = rest - other * second;
+        Self::sum(first, second) + rest.high / other.high
+    }
+}
+
+macro_rules! with_f64 {
+    ($($operation:ident $name:ident,)*) => {$(
+        impl $operation<f64> for Double {
+            type Output = Self;
+
+            fn $name(self, other: f64) -> Self {
+                $operation::$name(self, Self::from(other))
+            }
+        }
+    )*};
+}
+
+with_f64! { Add add, Sub sub, Mul mul, Div div, }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Holds a number to another, in parts of it.
+    fn check(found: Double, expected: Double) {
+        let off = libm::fabs((found - expected).high);
+        assert!(off <= 1e-30 * libm::fabs(expected.high), "{found:?} {expected:?}: {off}");
+    }
+
+    fn number(number: f64) -> Double {
+        Double::decimal(number)
+    }
+
+    #[test]
+    fn a_decimal_is_more_than_its_number() {
+        let tenth = number(0.1);
+        assert!(tenth.high == 0.1 && tenth.low != 0.0);
+        check(tenth * 10.0, 1.0.into());
+        check(number(-1e22), (-1e22).into());
+        assert_eq!(number(0.0), Double::default());
+        check(Double::from(u64::MAX) + 1.0, 18_446_744_073_709_551_616.0.into());
+    }
+
+    #[test]
+    fn operations_undo_each_other() {
+        for i in 1..2000 {
+            let (a, b) = (number(f64::from(i) / 7.0), number(1e9 / f64::from(i * i)));
+            check(a * b / b, a);
+            check(a.square_root() * a.square_root(), a);
+            check(b.cube_root() * b.cube_root() * b.cube_root(), b);
+            check(Double::from(1.0) / (Double::from(1.0) / a), a);
+        }
+        assert_eq!(Double::default().square_root(), Double::default());
+        assert!(number(0.3) > number(0.1) + number(0.1) && number(0.1) <= number(0.1));
+    }
+
+    /// sin(2x) = 2*sin(x)*sin(pi/2 - x), from an angle whose sine is known.
+    #[test]
+    fn a_sine_has_its_digits() {
+        let sine = |x: Double| x - x.minus_its_sine();
+        check(sine(Double::PI / 6.0), 0.5.into());
+        check(Double::PI.minus_its_sine(), Double::PI);
+        for i in 1..50 {
+            let x = Double::PI * f64::from(i) / 200.0;
+            check(sine(x + x), sine(x) * sine(Double::PI / 2.0 - x) * 2.0);
+        }
+        // 1e-9^3/6*(1 - 1e-18/20 + …).
+        let small = number(1e-9);
+        check(small.minus_its_sine(), small * small * small / 6.0 * (Double::from(1.0) - number(5e-20)));
+    }
+
+    #[test]
+    fn an_exponential_has_its_digits() {
+        let exponential = |x: Double| x.exponential_rest() + x + 1.0;
+        // ln(2), whose power it is.
+        let logarithm = Double { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
+        for i in [-28.0, -3.0, 1.0, 2.0, 10.0, 59.0] {
+            check(exponential(logarithm * i), libm::exp2(i).into());
+        }
+        // e^x - 1 - x from both sides of 0, and where its formula changes.
+        for x in [1e-9, 0.3, 0.999, 1.001] {
+            let (above, below) = (number(x).exponential_rest(), number(-x).exponential_rest());
+            let one = Double::from(1.0);
+            check((one + number(x) + above) * (one - number(x) + below), one);
+        }
+        // x^2/2*(1 + x/3 + x^2/12 + x^3/60 + …).
+        let terms = number(1e-9) / 3.0 + number(1e-18) / 12.0 + number(1e-27) / 60.0;
+        check(number(1e-9).exponential_rest(), number(5e-19) * (terms + 1.0));
+    }
+}

@@ -1,0 +1,208 @@
+//! Times of steps on a curve whose equation takes long to solve: it is solved for a few steps of a block, and a
+//! polynomial through them gives the others.
+//!
+//! ```text
+//!  time |            .-'     x = (step - middle)/half, -1 to 1
+//!       |        .-'         t = c0 + c1*T1(x) + … + c7*T7(x)       T: Chebyshev's polynomials
+//!       |   o-'--o--o-o
+//!       +---------------     c: from the times at T8's roots; of an analytic curve they fall geometrically,
+//!           a block's steps     so a block is narrow enough when the last two are small
+//! ```
+//!
+//! Solving for every step instead would take 40 to 80 times as long as the square root that a step of a trapezoid
+//! takes; with blocks it is one to two times. A block ends where the curve's formula changes. Beside a point of rest,
+//! where time goes as a root of the way, blocks would have few steps, and their equations are solved one by one.
+
+use crate::{
+    curves::curve::greater,
+    timing::run::{Times, put},
+};
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+const NODES: usize = 8;
+const MIN_STEPS: f64 = 4.0 * NODES as f64;
+const MAX_STEPS: f64 = 4096.0;
+/// Maximum error by the polynomial in cycles.
+const MAX_REST: f64 = 1.0 / 131_072.0;
+/// How much the errors of the nodes' times grow in between: Lebesgue's constant is 2.3, the rest is that of the sums.
+const GROWTH: f64 = 4.0;
+
+pub(crate) struct Interpolated<F> {
+    /// The time of a step in cycles, and its greatest error.
+    time: F,
+    /// Steps of the run.
+    count: u64,
+    /// Positions at which the formula changes, rising.
+    joints: Vec<f64>,
+    /// cos(pi*k*(2i + 1)/(2*NODES)): Chebyshev's polynomial k at node i.
+    at_nodes: [[f64; NODES]; NODES],
+    /// Steps of the next block.
+    width: f64,
+    block: Option<Block>,
+    /// The block's end.
+    until: f64,
+}
+
+impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
+    pub(crate) fn new(count: u64, joints: Vec<f64>, time: F) -> Self {
+        let cosine = |k: usize, i: usize| libm::cos(PI * (k * (2 * i + 1)) as f64 / (2 * NODES) as f64);
+        let at_nodes = core::array::from_fn(|k| core::array::from_fn(|i| cosine(k, i)));
+        Self { time, count, joints, at_nodes, width: MIN_STEPS, block: None, until: 0.0 }
+    }
+
+    /// Begins a block at step `first`, as wide as its error allows.
+    fn begin(&mut self, first: f64) {
+        // Step `first` is at the position half a step further.
+        let ends = self.joints.iter().map(|joint| joint - 0.5);
+        let end = ends.into_iter().find(|end| *end > first).unwrap_or(f64::INFINITY);
+        let end = libm::fmin(end, self.count as f64 - 1.0);
+        loop {
+            let last = libm::floor(libm::fmin(first + self.width, end));
+            self.until = last + 1.0;
+            self.block = None;
+            if self.until - first < MIN_STEPS {
+                self.width = MIN_STEPS;
+                return;
+            }
+            let (block, rest) = self.through(first, last);
+            let most = (MAX_REST + block.off) / 4.0;
+            if rest <= most {
+                if rest < most / 1000.0 {
+                    self.width = libm::fmin(2.0 * self.width, MAX_STEPS);
+                }
+                self.block = Some(Block { off: GROWTH * block.off + MAX_REST, ..block });
+                return;
+            }
+            self.width = (last - first) / 1.5;
+        }
+    }
+
+    /// The polynomial through the steps from `first` to `last`, and about how much those left out are: no more than its
+    /// two last coefficients, of which one may vanish by symmetry.
+    fn through(&self, first: f64, last: f64) -> (Block, f64) {
+        let (middle, half) = ((first + last) / 2.0, (last - first) / 2.0);
+        let (at_middle, mut off) = (self.time)(middle);
+        let times = self.at_nodes[1].map(|x| {
+            let (time, own_off) = (self.time)(middle + half * x);
+            off = greater(off, own_off);
+            time - at_middle
+        });
+        let terms = self.at_nodes.map(|at_nodes| {
+            let products = at_nodes.iter().zip(&times).map(|(at_node, time)| at_node * time);
+            products.sum::<f64>() * 2.0 / NODES as f64
+        });
+        // By T_(k + 1) = 2*x*T_k - T_(k - 1), T_0 = 1 and T_1 = x.
+        let (mut before, mut polynomial) = ([0.0; NODES], [0.0; NODES]);
+        polynomial[0] = 1.0;
+        let mut powers = [0.0; NODES];
+        for (k, term) in terms.into_iter().enumerate() {
+            let term = if k == 0 { term / 2.0 } else { term };
+            for (power, own) in powers.iter_mut().zip(polynomial) {
+                *power += term * own;
+            }
+            let twice = if k == 0 { 1.0 } else { 2.0 };
+            let next = core::array::from_fn(|n| if n == 0 { 0.0 } else { twice * polynomial[n - 1] } - if k == 0 { 0.0 } else { before[n] });
+            (before, polynomial) = (polynomial, next);
+        }
+        powers[0] += at_middle;
+        let rest = libm::fabs(terms[NODES - 2]) + libm::fabs(terms[NODES - 1]);
+        (Block { middle, per_step: 1.0 / half, powers, off }, rest)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Block {
+    middle: f64,
+    per_step: f64,
+    /// Coefficients of the powers of x, in cycles.
+    powers: [f64; NODES],
+    /// Maximum error in cycles.
+    off: f64,
+}
+
+impl Block {
+    fn time(&self, step: f64) -> f64 {
+        let x = (step - self.middle) * self.per_step;
+        self.powers.iter().rev().fold(0.0, |sum, power| sum * x + power)
+    }
+}
+
+impl<F: Fn(f64) -> (f64, f64)> Times for Interpolated<F> {
+    fn fill(&mut self, first: f64, times: &mut [f64]) -> f64 {
+        let (mut step, mut times, mut most_off) = (first, times, 0.0);
+        while !times.is_empty() {
+            if step >= self.until {
+                self.begin(step);
+            }
+            let (here, rest) = times.split_at_mut(times.len().min((self.until - step) as usize));
+            let len = here.len();
+            if let Some(block) = self.block {
+                put(step, here, |step| block.time(step));
+                most_off = greater(most_off, block.off);
+            } else {
+                for (index, put) in (0_i32..).zip(here) {
+                    let (time, off) = (self.time)(step + f64::from(index));
+                    (*put, most_off) = (time, greater(most_off, off));
+                }
+            }
+            (step, times) = (step + len as f64, rest);
+        }
+        most_off
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        curves::cosine::Cosine,
+        curves::jerk_limited::{JerkLimited, Limits},
+        curves::ramp::Ramp,
+        curves::ramps::Ramps,
+        timing::run::Schedule,
+    };
+    use core::cell::Cell;
+
+    /// Compares a curve's times with solved ones, and returns how many were solved for each step.
+    fn check(curve: &impl Schedule, joints: Vec<f64>, what: &str) -> f64 {
+        let (count, clock, solved) = (curve.steps().unsigned_abs(), 16e6, Cell::new(0));
+        let time = |step: f64| {
+            solved.set(solved.get() + 1);
+            (curve.time_s(step + 0.5) * clock, curve.off_s() * clock)
+        };
+        let mut times = Interpolated::new(count, joints, time);
+        let mut found = vec![0.0; count as usize];
+        for (block, found) in found.chunks_mut(177).enumerate() {
+            let off = times.fill(177.0 * block as f64, found);
+            for (index, found) in found.iter().enumerate() {
+                let step = 177 * block + index;
+                let expected = curve.time_s(step as f64 + 0.5) * clock;
+                assert!((found - expected).abs() <= off, "step {step} of {what}: {found} {expected}");
+            }
+        }
+        f64::from(solved.get()) / count as f64
+    }
+
+    #[test]
+    fn times_in_a_block_are_those_that_are_solved_and_few_are_solved() {
+        for steps in [1, 2, 15, 39, 40, 41, 668, -100_000] {
+            let mut solved = Vec::new();
+            for part in [0.0, 0.002, 0.01, 0.25, 0.5] {
+                let cosine = Cosine::new(steps, 2.0, 2.0 * part);
+                solved.push(check(&cosine, cosine.joints(), &format!("a cosine, {steps} {part}")));
+                let shapes = [Ramp::Straight, Ramp::Bezier, Ramp::sigmoid(6.0), Ramp::exponential(4.0)];
+                for shape in shapes {
+                    let curve = Ramps::new(steps, 2.0, 2.0 * part, shape);
+                    solved.push(check(&curve, curve.joints(), &format!("{shape:?}, {steps} {part}")));
+                }
+            }
+            for (acceleration, jerk) in [(1e6, 1e9), (1e5, 1e6), (1e4, 1e4)] {
+                let curve = JerkLimited::new(steps, Limits { speed: 20_000.0, acceleration, jerk });
+                solved.push(check(&curve, curve.joints(), &format!("{steps} with a jerk of {jerk}")));
+            }
+            let is_few = solved.iter().all(|solved| *solved < 0.1);
+            assert!(is_few || steps.abs() < 100_000, "{steps}: {solved:?}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The cycle of a step (DESIGN B1): floor(t*clock_hz + 1/2), t being where the curve crosses the step's position.
+//!
+//! ```text
+//!        cycle c - 1          cycle c
+//! ---------+----------|----------+----------|----     | edges: whole + 1/2
+//!                   [-x-]                             a time in f64, and its greatest error
+//! ```
+//!
+//! A time in f64 decides unless an edge is within its error. There the curve itself decides, in 106 bits ([`Double`]):
+//! the step is due before an edge E if the curve is past the step's position at E. That needs the curve's formula but
+//! none of its roots, and it is a proof whatever the first time was.
+//!
+//! The error of a time in f64 is counted in the roundings of its formula, u = 2^-53 each; `libm`'s functions count as
+//! two. A curve from rest has s <= v*t, so a relative error of a position or a parameter makes no greater one of the
+//! time. Every planner stays below 64 u of its move's duration ([`MAX_OFF`]) or gives its own bound.
+//!
+//! 106 bits have an end, too. E counts as earlier by a [`tie`], 2^10 times what they lose, so a step that is due exactly
+//! at E is in the next cycle, as B1 has it. A step due that little before E would be as well; with evenly spread times
+//! that is one step in 2^62 of a motion of 2^32 cycles.
+
+use crate::{
+    bisection::least_near,
+    timing::cycle_time::{CycleTime, tie},
+    timing::double::Double,
+};
+
+/// Maximum error of a time in f64, as a part of its move's duration: 64 roundings.
+pub(crate) const MAX_OFF: f64 = 64.0 * ROUNDING;
+/// Maximum relative error of one rounding, u.
+pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// Whether a step (from 1) is due before a time in cycles from its move's start.
+pub(crate) type IsDueBefore<'p> = alloc::boxed::Box<dyn Fn(u64, Double) -> bool + 'p>;
+
+/// The cycle of a step of a move that begins at `start`; where the search begins changes only how long it takes.
+pub(crate) fn decided(start: CycleTime, guess: u64, is_due_before: impl Fn(Double) -> bool) -> u64 {
+    least_near(guess, u64::MAX, |cycle| {
+        // The edge that ends the cycle, half a cycle after it.
+        let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5;
+        is_due_before(since - tie(cycle))
+    })
+}
+
+/// Whether step `k` (from 1) of `count` is due before a time, of a move that takes `duration` and whose second half
+/// mirrors its first; `is_past` tells whether the first half is past a position at a time.
+pub(crate) fn is_mirrored_due_before(
+    (k, count): (u64, u64),
+    time: Double,
+    duration: Double,
+    is_past: impl Fn(Double, f64) -> bool,
+) -> bool {
+    let position = k as f64 - 0.5;
+    let left = count as f64 - position;
+    // Either half's own formula ends with it.
+    let is_second_half = time > duration * 0.5;
+    if position <= left {
+        is_second_half || (time > 0.0.into() && is_past(time, position))
+    } else {
+        let still = duration - time;
+        is_second_half && !(still > 0.0.into() && is_past(still, left))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(whole: u64, part: Double) -> CycleTime {
+        CycleTime { whole, part }
+    }
+
+    #[test]
+    fn the_decided_cycle_is_the_same_wherever_the_search_begins() {
+        // When a step is due from cycle 1000 1/4 on, and its cycle.
+        let rows = [
+            (0.0, 1000),
+            (0.2499, 1000),
+            (0.25, 1001),
+            (0.25 - 1e-15, 1000),
+            (1.0, 1001),
+            (7.25, 1008),
+            (7.25 - 1e-14, 1007),
+            (7.2501, 1008),
+            (123_456.0, 124_456),
+        ];
+        let start = at(1000, 0.25.into());
+        for (due, cycle) in rows {
+            for guess in [cycle, 0, 1, 999, 1000, 1001, 1007, 1008, 1009, 5000, 124_455, 124_457, 1 << 40] {
+                let found = decided(start, guess, |since| since > due.into());
+                assert_eq!(found, cycle, "{due} from {guess} on");
+            }
+        }
+        let found = [0, 1, 1000].map(|guess| decided(at(0, 0.0.into()), guess, |since| since > 0.0.into()));
+        assert_eq!(found, [0; 3], "a step at the start is in its cycle");
+    }
+}
