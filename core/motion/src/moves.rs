@@ -92,7 +92,7 @@ parameters! {
 /// Whose step times a trapezoid has (B2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TrapezoidMethod {
-    /// the paper's: a table of whole pulse rates, one a step, and a timer's whole reload.
+    /// The paper's: a table of whole pulse rates, one a step, and a timer's whole reload.
     #[default]
     Table,
     /// Every step where the ideal curve crosses its half-integer (B1).
@@ -120,7 +120,7 @@ parameters! {
 /// What becomes of a move that is too short to reach its top speed (B3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortMove {
-    /// the paper's: the whole move at the start speed.
+    /// The paper's: the whole move at the start speed.
     #[default]
     Document,
     /// Up as many rows of the table as fit, and down again.
@@ -149,7 +149,7 @@ pub enum CosineMethod {
     /// Every step where the ideal curve crosses its half-integer (B1).
     #[default]
     Exact,
-    /// the paper's: slices of whole steps, compensated until their sum is right.
+    /// The paper's: slices of whole steps, compensated until their sum is right.
     Sliced,
 }
 

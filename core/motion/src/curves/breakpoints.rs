@@ -1,14 +1,5 @@
-//! Where the formula of a motion changes: between two breakpoints its position, speed and acceleration are smooth, and
-//! each rises or falls or stays. So the values at both ends of such a stretch are its least and its greatest, and three
-//! points of Gauss and Legendre integrate it and its square. Each curve knows its own ([`Curve::breakpoints_s`]); here
-//! they stand one move after another.
-//!
-//! ```text
-//! |   .----.     | a trapezoid has a breakpoint at each end of its ramps and in its middle,
-//! |  /|  | |\    | a table or a staircase at each change of its rate,
-//! +-'-+--+-+-'-- | a cosine 64 in each ramp, another shape as many or more, a sine 128 a period:
-//!                | these are no polynomials, so they are cut small
-//! ```
+//! Where the formula of a motion changes. Between two breakpoints position, speed and acceleration are smooth and monotonic:
+//! the values at both ends are the extremes, and three points of Gauss and Legendre integrate them and their squares.
 
 use crate::{AxisPlan, Curve};
 use alloc::vec::Vec;

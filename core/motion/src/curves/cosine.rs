@@ -1,7 +1,5 @@
 //! Cosine S-curve with exact distance and exact time (DESIGN B4, `exact`; Song, Han, Lu 2021).
 //!
-//! Given n steps, the time T of the move and the time t_s of each ramp, 0 <= t_s <= T/2:
-//!
 //! ```text
 //!  f_max |     .--------.       f_max = n/(T - t_s)
 //!        |    /          \      f(t)  = f_max/2*(1 - cos(pi*t/t_s))            in the ramp
@@ -10,7 +8,7 @@
 //!         t_s           T-t_s  T         = n - s(T - t)                        from T/2 on
 //! ```
 //!
-//! The mirror makes s(T) exactly n. With t_s = 0 the speed jumps to f_max and back.
+//! n steps, time T of the move and t_s of each ramp, 0 <= t_s <= T/2. The mirror makes s(T) exactly n.
 
 use crate::{
     Curve, Peaks,

@@ -1,17 +1,13 @@
-//! A monotone cubic between two points (DESIGN B6, points): where it is at a time, and when at a place.
-//!
-//! With the length h, the mean slope d and the slopes m0 and m1 at its ends, none of them against d and none above 2*d:
+//! A monotone cubic between two points (DESIGN B6): where it is at a time, and when at a position.
 //!
 //! ```text
 //!  y1 |        .-'    from its start   (m0 + (c2 + c3*x)*x)*x   c2 = (2*(d - m0) + (d - m1))/h
 //!     |     /                                                   c3 = ((m0 - d) + (m1 - d))/h^2
 //!  y0 | _.-'          from its end     the same with m0 and m1 exchanged
-//!     0         h     straight         m0 = m1 = d: c2 = c3 = 0, exactly
+//!     0         h     length h, mean slope d, slopes m0 and m1 at the ends, from 0 to 2*d
 //! ```
 //!
-//! Position and time are formed from the nearer end, where both are small, so a step beside a turn
-//! keeps its digits. Within the bound of 2*d the slope is 0 at an end alone, if anywhere: nowhere else
-//! does a place have an uncertain time.
+//! Position and time are formed from the nearer end, where both are small, so a step beside a turn keeps its digits.
 
 use crate::{bisection::Bracket, curves::curve::greater, square_root, timing::Number};
 

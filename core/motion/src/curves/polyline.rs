@@ -11,7 +11,7 @@
 //! ```
 //! use stepscope_motion::polyline::{breakpoints, next_deviation};
 //!
-//! // the paper's six segments a quarter.
+//! // The paper's six segments a quarter.
 //! let six = breakpoints(0.0054);
 //! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
 //! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));

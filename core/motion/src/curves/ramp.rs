@@ -1,7 +1,6 @@
 //! The shapes of a ramp: how the speed goes from nothing to its top (DESIGN B4; Song, Han, Lu 2021, table 1).
 //!
-//! Over the ramp's own time x = t/t_s, from 0 to 1, a shape g goes from exactly 0 to exactly 1, and the
-//! speed is f_max*g(x). Of each shape everything has a closed form:
+//! Over the ramp's own time x = t/t_s, from 0 to 1, a shape g goes from exactly 0 to exactly 1; the speed is f_max*g(x).
 //!
 //! ```text
 //!  1 |        .--         g(x)   part of the top speed
@@ -15,12 +14,8 @@
 //!                         exponential   g = (1 - e^-kx)/(1 - e^-k)              A = 1/(1 - e^-k) - 1/k
 //! ```
 //!
-//! A sigmoid has no end: the document finds that one that is cut off at +-r stops short of its speed and
-//! starts with a jump. Here it is shifted and stretched, so that both ends are met exactly; what is left of
-//! the cut is the acceleration, which jumps at both.
-//!
-//! Near the start all terms of these formulas but one cancel; each is written so that none does, and a time
-//! in the ramp has its digits there too.
+//! A sigmoid that is cut off at +-r starts with a jump and stops short of its speed, as the paper finds. Here it is shifted
+//! and stretched to meet both ends. Near the start most terms cancel; each formula is written so that none does.
 
 mod exactly;
 
@@ -33,7 +28,7 @@ const MAX_STEPS: u32 = 100;
 /// for ramps of the area `area` (1/2 for every symmetric shape), of which a move can use up to half of its
 /// duration; `None` where the move is too fast with no ramp at all.
 ///
-/// the paper's t_s <= t_i - n/f_s (B4), and for any other area t_s <= (t_i - n/f_s)/(2*(1 - area)).
+/// The paper's t_s <= t_i - n/f_s (B4), and for any other area t_s <= (t_i - n/f_s)/(2*(1 - area)).
 #[must_use]
 pub fn longest_ramp_s(steps: u64, duration_s: f64, speed: f64, area: f64) -> Option<f64> {
     let ramp_s = (duration_s - steps as f64 / speed) / (2.0 * (1.0 - area));

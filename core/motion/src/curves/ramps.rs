@@ -1,7 +1,6 @@
 //! A move with two ramps of a given shape, exact in distance and in time (DESIGN B4).
 //!
-//! As the cosine S-curve has it: n steps, the time T of the move and the time t_s of each ramp,
-//! 0 <= t_s <= T/2, with a shape g of the area A (`ramp`) in place of the cosine:
+//! The cosine S-curve with a shape g of the area A (`ramp`) in place of the cosine:
 //!
 //! ```text
 //!  f_max |     .--------.       f_max = n/(T - 2*t_s*(1 - A))      n/(T - t_s) where A is 1/2
@@ -10,9 +9,6 @@
 //!        +-----------------------     = f_max*(t - t_s*(1 - A))    in the plateau
 //!         t_s           T-t_s  T      = n - s(T - t)               from T/2 on
 //! ```
-//!
-//! Slowing down is speeding up, mirrored in time: with an exponential the speed falls slowly at first
-//! and steeply at the end.
 
 use crate::{
     Curve, Peaks,

@@ -1,7 +1,6 @@
 //! Exact sine (DESIGN B6): every step where the cosine crosses its half-integer (B1).
 //!
-//! It starts at the right extreme, goes left to the other one and comes back, as the sine by segments
-//! does; with the amplitude A in whole steps, the period T and the travel d from the extreme behind it:
+//! It starts at the right extreme; A is the amplitude in whole steps, T the period, d the travel from the last extreme.
 //!
 //! ```text
 //!  0   |'-.          .-'    s(t) = -2*A*sin^2(pi*t/T)       keeps its digits where 1 - cos loses them
@@ -10,8 +9,7 @@
 //!      0     T/2     T           and T/2 less that of the travel that is left, k = A+1..=2*A
 //! ```
 //!
-//! So no step's time is a small difference of large numbers: the arc sine is taken up to 45 degrees
-//! alone, and the half periods before are added to it as a whole number, whatever their count.
+//! The arc sine is taken up to 45 degrees only, so no time is a small difference of large numbers.
 
 use crate::{
     Curve, Peaks,

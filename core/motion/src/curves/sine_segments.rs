@@ -1,8 +1,6 @@
 //! Sine as segments of fixed rate (DESIGN B5, SWorldJournal issue 11).
 //!
-//! On a quarter of y = cos(pi*i/1024), i = 0..=512, the breakpoints are as far apart as the largest
-//! deviation d1 lets them be. The other quarters follow by symmetry; a motion starts at the right
-//! extreme, goes left to the other one and comes back:
+//! The breakpoints (`polyline`) are as far apart as the largest deviation d1 allows; other quarters follow by symmetry.
 //!
 //! ```text
 //!   +A |\_                _/      vertex    round_half_up(A*y), whole steps

@@ -1,14 +1,14 @@
 //! Fixed length by a staircase of rates (DESIGN B3, Zhang 2012).
 //!
-//! The rows of the [`StaircaseTable`] up to the top speed, the plateau at the top speed, and the
-//! same rows down again; each step comes one period of its rate after the one before:
+//! The rows of the [`StaircaseTable`] up, the plateau, and the same rows down; each step comes a period of its rate after
+//! the one before.
 //!
 //! ```text
 //! rate |       ________          L steps, S in the rows up to f_s
 //!      |     _|        |_        f_s <= f_1   all at f_s
 //!      |   _|            |_      L > 2S       as drawn
 //!      | _|                |_    L = 2S       without the plateau
-//!      ||S               S| |    L < 2S       all at f_1 (the document), or as many rows as fit
+//!      ||S               S| |    L < 2S       all at f_1 (the paper), or as many rows as fit
 //!      +---------------------    twice, and what is left of the way at the rate after them
 //! ```
 

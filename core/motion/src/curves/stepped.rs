@@ -1,13 +1,6 @@
-//! Moves that are given by the times of their steps: acceleration tables (DESIGN B2, B3).
-//!
-//! ```text
-//! position   k - 1/2 at step k, straight between; B1's R of it counts the steps.
-//!            0 at the start, n at the end, so the first interval climbs half a step
-//!            and the last half step comes with the last pulse.
-//! ```
-//!
-//! In the very instant of a step R counts it if it goes to the right, and not yet if it goes to the left, as it does where
-//! a curve crosses a half-integer (B7).
+//! Positions of moves that are given by the times of their steps (DESIGN B2, B3): k - 1/2 at step k, straight between, so
+//! R of it counts the steps. In the instant of a step R counts it if it goes to the right, and not yet if it goes to the
+//! left, as where a curve crosses a half-integer (B7).
 
 /// How far from a step's place the curve keeps before and after the step, in steps: so R of it counts as many steps as
 /// have fallen, whatever the last digit of the place between two of them.

@@ -297,7 +297,7 @@ mod tests {
         TrapezoidTable::new(steps, table, 1_000_000).unwrap()
     }
 
-    /// the paper's program as it runs: the interrupt counts a step, moves the index by at most one towards its
+    /// The paper's program as it runs: the interrupt counts a step, moves the index by at most one towards its
     /// target and loads the reload; `target` is what the main program has set by then. Returned are the timer's
     /// ticks at each step.
     fn program(table: &AccelerationTable, count: u64, target: impl Fn(u64, u64) -> u64) -> Vec<u64> {
@@ -345,7 +345,7 @@ mod tests {
         }
     }
 
-    /// the paper's main program knows two targets only, the top and 0, and looks between two interrupts whether the
+    /// The paper's main program knows two targets only, the top and 0, and looks between two interrupts whether the
     /// steps to stop are all that is left. The same steps come out, except that a triangle of an even count climbs one
     /// row more and makes its last step at row 1, not at row 0.
     #[test]

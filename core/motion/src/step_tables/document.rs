@@ -1,14 +1,7 @@
-//! A motion's own table as segments (DESIGN B8): the rates that its document lists, each held for its steps.
+//! A motion's own table as segments (DESIGN B8): the rates that its paper lists, each held for its steps.
 //!
-//! ```text
-//! acceleration table (B2)   one row a step, timer reloads; the rows down are those up
-//! staircase (B3)            rows of a rate and its steps, likewise
-//! sine segments (B5)        a rate and its steps for each segment; the first step half an interval after its vertex
-//! constant rate, dwell      a single rate, or none
-//! ```
-//!
-//! An interval is rounded once, to the unit of the format, and that is what is stored. So the rounding of a rate adds up
-//! over its steps as it does in a controller that counts such intervals: that is the table's timing error.
+//! An interval is rounded once, to the unit of the format. So the rounding of a rate adds up over its steps, as in a
+//! controller that counts such intervals: that is the table's timing error.
 
 use crate::step_tables::{compressed::MAX_ENTRIES, entry_format::EntryFormat, segments::START};
 use crate::{

@@ -1,5 +1,4 @@
-//! Whether a curve through points is past a step's place at a time, in 106 bits (DESIGN B1, B6): by the cubic of its piece,
-//! from the nearer end (`hermite`), whose slopes are formed anew of the points beside it.
+//! Whether a curve through points is past a position at a time, in 106 bits (DESIGN B1, B6).
 
 use super::{Between, Points};
 use crate::{

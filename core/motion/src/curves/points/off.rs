@@ -1,16 +1,12 @@
-//! How far the time of a step may be off in f64, of a curve through points (DESIGN B1, B6).
-//!
-//! Each time is that of a cubic from its nearer end (`hermite`), x after the travel y. In f64 there are roundings of two
-//! kinds, u = 2^-53 each, and both count 1 + h/h0 + h/h1 times in a smooth curve, as a slope at an end is that of a
-//! neighbour, of the length h0 or h1, too:
+//! Greatest error of a step's time in f64, of a curve through points (DESIGN B1, B6).
 //!
 //! ```text
 //! of times       less than 64 u of the last one, as in every planner
 //! of positions   less than 16 u of the greatest; a time has what the speed v makes of it, and v*x >= y/2
 //! ```
 //!
-//! The last holds where the slopes at both ends are 0 to 2 times the mean one, as they are; and where y itself is no more
-//! than that error, x is no less than the time that it makes.
+//! x is the time from the nearer end, y the travel. In a smooth curve both count 1 + h/h0 + h/h1 times, as the slope at an
+//! end is that of a neighbour of the length h0 or h1, too.
 
 use crate::{
     curves::{cubic::Cubic, curve::greater},

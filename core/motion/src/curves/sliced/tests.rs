@@ -17,7 +17,7 @@ fn sliced(steps: i64, duration_s: f64, ramp_s: f64) -> Sliced {
     Sliced::new(steps, duration_s, ramp_s, 0.001, 1_000_000).unwrap()
 }
 
-/// the paper's table 2: plateau, steps, time asked for and made, time error.
+/// The paper's table 2: plateau, steps, time asked for and made, time error.
 ///
 /// The three rows without a plateau come out as they are. Of the others the fourth asks for a plateau of 0.8 s in
 /// 0.4 s, which cannot be; with one of 0.2 s its time comes out to the millisecond, as that of the last row does:
@@ -44,7 +44,7 @@ fn the_documents_time_errors_come_out_but_for_one_row() {
     }
 }
 
-/// the paper's table 4 does not add up: it says that 6400 steps are made in 0.396 s and that no rate
+/// The paper's table 4 does not add up: it says that 6400 steps are made in 0.396 s and that no rate
 /// is above 11413 Hz, which is at most 4519. Its text sets 3200 steps (a turn) in 0.4 s, of which the
 /// greatest rate would be 16000 Hz; and its first rate, 1089 Hz at time 0, is not that of a curve from rest.
 /// So of that move what the formulas say is held.
