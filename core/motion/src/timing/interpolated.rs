@@ -15,12 +15,14 @@
 
 use crate::{
     curves::curve::greater,
-    timing::run::{Times, put},
+    timing::run::{Run, Runs, Schedule, Times, put},
 };
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 use core::f64::consts::PI;
 
+/// Steps of a block whose equations are solved.
 const NODES: usize = 8;
+/// Minimum steps of a block; with fewer each is solved for itself.
 const MIN_STEPS: f64 = 4.0 * NODES as f64;
 const MAX_STEPS: f64 = 4096.0;
 /// Maximum error by the polynomial in cycles.
@@ -150,6 +152,16 @@ impl<F: Fn(f64) -> (f64, f64)> Times for Interpolated<F> {
         }
         most_off
     }
+}
+
+/// The one run of a curve whose equation for the time takes long to solve; its formula changes at the positions `joints`,
+/// in steps without sign.
+pub(crate) fn one_searched_run(curve: &impl Schedule, clock_hz: u32, joints: Vec<f64>) -> Runs<'_> {
+    let clock = f64::from(clock_hz);
+    let count = curve.steps().unsigned_abs();
+    let off = curve.off_s() * clock;
+    let times = Interpolated::new(count, joints, move |step| (curve.time_s(step + 0.5) * clock, off));
+    Box::new(core::iter::once(Run { count, right: curve.steps() >= 0, times: Box::new(times) }))
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ mod step_loop;
 pub(crate) use cycle_time::{CycleTime, tie};
 pub(crate) use decimal::Exact;
 pub(crate) use double::Double;
-pub(crate) use interpolated::Interpolated;
+pub(crate) use interpolated::{Interpolated, one_searched_run};
 pub(crate) use number::Number;
 #[cfg(test)]
 pub(crate) use rounding::decided;
 pub(crate) use rounding::{IsDueBefore, MAX_OFF, ROUNDING, is_mirrored_due_before};
-pub(crate) use run::{Run, Runs, Schedule, Times, one_run, one_searched_run};
+pub(crate) use run::{Run, Runs, Schedule, Times, one_run};
 pub(crate) use step_loop::MoveSteps;
 pub use step_loop::ScheduledStep;

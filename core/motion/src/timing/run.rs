@@ -14,10 +14,9 @@
 use crate::{
     Curve,
     timing::cycle_time::CycleTime,
-    timing::interpolated::Interpolated,
     timing::rounding::{IsDueBefore, MAX_OFF},
 };
-use alloc::{boxed::Box, vec::Vec};
+use alloc::boxed::Box;
 
 pub(crate) trait Schedule: Curve {
     /// How long the move lasts in cycles, with all digits.
@@ -79,14 +78,4 @@ pub(crate) fn put(first: f64, times: &mut [f64], time: impl Fn(f64) -> f64) {
 pub(crate) fn one_run<'p>(curve: &impl Schedule, clock_hz: u32, time: impl Fn(f64) -> f64 + 'p) -> Runs<'p> {
     let off = curve.off_s() * f64::from(clock_hz);
     Box::new(core::iter::once(Run::new(curve.steps().unsigned_abs(), curve.steps() >= 0, off, time)))
-}
-
-/// The same of a curve whose equation for the time takes long to solve; its formula changes at the positions `joints`,
-/// in steps without sign.
-pub(crate) fn one_searched_run(curve: &impl Schedule, clock_hz: u32, joints: Vec<f64>) -> Runs<'_> {
-    let clock = f64::from(clock_hz);
-    let count = curve.steps().unsigned_abs();
-    let off = curve.off_s() * clock;
-    let times = Interpolated::new(count, joints, move |step| (curve.time_s(step + 0.5) * clock, off));
-    Box::new(core::iter::once(Run { count, right: curve.steps() >= 0, times: Box::new(times) }))
 }
