@@ -21,8 +21,8 @@
 use crate::export::plain_text::is_unsafe;
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
-use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
 use stepscope_motion::round_half_up;
+use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
 
 const IN_A_LINE: usize = 8;
 /// Maximum bytes of an array. avr-gcc has signed 16-bit sizes, and C99 requires no more.
