@@ -9,7 +9,7 @@
 //! ```
 //!
 //! ```
-//! use stepscope_motion::polyline::{breakpoints, next_deviation};
+//! use stepscope_motion::curves::polyline::{breakpoints, next_deviation};
 //!
 //! // The paper's six segments a quarter.
 //! let six = breakpoints(0.0054);
