@@ -1,13 +1,12 @@
-//! Power cuts: what a stand-alone controller knows of its position after the power went away in any cycle (CONTROLLER.md G7).
+//! Power cuts: what a stand-alone controller knows of its position after the power failed in any cycle (CONTROLLER.md G7).
 //!
 //! ```text
-//! run ────────────┬─────────────┬──────────┬───────── the scenario's run, as if nothing happened
+//! run ────────────┬─────────────┬──────────┬───────── the scenario's run, uninterrupted
 //!                 │ cut in c    │ cut in c'│
 //!                 └─ POWER_LOSS ─ OFF ─ power back ─ memory read: known, known to be lost, or silently wrong
 //! ```
 //!
-//! The run goes on from cut to cut, and each cut is a copy of it that goes its own way: so a cut costs what happens after it,
-//! not what came before.
+//! Each cut is a copy of the run, so it costs only what happens after it.
 //!
 //! ```
 //! use stepscope_peripheral::units::Instant;

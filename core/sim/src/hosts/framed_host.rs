@@ -1,4 +1,4 @@
-//! The host of a framed line (DESIGN A6, A9): one frame, its reply, the next.
+//! The host of a framed line (DESIGN A6, A9): one frame, its reply, the next. Its policy is in docs/decisions.md.
 //!
 //! ```text
 //! each controller   opening: STATUS, POSITIONS ── filling: TICKS, TICKS, …
@@ -7,22 +7,8 @@
 //!                     └── no reply in time: the same frame again, after a delimiter
 //! ```
 //!
-//! - Opening, the host asks for the expected sequence number and for how many ticks are done. So one
-//!   that comes back after it crashed goes on where it was: it waits until the controller rests, and
-//!   takes up the ticks that are not done.
-//! - Filling, it sends as soon as a whole frame's ticks find a place. Places are counted from the
-//!   last reply on, one a tick. Of several controllers the one whose queue runs dry first comes first.
-//! - A frame is repeated with the sequence number that it had, so it never runs twice. A repetition
-//!   begins with a delimiter: what was left of a broken frame cannot join it.
-//! - The last tick of a job has no steps, so that its end is no underrun.
-//! - Confirming, it sees that every tick was done; verifying, that the positions are the sums of the ticks. A
-//!   controller that does not know POSITIONS is counted only. It gives up on a controller that does not answer
-//!   `attempts` times, that is stopped, or that refuses a frame for good; and on one that answers but
-//!   makes no progress (a host that crashes again and again), after `attempts` frames for each place of its
-//!   queue.
-//!
-//! The policy is in [`Conversation`], which knows bytes and cycles alone: a host of a real line is the same one. What is
-//! here puts it on the simulated line, with its noise.
+//! [`Conversation`] implements the policy in bytes and cycles, for real lines too. This file puts it on the simulated line, with
+//! its noise.
 //!
 //! ```
 //! use stepscope_peripheral::signal::Record;

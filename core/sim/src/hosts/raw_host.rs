@@ -1,11 +1,10 @@
-//! The host of a raw line against the wall clock (LIVE H3, H4): packets paced, nobody answers, so nothing is verified.
+//! The host of a raw line against the wall clock (LIVE H3, H4): packets are paced, and nothing is verified.
 //!
 //! ```text
 //! packet j is due at t0 + (its cycle - the first one's)/clock_hz - lead*M*Ts/clock_hz, or at once where that is before t0
 //! ```
 //!
-//! Absolute, never summed. One that is late goes at once. The lead is what a late write may cost before the queue runs dry. There
-//! is no port here and no clock: times come in, in nanoseconds since t0.
+//! A late packet goes at once. The lead is how late a write may be before the queue runs dry. Times come in as nanoseconds since t0.
 //!
 //! ```
 //! use stepscope_scenario::Scenario;

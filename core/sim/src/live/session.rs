@@ -1,19 +1,14 @@
-//! A session: the controllers of a scenario on a line on which somebody else speaks, as they come (LIVE H1, H5).
+//! A session: a scenario's controllers on a line that an external host drives (LIVE H1, H5).
 //!
 //! ```text
 //! bytes, as they are read ── receive ──┐
 //! the clock's cycle       ── advance ──┼── the model ── take_replies: bytes, each with the cycle in which it has left
-//!                                      └── recording: a scenario that gives the same traces again
+//!                                      └── recording: a scenario that replays the session
 //! ```
 //!
-//! There is no port here and no clock: time comes in as a cycle, so the same bytes in the same cycles are the same session, on
-//! every machine. A byte that is read when the model stands behind cycle N joins the last send if its place there, start +
-//! floor(10*j*clock_hz/baud), is beyond N; else it begins a send at N + 1. So input never comes into the past, order is kept, and
-//! a burst from the system is spread at the line's rate.
-//!
-//! Levels that the scenario forces on the line are heard by the controllers; replies leave as they were sent.
-//!
-//! Stand-alone controllers have no line: their buttons come in ([`Session::enter`]), and nothing goes out.
+//! Time comes in as a cycle, so the same bytes in the same cycles are the same session. A byte read at cycle N joins the last send
+//! if its place there is beyond N; else it begins a send at N + 1. Stand-alone controllers have buttons in place of a line
+//! ([`Session::enter`]).
 //!
 //! ```
 //! use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};

@@ -1,13 +1,12 @@
-//! The model beside a real device: it hears each frame that the device is sent, and answers it (LIVE H4).
+//! The model next to a real device: it gets each frame that the device gets, and its replies are compared (LIVE H4).
 //!
 //! ```text
 //! host ── frame ──┬── the device ── its reply, heard ──┐
-//!                 └── the model ─── its reply ─────────┴── what differs first, and both delays
+//!                 └── the model ─── its reply ─────────┴── the first difference, and both delays
 //! ```
 //!
-//! The device may have run before: sequence numbers, counts of ticks, positions and faults are compared from where it was opened.
-//! What depends on when a frame was heard to the cycle is not compared: how many ticks are done while one moves. The model
-//! is without the scenario's plant.
+//! The device may have run before: sequence numbers, ticks, positions and faults are compared relative to the start. Ticks done
+//! while one moves depend on exact cycles and are not compared. The model has no plant.
 //!
 //! ```
 //! use stepscope_peripheral::units::Instant;

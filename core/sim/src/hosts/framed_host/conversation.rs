@@ -1,13 +1,12 @@
-//! What the host of a framed line says and when, in bytes and cycles (DESIGN A6, A9; the policy is in docs/decisions.md).
+//! What the host of a framed line sends and when, in bytes and cycles (DESIGN A6, A9).
 //!
 //! ```text
 //! poll ── a frame ── sent ── hear, byte by byte ── a reply ── ten bit times ── poll
-//!                      └── its time is over ── ten bit times ── poll: the same frame, after a delimiter
+//!                      └── time-out ── ten bit times ── poll: the same frame, after a delimiter
 //! ```
 //!
-//! No line, no port and no clock: who has one asks for the [`deadline`](Conversation::deadline), polls in that cycle, sends
-//! what it gets, and says when the last stop bit has left and what is heard. So the host of a simulated line, of a real port
-//! and of the page are one.
+//! Without line, port and clock: the caller polls at the [`deadline`](Conversation::deadline), sends the frame, and reports when its
+//! last stop bit has left and what is heard. Simulation, command and page share it.
 //!
 //! ```
 //! use stepscope_peripheral::{protocol::{Kind, Reply, State, Status}, signal::Positions, units::{Cycles, Instant}};
