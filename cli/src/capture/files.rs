@@ -149,10 +149,10 @@ fn steps(out: &mut Out, steps: &[Step]) -> io::Result<()> {
 fn bytes(out: &mut Out, recording: &LoadedCapture) -> io::Result<()> {
     writeln!(out, "line,start_cycle,start_s,bytes")?;
     for line in &recording.report.lines {
-        for heard in &line.heard.bytes {
-            let cycle = heard.start.0;
+        for decoded in &line.decoded.bytes {
+            let cycle = decoded.start.0;
             let seconds = cycle as f64 / f64::from(recording.clock_hz);
-            writeln!(out, "{},{cycle},{seconds},{:02x}", line.name, heard.byte)?;
+            writeln!(out, "{},{cycle},{seconds},{:02x}", line.name, decoded.byte)?;
         }
     }
     Ok(())

@@ -1,15 +1,15 @@
 //! Validation of a scenario before it runs: problems, derived numbers and cost.
 //!
 //! ```
-//! use stepscope_inspect::validation::Judgement;
+//! use stepscope_inspect::validation::Validation;
 //! use stepscope_sim::ValidatedScenario;
 //!
-//! let judgement = Judgement::of(&Judged::from_json("{}"));
-//! assert_eq!(judgement.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
+//! let validation = Validation::of(&Judged::from_json("{}"));
+//! assert_eq!(validation.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
 //!
-//! let judgement = Judgement::of(&Judged::from_json(r#"{ "bus": { "slots": 0 } }"#));
-//! assert_eq!(judgement.problems[0].path, "bus.slots");
-//! assert!(judgement.cost.is_none()); // what does not run costs nothing
+//! let validation = Validation::of(&Judged::from_json(r#"{ "bus": { "slots": 0 } }"#));
+//! assert_eq!(validation.problems[0].path, "bus.slots");
+//! assert!(validation.cost.is_none()); // what does not run costs nothing
 //! ```
 
 pub mod remedies;
@@ -27,13 +27,10 @@ use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
 #[derive(Clone, Debug, Serialize)]
-pub struct Judgement {
+pub struct Validation {
     pub problems: Vec<ProblemText>,
-    /// As JSON with every field written.
     pub scenario: String,
-    /// Valid, but perhaps not intended.
     pub warnings: Vec<ProblemText>,
-    /// `None` where there are problems.
     pub derived: Option<Derived>,
     pub cost: Option<RunCost>,
 }
@@ -46,7 +43,6 @@ pub struct ProblemText {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Derived {
-    /// Maximum of all controllers.
     pub ticks: u64,
     pub sends: u64,
     /// Part of the line's time in use while all controllers move.
@@ -58,7 +54,6 @@ pub struct Derived {
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
     pub tick_s: f64,
-    /// Maximum rate of its ticks.
     pub limit_steps_s: f64,
     pub ticks: u64,
     pub axes: Vec<DerivedAxis>,
@@ -81,7 +76,6 @@ pub struct DerivedMove {
     pub start_s: f64,
     pub duration_s: f64,
     pub steps: i64,
-    /// Details of its curve.
     pub detail: String,
     /// What the axis' motor cannot do; empty where torque suffices.
     pub warning: String,
@@ -97,19 +91,18 @@ pub struct RunCost {
     pub message: String,
 }
 
-impl Judgement {
-    #[must_use]
-    pub fn of(judged: &ValidatedScenario) -> Self {
+impl Validation {
+    pub fn of(validated: &ValidatedScenario) -> Self {
         let text = |Problem { path, cause, .. }: &Problem| ProblemText {
             path: path.clone(),
             message: cause.to_string(),
         };
-        let experiment = judged.experiment().ok();
+        let experiment = validated.experiment().ok();
         Self {
-            problems: judged.problems().iter().map(text).collect(),
-            scenario: judged.scenario().to_json(),
+            problems: validated.problems().iter().map(text).collect(),
+            scenario: validated.scenario().to_json(),
             warnings: experiment.map_or_else(Vec::new, |experiment| warnings(experiment)),
-            derived: experiment.map(|experiment| Derived::of(judged.scenario(), experiment)),
+            derived: experiment.map(|experiment| Derived::of(validated.scenario(), experiment)),
             cost: experiment.map(|experiment| RunCost::of(experiment.cost())),
         }
     }
@@ -126,7 +119,6 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
 }
 
 impl RunCost {
-    #[must_use]
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {
             format!(

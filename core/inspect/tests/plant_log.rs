@@ -1,7 +1,7 @@
-//! What is kept of a plant's run against every one of its points: least and greatest of a stretch, and values at a cycle.
+//! What is kept of a plant's run against every one of its points: min and max of a window, and values at a cycle.
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
-use stepscope_inspect::plant::log::{MOTOR, PlantLog, SUPPLY, Stretch};
+use stepscope_inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
 use stepscope_inspect::trace::stored_run::Recording;
 use stepscope_peripheral::units::Instant;
 use stepscope_plant::{Observer, Plant};
@@ -48,7 +48,7 @@ fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>,
 const CHOPPING: &str = r#"{"bus":{"channels":2},"plant":{"tail_s":0.02,"buffer_uf":200},"source":{"motion":{"engine":"segments","axes":[
     {"moves":[{"cosine":{"distance":{"steps":200},"duration_s":0.02,"ramp_s":0.005}}],"motor":{"drive":{"regulator":"chopper","decay":"mixed"}}},{}]}}}"#;
 
-/// Least and greatest of some values.
+/// Least and max of some values.
 fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
@@ -63,26 +63,25 @@ fn a_stretch_has_the_least_and_greatest_of_its_points() {
         for (from, to) in
             [(0, end), (end / 3, end / 2), (end / 2, end / 2 + 3000), (end - 500, end), (40, 41)]
         {
-            let bands = log.curves(&recording.trace, Stretch { from, to, columns: 300 }, &wanted);
+            let bands = log.curves(&recording.trace, CycleWindow { from, to, columns: 300 }, &wanted);
             for (band, &value) in bands.iter().zip(&wanted) {
                 assert!(!band.cycle.is_empty() && band.cycle.len() <= 604, "{} places", band.cycle.len());
                 assert!(band.cycle.windows(2).all(|pair| pair[0] < pair[1]));
-                // All of the stretch is within what is told, and that within some points more at each end.
+                // All of the window is within what is told, and that within some points more at each end.
                 let around = |slack: u64| {
                     let range = from.saturating_sub(slack)..=to + slack;
                     let some = points.iter().filter(move |(cycle, _)| range.contains(cycle));
                     extremes(some.map(|(_, values)| values[value]))
                 };
-                let told =
-                    (extremes(band.least.iter().copied()).0, extremes(band.greatest.iter().copied()).1);
+                let told = (extremes(band.min.iter().copied()).0, extremes(band.max.iter().copied()).1);
                 let (inner, outer) = (around(0), around(64 * step));
                 assert!(told.0 <= inner.0 && told.1 >= inner.1, "{told:?} leaves out some of {inner:?}");
                 assert!(told.0 >= outer.0 && told.1 <= outer.1, "{told:?} is more than {outer:?}");
-                has_bins |= band.least != band.greatest;
+                has_bins |= band.min != band.max;
             }
         }
     }
-    assert!(has_bins, "every stretch was told point by point");
+    assert!(has_bins, "every window was told point by point");
 }
 
 #[test]
@@ -106,10 +105,10 @@ fn a_short_stretch_is_told_point_by_point() {
     let step = points[0].0;
     let (from, to) = (100 * step + 3, 120 * step + 3);
     let rotor = PlantLog::of_motor(0) + 1;
-    let bands = log.curves(&recording.trace, Stretch { from, to, columns: 100 }, &[rotor]);
+    let bands = log.curves(&recording.trace, CycleWindow { from, to, columns: 100 }, &[rotor]);
     // One more at each end.
     let expected: Vec<f64> = (100..=121).map(|point| (point * step) as f64).collect();
     assert_eq!(bands[0].cycle, expected);
-    assert_eq!(bands[0].least, bands[0].greatest);
-    assert_eq!(bands[0].least[0].to_bits(), points[99].1[rotor].to_bits());
+    assert_eq!(bands[0].min, bands[0].max);
+    assert_eq!(bands[0].min[0].to_bits(), points[99].1[rotor].to_bits());
 }

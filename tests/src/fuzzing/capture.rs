@@ -272,10 +272,11 @@ fn open(capture: Capture, options: &OpenOptions) {
         return;
     }
     // Looked at where it lies it is the same; of a part the figures are.
-    let [whole, few] = [usize::MAX, 3]
-        .map(|most| LoadedCapture::of_part(&capture, options, &Part { most, from_s: None, to_s: None }));
+    let [whole, few] = [usize::MAX, 3].map(|max_records| {
+        LoadedCapture::of_part(&capture, options, &Part { max_records, from_s: None, to_s: None })
+    });
     // From one part to another it is as if that were opened at once.
-    let part = Part { most: 3, from_s: None, to_s: None };
+    let part = Part { max_records: 3, from_s: None, to_s: None };
     let again = whole.clone().and_then(|whole| whole.with_part(&capture, options, &part));
     assert_eq!(again, few);
     let glance = LoadedCapture::overview(&capture, options, 0, COLUMNS);

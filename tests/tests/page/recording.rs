@@ -480,7 +480,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
         page.click(SHOW).await?;
         page.until(CLOSED).await?;
         let capture = read(Cursor::new(text.as_bytes()), &Limits::default(), &mut |_| true).capture;
-        let part = Part { most: 20_000_000, from_s: Some(0.1), to_s: Some(0.15) };
+        let part = Part { max_records: 20_000_000, from_s: Some(0.1), to_s: Some(0.15) };
         let shown = LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?;
         ensure!((20..390).contains(&shown.records.len()), "{}", shown.records.len());
         page.until_digest(&digest(&shown)).await?;

@@ -264,7 +264,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         type_into(&page, "Show up to", &times[1]).await?;
         says(&page, "Shown: 10").await?;
         show(&page).await?;
-        let part = Part { most: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
+        let part = Part { max_records: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
         page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
             .await?;
         // From there on another part is chosen without the file being opened again.
@@ -282,7 +282,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
             "{other:?} of {end_s}"
         );
         show(&page).await?;
-        let part = Part { most: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
+        let part = Part { max_records: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
         page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
             .await?;
         // All of it is shown as any recording is, and there is no other part.

@@ -295,7 +295,7 @@ impl CaptureFile {
             uart,
             both_edges: both_edges.unwrap_or(false),
         };
-        let part = Part { most: most.unwrap_or(usize::MAX), from_s, to_s };
+        let part = Part { max_records: most.unwrap_or(usize::MAX), from_s, to_s };
         let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&options));
         let mut opened = match known {
             Some(known) => known.with_part(&self.capture, &options, &part),

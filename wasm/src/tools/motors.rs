@@ -12,7 +12,7 @@ use stepscope_core::{
     inspect::{
         motion::torque::{Machine, TorqueCurve},
         plant::{
-            log::{PlantLog, Stretch},
+            log::{CycleWindow, PlantLog},
             motors::{DRIVES, MOTORS},
             outcome::settling_with,
             report::PlantReport,
@@ -192,13 +192,13 @@ impl Judged {
             return Err(JsError::new("the scenario has no plant"));
         };
         let hz = f64::from(experiment.config().clock_hz());
-        let stretch = Stretch { from: 0, to: run.cycles().0, columns };
+        let stretch = CycleWindow { from: 0, to: run.cycles().0, columns };
         let result = Object::new();
         // The sensor is the last value of the supply.
         for band in log.curves(&recording.trace, stretch, &[2]) {
             numbers(&result, "x", &band.cycle.iter().map(|cycle| cycle / hz).collect::<Vec<_>>());
-            numbers(&result, "min", &band.least);
-            numbers(&result, "max", &band.greatest);
+            numbers(&result, "min", &band.min);
+            numbers(&result, "max", &band.max);
         }
         for (name, value) in
             [("above_a", report.plant.deviation_above_a), ("below_a", report.plant.deviation_below_a)]

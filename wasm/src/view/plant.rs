@@ -6,7 +6,7 @@ use crate::{
 };
 use js_sys::Object;
 use stepscope_core::inspect::plant::{
-    log::{MOTOR, PlantLog, SUPPLY, Stretch},
+    log::{CycleWindow, MOTOR, PlantLog, SUPPLY},
     report::PlantReport,
 };
 use wasm_bindgen::prelude::*;
@@ -26,7 +26,7 @@ impl Simulation {
     #[must_use]
     pub fn plant_curves(&self, channel: usize, from: f64, to: f64, columns: usize) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
-        let stretch = Stretch { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
+        let stretch = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
         let hz = f64::from(self.experiment.config().clock_hz());
         let result = Object::new();
         let bands = log.curves(&self.selected().recording.trace, stretch, &values);
@@ -34,8 +34,8 @@ impl Simulation {
             let one = Object::new();
             let seconds: Vec<f64> = band.cycle.iter().map(|cycle| cycle / hz).collect();
             numbers(&one, "x", &seconds);
-            numbers(&one, "min", &band.least);
-            numbers(&one, "max", &band.greatest);
+            numbers(&one, "min", &band.min);
+            numbers(&one, "max", &band.max);
             field(&result, name, &one);
         }
         Some(result)

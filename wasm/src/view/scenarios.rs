@@ -1,7 +1,7 @@
 //! Scenarios on their way into the form and the run: what is to be said of one that was judged.
 
 use crate::{convert::object, judged::Judged};
-use stepscope_core::{inspect::validation::Judgement, scenario::Scenario};
+use stepscope_core::{inspect::validation::Validation, scenario::Scenario};
 use wasm_bindgen::prelude::*;
 
 /// Version of Stepscope.
@@ -26,6 +26,6 @@ impl Judged {
     /// # Errors
     /// Never for any text: what is wrong with it is in the result.
     pub fn check(&self) -> Result<JsValue, JsError> {
-        object(&Judgement::of(&self.0))
+        object(&Validation::of(&self.0))
     }
 }

@@ -74,7 +74,6 @@ pub struct PanelSignal {
 }
 
 impl PanelSignals {
-    #[must_use]
     pub fn new(checked: &CheckedSetup) -> Self {
         let mut signals = Vec::new();
         for (index, parameters) in checked.controllers().iter().enumerate() {
@@ -92,7 +91,6 @@ impl PanelSignals {
         Self { signals }
     }
 
-    #[must_use]
     pub fn signals(&self) -> &[PanelSignal] {
         &self.signals
     }
@@ -133,7 +131,6 @@ impl PanelSignals {
 
 impl PanelSignal {
     /// The level as tables show it: states, alarms and trust by name.
-    #[must_use]
     pub fn text(&self) -> String {
         let word = |shift: u32| Word(self.value << shift);
         match self.what {

@@ -44,7 +44,6 @@ pub enum Language {
     Csv,
 }
 
-/// A table and its description.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'s> {
     /// An identifier such as `axis_0`; see [`is_name`].
@@ -56,7 +55,6 @@ pub struct Source<'s> {
 
 /// Whether a name is an identifier in every language: lowercase letters, digits and underscores, at most 32, starting
 /// with a letter. A digit or underscore is required, so that it is no keyword.
-#[must_use]
 pub fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     name.starts_with(|c: char| c.is_ascii_lowercase())
@@ -75,8 +73,6 @@ fn is_reserved(name: &str) -> bool {
         || OTHERS.iter().any(|start| name.starts_with(start))
 }
 
-/// The file's first line: title, axis, form.
-#[must_use]
 pub fn headline(title: &str, axis: usize, form: &str) -> String {
     let separator = if title.is_empty() { "" } else { ": " };
     format!("{title}{separator}axis {axis}, {form} step table")
@@ -166,7 +162,6 @@ impl Source<'_> {
     }
 
     /// What a compiler or chip may reject, with numbers and a fix.
-    #[must_use]
     pub fn warnings(&self, language: Language) -> Vec<String> {
         let format = self.table.format;
         let entries = self.table.entries.len() as u64;

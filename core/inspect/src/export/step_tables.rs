@@ -4,8 +4,8 @@
 //! use stepscope_inspect::export::step_tables::StepTables;
 //! use stepscope_sim::ValidatedScenario;
 //!
-//! let judged = ValidatedScenario::from_json("{}");
-//! let tables = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
+//! let validated = ValidatedScenario::from_json("{}");
+//! let tables = StepTables::new(validated.axis(0, 0).expect("one axis")).expect("its pulses fit");
 //! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
 //! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
 //! assert!(compressed.bytes < exact.bytes / 4);
@@ -45,7 +45,6 @@ enum Steps<'a> {
 }
 
 /// Steps of a trace, from cycle 1 on.
-#[must_use]
 pub fn scheduled(steps: &[Step]) -> Vec<ScheduledStep> {
     let scheduled = |(index, step): (usize, &Step)| ScheduledStep {
         cycle: step.cycle.saturating_sub(1),
@@ -64,12 +63,10 @@ pub struct TableCost {
     pub document_bytes: Option<u64>,
     pub largest_s: f64,
     pub rms_s: f64,
-    /// Why there is no such table.
     pub why: Option<String>,
 }
 
 /// A maximum error in us as whole cycles.
-#[must_use]
 pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
     // One division, so that 25 us at 16 MHz are 400 cycles and not 399.
     Cycles((error_us * f64::from(clock_hz) / 1e6) as u64)
@@ -109,7 +106,6 @@ impl<'a> StepTables<'a> {
         stored.map_err(|cause| cause.to_string())
     }
 
-    #[must_use]
     pub fn cost(&self, form: &str, widths: &str, error_us: f64) -> TableCost {
         let seconds = |cycles: f64| cycles / f64::from(self.scenario.clock_hz);
         match self.stored(form, widths, error_us) {
@@ -164,15 +160,15 @@ mod tests {
 
     #[test]
     fn the_steps_of_a_run_are_kept_as_their_plan_is_but_have_no_documents_table() {
-        let judged =
+        let validated =
             ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
-        let experiment = judged.experiment().expect("no problems");
+        let experiment = validated.experiment().expect("no problems");
         let mut recording = Recording::default();
         experiment.run(&mut recording);
         let made = steps(&recording.trace, 0);
-        let scenario = judged.scenario();
+        let scenario = validated.scenario();
         let of_run = StepTables::of_steps(scenario, &scenario.bus, &made).expect("its pulses fit");
-        let of_plan = StepTables::new(judged.axis(0, 0).expect("one axis")).expect("its pulses fit");
+        let of_plan = StepTables::new(validated.axis(0, 0).expect("one axis")).expect("its pulses fit");
         for (form, widths) in [("exact", "ticks"), ("compressed", "q16")] {
             let [run, plan] = [&of_run, &of_plan].map(|tables| tables.cost(form, widths, 25.0));
             assert_eq!((run.steps, run.why.as_deref()), (3200, None), "{form}");

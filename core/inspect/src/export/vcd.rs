@@ -21,7 +21,6 @@ use stepscope_peripheral::signal::{Levels, Record, Sink, name};
 use stepscope_peripheral::trace::shown_signals;
 use vcd::{IdCode, TimescaleUnit, Value, VarType, Writer};
 
-/// Femtoseconds per second.
 const FEMTOS: u64 = 1_000_000_000_000_000;
 
 const UNITS: [(TimescaleUnit, &str, u64); 6] = [
@@ -64,7 +63,6 @@ impl Timescale {
     pub fn of_clock(self, clock_hz: u32) -> Result<Self, TooCoarse> {
         let fits =
             |scale: &Self| u128::from(scale.femtos()) * u128::from(clock_hz.max(1)) <= u128::from(FEMTOS);
-        // The finest unit fits every clock.
         let coarsest = Self::all().find(fits).unwrap_or_default();
         if fits(&self) { Ok(self) } else { Err(TooCoarse { given: self, clock_hz, coarsest }) }
     }
@@ -79,7 +77,6 @@ impl fmt::Display for Timescale {
 impl FromStr for Timescale {
     type Err = &'static str;
 
-    /// Parses a text such as `10 ns`.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let joined =
             |scale: &Self| text.split_whitespace().collect::<String>() == scale.to_string().replace(' ', "");
@@ -92,7 +89,6 @@ impl FromStr for Timescale {
 pub struct TooCoarse {
     pub given: Timescale,
     pub clock_hz: u32,
-    /// The coarsest timescale that would do.
     pub coarsest: Timescale,
 }
 
@@ -211,7 +207,6 @@ impl<W: io::Write> VcdWriter<W> {
         })
     }
 
-    /// Ends a piece of a file that continues.
     pub fn pause(mut self) -> io::Result<()> {
         self.result?;
         self.out.flush()

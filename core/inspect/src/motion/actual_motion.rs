@@ -29,7 +29,6 @@ use stepscope_peripheral::{
     wire::packet::ChannelCommand,
 };
 
-/// What schedules the steps and so decides the speed.
 #[derive(Clone, Copy, Debug)]
 enum Order<'a> {
     Ticks(&'a PacketLog, Cycles),
@@ -37,7 +36,6 @@ enum Order<'a> {
     Recorded,
 }
 
-/// The steps of one channel of a run or recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulses<'a> {
     pub channel: u8,
@@ -56,7 +54,6 @@ pub struct Rate {
 
 impl<'a> Pulses<'a> {
     /// The steps of a channel of a run. `list` is its segment list, if it runs one.
-    #[must_use]
     pub const fn of_run(
         channel: u8,
         steps: &'a [Step],
@@ -72,22 +69,18 @@ impl<'a> Pulses<'a> {
     }
 
     /// Recorded steps in cycles of `clock_hz`, with the speed from step to step.
-    #[must_use]
     pub const fn recorded(channel: u8, steps: &'a [Step], clock_hz: u32) -> Self {
         Self { channel, steps, order: Order::Recorded, clock_hz }
     }
 
-    #[must_use]
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    #[must_use]
     pub fn hz(&self) -> f64 {
         f64::from(self.clock_hz)
     }
 
-    /// `None` where steps are not grouped into ticks.
     #[cfg(feature = "std")]
     pub(crate) const fn tick(&self) -> Option<Cycles> {
         match self.order {
@@ -97,7 +90,6 @@ impl<'a> Pulses<'a> {
     }
 
     /// The cycle of the motion's time 0: the start of the segment list or of the first tick, otherwise 0.
-    #[must_use]
     pub fn zero(&self) -> u64 {
         match self.order {
             Order::Ticks(log, _) => log.ticks().first().map_or(0, |tick| tick.start.0),
@@ -107,7 +99,6 @@ impl<'a> Pulses<'a> {
     }
 
     /// Position after all steps up to and including a time.
-    #[must_use]
     pub fn position_at(&self, time_s: f64) -> i32 {
         let after = self.steps_until(time_s);
         after.checked_sub(1).and_then(|last| self.steps.get(last)).map_or(0, |step| step.position)
@@ -118,8 +109,6 @@ impl<'a> Pulses<'a> {
         self.steps.partition_point(|step| step.cycle as f64 / hz <= time_s)
     }
 
-    /// Speed in steps/s.
-    #[must_use]
     pub fn speed_at(&self, time_s: f64) -> f64 {
         let mut speed = 0.0;
         // An interval that begins now counts, one that ends now does not.
@@ -148,7 +137,6 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    #[must_use]
     pub fn acceleration_at(&self, time_s: f64) -> Option<f64> {
         step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())
     }

@@ -13,7 +13,6 @@ const MAX_POINTS: usize = 1 << 20;
 /// Maximum relative difference of recorded periods.
 const UNEVEN: f64 = 0.01;
 
-/// The time window of a spectrum, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnalysisWindow {
     pub start_s: f64,
@@ -25,7 +24,6 @@ pub struct AnalysisWindow {
 
 impl AnalysisWindow {
     /// All periods of the first periodic move, or the whole motion; `None` if it takes no time.
-    #[must_use]
     pub fn of(plan: &AxisPlan) -> Option<Self> {
         let repeating = plan
             .moves()
@@ -40,7 +38,6 @@ impl AnalysisWindow {
 
     /// For steps without a plan: whole periods from the first turn on where they oscillate evenly, otherwise all
     /// steps. `None` if that takes no time.
-    #[must_use]
     pub fn of_steps(steps: &[Step], hz: f64) -> Option<Self> {
         let seconds = |cycles: u64| cycles as f64 / hz;
         let (first, last) = (steps.first()?.cycle, steps.last()?.cycle);
@@ -72,7 +69,6 @@ impl AnalysisWindow {
     }
 
     /// Steps within the window, as (time in s, +1 right or -1 left).
-    #[must_use]
     pub fn steps_within(&self, steps: &[Step], hz: f64) -> Vec<(f64, i8)> {
         // Half a cycle, so that rounded periods do not add or drop a step.
         let end_s = self.start_s + self.length_s() - if self.periodic { 0.5 / hz } else { -0.5 / hz };
@@ -83,19 +79,15 @@ impl AnalysisWindow {
         steps.iter().enumerate().map(pulse).filter(own).collect()
     }
 
-    #[must_use]
     pub fn length_s(&self) -> f64 {
         self.period_s * f64::from(self.periods)
     }
 
-    /// The frequency of harmonic 1 in Hz.
-    #[must_use]
     pub fn fundamental_hz(&self) -> f64 {
         1.0 / self.period_s
     }
 
     /// Pulses of the moves within the window, as (time in s, +1 right or -1 left).
-    #[must_use]
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
         let zero = run.zero();
         let pulse = |(index, step): (usize, &Step)| {
@@ -126,7 +118,6 @@ impl AnalysisWindow {
 
     /// Pulses of moves within the window, as (time in s, +1 right or -1 left). `pulses` are all pulses of the axis by
     /// cycle since its first tick.
-    #[must_use]
     pub fn own_pulses(&self, plan: &AxisPlan, ticks: TickClock, pulses: &[(u64, i8)]) -> Vec<(f64, i8)> {
         let end_s = self.start_s + self.length_s();
         let (first, last) = (ticks.ticks_until(self.start_s) - 1, ticks.ticks_until(end_s) - 1);
@@ -137,7 +128,6 @@ impl AnalysisWindow {
         let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();
         let mut own: Vec<&(u64, i8)> = Vec::new();
         if first == last {
-            // Shorter than a tick: take the tick's pulses.
             own.extend(within(first, first + 1));
         } else {
             let asked = due_by_end(first) - begin;

@@ -19,7 +19,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 /// Maximum magnitude, and 1/minimum: sums of squares stay finite and above 0.
-const MOST: f64 = 1e12;
+const MAX_MAGNITUDE: f64 = 1e12;
 const LEAST: f64 = 1e-12;
 
 /// A measured length in any unit, and the steps that made it.
@@ -29,7 +29,6 @@ pub struct Pair {
     pub steps: f64,
 }
 
-/// A fitted line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Steps per unit; above 0.
@@ -45,15 +44,12 @@ impl Fit {
         Self { steps_per_unit, offset_steps, residuals: pairs.iter().map(residual).collect() }
     }
 
-    /// Root mean square of the residuals, in steps.
-    #[must_use]
     pub fn rms(&self) -> f64 {
         let sum: f64 = self.residuals.iter().map(|residual| residual * residual).sum();
         libm::sqrt(sum / self.residuals.len().max(1) as f64)
     }
 
     /// Index and steps of the largest residual, the first of equals.
-    #[must_use]
     pub fn largest(&self) -> Option<(usize, f64)> {
         let mut found: Option<(usize, f64)> = None;
         for (index, residual) in self.residuals.iter().enumerate() {
@@ -65,14 +61,12 @@ impl Fit {
     }
 }
 
-/// Both fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     pub through_origin: Fit,
     pub with_offset: Fit,
 }
 
-/// Why pairs have no fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BadPairs {
@@ -127,7 +121,7 @@ impl Calibration {
         if pairs.len() < 2 {
             return Err(BadPairs::TooFew { given: pairs.len() });
         }
-        let good = |value: f64| value == 0.0 || (LEAST..=MOST).contains(&libm::fabs(value));
+        let good = |value: f64| value == 0.0 || (LEAST..=MAX_MAGNITUDE).contains(&libm::fabs(value));
         if let Some((index, pair)) =
             pairs.iter().enumerate().find(|(_, pair)| !good(pair.length) || !good(pair.steps))
         {

@@ -48,19 +48,16 @@ pub struct Request {
     pub steps: i64,
     pub duration_s: f64,
     pub ramp_s: f64,
-    /// Slice of the sliced cosine in s.
     pub slice_s: f64,
     pub sigmoid_range: f64,
     pub time_constants: f64,
     /// First rate of trapezoid and staircase in steps/s, if the average rate is at least twice that.
     pub start_speed: f64,
-    /// Clock of the trapezoid's table in Hz.
     pub timer_hz: u32,
 }
 
 impl Request {
     /// Other parameters get a scenario's defaults.
-    #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         let (Cosine { slice_s, .. }, Ramps { sigmoid_range, time_constants, .. }) =
             (Cosine::default(), Ramps::default());
@@ -80,7 +77,6 @@ impl Request {
     }
 
     /// The request for move `index` of an axis; `None` if it ends where it begins.
-    #[must_use]
     pub fn of(axis: &Axis, plan: &AxisPlan, index: usize, ramp_s: f64) -> Option<Self> {
         let (asked, planned) = (axis.moves.get(index)?, plan.moves().get(index)?);
         let steps = planned.profile.steps();
@@ -107,8 +103,6 @@ impl Request {
         (steps != 0).then_some(request)
     }
 
-    /// The candidate's move, as a scenario has it.
-    #[must_use]
     pub fn ask(&self, candidate: Candidate) -> Move {
         let Self { duration_s, ramp_s, slice_s, sigmoid_range, time_constants, timer_hz, .. } = *self;
         let distance = Distance::Steps(self.steps as f64);
@@ -184,7 +178,6 @@ impl Request {
     }
 }
 
-/// A kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
     Cosine(CosineMethod),
@@ -197,7 +190,6 @@ pub enum Candidate {
 }
 
 impl Candidate {
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cosine(CosineMethod::Exact) => "Cosine, exact",
@@ -216,7 +208,6 @@ impl Candidate {
     }
 }
 
-/// All candidates, in the order of the rows.
 pub const CANDIDATES: [Candidate; 12] = [
     Candidate::Cosine(CosineMethod::Exact),
     Candidate::Cosine(CosineMethod::Sliced),
@@ -244,28 +235,23 @@ pub struct Cost {
     pub torque: Option<Torque>,
 }
 
-/// What a candidate requires of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque {
     /// Whether torque and rate suffice; jumps of speed are not checked.
     pub is_met: bool,
-    /// The moment with the minimum margin.
     pub least: Option<Moment>,
 }
 
-/// A row of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub candidate: Candidate,
     pub wanted: Move,
-    /// Its curve, if it is possible.
     pub plan: Option<AxisPlan>,
     /// The cost, or the problems, with paths from `comparison.moves[0]`.
     pub cost: Result<Cost, Vec<Problem>>,
 }
 
 /// One row for each of [`CANDIDATES`]. Each is planned as a scenario's move, within its ranges.
-#[must_use]
 pub fn compare(request: &Request) -> Vec<Row> {
     CANDIDATES.iter().map(|&candidate| row(request, candidate)).collect()
 }

@@ -54,7 +54,6 @@ pub(crate) const POINTS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
 
 /// Statistics of the ideal motion, which starts at `zero_s`, from one time to a later one, in s.
-#[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStats {
     let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
     Breakpoints::of(plan).intervals(from_s - zero_s, to_s - zero_s, &mut |piece| {
@@ -71,8 +70,6 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStat
     CursorStats { position, speed, acceleration: Some(acceleration) }
 }
 
-/// Statistics of the pulses, from one time to a later one, in s.
-#[must_use]
 pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
     let (mut position, mut since_s) = (Sums::default(), from_s);
@@ -95,8 +92,6 @@ pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     CursorStats { position, speed, acceleration: None }
 }
 
-/// Acceleration of steps without a plan, over the time in which it is known.
-#[must_use]
 pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Option<Moments> {
     let (mut sums, mut known_s) = (Sums::default(), 0.0);
     pulses.accelerations(from_s, to_s, &mut |step_s, next_s, value| {

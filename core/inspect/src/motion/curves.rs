@@ -19,7 +19,6 @@ use stepscope_peripheral::trace::Step;
 const MAX_INTERVALS: usize = 256;
 /// Maximum intervals of a column that a line follows; of more it connects minimum and maximum.
 const MAX_FOLLOWED: usize = 32;
-/// Points per column of a line without breakpoints.
 const POINTS: usize = 4;
 
 /// Minimum and maximum per column; NaN where there is none.
@@ -63,7 +62,6 @@ impl Window {
         (self.end_s - self.start_s) / self.columns as f64
     }
 
-    #[must_use]
     pub fn centre_s(&self, column: usize) -> f64 {
         self.start_s + (column as f64 + 0.5) * self.width_s()
     }
@@ -85,7 +83,6 @@ impl Window {
     }
 }
 
-/// The ideal motion in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ideal {
     pub position: Band,
@@ -97,7 +94,6 @@ pub struct Ideal {
 ///
 /// Curves are monotonic between breakpoints, so a column's extremes are at its ends and at both sides of the
 /// breakpoints in it.
-#[must_use]
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
     let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
@@ -125,7 +121,6 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     bands
 }
 
-/// Points on the ideal motion, to be joined by straight lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IdealLine {
     /// Times in s; a breakpoint has two points.
@@ -146,7 +141,6 @@ impl IdealLine {
 
 /// The ideal motion as lines for a chart: each smooth interval is followed with several points per column. A column
 /// with too many intervals gets its minimum and maximum.
-#[must_use]
 pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
     let breakpoints = Breakpoints::of(plan);
     let mut line = IdealLine::default();
@@ -221,8 +215,6 @@ pub struct Actual {
     pub speed: Band,
 }
 
-/// The motion that the pulses of a channel make.
-#[must_use]
 pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     let mut bands = Actual { position: Band::new(window.columns), speed: Band::new(window.columns) };
     let hz = pulses.hz();
@@ -254,7 +246,6 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
 }
 
 /// The acceleration of steps without a plan; NaN where it is unknown.
-#[must_use]
 pub fn actual_acceleration(pulses: &Pulses<'_>, window: Window) -> Band {
     let mut band = Band::new(window.columns);
     pulses.accelerations(window.start_s, window.end_s, &mut |from_s, to_s, value| {

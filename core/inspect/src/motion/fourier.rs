@@ -31,7 +31,6 @@ pub(crate) fn sums(pulses: impl Iterator<Item = (f64, f64)>, order: usize) -> Ve
     let transform = Radix4::new(points, FftDirection::Forward);
     let mut sums = vec![Complex { re: 0.0, im: 0.0 }; order];
     let mut line = vec![Complex { re: 0.0, im: 0.0 }; points];
-    // Horner's rule.
     for moment in (0..MOMENTS).rev() {
         for (place, cell) in line.iter_mut().zip(&cells) {
             *place = Complex { re: cell.get(moment).copied().unwrap_or(0.0), im: 0.0 };

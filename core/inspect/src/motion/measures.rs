@@ -61,7 +61,6 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
     Ok(())
 }
 
-/// All measures of one axis of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
     pub length_s: f64,
@@ -69,12 +68,10 @@ pub struct Measures {
     pub steps: CurveMetrics,
     /// Quantization to ticks, queue and link: those steps against the pulses.
     pub ticks: CurveMetrics,
-    /// The ideal curve against the pulses.
     pub pulses: CurveMetrics,
     pub step_errors: PulseErrors,
     pub tick_errors: PulseErrors,
     pub counts: Counts,
-    /// Peaks of the ideal curve.
     pub peaks: Extremes,
     pub duration: Duration,
     /// The first sine by segments: its polyline against the exact sine.
@@ -90,7 +87,6 @@ pub struct Counts {
     pub stray: u64,
 }
 
-/// Maximum magnitudes of the ideal curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extremes {
     pub speed_steps_s: f64,
@@ -120,14 +116,12 @@ pub struct SineMeasures {
     pub segments: usize,
     /// Ev: Euclidean distance in parts of the amplitude.
     pub euclidean: f64,
-    /// Exact sine and polyline over a quarter, in steps.
     pub quarter: CurveMetrics,
 }
 
 impl Measures {
-    /// Measures an axis. `asked` are the requested moves, if known. Check [`within_bounds`] first.
-    #[must_use]
-    pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, asked: Option<&Axis>) -> Self {
+    /// Measures an axis. `requested` are the requested moves, if known. Check [`within_bounds`] first.
+    pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, requested: Option<&Axis>) -> Self {
         let (zero, hz) = (pulses.zero(), pulses.hz());
         let shifted = |step: &Step| Step { cycle: step.cycle.saturating_sub(zero), ..*step };
         let made: Vec<Step> = pulses.steps.iter().map(shifted).collect();
@@ -139,7 +133,7 @@ impl Measures {
         let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
         let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
         let breakpoints = Breakpoints::of(plan);
-        let requested_s = asked.and_then(|axis| requested_s(axis, plan));
+        let requested_s = requested.and_then(|axis| requested_s(axis, plan));
         Self {
             length_s,
             steps: curve_and_steps(plan, &breakpoints, &due, hz, length_s),
@@ -166,11 +160,11 @@ impl Measures {
 }
 
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
-    let names_one = axis.moves.iter().any(|asked| asked.requested_s().is_some());
+    let names_one = axis.moves.iter().any(|requested| requested.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
     // In the order in which the plan adds them, so that equal times give equal sums.
-    let sum = times.fold(0.0, |sum, (asked, planned)| {
-        sum + asked.requested_s().unwrap_or_else(|| planned.profile.duration_s())
+    let sum = times.fold(0.0, |sum, (requested, planned)| {
+        sum + requested.requested_s().unwrap_or_else(|| planned.profile.duration_s())
     });
     names_one.then_some(sum)
 }

@@ -76,7 +76,6 @@ impl<'a> Difference<'a> {
 }
 
 /// Minimum and maximum difference per column; NaN outside the common time.
-#[must_use]
 pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: Window) -> Band {
     let mut band = Band::new(window.columns);
     let mut walk = Difference::from([first, second], window.start_s);
@@ -100,7 +99,6 @@ pub struct Apart {
 }
 
 /// Compares from 0 to `common_s`, which is above 0.
-#[must_use]
 pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
     let mut walk = Difference::from([first, second], 0.0);
     let (mut since_s, mut difference) = (0.0, walk.now());

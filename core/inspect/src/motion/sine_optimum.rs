@@ -17,7 +17,6 @@ use crate::motion::sine_polyline::{Distortion, OddCosines, Vertex, distortion, s
 use alloc::{vec, vec::Vec};
 use core::f64::consts::FRAC_PI_2;
 
-/// Maximum segments of a quarter.
 pub const MAX_SEGMENTS: usize = 32;
 const MAX_STEPS: u32 = 200;
 /// Exponents of cos(angle), the density of breakpoints of a first guess.
@@ -29,7 +28,6 @@ pub enum Freedom {
     Free,
 }
 
-/// The best polyline found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
     /// From angle 0 to pi/2, scaled so that free vertices have a first harmonic of 1.
@@ -38,7 +36,6 @@ pub struct Optimum {
 }
 
 /// `None` unless `segments` is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
-#[must_use]
 pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum> {
     if !(1..=MAX_SEGMENTS).contains(&segments) {
         return None;
@@ -94,7 +91,6 @@ impl Search {
         self
     }
 
-    /// Accepts the step if it lowers the cost.
     fn go(&mut self, step: &[f64]) -> bool {
         let inner = self.vertices.len() - 2;
         let mut moved = self.vertices.clone();

@@ -62,7 +62,6 @@ pub struct Distortion {
 }
 
 /// B5's vertices for a maximum deviation `d1`, in parts of the amplitude.
-#[must_use]
 pub fn vertices(d1: f64) -> Vec<Vertex> {
     on_points(&breakpoints(d1))
 }
@@ -76,7 +75,6 @@ fn on_points(points: &[u16]) -> Vec<Vertex> {
 }
 
 /// Signed harmonics 1, 3, 5, … up to `order`. Angles rise from 0 to pi/2.
-#[must_use]
 pub fn odd_harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
     let mut sums: Vec<f64> = (1..=order).step_by(2).map(|_| 0.0).collect();
     let mut before = 0.0;
@@ -124,7 +122,6 @@ impl Iterator for OddCosines {
     }
 }
 
-#[must_use]
 pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion {
     let Bounds { order, sensor } = bounds.into();
     let harmonics = odd_harmonics(vertices, order);
@@ -148,7 +145,6 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
     Distortion { position, speed, acceleration, acceleration_filtered }
 }
 
-/// The polyline of one d1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     pub d1: f64,
@@ -159,7 +155,6 @@ pub struct Row {
 }
 
 impl Row {
-    #[must_use]
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
         Measure::new(bounds).row(d1)
     }
@@ -173,12 +168,10 @@ pub struct Measure {
 }
 
 impl Measure {
-    #[must_use]
     pub fn new(bounds: impl Into<Bounds>) -> Self {
         Self { bounds: bounds.into(), cosines: cosines() }
     }
 
-    #[must_use]
     pub fn row(&self, d1: f64) -> Row {
         self.of_points(d1, &breakpoints(d1))
     }
@@ -221,7 +214,6 @@ pub fn sweep(
 }
 
 /// The d1 of row `index` of a sweep, for workers that share it.
-#[must_use]
 pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
     from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
@@ -237,7 +229,6 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    #[must_use]
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
         Self { next: Some(from), to, measure: Measure::new(bounds) }
     }

@@ -35,7 +35,6 @@ pub struct Spectra {
 
 impl Spectra {
     /// Both spectra of the axis that the scenario's analysis selects. Without a plan only the pulses have one.
-    #[must_use]
     pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
         let window = plan.and_then(AnalysisWindow::of);

@@ -55,11 +55,9 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
     (first > 0.0).then(|| libm::sqrt(square) / first)
 }
 
-/// A spectrum in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     pub window: AnalysisWindow,
-    /// Maximum harmonic.
     pub order: u16,
     pub position: Harmonics,
     pub speed: Harmonics,
@@ -98,7 +96,6 @@ impl Spectrum {
 
     /// The ideal curve over [`AnalysisWindow::of`]. `points` sample one period; harmonics from half of them on do not
     /// exist, which lowers the order.
-    #[must_use]
     pub fn ideal(plan: &AxisPlan, order: u16, points: u32) -> Option<Self> {
         let window = AnalysisWindow::of(plan)?;
         let samples = sampled(plan, &AnalysisWindow { periods: 1, ..window }, points as usize);
@@ -107,7 +104,6 @@ impl Spectrum {
 
     /// The spectrum of pulses (time in s, +1 right or -1 left) in any order. Pulses outside the window are moved by
     /// whole periods.
-    #[must_use]
     pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
         let phases =
             pulses.iter().map(|&(time_s, way)| ((time_s - window.start_s) / window.period_s, f64::from(way)));

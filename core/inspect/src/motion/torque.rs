@@ -57,9 +57,9 @@ use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border
 
 const MAX_SHORTAGES: usize = 1024;
 /// Samples per move of a chart's needed torque.
-const LOOKS_A_MOVE: u32 = 2048;
+const SAMPLES_PER_MOVE: u32 = 2048;
 /// Samples per plan, in addition to both sides of each breakpoint.
-const LOOKS: f64 = 512.0;
+const SAMPLES: f64 = 512.0;
 
 /// A time in which a plan needs more torque than there is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -74,7 +74,6 @@ pub struct Shortage {
 /// What a plan or a list of steps requires of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
-    /// In order, at most 1024.
     pub shortages: Vec<Shortage>,
     pub total: u64,
     /// The moment with the minimum margin; `None` where the plan takes no time.
@@ -82,33 +81,28 @@ pub struct Demand {
     pub greatest_rate: f64,
     /// The maximum rate, if it exceeds the motor's working rate.
     pub over_working_rate: Option<f64>,
-    /// Maximum jump of speed in steps/s.
     pub jump: f64,
 }
 
 impl Demand {
-    #[must_use]
     pub fn of(machine: &Machine, plan: &AxisPlan) -> Self {
         let peaks = plan.peaks();
-        let over = machine.working_rate().filter(|most| peaks.speed > *most);
-        let demand = Self {
-            shortages: Vec::new(),
-            total: 0,
-            least: None,
-            greatest_rate: peaks.speed,
-            over_working_rate: over.map(|_| peaks.speed),
-            jump: peaks.jump,
-        };
-        let mut walk = Walk { machine, plan, demand, open: None, before: None };
-        let look_s = plan.duration_s() / LOOKS;
-        Breakpoints::of(plan).intervals(0.0, plan.duration_s(), &mut |piece| walk.piece(piece, look_s));
-        walk.close();
-        walk.demand
+        let mut found = Shortages::new(peaks.speed, peaks.jump);
+        let step_s = plan.duration_s() / SAMPLES;
+        let mut before: Option<Interval> = None;
+        Breakpoints::of(plan).intervals(0.0, plan.duration_s(), &mut |interval| {
+            if !before.is_some_and(|before| before.to_s == interval.from_s && before.times == interval.times)
+            {
+                found.close();
+            }
+            before = Some(interval);
+            sample(&mut found, machine, plan, interval, step_s);
+        });
+        found.finish(machine)
     }
 
     /// What is wrong with the move from `from_s` to `to_s` of `peak_rate` steps/s, and how to fix it; `None` where
     /// the torque suffices.
-    #[must_use]
     pub fn warning(&self, machine: &Machine, from_s: f64, to_s: f64, peak_rate: f64) -> Option<String> {
         if let Some(most) = machine.working_rate().filter(|most| peak_rate > *most) {
             return Some(format!(
@@ -131,22 +125,20 @@ impl Demand {
     }
 
     /// Whether the motor can follow, jumps aside.
-    #[must_use]
     pub fn is_met(&self) -> bool {
         self.total == 0 && self.over_working_rate.is_none()
     }
 }
 
-/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `most_rate` steps/s; NaN where
+/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `max_rate` steps/s; NaN where
 /// it has no such rate.
-#[must_use]
-pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, most_rate: f64, bins: usize) -> Vec<f64> {
+pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, max_rate: f64, bins: usize) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     for planned in plan.moves() {
-        let part_s = planned.profile.duration_s() / f64::from(LOOKS_A_MOVE);
-        for look in 0..LOOKS_A_MOVE {
-            let moment = machine.at(plan, planned.start_s + (f64::from(look) + 0.5) * part_s);
-            if let Some(most) = needed.get_mut((moment.rate / most_rate * bins as f64) as usize) {
+        let part_s = planned.profile.duration_s() / f64::from(SAMPLES_PER_MOVE);
+        for sample in 0..SAMPLES_PER_MOVE {
+            let moment = machine.at(plan, planned.start_s + (f64::from(sample) + 0.5) * part_s);
+            if let Some(most) = needed.get_mut((moment.rate / max_rate * bins as f64) as usize) {
                 *most = libm::fmax(*most, libm::fabs(moment.needed_mn_m));
             }
         }
@@ -154,72 +146,48 @@ pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, most_rate: f64, bins
     needed
 }
 
-struct Walk<'m> {
-    machine: &'m Machine,
-    plan: &'m AxisPlan,
+/// Collects shortages from moments in order.
+struct Shortages {
     demand: Demand,
     open: Option<Shortage>,
-    before: Option<Interval>,
 }
 
-impl Walk<'_> {
-    fn piece(&mut self, piece: Interval, look_s: f64) {
-        let follows =
-            self.before.is_some_and(|before| before.to_s == piece.from_s && before.times == piece.times);
-        if !follows {
-            self.close();
-        }
-        self.before = Some(piece);
-        let length = piece.to_s - piece.from_s;
-        // Just inside: at a breakpoint itself the value may be that of the other side.
-        let inset = length * 1e-9;
-        let parts = libm::fmax(1.0, libm::ceil(length / look_s)) as u32;
-        let mut last: Option<Moment> = None;
-        for part in 0..=parts {
-            let at_s = if part == 0 {
-                piece.from_s + inset
-            } else if part == parts {
-                piece.to_s - inset
-            } else {
-                piece.from_s + length * f64::from(part) / f64::from(parts)
-            };
-            let moment = self.machine.at(self.plan, at_s);
-            self.look(moment, last, piece);
-            last = Some(moment);
-        }
+impl Shortages {
+    fn new(greatest_rate: f64, jump: f64) -> Self {
+        let demand = Demand {
+            shortages: Vec::new(),
+            total: 0,
+            least: None,
+            greatest_rate,
+            over_working_rate: None,
+            jump,
+        };
+        Self { demand, open: None }
     }
 
-    fn look(&mut self, moment: Moment, last: Option<Moment>, piece: Interval) {
-        let border = || last.map_or(piece.from_s, |last| self.border(last.at_s, moment.at_s));
-        let short = moment.margin_mn_m() < 0.0;
-        let border_s = if short == self.open.is_some() { piece.from_s } else { border() };
-        if self.demand.least.is_none_or(|least| moment.margin_mn_m() < least.margin_mn_m()) {
+    /// Adds a moment whose interval ends at `to_s`. `border_s` gives the time since the last moment at which the
+    /// margin changed its sign.
+    fn add(&mut self, moment: Moment, to_s: f64, times: f64, border_s: impl FnOnce() -> f64) {
+        let margin = moment.margin_mn_m();
+        if self.demand.least.is_none_or(|least| margin < least.margin_mn_m()) {
             self.demand.least = Some(moment);
         }
-        match (&mut self.open, short) {
+        match (&mut self.open, margin < 0.0) {
             (None, false) => {}
             (None, true) => {
-                let Interval { to_s, times, .. } = piece;
-                self.open = Some(Shortage { from_s: border_s, to_s, times, worst: moment });
+                self.open = Some(Shortage { from_s: border_s(), to_s, times, worst: moment });
             }
             (Some(open), true) => {
-                open.to_s = piece.to_s;
-                if moment.margin_mn_m() < open.worst.margin_mn_m() {
+                open.to_s = to_s;
+                if margin < open.worst.margin_mn_m() {
                     open.worst = moment;
                 }
             }
             (Some(open), false) => {
-                open.to_s = border_s;
+                open.to_s = border_s();
                 self.close();
             }
         }
-    }
-
-    /// The time at which the margin changes its sign.
-    fn border(&self, from_s: f64, to_s: f64) -> f64 {
-        let short = |t: f64| self.machine.at(self.plan, t).margin_mn_m() < 0.0;
-        let begins = short(to_s);
-        border(from_s, to_s, |t| short(t) != begins).1
     }
 
     fn close(&mut self) {
@@ -229,6 +197,43 @@ impl Walk<'_> {
             self.demand.shortages.push(shortage);
         }
     }
+
+    fn finish(mut self, machine: &Machine) -> Demand {
+        self.close();
+        let rate = self.demand.greatest_rate;
+        self.demand.over_working_rate = machine.working_rate().filter(|max| rate > *max).map(|_| rate);
+        self.demand
+    }
+}
+
+/// Adds the moments of a smooth interval of a plan.
+fn sample(found: &mut Shortages, machine: &Machine, plan: &AxisPlan, interval: Interval, step_s: f64) {
+    let Interval { from_s, to_s, times, .. } = interval;
+    let length = to_s - from_s;
+    // Just inside: at a breakpoint itself the value may be that of the other side.
+    let inset = length * 1e-9;
+    let parts = libm::fmax(1.0, libm::ceil(length / step_s)) as u32;
+    let mut last_s = None;
+    for part in 0..=parts {
+        let at_s = if part == 0 {
+            from_s + inset
+        } else if part == parts {
+            to_s - inset
+        } else {
+            from_s + length * f64::from(part) / f64::from(parts)
+        };
+        found.add(machine.at(plan, at_s), to_s, times, || {
+            last_s.map_or(from_s, |last_s| sign_change(machine, plan, last_s, at_s))
+        });
+        last_s = Some(at_s);
+    }
+}
+
+/// The time at which the margin changes its sign.
+fn sign_change(machine: &Machine, plan: &AxisPlan, from_s: f64, to_s: f64) -> f64 {
+    let short = |t: f64| machine.at(plan, t).margin_mn_m() < 0.0;
+    let begins = short(to_s);
+    border(from_s, to_s, |t| short(t) != begins).1
 }
 
 #[cfg(test)]

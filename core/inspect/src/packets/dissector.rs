@@ -44,10 +44,8 @@ pub struct Field {
     pub value: String,
 }
 
-/// The CRC of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// Raw packets have none.
     None,
     /// The bytes are no complete frame.
     Missing,
@@ -59,18 +57,15 @@ pub enum Check {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Meaning {
-    /// In order, without overlap.
     pub fields: Vec<Field>,
     pub check: Check,
 }
 
-/// What is needed to read the bytes of a line.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
     pub protocol: Protocol,
     /// Whether raw packets begin with an address.
     pub addressed: bool,
-    /// Channels of the controller with an address.
     pub channels: &'a dyn Fn(u8) -> u8,
 }
 
@@ -83,7 +78,6 @@ pub struct Head {
 
 impl Head {
     /// `None` where the bytes are no valid frame.
-    #[must_use]
     pub fn of(bytes: &[u8], outcome: RowOutcome) -> Option<Self> {
         let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
         match outcome {
@@ -101,13 +95,11 @@ impl Head {
         Some(Self { address: content.next()?, kind: content.next()? })
     }
 
-    #[must_use]
     pub const fn is_reply(self) -> bool {
         self.kind & ACK != 0
     }
 
     /// Name of its kind, the same for a frame and its acknowledgment; `NAK` for a refusal.
-    #[must_use]
     pub fn name(self) -> Option<&'static str> {
         if self.kind == NAK { Some("NAK") } else { Kind::parse(self.kind & !ACK).map(Kind::name) }
     }
@@ -122,7 +114,6 @@ fn last_frame(bytes: &[u8]) -> Range<usize> {
 
 impl Reading<'_> {
     /// The fields of a row. A frame with a wrong CRC is read as if it were valid.
-    #[must_use]
     pub fn of(&self, bytes: &[u8], outcome: RowOutcome) -> Meaning {
         match (self.protocol, outcome) {
             (_, RowOutcome::Ignored) => {
@@ -177,7 +168,6 @@ struct Content {
     decoded: Vec<u8>,
     /// Position of each decoded byte, and of the end.
     places: Vec<usize>,
-    /// COBS bytes: position and value.
     overhead: Vec<(usize, u8)>,
     whole: bool,
 }
@@ -210,7 +200,6 @@ impl Content {
         }
     }
 
-    /// Address, kind and body, as far as they exist.
     fn without(&self, check: Check) -> &[u8] {
         let checked = if check == Check::Missing { 0 } else { CRC_LEN };
         self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()

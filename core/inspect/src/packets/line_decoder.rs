@@ -37,10 +37,8 @@ use stepscope_peripheral::{
 pub struct Span {
     pub start: u64,
     pub end: u64,
-    /// From the longest to the shortest.
     pub texts: Vec<String>,
     pub bad: bool,
-    /// Its row of the packet table.
     pub packet: Option<usize>,
     /// The cycle in which the receiver sampled it.
     pub sample: Option<u64>,
@@ -69,20 +67,18 @@ pub struct LineDecoder<'a> {
 }
 
 impl<'a> LineDecoder<'a> {
-    #[must_use]
     pub const fn new(table: PacketTable<'a>, trace: &'a [Record]) -> Self {
         Self { table, trace }
     }
 
-    /// Decodes the cycles `start..end`, unless they have more than `most_bytes` bytes; bits only for at most
-    /// `most_bits` bytes.
-    #[must_use]
-    pub fn decode(&self, start: u64, end: u64, most_bytes: usize, most_bits: usize) -> Decoded {
+    /// Decodes the cycles `start..end`, unless they have more than `max_bytes` bytes; bits only for at most
+    /// `max_bits` bytes.
+    pub fn decode(&self, start: u64, end: u64, max_bytes: usize, max_bits: usize) -> Decoded {
         let (mut rx, mut tx) = (Spans::default(), Spans::default());
-        let Some(bytes) = self.bytes_in(start, end, most_bytes) else {
+        let Some(bytes) = self.bytes_in(start, end, max_bytes) else {
             return Decoded { rx, tx, more: true };
         };
-        let with_bits = bytes.len() <= most_bits;
+        let with_bits = bytes.len() <= max_bits;
         let mut packet = None;
         for &placed in &bytes {
             let reply = self.table.is_own_reply(placed.packet);

@@ -42,18 +42,14 @@ use stepscope_sim::{Experiment, Run};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
-    /// A raw packet, or a part of one.
     Packet,
     Frame,
     /// A reply of this or another controller.
     Reply,
-    /// Two senders at once.
     Collision,
 }
 
 impl RowKind {
-    /// Its name in tables, searches and files.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Packet => "packet",
@@ -69,7 +65,6 @@ impl RowKind {
 pub struct Row {
     pub index: usize,
     pub kind: &'static str,
-    /// Start bit of its first byte.
     pub start_cycle: u64,
     pub end_cycle: u64,
     /// End of its last byte on the line.
@@ -90,7 +85,6 @@ pub struct Row {
     pub tick_end_cycle: Option<u64>,
 }
 
-/// A tick, and the row that delivered it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TickRow {
     pub start_cycle: u64,
@@ -116,33 +110,27 @@ pub struct PacketTable<'a> {
 
 impl<'a> PacketTable<'a> {
     /// The table of controller `controller`; `log` is its finished log. An unknown controller counts as the first.
-    #[must_use]
     pub fn new(experiment: &'a Experiment, run: &'a Run, controller: usize, log: &'a PacketLog) -> Self {
         let own = experiment.configs().nth(controller).unwrap_or_else(|| experiment.config());
         Self { experiment, run, own, log }
     }
 
-    #[must_use]
     pub fn len(&self) -> usize {
         self.log.rows().len()
     }
 
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.log.rows().is_empty()
     }
 
-    #[must_use]
     pub fn bytes(&self, index: usize) -> &'a [u8] {
         self.log.bytes(index)
     }
 
-    #[must_use]
     pub fn scale(&self) -> TimeScale {
         TimeScale::of(self.run.cycles(), self.own.clock_hz())
     }
 
-    #[must_use]
     pub fn kind(&self, index: usize) -> Option<RowKind> {
         let row = self.logged(index)?;
         Some(match row.outcome {
@@ -177,7 +165,6 @@ impl<'a> PacketTable<'a> {
     }
 
     /// The row's address, if its bytes are valid.
-    #[must_use]
     pub fn address(&self, index: usize) -> Option<u8> {
         match (self.own.protocol(), self.logged(index)?.outcome) {
             (Protocol::Raw, RowOutcome::Packet(_)) => {
@@ -188,7 +175,6 @@ impl<'a> PacketTable<'a> {
         }
     }
 
-    #[must_use]
     pub fn row(&self, index: usize) -> Option<Row> {
         let logged = self.logged(index)?;
         let (mut start, mut gap) = (String::new(), String::new());
@@ -222,13 +208,11 @@ impl<'a> PacketTable<'a> {
         format::write_hex(self.bytes(index), " ", text);
     }
 
-    #[must_use]
     pub fn meaning(&self, index: usize) -> Option<Meaning> {
         let outcome = self.logged(index)?.outcome;
         Some(self.reading(&|address| self.channels(address)).of(self.bytes(index), outcome))
     }
 
-    #[must_use]
     pub fn choices(&self) -> Choices {
         let (mut addresses, mut kinds) = ([false; 256], Vec::new());
         for index in 0..self.len() {
@@ -253,7 +237,6 @@ impl<'a> PacketTable<'a> {
         self.log.touching(start, end)
     }
 
-    #[must_use]
     pub fn is_on_line(&self, index: usize, start: Instant, end: Instant) -> bool {
         self.logged(index).is_some_and(|row| row.start <= end) && self.line_end(index) >= start.0
     }

@@ -3,12 +3,12 @@
 //!
 //! ```text
 //! points   . . . . . . . . . . . . . . . .     one each grid step, of which there may be 10^8
-//! bins     [   ][   ][   ][   ][   ][         least and greatest of so many points; when they are too many, two become one
+//! bins     [   ][   ][   ][   ][   ][         min and max of so many points; when they are too many, two become one
 //! kept     ^                   ^              the plant and how many records it had heard
 //! ```
 //!
 //! ```
-//! use stepscope_inspect::plant::log::{PlantLog, Stretch};
+//! use stepscope_inspect::plant::log::{PlantLog, CycleWindow};
 //! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_peripheral::{signal::Record, units::Instant};
 //! use stepscope_sim::Experiment;
@@ -21,8 +21,8 @@
 //!     log.keep(run.plant(0).expect("it has one"), recording.trace.len());
 //! }
 //! let records: &[Record] = &recording.trace;
-//! let all = log.curves(records, Stretch { from: 0, to: run.cycles().0, columns: 600 }, &[PlantLog::of_motor(0) + 1]);
-//! assert!((all[0].greatest.last().expect("columns") - 200.0).abs() < 0.1);
+//! let all = log.curves(records, CycleWindow { from: 0, to: run.cycles().0, columns: 600 }, &[PlantLog::of_motor(0) + 1]);
+//! assert!((all[0].max.last().expect("columns") - 200.0).abs() < 0.1);
 //! let end = log.at(records, run.cycles().0);
 //! assert!((end[PlantLog::of_motor(0) + 1] - 200.0).abs() < 0.1);
 //! ```
@@ -37,9 +37,7 @@ pub const SUPPLY: [&str; 3] = ["bus_v", "load_a", "sensor_a"];
 /// encoder code.
 pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a", "phase_b_a", "encoder"];
 
-/// Maximum bins; when full, two become one.
 const BINS: usize = 8192;
-/// Windows of fewer bins are computed again.
 const ENOUGH: u64 = 512;
 const KEPT: usize = 64;
 /// Points per column up to which all are drawn.
@@ -50,8 +48,8 @@ pub struct PlantLog {
     step_cycles: u64,
     points_a_bin: u64,
     in_last: u64,
-    least: Vec<f64>,
-    greatest: Vec<f64>,
+    min: Vec<f64>,
+    max: Vec<f64>,
     latest: Vec<f64>,
     kept: Vec<Kept>,
     /// Minimum distance of snapshots in points.
@@ -64,9 +62,8 @@ struct Kept {
     records: usize,
 }
 
-/// A range of cycles, divided into columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stretch {
+pub struct CycleWindow {
     pub from: u64,
     pub to: u64,
     pub columns: usize,
@@ -77,34 +74,33 @@ pub struct Stretch {
 pub struct Band {
     /// Cycles of points, or of the middles of intervals.
     pub cycle: Vec<f64>,
-    pub least: Vec<f64>,
-    pub greatest: Vec<f64>,
+    pub min: Vec<f64>,
+    pub max: Vec<f64>,
 }
 
 impl Observer for PlantLog {
     #[inline]
     fn point(&mut self, plant: &Plant) {
         read(plant, &mut self.latest);
-        if self.in_last == self.points_a_bin || self.least.is_empty() {
-            if self.least.len() == BINS * self.values() {
+        if self.in_last == self.points_a_bin || self.min.is_empty() {
+            if self.min.len() == BINS * self.values() {
                 self.halve();
             }
             self.in_last = 0;
-            self.least.extend_from_slice(&self.latest);
-            self.greatest.extend_from_slice(&self.latest);
+            self.min.extend_from_slice(&self.latest);
+            self.max.extend_from_slice(&self.latest);
         } else {
-            let last = self.least.len() - self.latest.len();
-            let bins = self.least[last..].iter_mut().zip(&mut self.greatest[last..]);
-            for ((least, greatest), &value) in bins.zip(&self.latest) {
-                *least = least.min(value);
-                *greatest = greatest.max(value);
+            let last = self.min.len() - self.latest.len();
+            let bins = self.min[last..].iter_mut().zip(&mut self.max[last..]);
+            for ((min, max), &value) in bins.zip(&self.latest) {
+                *min = min.min(value);
+                *max = max.max(value);
             }
         }
         self.in_last += 1;
     }
 }
 
-/// Reads the values in the order of [`SUPPLY`] and, per motor, [`MOTOR`].
 fn read(plant: &Plant, values: &mut [f64]) {
     let (supply, motors) = values.split_at_mut(SUPPLY.len());
     supply.copy_from_slice(&[plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()]);
@@ -116,14 +112,13 @@ fn read(plant: &Plant, values: &mut [f64]) {
 }
 
 impl PlantLog {
-    #[must_use]
     pub fn new(plant: &Plant) -> Self {
         Self {
             step_cycles: plant.step_cycles(),
             points_a_bin: 1,
             in_last: 0,
-            least: Vec::new(),
-            greatest: Vec::new(),
+            min: Vec::new(),
+            max: Vec::new(),
             latest: vec![0.0; SUPPLY.len() + plant.motors() * MOTOR.len()],
             kept: vec![Kept { plant: plant.clone(), records: 0 }],
             apart: 1,
@@ -148,8 +143,6 @@ impl PlantLog {
         }
     }
 
-    /// Index of a motor's first value.
-    #[must_use]
     pub const fn of_motor(channel: usize) -> usize {
         SUPPLY.len() + channel * MOTOR.len()
     }
@@ -160,9 +153,7 @@ impl PlantLog {
 
     fn halve(&mut self) {
         let values = self.values();
-        for (bins, take) in
-            [(&mut self.least, f64::min as fn(f64, f64) -> f64), (&mut self.greatest, f64::max)]
-        {
+        for (bins, take) in [(&mut self.min, f64::min as fn(f64, f64) -> f64), (&mut self.max, f64::max)] {
             for at in 0..BINS / 2 * values {
                 let (bin, value) = (at / values, at % values);
                 bins[at] = take(bins[2 * bin * values + value], bins[(2 * bin + 1) * values + value]);
@@ -173,44 +164,39 @@ impl PlantLog {
     }
 
     /// Values by index over a window: at most two points per column, and one more at each end.
-    #[must_use]
-    pub fn curves(&self, records: &[Record], stretch: Stretch, values: &[usize]) -> Vec<Band> {
+    pub fn curves(&self, records: &[Record], window: CycleWindow, values: &[usize]) -> Vec<Band> {
         let mut bands = vec![Band::default(); values.len()];
-        if self.least.is_empty() || stretch.to < stretch.from {
+        if self.min.is_empty() || window.to < window.from {
             return bands;
         }
         let bin_cycles = self.points_a_bin * self.step_cycles;
-        let points = (stretch.to - stretch.from) / self.step_cycles;
-        let few = POINTS_A_COLUMN * stretch.columns.max(1) as u64;
+        let points = (window.to - window.from) / self.step_cycles;
+        let few = POINTS_A_COLUMN * window.columns.max(1) as u64;
         if self.points_a_bin > 1 && points / self.points_a_bin >= ENOUGH {
-            let bins = self.least.len() / self.values();
+            let bins = self.min.len() / self.values();
             // A bin ends with the point in the cycle of its edge.
-            let (first, last) = (stretch.from.saturating_sub(1) / bin_cycles, stretch.to / bin_cycles + 1);
+            let (first, last) = (window.from.saturating_sub(1) / bin_cycles, window.to / bin_cycles + 1);
             let mut columns = Columns::new(&mut bands, (last - first).div_ceil(few));
             for bin in first as usize..(last as usize).min(bins) {
                 // The first bin begins with the point after cycle 0.
                 let cycle = (bin as f64 + 0.5) * bin_cycles as f64;
                 let row = bin * self.values();
-                columns.add(
-                    cycle,
-                    values.iter().map(|&value| (self.least[row + value], self.greatest[row + value])),
-                );
+                columns
+                    .add(cycle, values.iter().map(|&value| (self.min[row + value], self.max[row + value])));
             }
             return bands;
         }
         let mut columns = Columns::new(&mut bands, points.div_ceil(few));
         let mut watched = Watched {
-            from: stretch.from.saturating_sub(self.step_cycles),
+            from: window.from.saturating_sub(self.step_cycles),
             values,
             columns: &mut columns,
             point: self.latest.clone(),
         };
-        self.again(records, stretch.from, stretch.to.saturating_add(self.step_cycles), &mut watched);
+        self.again(records, window.from, window.to.saturating_add(self.step_cycles), &mut watched);
         bands
     }
 
-    /// All values at the last point up to a cycle.
-    #[must_use]
     pub fn at(&self, records: &[Record], cycle: u64) -> Vec<f64> {
         let mut values = vec![0.0; self.values()];
         if let Some(plant) = self.again(records, cycle, cycle, &mut ()) {
@@ -251,15 +237,15 @@ impl<'a> Columns<'a> {
             self.first = cycle;
         }
         for (band, (low, high)) in self.bands.iter_mut().zip(values) {
-            match (band.least.last_mut(), band.greatest.last_mut(), band.cycle.last_mut()) {
-                (Some(least), Some(greatest), Some(middle)) if !is_new => {
-                    *least = least.min(low);
-                    *greatest = greatest.max(high);
+            match (band.min.last_mut(), band.max.last_mut(), band.cycle.last_mut()) {
+                (Some(min), Some(max), Some(middle)) if !is_new => {
+                    *min = min.min(low);
+                    *max = max.max(high);
                     *middle = 0.5 * (self.first + cycle);
                 }
                 _ => {
-                    band.least.push(low);
-                    band.greatest.push(high);
+                    band.min.push(low);
+                    band.max.push(high);
                     band.cycle.push(cycle);
                 }
             }

@@ -34,7 +34,6 @@ use stepscope_plant::{
     stability::Natural,
 };
 
-/// Steps over which the rate at a slip is averaged.
 const STEPS: usize = 16;
 /// Maximum gain of the driver's square wave over the curve's sine.
 const SQUARE_WAVE: f64 = 1.28;
@@ -61,8 +60,6 @@ struct Steps {
 }
 
 impl FirstSlips {
-    /// In steps/s; `None` without a slip, or before the second step.
-    #[must_use]
     pub fn rate(&self, channel: usize, clock_hz: u32) -> Option<f64> {
         self.channels.get(channel)?.interval.map(|cycles| f64::from(clock_hz) / cycles)
     }
@@ -97,7 +94,6 @@ impl Observer for FirstSlips {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
-    /// What the plant's motor does.
     pub plant: String,
     /// Whether curve and plant agree; `None` where the run does not decide it.
     pub agrees: Option<bool>,
@@ -106,7 +102,6 @@ pub struct Agreement {
 
 /// Compares the plant's motor of `channel` with the curve. `overload` is the cycle in which a protection stopped the
 /// controller.
-#[must_use]
 pub fn agreement(
     machine: &Machine,
     demand: &Demand,

@@ -24,10 +24,8 @@ use stepscope_motion::{
 };
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
-/// A motor's figures and their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
-    /// Its name on the command line.
     pub id: &'static str,
     pub name: &'static str,
     pub full_step_deg: f64,
@@ -46,7 +44,6 @@ pub struct MotorSheet {
     pub typical: &'static [&'static str],
 }
 
-/// A driver's figures and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
     pub id: &'static str,
@@ -249,19 +246,16 @@ pub const DRIVES: &[DriveSheet] = &[
     },
 ];
 
-#[must_use]
 pub fn motor(id: &str) -> Option<&'static MotorSheet> {
     MOTORS.iter().find(|sheet| sheet.id == id)
 }
 
-#[must_use]
 pub fn drive(id: &str) -> Option<&'static DriveSheet> {
     DRIVES.iter().find(|sheet| sheet.id == id)
 }
 
 impl MotorSheet {
     /// This motor at its rated current, with supply, load and driver of `place`.
-    #[must_use]
     pub fn in_place_of(&self, place: &Motor) -> Motor {
         Motor {
             rated_current_a: self.rated_current_a,
@@ -280,14 +274,12 @@ impl MotorSheet {
     }
 
     /// The motor without load, on the default supply and microsteps.
-    #[must_use]
     pub fn machine(&self) -> Option<Machine> {
         let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
         let motor = Some(self.in_place_of(&Motor::default()));
         Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
     }
 
-    /// Replaces every motor of a scenario.
     pub fn put_into(&self, scenario: &mut Scenario) {
         each_motor(scenario, |full_step_deg, motor| {
             *motor = self.in_place_of(motor);
@@ -299,7 +291,6 @@ impl MotorSheet {
 }
 
 impl DriveSheet {
-    /// Replaces the driver of every motor of a scenario.
     pub fn put_into(&self, scenario: &mut Scenario) {
         each_motor(scenario, |_, motor| motor.drive = self.drive.clone());
     }

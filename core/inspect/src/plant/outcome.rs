@@ -39,7 +39,6 @@ const TURN_DEG: f64 = 360.0;
 
 /// Warns if rotor or load moved more than half a period in one grid step. The result is meaningless then; F3's limits
 /// check only the start.
-#[must_use]
 pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
     let motor = setup.motors.get(channel)?;
     let step_s = f64::from(setup.grid_cycles()) / f64::from(setup.clock_hz);
@@ -67,16 +66,12 @@ pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<
 /// More of the energy than this must not be left over (F8).
 const MAX_ENERGY_ERROR: f64 = 1e-3;
 
-/// Warns if too much energy is unaccounted for.
-#[must_use]
 pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     let error = found.energy.error();
     (error > MAX_ENERGY_ERROR)
         .then(|| format!("{:.2} % of the energy is left over; give a smaller step_cycles", 100.0 * error))
 }
 
-/// Whether a motor follows its pulses.
-#[must_use]
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let lost = motor.lost.unsigned_abs();
     let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
@@ -94,7 +89,6 @@ pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
 }
 
 /// Names with units, in the order of [`values`].
-#[must_use]
 pub fn names(plant: &Plant) -> Vec<String> {
     let mut names: Vec<String> = ["bus_v", "load_a", "sensor_a", "sensor_code"].map(String::from).into();
     for channel in 0..plant.motors() {
@@ -105,7 +99,6 @@ pub fn names(plant: &Plant) -> Vec<String> {
 }
 
 /// The plant's values at its point, in V, A, codes, full steps and full steps/s.
-#[must_use]
 pub fn values(plant: &Plant) -> Vec<f64> {
     let sensor = plant.current_sensor();
     let mut values = vec![plant.bus_v(), plant.load_a(), sensor.filtered(), f64::from(sensor.code())];
@@ -117,12 +110,10 @@ pub fn values(plant: &Plant) -> Vec<f64> {
     values
 }
 
-#[must_use]
 pub fn table_head(plant: &Plant) -> String {
     format!("cycle,time_s,{}\n", names(plant).join(","))
 }
 
-#[must_use]
 pub fn table_row(plant: &Plant) -> String {
     let cycle = plant.cycle();
     let mut row = format!("{cycle},{}", cycle as f64 / plant.clock_hz());

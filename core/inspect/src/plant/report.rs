@@ -53,7 +53,6 @@ pub struct Motor {
     pub rotor_full_steps: f64,
     pub lost_full_steps: i64,
     pub slips: u64,
-    /// Signed maximum.
     pub following_error_full_steps: f64,
     pub following_error_at_s: f64,
     pub overshoot_full_steps: Option<f64>,
@@ -86,13 +85,11 @@ pub struct Slip {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SelfTest {
     pub channel: usize,
-    /// `None`: it does not settle.
     pub settling_cycles: Option<u64>,
 }
 
 impl PlantReport {
     /// `None` if the controller has no plant.
-    #[must_use]
     pub fn of(experiment: &Experiment, run: &Run, controller: usize) -> Option<Self> {
         let setup = experiment.plants()?.setups.get(controller)?;
         let clock_hz = f64::from(setup.clock_hz);

@@ -29,7 +29,6 @@ use serde::Serialize;
 
 pub use super::side::Side;
 
-/// A step that differs. Late is positive, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Off {
     pub step: usize,
@@ -53,7 +52,6 @@ pub struct Comparison {
     pub largest: Off,
     pub rms_s: f64,
     pub mean_s: f64,
-    /// In millionths; above 0 the recorded clock is slower.
     pub drift_ppm: f64,
     pub largest_jitter_s: f64,
     pub rms_jitter_s: f64,
@@ -66,7 +64,6 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    #[must_use]
     pub const fn is_same(&self) -> bool {
         self.differing == 0 && self.missing == 0 && self.extra == 0 && self.other_values == 0
     }
@@ -85,7 +82,6 @@ pub struct Alignment<'a> {
 impl<'a> Alignment<'a> {
     /// Matches the steps. Planned step `aligned`, or the first that both have, gives the shared instant; `None` where
     /// there is none.
-    #[must_use]
     pub fn of(recorded: Side<'a>, model: Side<'a>, aligned: Option<usize>) -> Option<Self> {
         let matching = Matching::of(recorded, model);
         let aligned = match aligned {
@@ -103,7 +99,6 @@ impl<'a> Alignment<'a> {
         Some(came * i128::from(self.model.clock_hz) - due * i128::from(self.recorded.clock_hz))
     }
 
-    #[must_use]
     pub fn off(&self, index: usize) -> Option<Off> {
         let Self { recorded, model, .. } = self;
         let (step, recorded_step) = self.matching.pair(index)?;
@@ -119,14 +114,12 @@ impl<'a> Alignment<'a> {
         })
     }
 
-    #[must_use]
     pub fn is_late(&self, index: usize, within: Tolerance) -> bool {
         let most = within.units(self.recorded.clock_hz, self.model.clock_hz);
         self.units(index).is_none_or(|units| units.unsigned_abs() > most)
     }
 
     /// Compares; a step that is off by exactly `within` is not different.
-    #[must_use]
     pub fn comparison(&self, within: Tolerance) -> Comparison {
         let (recorded, model) = (self.recorded, self.model);
         let compared = self.matching.len();

@@ -17,7 +17,6 @@ use super::{alignment::Alignment, side::Kind, tolerance::Tolerance};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 
-/// Maximum listed rows; all are counted.
 pub const MAX_LISTED: usize = 100_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -55,7 +54,6 @@ pub struct Differences {
 
 impl Differences {
     /// A step that is off by exactly `within` is not late.
-    #[must_use]
     pub fn of(alignment: &Alignment<'_>, within: Tolerance) -> Self {
         let mut found = Self::default();
         let (mut model, mut recorded, mut index) = (0, 0, 0);
@@ -148,7 +146,6 @@ impl Difference {
     }
 
     /// Such as "1 step missing after step 1999, at 225.6 ms".
-    #[must_use]
     pub fn to_text(&self, kind: Kind) -> String {
         let one = kind.singular();
         let counted =

@@ -20,10 +20,8 @@ const PART: usize = 4;
 /// About four standard deviations.
 const DEVIATIONS: f64 = 6.0;
 
-/// A line through most events.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Drift {
-    /// Seconds of lateness per second.
     pub(super) slope: f64,
     pub(super) late_s: f64,
     /// Maximum distance of events that count, in s.

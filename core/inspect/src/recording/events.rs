@@ -18,7 +18,7 @@ use super::{
     alignment::{Alignment, Comparison, Side},
     differences::Differences,
     matching::Matching,
-    serial::Heard,
+    serial::DecodedLine,
     tolerance::Tolerance,
 };
 use alloc::vec::Vec;
@@ -40,7 +40,6 @@ pub struct Events {
     values: Vec<u8>,
 }
 
-/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
     pub kind: Kind,
@@ -54,59 +53,51 @@ pub struct Beside {
 }
 
 impl Beside {
-    #[must_use]
     pub const fn is_same(&self) -> bool {
         self.comparison.is_same()
     }
 }
 
 impl Events {
-    #[must_use]
     pub const fn of_steps(steps: Vec<Step>, clock_hz: u32) -> Self {
         Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new() }
     }
 
-    #[must_use]
-    pub fn of_bytes(heard: &Heard, clock_hz: u32) -> Self {
+    pub fn of_bytes(decoded: &DecodedLine, clock_hz: u32) -> Self {
         let step =
-            |(position, byte): (i32, &super::serial::HeardByte)| Step { cycle: byte.start.0, position };
+            |(position, byte): (i32, &super::serial::DecodedByte)| Step { cycle: byte.start.0, position };
         Self {
             kind: Kind::Bytes,
             clock_hz,
-            steps: (1..).zip(&heard.bytes).map(step).collect(),
-            values: heard.bytes.iter().map(|byte| byte.byte).collect(),
+            steps: (1..).zip(&decoded.bytes).map(step).collect(),
+            values: decoded.bytes.iter().map(|byte| byte.byte).collect(),
         }
     }
 
     /// The steps of a channel, or the bytes of RX at `baud`.
-    #[must_use]
     pub fn of_records(records: &[Record], clock_hz: u32, kind: Kind, channel: u8, baud: u32) -> Self {
         match kind {
             Kind::Steps => Self::of_steps(steps(records, channel), clock_hz),
             Kind::Bytes => {
-                Self::of_bytes(&super::serial::hear(records, Levels::RX, clock_hz, baud), clock_hz)
+                Self::of_bytes(&super::serial::decode_line(records, Levels::RX, clock_hz, baud), clock_hz)
             }
         }
     }
 
-    #[must_use]
     pub fn at_s(&self, index: usize) -> Option<f64> {
         self.steps.get(index).map(|step| step.cycle as f64 / f64::from(self.clock_hz))
     }
 
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.steps.len()
     }
 
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
 
     /// Compares with a plan. Number `aligned` of the plan, or the first that both have, gives the shared instant;
     /// `None` where there is none.
-    #[must_use]
     pub fn beside(&self, model: &Self, aligned: Option<usize>, within: Tolerance) -> Option<Beside> {
         let alignment = Alignment::of(self.side(), model.side(), aligned)?;
         Some(Beside {
@@ -118,7 +109,6 @@ impl Events {
         })
     }
 
-    #[must_use]
     pub fn alignment<'a>(&'a self, model: &'a Self, found: &Beside) -> Alignment<'a> {
         let (recorded, model) = (self.side(), model.side());
         Alignment { recorded, model, matching: found.matching.clone(), aligned: found.aligned }

@@ -42,13 +42,11 @@ pub struct StepFigures {
 
 impl StepFigures {
     /// Takes steps in cycles of `clock_hz` without storing them; `None` where there is none.
-    #[must_use]
     pub fn of(steps: impl IntoIterator<Item = Step>, clock_hz: u32) -> Option<Self> {
         Self::of_rate(steps, f64::from(clock_hz))
     }
 
     /// As [`Self::of`], with steps in ticks of `hz`.
-    #[must_use]
     pub fn of_rate(steps: impl IntoIterator<Item = Step>, hz: f64) -> Option<Self> {
         let mut steps = steps.into_iter();
         let first = steps.next()?;

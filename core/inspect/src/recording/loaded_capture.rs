@@ -53,13 +53,11 @@ use stepscope_scenario::TimingRules;
 /// Which records to load of a long recording; the report always covers all.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Maximum records.
-    pub most: usize,
+    pub max_records: usize,
     pub from_s: Option<f64>,
     pub to_s: Option<f64>,
 }
 
-/// The loaded part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LoadedPart {
     pub from_s: f64,
@@ -69,7 +67,6 @@ pub struct LoadedPart {
     pub of: usize,
 }
 
-/// A capture in cycles, with its report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedCapture {
     pub format: String,
@@ -84,11 +81,9 @@ pub struct LoadedCapture {
     pub channels: u8,
     /// Levels; only the reset for positions and bytes.
     pub records: Vec<Record>,
-    /// Which part `records` is; `None` for all.
     pub part: Option<LoadedPart>,
     pub end_s: f64,
     pub report: Report,
-    /// Steps of position rows.
     position_steps: Option<Vec<Step>>,
     /// Motors with generated pulses, and their source.
     generated_pulses: Vec<(u8, PulseSource)>,
@@ -162,7 +157,6 @@ impl LoadedCapture {
         let Some(base) = base.filter(|_| !capture.changes.is_empty()) else { return Ok(self) };
         let count = self.part.take().map_or(self.records.len(), |part| part.of);
         self.end_s = end_s;
-        // Free the memory before the next part is loaded.
         self.records = Vec::new();
         self.take_part(capture, &map, base, part, count)?;
         Ok(self)
@@ -176,7 +170,7 @@ impl LoadedCapture {
         part: &Part,
         count: usize,
     ) -> Result<(), OpenError> {
-        if count <= part.most && part.from_s.is_none() && part.to_s.is_none() {
+        if count <= part.max_records && part.from_s.is_none() && part.to_s.is_none() {
             self.records.reserve_exact(count);
             self.records.extend(Records::of(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
         } else {
@@ -192,13 +186,13 @@ impl LoadedCapture {
         capture: &Capture,
         options: &OpenOptions,
         rules: &TimingRules,
-        most_kept: usize,
+        max_listed: usize,
     ) -> Result<Option<(TimingCheck, Timebase)>, OpenError> {
         let (loaded, map, base) = Self::prepare(capture, options)?;
         let are_generated = loaded.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
         let is_rounded = |base: &Timebase| !capture.changes.is_empty() && !base.is_exact(loaded.clock_hz);
         let Some(base) = base.filter(|base| is_rounded(base) && !are_generated) else { return Ok(None) };
-        let mut check = TimingCheck::in_ticks(rules, base.parts(), most_kept);
+        let mut check = TimingCheck::in_ticks(rules, base.parts(), max_listed);
         loaded.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         Records::in_ticks(capture, &map).for_each(|record| check.record(record));
         Ok(Some((check, base)))
@@ -222,10 +216,10 @@ impl LoadedCapture {
         let hz = f64::from(self.clock_hz);
         let to_s = part.to_s.unwrap_or(self.end_s).clamp(from_s, self.end_s);
         let to = (to_s * hz) as u64;
-        self.records.reserve_exact(part.most.min(of));
+        self.records.reserve_exact(part.max_records.min(of));
         let mut next = None;
         for record in rest.by_ref() {
-            if record.cycle.0 > to || self.records.len() >= part.most.max(1) {
+            if record.cycle.0 > to || self.records.len() >= part.max_records.max(1) {
                 next = Some(record.cycle.0);
                 break;
             }
@@ -294,7 +288,6 @@ impl LoadedCapture {
         Ok((loaded, map, base))
     }
 
-    #[must_use]
     pub fn steps_of(&self, channel: u8) -> Vec<Step> {
         match &self.position_steps {
             Some(steps) if channel == 0 => steps.clone(),
@@ -303,17 +296,13 @@ impl LoadedCapture {
         }
     }
 
-    /// The steps of a channel or, if none steps, the bytes of RX.
-    #[must_use]
     pub fn events(&self, channel: u8) -> Events {
         match self.report.rx().filter(|_| self.report.channels.is_empty()) {
-            Some(line) => Events::of_bytes(&line.heard, self.clock_hz),
+            Some(line) => Events::of_bytes(&line.decoded, self.clock_hz),
             None => Events::of_steps(self.steps_of(channel), self.clock_hz),
         }
     }
 
-    /// Without levels there are only steps or bytes.
-    #[must_use]
     pub fn has_levels(&self) -> bool {
         self.what == "changes"
     }

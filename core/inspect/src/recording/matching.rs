@@ -33,7 +33,6 @@ pub struct Matching {
 }
 
 impl Matching {
-    #[must_use]
     pub fn of(recorded: Side<'_>, model: Side<'_>) -> Self {
         let Some((end, starts)) = Search::new(recorded, model).run() else { return Self::default() };
         let mut found = Self::default();
@@ -47,23 +46,19 @@ impl Matching {
         found
     }
 
-    #[must_use]
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
 
-    #[must_use]
     pub fn len(&self) -> usize {
         self.runs.last().map_or(0, |last| last.before + last.count)
     }
 
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }
 
     /// The planned and the recorded step of match `index`.
-    #[must_use]
     pub fn pair(&self, index: usize) -> Option<(usize, usize)> {
         let after = self.runs.partition_point(|run| run.before <= index);
         let run = self.runs.get(after.checked_sub(1)?)?;
@@ -72,7 +67,6 @@ impl Matching {
     }
 
     /// The recorded step of a planned one; `None` where it is missing.
-    #[must_use]
     pub fn recorded(&self, model: usize) -> Option<usize> {
         let after = self.runs.partition_point(|run| run.model <= model);
         let run = self.runs.get(after.checked_sub(1)?)?;

@@ -13,7 +13,6 @@ use core::fmt;
 use stepscope_capture::{capture::Format, channel_map::MapError, recorded::TooLate, timebase::Timebase};
 use stepscope_peripheral::config::limits::CLOCK_HZ;
 
-/// Clock for bytes without times and for rows of positions.
 pub(super) const USUAL_CLOCK_HZ: u32 = 16_000_000;
 /// Cycles per tick of the file that an edge needs to become a pulse.
 const CYCLES_PER_EDGE: u64 = 4;
@@ -23,9 +22,7 @@ const CYCLES_PER_EDGE: u64 = 4;
 pub struct OpenOptions {
     pub map: Option<String>,
     pub clock_hz: Option<u32>,
-    /// Samples per second.
     pub sample_rate_hz: Option<u64>,
-    /// Bit rate of RX and TX.
     pub baud: Option<u32>,
     /// Drivers step on both edges: STEP of the map becomes DEDGE.
     pub both_edges: bool,
@@ -65,7 +62,6 @@ impl OpenOptions {
     }
 }
 
-/// Why a capture cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OpenError {

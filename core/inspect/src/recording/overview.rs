@@ -27,7 +27,6 @@ pub struct Overview {
 }
 
 impl Overview {
-    #[must_use]
     pub fn of(steps: impl IntoIterator<Item = Step>, hz: f64, window: Window) -> Actual {
         let mut overview = Self {
             window,

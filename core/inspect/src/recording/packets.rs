@@ -11,9 +11,9 @@
 //! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
 //! let report = Report::of(&recording.trace, 16_000_000, 1, None);
 //! let packets = Packets::of(&report, 16_000_000, 1, false);
-//! let told = |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
-//! assert_eq!(told(0), Some(("RX", "frame", "to 0: STATUS")));
-//! assert!(told(1).is_some_and(|(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")));
+//! let known = |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
+//! assert_eq!(known(0), Some(("RX", "frame", "to 0: STATUS")));
+//! assert!(known(1).is_some_and(|(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")));
 //! ```
 
 use super::{
@@ -65,7 +65,6 @@ pub struct Packets {
 
 impl Packets {
     /// `addressed`: raw packets begin with an address.
-    #[must_use]
     pub fn of(report: &Report, clock_hz: u32, channels: u8, addressed: bool) -> Self {
         let mut rows = Vec::new();
         for line in &report.lines {
@@ -76,7 +75,6 @@ impl Packets {
     }
 
     /// Replies on TX with a valid CRC.
-    #[must_use]
     pub fn replies(&self) -> usize {
         let tx = line_name(Levels::TX);
         self.rows.iter().filter(|row| row.line == tx && row.outcome == HOLDS).count()
@@ -128,11 +126,11 @@ pub(super) struct Line<'a> {
 impl<'a> Line<'a> {
     pub(super) fn new(line: &'a LineReport, clock_hz: u32, channels: u8, addressed: bool) -> Self {
         let bit = u64::from(clock_hz) / u64::from(line.baud.max(1));
-        let told = if let Guess::Framed { channels, .. } = line.guess { channels } else { None };
+        let known = if let Guess::Framed { channels, .. } = line.guess { channels } else { None };
         Self {
             line,
             is_framed: matches!(line.guess, Guess::Framed { .. }),
-            channels: told.unwrap_or(channels),
+            channels: known.unwrap_or(channels),
             addressed,
             byte: BYTE_BITS * bit,
             gap: (GAP_BITS + BYTE_BITS) * bit,
@@ -141,7 +139,7 @@ impl<'a> Line<'a> {
 
     fn rows(&self, rows: &mut Vec<LinePacket>) {
         self.each(|found| rows.push(self.packet(found)));
-        rows.extend(self.line.heard.framing_errors.iter().map(|seen| LinePacket {
+        rows.extend(self.line.decoded.framing_errors.iter().map(|seen| LinePacket {
             line: self.line.name,
             kind: "byte",
             start_cycle: seen.0,
@@ -152,7 +150,6 @@ impl<'a> Line<'a> {
         }));
     }
 
-    /// Calls `take` for each packet in the order of time.
     pub(super) fn each(&self, mut take: impl FnMut(Found)) {
         let (mut deframer, mut outcome) = (Deframer::default(), None);
         let (mut bytes, mut start_cycle, mut last) = (Vec::new(), 0, 0);
@@ -162,20 +159,20 @@ impl<'a> Line<'a> {
             bytes: core::mem::take(bytes),
             outcome,
         };
-        for heard in &self.line.heard.bytes {
-            let at = heard.start.0;
+        for decoded in &self.line.decoded.bytes {
+            let at = decoded.start.0;
             if !self.is_framed && !bytes.is_empty() && at.saturating_sub(last) > self.gap {
                 take(found(start_cycle, last, &mut bytes, None));
             }
             if bytes.is_empty() {
                 start_cycle = at;
             }
-            bytes.push(heard.byte);
+            bytes.push(decoded.byte);
             last = at;
             if !self.is_framed {
                 continue;
             }
-            outcome = match deframer.byte(heard.byte) {
+            outcome = match deframer.byte(decoded.byte) {
                 // Classified by destination, whatever its outcome.
                 Some(Deframed::Frame(_)) => Some(FrameOutcome::OtherAddress),
                 Some(Deframed::Short) => Some(FrameOutcome::Short),
@@ -184,7 +181,7 @@ impl<'a> Line<'a> {
                 None => outcome,
             };
             // Single delimiters belong to the next frame.
-            if heard.byte == DELIMITER && outcome.is_some() {
+            if decoded.byte == DELIMITER && outcome.is_some() {
                 take(found(start_cycle, last, &mut bytes, outcome.take()));
             }
         }
@@ -233,7 +230,7 @@ impl<'a> Line<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::serial::{Heard, HeardByte};
+    use crate::recording::serial::{DecodedByte, DecodedLine};
     use crate::trace::stored_run::Recording;
     use stepscope_sim::Experiment;
 
@@ -285,9 +282,9 @@ mod tests {
         let (recording, _) = run(r#"{"line":{"protocol":"framed"}}"#);
         let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
-        tx.heard.bytes[3].byte ^= 0x40;
-        tx.heard.bytes.pop();
-        tx.heard.framing_errors.push(Instant(5));
+        tx.decoded.bytes[3].byte ^= 0x40;
+        tx.decoded.bytes.pop();
+        tx.decoded.framing_errors.push(Instant(5));
         let packets = Packets::of(&report, 16_000_000, 1, false);
         let tx: Vec<_> = packets.rows.iter().filter(|row| row.line == "TX").collect();
         assert_eq!((tx[0].kind, tx[0].start_cycle, tx[0].bytes.len()), ("byte", 5, 0));
@@ -301,10 +298,11 @@ mod tests {
 
     #[test]
     fn bytes_of_no_known_protocol_are_split_at_gaps_alone() {
-        let bytes = (0..40).map(|k| HeardByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
-        let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
+        let bytes =
+            (0..40).map(|k| DecodedByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
+        let decoded = DecodedLine { bytes: bytes.collect(), ..DecodedLine::default() };
         let report =
-            Report { channels: Vec::new(), lines: Vec::from([LineReport::of_heard(heard, 1000, 1000)]) };
+            Report { channels: Vec::new(), lines: Vec::from([LineReport::of_decoded(decoded, 1000, 1000)]) };
         let rows = Packets::of(&report, 1000, 1, false).rows;
         assert_eq!(rows.iter().map(|row| row.bytes.len()).collect::<Vec<_>>(), [30, 10], "{rows:?}");
         assert!(rows.iter().all(|row| row.meaning.is_empty() && row.outcome.is_empty()), "{rows:?}");

@@ -11,21 +11,9 @@ use alloc::string::String;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    BothEdges {
-        motor: u8,
-        channel: String,
-    },
-    /// Count steps at the other edge of STEP.
-    OtherEdge {
-        motor: u8,
-        channel: String,
-        inverted: bool,
-    },
-    InvertLine {
-        line: &'static str,
-        inverted: bool,
-    },
-    /// Choose the channel of RX.
+    BothEdges { motor: u8, channel: String },
+    OtherEdge { motor: u8, channel: String, inverted: bool },
+    InvertLine { line: &'static str, inverted: bool },
     ChooseLine,
     Format(String),
     Baud,

@@ -39,7 +39,6 @@ pub struct Dealt {
 
 /// Assigns replies on TX to controllers by address. Bytes without an address belong to the last controller addressed
 /// on RX.
-#[must_use]
 pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &[u8]) -> Dealt {
     let of = |mask| {
         let line = report.lines.iter().find(|line| line.name == line_name(mask));
@@ -48,14 +47,13 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
     let mut dealt = Dealt::default();
     let Some(tx) = of(Levels::TX) else { return dealt };
     let place = |address: u8| addresses.iter().position(|own| *own == address);
-    // A single controller receives all of them.
-    let mut asked: Vec<(u64, usize)> = Vec::new();
+    let mut commands: Vec<(u64, usize)> = Vec::new();
     if let Some(rx) = of(Levels::RX).filter(|_| addresses.len() > 1) {
         rx.each(|Found { end_cycle, bytes, outcome, .. }| {
             let head = outcome.and_then(|outcome| Head::of(&bytes, RowOutcome::Frame(outcome)));
             // RX may carry replies of other controllers.
             let to = head.filter(|head| !head.is_reply()).and_then(|head| place(head.address));
-            asked.extend(to.map(|to| (end_cycle, to)));
+            commands.extend(to.map(|to| (end_cycle, to)));
         });
     }
     tx.each(|Found { start_cycle, end_cycle, bytes, .. }| {
@@ -63,7 +61,7 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
             return;
         }
         let named = reply(&bytes).and_then(|reply| place(reply.address));
-        let last = || asked.get(asked.partition_point(|(end, _)| *end <= start_cycle).checked_sub(1)?);
+        let last = || commands.get(commands.partition_point(|(end, _)| *end <= start_cycle).checked_sub(1)?);
         let controller = named.or_else(|| last().map(|(_, place)| *place));
         dealt.unknown += usize::from(controller.is_none() && addresses.len() > 1);
         let length = bytes.len() as u64 | (controller.unwrap_or(0) as u64) << CONTROLLER_SHIFT;
@@ -77,8 +75,6 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
 
 const CONTROLLER_SHIFT: u32 = 32;
 
-/// The complete replies of a controller.
-#[must_use]
 pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
     let mut replies = Vec::new();
     let mut last = 0;
@@ -129,8 +125,8 @@ mod tests {
         // The device took 500 cycles more for each than the model does; one reply is spoilt on its way.
         let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
-        tx.heard.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
-        tx.heard.bytes[3].byte ^= 0x40;
+        tx.decoded.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
+        tx.decoded.bytes[3].byte ^= 0x40;
         let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
         assert_eq!(unknown, 0, "there is but one controller");
         put(&bytes, &experiment, &run, 0, &mut recording.packets);
@@ -176,11 +172,11 @@ mod tests {
         let others = Report::of(&recordings[1].trace, 16_000_000, 1, None).lines;
         let others = others.into_iter().find(|line| line.name == "TX").expect("it answers");
         let line = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
-        let first = others.heard.bytes[0].start;
-        line.heard.bytes.extend(others.heard.bytes);
-        line.heard.bytes.sort_by_key(|byte| byte.start);
+        let first = others.decoded.bytes[0].start;
+        line.decoded.bytes.extend(others.decoded.bytes);
+        line.decoded.bytes.sort_by_key(|byte| byte.start);
         // Of the other one the first reply is spoilt.
-        let spoilt = line.heard.bytes.iter_mut().find(|byte| byte.start == first).expect("it is there");
+        let spoilt = line.decoded.bytes.iter_mut().find(|byte| byte.start == first).expect("it is there");
         spoilt.byte ^= 0x40;
         let all = 0..u64::MAX;
         let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, all.clone(), &[3, 7]);
@@ -204,7 +200,7 @@ mod tests {
                 assert!(table.address(row).is_none_or(|address| address == addresses[index]), "{row}");
             }
         }
-        // Nobody was asked: what names no controller is with the first, and that is known.
+        // Nobody was commands: what names no controller is with the first, and that is known.
         report.lines.retain(|line| line.name == "TX");
         let alone = to_bytes(&report, 16_000_000, all.clone(), &addresses);
         assert_eq!((alone.unknown, alone.bytes.len()), (1, bytes.len()));

@@ -13,12 +13,12 @@
 //! ```
 
 use super::serial::{
-    HeardByte, LineOptions, MEASURED_EDGES, edges, hear_among, is_text_of_seven, parity_of_seven,
+    DecodedByte, LineOptions, MEASURED_EDGES, decode_records, edges, is_text_of_seven, parity_of_seven,
 };
 use super::{
     figures::StepFigures,
     remedy::Remedy,
-    serial::{Guess, Heard, Measured, guess, line_name},
+    serial::{DecodedLine, Guess, Measured, guess, line_name},
 };
 use alloc::string::ToString;
 use alloc::{format, string::String, vec::Vec};
@@ -45,21 +45,18 @@ pub struct ChannelReport {
 pub struct LineReport {
     pub name: &'static str,
     pub measured: Option<Measured>,
-    /// 0 where no rate fits.
     pub baud: u32,
     pub format: String,
     pub problem: Option<String>,
     pub hint: Option<String>,
     pub remedies: Vec<Remedy>,
-    pub heard: Heard,
+    pub decoded: DecodedLine,
     pub guess: Guess,
 }
 
-/// The records in one pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Survey {
     pub count: usize,
-    /// One bit per signal that changes.
     pub changing: u64,
 }
 
@@ -77,7 +74,6 @@ impl Survey {
 
 impl Report {
     /// Decodes lines as 8N1 at `baud`, or at the measured rate.
-    #[must_use]
     pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
         let all = records.iter().copied();
         let options = LineOptions { baud, ..LineOptions::default() };
@@ -85,7 +81,6 @@ impl Report {
     }
 
     /// As [`Self::of`], for records that are iterated several times and not stored; `changing` comes from [`Survey`].
-    #[must_use]
     pub fn of_all(
         records: impl Iterator<Item = Record> + Clone,
         changing: u64,
@@ -105,7 +100,6 @@ impl Report {
         }
     }
 
-    #[must_use]
     pub fn of_steps(steps: &[Step], clock_hz: u32) -> Self {
         let figures = StepFigures::of(steps.iter().copied(), clock_hz);
         Self {
@@ -114,7 +108,6 @@ impl Report {
         }
     }
 
-    #[must_use]
     pub fn rx(&self) -> Option<&LineReport> {
         self.lines.iter().find(|line| line.name == line_name(Levels::RX))
     }
@@ -169,7 +162,7 @@ fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
 }
 
 /// Detects 7-bit bytes that were decoded with eight.
-fn seven_bits(bytes: &[HeardByte]) -> Option<(String, Option<Remedy>)> {
+fn seven_bits(bytes: &[DecodedByte]) -> Option<(String, Option<Remedy>)> {
     if is_text_of_seven(bytes) {
         let text = "all bytes look like text of 7 data bits with 2 stop bits, or 1 and pauses";
         return Some((text.into(), Some(Remedy::Format("7N2".into()))));
@@ -200,7 +193,7 @@ impl LineReport {
             problem: None,
             hint: None,
             remedies: Vec::new(),
-            heard: Heard::default(),
+            decoded: DecodedLine::default(),
             guess: Guess::Other,
         };
         let bit = match (baud, &found) {
@@ -214,9 +207,9 @@ impl LineReport {
             }
         };
         line.baud = baud.or(measured.map(Measured::rounded)).unwrap_or_default();
-        line.heard = hear_among(records, mask, bit, format);
-        line.guess = guess(&line.heard.bytes, bit as u64);
-        let Heard { bytes, framing_errors, parity_errors } = &line.heard;
+        line.decoded = decode_records(records, mask, bit, format);
+        line.guess = guess(&line.decoded.bytes, bit as u64);
+        let DecodedLine { bytes, framing_errors, parity_errors } = &line.decoded;
         let wrong = framing_errors.len() + parity_errors.len();
         let hint = match found {
             Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => {
@@ -234,15 +227,13 @@ impl LineReport {
         Some(line)
     }
 
-    #[must_use]
-    pub fn of_heard(heard: Heard, clock_hz: u32, baud: u32) -> Self {
-        Self::of_heard_on(Levels::RX, heard, clock_hz, baud)
+    pub fn of_decoded(decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
+        Self::of_decoded_on(Levels::RX, decoded, clock_hz, baud)
     }
 
     /// Decoded bytes on a line: [`Levels::RX`] or [`Levels::TX`].
-    #[must_use]
-    pub fn of_heard_on(line: u64, heard: Heard, clock_hz: u32, baud: u32) -> Self {
-        let guess = guess(&heard.bytes, u64::from(clock_hz / baud.max(1)));
+    pub fn of_decoded_on(line: u64, decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
+        let guess = guess(&decoded.bytes, u64::from(clock_hz / baud.max(1)));
         Self {
             name: line_name(line),
             measured: None,
@@ -251,12 +242,11 @@ impl LineReport {
             problem: None,
             hint: None,
             remedies: Vec::new(),
-            heard,
+            decoded,
             guess,
         }
     }
 
-    #[must_use]
     pub fn to_text(&self) -> String {
         let measured = self
             .measured
@@ -275,14 +265,13 @@ impl LineReport {
             "{}: {} baud{format}{measured}, {} bytes{}{}, {}{hint}",
             self.name,
             self.baud,
-            self.heard.bytes.len(),
-            errors("framing", self.heard.framing_errors.len()),
-            errors("parity", self.heard.parity_errors.len()),
+            self.decoded.bytes.len(),
+            errors("framing", self.decoded.framing_errors.len()),
+            errors("parity", self.decoded.parity_errors.len()),
             self.guess_text()
         )
     }
 
-    #[must_use]
     pub fn guess_text(&self) -> String {
         match self.guess {
             Guess::Framed { address, channels, good, bad } => {

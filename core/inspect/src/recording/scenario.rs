@@ -19,7 +19,7 @@
 //! assert_eq!(cycles(&again), cycles(&recording));
 //! ```
 
-use super::serial::{Guess, Heard};
+use super::serial::{DecodedLine, Guess};
 use crate::trace::timing::{Rule, TimingCheck};
 use alloc::{format, string::String, vec::Vec};
 use core::fmt;
@@ -46,7 +46,7 @@ const START: u64 = 1;
 /// Cycles before the first step in addition to its pulse.
 const MARGIN: u64 = 1;
 /// A pulse above 1/2 of the interval leaves no room for DIR.
-const WIDEST_PART: u64 = 2;
+const MAX_WIDTH_PART: u64 = 2;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
@@ -65,7 +65,6 @@ pub struct Made {
     pub entries: usize,
 }
 
-/// Why there is no scenario.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Refused {
@@ -93,23 +92,23 @@ impl fmt::Display for Refused {
 impl core::error::Error for Refused {}
 
 /// The steps of all channels as segment lists.
-pub fn of_steps(records: &[Record], asked: &Steps) -> Result<Made, Refused> {
-    let all: Vec<Vec<Step>> = (0..asked.channels).map(|channel| steps(records, channel)).collect();
-    of_list(&all, asked, Some(records))
+pub fn of_steps(records: &[Record], request: &Steps) -> Result<Made, Refused> {
+    let all: Vec<Vec<Step>> = (0..request.channels).map(|channel| steps(records, channel)).collect();
+    of_list(&all, request, Some(records))
 }
 
 /// Steps by channel, without pulses: the width is half of the shortest interval, at most the default.
-pub fn of_step_times(all: &[Vec<Step>], asked: &Steps) -> Result<Made, Refused> {
-    of_list(all, asked, None)
+pub fn of_step_times(all: &[Vec<Step>], request: &Steps) -> Result<Made, Refused> {
+    of_list(all, request, None)
 }
 
-fn of_list(all: &[Vec<Step>], asked: &Steps, records: Option<&[Record]>) -> Result<Made, Refused> {
+fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Result<Made, Refused> {
     let first =
         all.iter().filter_map(|steps| steps.first()).map(|step| step.cycle).min().ok_or(Refused::NoSteps)?;
-    let pulse = pulse_times(records, all, asked.clock_hz);
+    let pulse = pulse_times(records, all, request.clock_hz);
     let least = pulse.width.0 + (pulse.hold.0 + pulse.setup.0).max(1) + MARGIN;
     let later_cycles = (START + least).saturating_sub(first);
-    let form = match asked.within_cycles {
+    let form = match request.within_cycles {
         0 => Form::Exact,
         within => Form::Compressed(Tolerance::of(Cycles(within.min(MAX_TOLERANCE.0)))),
     };
@@ -133,8 +132,8 @@ fn of_list(all: &[Vec<Step>], asked: &Steps, records: Option<&[Record]>) -> Resu
         entries += list.segments.len();
         channels.push(list);
     }
-    let mut scenario = Scenario { clock_hz: asked.clock_hz, ..Scenario::default() };
-    scenario.bus.channels = asked.channels;
+    let mut scenario = Scenario { clock_hz: request.clock_hz, ..Scenario::default() };
+    scenario.bus.channels = request.channels;
     let narrow = |cycles: Cycles| u32::try_from(cycles.0).unwrap_or(u32::MAX);
     scenario.bus.pulse_width_cycles = narrow(pulse.width);
     scenario.bus.dir_setup_cycles = narrow(pulse.setup);
@@ -171,11 +170,11 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
         .unwrap_or(u64::MAX);
     let width = least(Rule::StepHigh)
         .unwrap_or_else(|| Bus::default().pulse_width_cycles.into())
-        .min(interval / WIDEST_PART)
+        .min(interval / MAX_WIDTH_PART)
         .clamp(*PULSE_WIDTH_CYCLES.start(), *PULSE_WIDTH_CYCLES.end());
     // DIR changes at the start of a segment, long before most of its steps, so more set-up only refuses some.
     let setup =
-        least(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / WIDEST_PART);
+        least(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / MAX_WIDTH_PART);
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
@@ -189,10 +188,10 @@ pub struct Bytes {
 }
 
 /// The bytes of a line as a line script for the controllers of `base`, or for one that the bytes imply.
-pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result<Made, Refused> {
-    let Bytes { clock_hz, baud, .. } = *asked;
-    let first = heard.bytes.first().ok_or(Refused::NoBytes)?;
-    let mut scenario = base.map_or_else(|| spoken_of(asked), Scenario::clone);
+pub fn of_bytes(decoded: &DecodedLine, request: &Bytes, base: Option<&Scenario>) -> Result<Made, Refused> {
+    let Bytes { clock_hz, baud, .. } = *request;
+    let first = decoded.bytes.first().ok_or(Refused::NoBytes)?;
+    let mut scenario = base.map_or_else(|| implied_by(request), Scenario::clone);
     let own_hz = scenario.clock_hz;
     if u64::from(own_hz) < 11 * u64::from(baud) {
         return Err(Refused::FewCycles(own_hz, baud));
@@ -206,7 +205,7 @@ pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result
     let later_cycles = START.saturating_sub(cycle(first.start));
     let mut sends: Vec<ScriptedSend> = Vec::new();
     let mut greatest = 0;
-    for byte in &heard.bytes {
+    for byte in &decoded.bytes {
         let at = cycle(byte.start).saturating_add(later_cycles);
         let next =
             sends.last().map(|send| send.start_cycle.saturating_add(times.byte(send.bytes.0.len() as u64).0));
@@ -227,25 +226,23 @@ pub fn of_bytes(heard: &Heard, asked: &Bytes, base: Option<&Scenario>) -> Result
     Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
 }
 
-fn spoken_of(asked: &Bytes) -> Scenario {
+fn implied_by(request: &Bytes) -> Scenario {
     let mut scenario = Scenario::default();
-    if u64::from(scenario.clock_hz) < 11 * u64::from(asked.baud) {
-        scenario.clock_hz = asked.clock_hz;
+    if u64::from(scenario.clock_hz) < 11 * u64::from(request.baud) {
+        scenario.clock_hz = request.clock_hz;
     }
     let defaults = SerialLine::default();
-    let (protocol, address, own) = match asked.guess {
+    let (protocol, address, own) = match request.guess {
         Guess::Framed { address, channels, .. } => (Protocol::Framed, Some(address), channels),
         Guess::Raw { length, .. } => (Protocol::Raw, None, Some(length)),
         Guess::Other => (defaults.protocol, None, None),
     };
-    scenario.bus.channels = own.unwrap_or(asked.channels).clamp(1, 16);
+    scenario.bus.channels = own.unwrap_or(request.channels).clamp(1, 16);
     scenario.line.protocol = protocol;
     scenario.line.address = address;
     scenario
 }
 
-/// The sentence that states a scenario's origin.
-#[must_use]
 pub fn note(file: &str, made: &Made) -> String {
     let error = match made.greatest_error_cycles {
         0 => "each in its very cycle".into(),
@@ -261,15 +258,14 @@ pub fn note(file: &str, made: &Made) -> String {
     }
 }
 
-#[must_use]
-pub fn end_of(heard: &Heard, bit_cycles: u64) -> Option<Instant> {
-    heard.bytes.last().map(|byte| Instant(byte.start.0 + BYTE_BITS * bit_cycles))
+pub fn end_of(decoded: &DecodedLine, bit_cycles: u64) -> Option<Instant> {
+    decoded.bytes.last().map(|byte| Instant(byte.start.0 + BYTE_BITS * bit_cycles))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::serial::{guess, hear};
+    use crate::recording::serial::{decode_line, guess};
     use crate::trace::stored_run::Recording;
     use stepscope_peripheral::signal::Levels;
     use stepscope_sim::Experiment;
@@ -292,8 +288,8 @@ mod tests {
             for record in trace.iter_mut().skip(1) {
                 record.cycle = Instant(record.cycle.0.saturating_sub(by).max(1));
             }
-            let asked = Steps { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
-            let made = of_steps(&trace, &asked).expect("steps");
+            let request = Steps { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
+            let made = of_steps(&trace, &request).expect("steps");
             assert_eq!(made.greatest_error_cycles, 0);
             let mut again = Recording::default();
             Experiment::new(&made.scenario).expect("no problems").run(&mut again);
@@ -314,16 +310,16 @@ mod tests {
         ] {
             let recording = recorded(json);
             let clock_hz = 16_000_000;
-            let heard = hear(&recording.trace, Levels::RX, clock_hz, 115_200);
-            let asked = Bytes { clock_hz, baud: 115_200, guess: guess(&heard.bytes, 139), channels: 1 };
-            let made = of_bytes(&heard, &asked, None).expect("bytes");
+            let decoded = decode_line(&recording.trace, Levels::RX, clock_hz, 115_200);
+            let request = Bytes { clock_hz, baud: 115_200, guess: guess(&decoded.bytes, 139), channels: 1 };
+            let made = of_bytes(&decoded, &request, None).expect("bytes");
             let mut again = Recording::default();
             Experiment::new(&made.scenario).expect("no problems").run(&mut again);
             assert_eq!(steps(&again.trace, 0), steps(&recording.trace, 0), "{json}");
             assert!(made.greatest_error_cycles <= 1, "{made:?}");
         }
         let error = of_bytes(
-            &Heard::default(),
+            &DecodedLine::default(),
             &Bytes { clock_hz: 1, baud: 1, guess: Guess::Other, channels: 1 },
             None,
         );

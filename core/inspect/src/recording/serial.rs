@@ -1,9 +1,9 @@
 //! Bytes on a recorded line: bit rate, framing, and protocol.
 //!
 //! ```
-//! use stepscope_inspect::recording::serial::{Guess, guess, hear, measured_baud};
+//! use stepscope_inspect::recording::serial::{Guess, guess, decode_line, measured_baud};
 //! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_peripheral::{signal::Levels};
+//! use stepscope_peripheral::signal::Levels;
 //! use stepscope_sim::Experiment;
 //!
 //! // The line of a run, as a logic analyzer would have seen it.
@@ -12,9 +12,9 @@
 //! experiment.run(&mut recording);
 //! let baud = measured_baud(&recording.trace, Levels::RX, 16_000_000).expect("a line");
 //! assert_eq!(baud.usual, Some(115_200));
-//! let heard = hear(&recording.trace, Levels::RX, 16_000_000, 115_200);
-//! assert!(heard.framing_errors.is_empty());
-//! assert!(matches!(guess(&heard.bytes, 139), Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }));
+//! let decoded = decode_line(&recording.trace, Levels::RX, 16_000_000, 115_200);
+//! assert!(decoded.framing_errors.is_empty());
+//! assert!(matches!(guess(&decoded.bytes, 139), Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }));
 //! ```
 
 use alloc::collections::BTreeSet;
@@ -45,7 +45,6 @@ impl Measured {
         Self { baud: f64::from(clock_hz) / found.measured, usual: found.usual }
     }
 
-    #[must_use]
     pub fn rounded(self) -> u32 {
         self.usual.unwrap_or_else(|| libm::round(self.baud) as u32)
     }
@@ -58,7 +57,6 @@ pub struct LineOptions {
 }
 
 /// The rate of an 8N1 line (RX or TX); `None` where none or several fit.
-#[must_use]
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
     let edges: Vec<Edge> = edges(records.iter().copied(), mask).take(MEASURED_EDGES).collect();
     let found = estimate(&edges, Format::default(), Some(clock_hz.into())).ok()?;
@@ -79,14 +77,14 @@ const FORMAT_WORDS: usize = 8;
 const PARITY_WORDS: u32 = 6;
 
 /// The parity of 7 data bits: `E` or `O`; `None` without one, or with too few different bytes.
-pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
+pub(super) fn parity_of_seven(bytes: &[DecodedByte]) -> Option<char> {
     let mut seen = [0_u64; 4];
     let (mut even, mut odd) = (true, true);
-    for heard in bytes {
-        let is_even = heard.byte.count_ones().is_multiple_of(2);
+    for decoded in bytes {
+        let is_even = decoded.byte.count_ones().is_multiple_of(2);
         (even, odd) = (even && is_even, odd && !is_even);
-        if let Some(word) = seen.get_mut(usize::from(heard.byte >> 6)) {
-            *word |= 1 << (heard.byte & 63);
+        if let Some(word) = seen.get_mut(usize::from(decoded.byte >> 6)) {
+            *word |= 1 << (decoded.byte & 63);
         }
     }
     if bytes.len() < FORMAT_WORDS || seen.iter().map(|word| word.count_ones()).sum::<u32>() < PARITY_WORDS {
@@ -96,57 +94,53 @@ pub(super) fn parity_of_seven(bytes: &[HeardByte]) -> Option<char> {
 }
 
 /// Whether bytes look like 7-bit text with a stop bit or pause as the eighth bit.
-pub(super) fn is_text_of_seven(bytes: &[HeardByte]) -> bool {
-    let is_text = |heard: &&HeardByte| matches!(heard.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
-    // Packets of a few such bytes are no text.
+pub(super) fn is_text_of_seven(bytes: &[DecodedByte]) -> bool {
+    let is_text = |decoded: &&DecodedByte| matches!(decoded.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
     bytes.len() >= FORMAT_WORDS
-        && bytes.iter().all(|heard| heard.byte & 0x80 != 0)
-        && bytes.iter().map(|heard| heard.byte).collect::<BTreeSet<u8>>().len() >= 4
+        && bytes.iter().all(|decoded| decoded.byte & 0x80 != 0)
+        && bytes.iter().map(|decoded| decoded.byte).collect::<BTreeSet<u8>>().len() >= 4
         && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HeardByte {
+pub struct DecodedByte {
     pub start: Instant,
     pub byte: u8,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Heard {
-    pub bytes: Vec<HeardByte>,
+pub struct DecodedLine {
+    pub bytes: Vec<DecodedByte>,
     pub framing_errors: Vec<Instant>,
     pub parity_errors: Vec<Instant>,
 }
 
 /// The bytes of an 8N1 line at a rate.
-#[must_use]
-pub fn hear(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> Heard {
+pub fn decode_line(records: &[Record], mask: u64, clock_hz: u32, baud: u32) -> DecodedLine {
     let bit = f64::from(clock_hz) / f64::from(baud.max(1));
-    hear_among(records.iter().copied(), mask, bit, Format::default())
+    decode_records(records.iter().copied(), mask, bit, Format::default())
 }
 
-pub(super) fn hear_among(
+pub(super) fn decode_records(
     records: impl Iterator<Item = Record>,
     mask: u64,
     bit: f64,
     format: Format,
-) -> Heard {
-    let mut heard = Heard::default();
+) -> DecodedLine {
+    let mut decoded = DecodedLine::default();
     decode(edges(records, mask), bit, format, |word| {
         let start = Instant(word.start);
         match word.fault {
-            None => heard.bytes.push(HeardByte { start, byte: word.byte }),
-            Some(Fault::Framing) => heard.framing_errors.push(start),
-            Some(Fault::Parity) => heard.parity_errors.push(start),
+            None => decoded.bytes.push(DecodedByte { start, byte: word.byte }),
+            Some(Fault::Framing) => decoded.framing_errors.push(start),
+            Some(Fault::Parity) => decoded.parity_errors.push(start),
         }
     });
-    heard
+    decoded
 }
 
-/// What bytes seem to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guess {
-    /// Frames (DESIGN A6).
     Framed {
         /// The most frequent address except 255.
         address: u8,
@@ -164,8 +158,7 @@ pub enum Guess {
 }
 
 /// Detects the protocol; a bit lasts `bit_cycles`.
-#[must_use]
-pub fn guess(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
+pub fn guess(bytes: &[DecodedByte], bit_cycles: u64) -> Guess {
     let framed = framed(bytes);
     if let Guess::Framed { good, bad, .. } = framed
         && good > bad
@@ -175,19 +168,18 @@ pub fn guess(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
     raw(bytes, bit_cycles)
 }
 
-fn framed(bytes: &[HeardByte]) -> Guess {
+fn framed(bytes: &[DecodedByte]) -> Guess {
     let mut deframer = Deframer::default();
     let (mut good, mut bad, mut channels) = (0, 0, None);
     let mut addresses = vec![0_u32; 256];
-    for heard in bytes {
-        match deframer.byte(heard.byte) {
+    for decoded in bytes {
+        match deframer.byte(decoded.byte) {
             Some(Deframed::Frame(frame)) => {
                 good += 1;
                 if let Some(count) = addresses.get_mut(usize::from(frame.address)) {
                     *count += 1;
                 }
                 if frame.kind == Kind::Ticks as u8 {
-                    // The number of channels must divide the ticks evenly.
                     let fits = |channels: &u8| Ticks::parse(frame.body, *channels).is_some();
                     channels = channels.or_else(|| (1..=MAX_CHANNELS as u8).find(fits));
                 }
@@ -200,7 +192,7 @@ fn framed(bytes: &[HeardByte]) -> Guess {
     Guess::Framed { address: most.unwrap_or(0), channels, good, bad }
 }
 
-fn raw(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
+fn raw(bytes: &[DecodedByte], bit_cycles: u64) -> Guess {
     let mut lengths = [0_u32; MAX_CHANNELS + 2];
     let mut note = |length: usize| {
         if length > 0 {
@@ -208,9 +200,10 @@ fn raw(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
         }
     };
     let mut length = 0;
-    for (index, heard) in bytes.iter().enumerate() {
+    for (index, decoded) in bytes.iter().enumerate() {
         let before = index.checked_sub(1).and_then(|before| bytes.get(before));
-        let gap = before.is_some_and(|before| heard.start.0 - before.start.0 > (GAP_BITS + 10) * bit_cycles);
+        let gap =
+            before.is_some_and(|before| decoded.start.0 - before.start.0 > (GAP_BITS + 10) * bit_cycles);
         if gap {
             note(length);
             length = 0;
@@ -231,7 +224,6 @@ fn raw(bytes: &[HeardByte], bit_cycles: u64) -> Guess {
     Guess::Other
 }
 
-#[must_use]
 pub const fn line_name(mask: u64) -> &'static str {
     if mask == Levels::TX { "TX" } else { "RX" }
 }
@@ -279,10 +271,10 @@ mod tests {
             let found = measured_baud(&records, Levels::RX, clock_hz).expect("a line");
             assert!((found.baud / f64::from(baud) - 1.0).abs() < 0.02, "{found:?} of {baud}");
             assert_eq!(found.usual, (baud != 187_500).then_some(baud));
-            let heard = hear(&records, Levels::RX, clock_hz, found.rounded());
-            assert_eq!(heard.framing_errors, []);
+            let decoded = decode_line(&records, Levels::RX, clock_hz, found.rounded());
+            assert_eq!(decoded.framing_errors, []);
             assert_eq!(
-                heard.bytes.iter().map(|heard| heard.byte).collect::<Vec<_>>(),
+                decoded.bytes.iter().map(|decoded| decoded.byte).collect::<Vec<_>>(),
                 sent.iter().map(|sent| sent.0).collect::<Vec<_>>(),
                 "{clock_hz} {baud} {pause}"
             );
@@ -292,18 +284,18 @@ mod tests {
 
     #[test]
     fn seven_bits_are_known_by_their_text() {
-        let heard = |bytes: &[u8]| -> Vec<HeardByte> {
-            bytes.iter().map(|byte| HeardByte { start: Instant(0), byte: *byte }).collect()
+        let decoded = |bytes: &[u8]| -> Vec<DecodedByte> {
+            bytes.iter().map(|byte| DecodedByte { start: Instant(0), byte: *byte }).collect()
         };
-        let top = |text: &[u8]| heard(&text.iter().map(|byte| byte | 0x80).collect::<Vec<_>>());
+        let top = |text: &[u8]| decoded(&text.iter().map(|byte| byte | 0x80).collect::<Vec<_>>());
         assert!(is_text_of_seven(&top(b"G1 X10\r\n")));
         assert!(!is_text_of_seven(&top(b"G1 X10\n")));
         assert!(!is_text_of_seven(&top(b"AAAAAAAAAA")));
-        assert!(!is_text_of_seven(&heard(b"G1 X10\r\n")));
+        assert!(!is_text_of_seven(&decoded(b"G1 X10\r\n")));
         assert!(!is_text_of_seven(&top(&[1, 5, 1, 5, 1, 5, 1, 5, 1])));
-        let even = |text: &[u8]| -> Vec<HeardByte> {
+        let even = |text: &[u8]| -> Vec<DecodedByte> {
             let parity = |byte: &u8| if byte.count_ones() % 2 == 1 { byte | 0x80 } else { *byte };
-            heard(&text.iter().map(parity).collect::<Vec<_>>())
+            decoded(&text.iter().map(parity).collect::<Vec<_>>())
         };
         assert_eq!(parity_of_seven(&even(b"G1 X10\r\n")), Some('E'));
         assert_eq!(parity_of_seven(&even(b"ABABABABAB")), None);
@@ -316,12 +308,13 @@ mod tests {
             (0..length * count).map(|i| (0x85, if i % length == 0 { 60 * bit } else { 0 })).collect()
         };
         for length in [1, 2, 8, 17] {
-            let heard =
-                hear(&line(16_000_000, 115_200, &packets(length, 9)), Levels::RX, 16_000_000, 115_200);
-            assert_eq!(guess(&heard.bytes, bit), Guess::Raw { length: length as u8, good: 9, bad: 0 });
+            let decoded =
+                decode_line(&line(16_000_000, 115_200, &packets(length, 9)), Levels::RX, 16_000_000, 115_200);
+            assert_eq!(guess(&decoded.bytes, bit), Guess::Raw { length: length as u8, good: 9, bad: 0 });
         }
-        let heard = hear(&line(16_000_000, 115_200, &packets(300, 1)), Levels::RX, 16_000_000, 115_200);
-        assert_eq!(guess(&heard.bytes, bit), Guess::Raw { length: 17, good: 1, bad: 0 });
+        let decoded =
+            decode_line(&line(16_000_000, 115_200, &packets(300, 1)), Levels::RX, 16_000_000, 115_200);
+        assert_eq!(guess(&decoded.bytes, bit), Guess::Raw { length: 17, good: 1, bad: 0 });
         assert_eq!(guess(&[], bit), Guess::Other);
     }
 }

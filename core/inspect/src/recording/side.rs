@@ -3,7 +3,6 @@
 use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
-/// Steps or bytes by their own clock.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
     pub steps: &'a [Step],
@@ -40,7 +39,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    #[must_use]
     pub const fn plural(self) -> &'static str {
         match self {
             Self::Steps => "steps",
@@ -48,7 +46,6 @@ impl Kind {
         }
     }
 
-    #[must_use]
     pub const fn singular(self) -> &'static str {
         match self {
             Self::Steps => "step",

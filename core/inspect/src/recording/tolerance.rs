@@ -10,7 +10,6 @@
 
 use serde::{Serialize, Serializer};
 
-/// An exact time in s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
     numerator: u64,
@@ -21,7 +20,6 @@ impl Tolerance {
     pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
 
     /// `mantissa / 10^places` us; `None` with more than 13 decimal places.
-    #[must_use]
     pub const fn from_micros(mantissa: u64, places: u32) -> Option<Self> {
         match 10_u64.checked_pow(places.saturating_add(6)) {
             Some(denominator) => Some(Self { numerator: mantissa, denominator }),
@@ -29,20 +27,16 @@ impl Tolerance {
         }
     }
 
-    /// One cycle of the slower clock.
-    #[must_use]
     pub fn cycle(one_hz: u32, other_hz: u32) -> Self {
         Self { numerator: 1, denominator: one_hz.min(other_hz).max(1).into() }
     }
 
     /// In units of 1/(`one_hz` * `other_hz`) s, in which time differences of both clocks are whole; rounded down.
-    #[must_use]
     pub const fn units(self, one_hz: u32, other_hz: u32) -> u128 {
         // The product of the clocks fits in 64 bits.
         self.numerator as u128 * (one_hz as u128 * other_hz as u128) / self.denominator as u128
     }
 
-    #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }

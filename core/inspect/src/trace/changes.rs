@@ -63,7 +63,6 @@ pub enum Edge {
 /// The pyramid over one trace; each call takes that trace.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
-    /// Complete blocks only.
     levels: Vec<Vec<Block>>,
 }
 
@@ -95,14 +94,11 @@ impl Changes {
         &mut self.levels[index]
     }
 
-    /// Memory in addition to the trace.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.capacity() * size_of::<Block>()).sum()
     }
 
     /// As [`super::columns`], with `margin` additional columns on each side; columns before cycle 0 have no levels.
-    #[must_use]
     pub fn columns(&self, trace: &[Record], start: u64, end: u64, count: usize, margin: usize) -> Columns {
         let span = i128::from(end.saturating_sub(start).max(1));
         let total = count + 2 * margin;
@@ -160,7 +156,6 @@ impl Changes {
     }
 
     /// Index of the next edge of signal `bit` after cycle `at`. Initial levels are no edge.
-    #[must_use]
     pub fn next_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
         let mask = 1_u64.checked_shl(bit.into())?;
         let first = trace.partition_point(|record| record.cycle.0 <= at).max(1);
@@ -174,7 +169,6 @@ impl Changes {
     }
 
     /// Index of the last edge of signal `bit` before cycle `at`.
-    #[must_use]
     pub fn previous_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
         let mask = 1_u64.checked_shl(bit.into())?;
         let after = trace.partition_point(|record| record.cycle.0 < at);

@@ -28,7 +28,6 @@ pub struct Columns {
 
 /// Column i starts at start + floor(i*span/count) and has at least one cycle. Columns past the last record continue
 /// its levels.
-#[must_use]
 pub fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns {
     let span = u128::from(end.saturating_sub(start).max(1));
     let bound = |i: usize| start.saturating_add((span * i as u128 / count.max(1) as u128) as u64);

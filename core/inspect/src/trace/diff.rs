@@ -36,7 +36,6 @@ const MAX_LINE: usize = 1000;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadLine {
-    /// From 1.
     pub line: u64,
     pub what: String,
 }
@@ -49,7 +48,6 @@ impl fmt::Display for BadLine {
 
 impl core::error::Error for BadLine {}
 
-/// The first difference of file and run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
     pub line: u64,
@@ -61,7 +59,6 @@ pub struct Difference {
 
 impl Difference {
     /// Differing signals; none where the run has ended.
-    #[must_use]
     pub const fn signals(&self) -> u64 {
         self.file.0 ^ self.run.0
     }
@@ -82,9 +79,7 @@ pub struct Outcome {
 enum Form {
     /// Before the first line.
     Unknown,
-    /// Cycle and levels in hexadecimal.
     Trace,
-    /// The bit of each column after cycle and time.
     Table(Vec<u32>),
 }
 
@@ -103,7 +98,6 @@ pub struct TraceDiff {
 }
 
 impl TraceDiff {
-    #[must_use]
     pub const fn new(channels: u8) -> Self {
         Self {
             channels,

@@ -18,12 +18,10 @@ pub struct DataSheet {
     pub model: DriverModel,
     pub id: &'static str,
     pub name: &'static str,
-    /// The document, and what the figures are based on.
     pub source: &'static str,
     pub rules: TimingRules,
 }
 
-/// All drivers, by maker.
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
 /// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
@@ -121,7 +119,6 @@ pub const TB6600_CLASS: DataSheet = DataSheet {
     },
 };
 
-#[must_use]
 pub const fn sheet(model: DriverModel) -> &'static DataSheet {
     match model {
         DriverModel::A4988 => &A4988,
@@ -134,13 +131,11 @@ pub const fn sheet(model: DriverModel) -> &'static DataSheet {
 }
 
 /// The check that a scenario requests; it lists `most` violations.
-#[must_use]
 pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
     let rules = scenario.driver_timing.as_ref().map(rules)?;
     Some(TimingCheck::new(&rules, scenario.clock_hz, most))
 }
 
-#[must_use]
 pub fn rules(driver: &DriverTiming) -> TimingRules {
     match driver {
         DriverTiming::Preset(model) => sheet(*model).rules.clone(),

@@ -41,17 +41,14 @@ pub struct EdgeList {
     pub more: bool,
 }
 
-/// The pulse or pause around a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pulse {
     pub high: bool,
     pub begin: Option<u64>,
     pub end: Option<u64>,
-    /// The edge after that.
     pub next: Option<u64>,
 }
 
-/// A trace and its changes.
 #[derive(Clone, Copy)]
 pub struct Signals<'a> {
     pub trace: &'a [Record],
@@ -59,19 +56,16 @@ pub struct Signals<'a> {
 }
 
 impl Signals<'_> {
-    #[must_use]
     pub fn level(&self, bit: u8, cycle: u64) -> bool {
         levels_at(self.trace, Instant(cycle)).has(1 << bit.min(63))
     }
 
     /// Cycle of the first edge after `cycle`, or the last one before.
-    #[must_use]
     pub fn next(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<u64> {
         let found = self.edge(bit, cycle, forward, edge);
         found.and_then(|index| self.trace.get(index)).map(|record| record.cycle.0)
     }
 
-    #[must_use]
     pub fn pulse_at(&self, bit: u8, cycle: u64) -> Pulse {
         let end = self.next(bit, cycle, true, Edge::Any);
         Pulse {
@@ -84,7 +78,6 @@ impl Signals<'_> {
 
     /// Edges after `cycle` (`None`: from reset), or before it, of one or all signals: at least `most` if they exist,
     /// and all edges of the last cycle.
-    #[must_use]
     pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, most: usize) -> EdgeList {
         let at = cycle.unwrap_or(0);
         let mut index = match (forward, cycle) {
@@ -145,15 +138,11 @@ impl Signals<'_> {
     }
 }
 
-/// Changes of single signals in a trace.
-#[must_use]
 pub fn count(trace: &[Record]) -> u64 {
     let pairs = trace.iter().zip(trace.iter().skip(1));
     pairs.map(|(before, now)| u64::from((before.levels.0 ^ now.levels.0).count_ones())).sum()
 }
 
-/// Signals that change.
-#[must_use]
 pub fn changing(trace: &[Record]) -> Vec<u8> {
     let Levels(first) = trace.first().map_or(Levels::RESET, |record| record.levels);
     let mask = trace.iter().fold(0, |mask, record| mask | (record.levels.0 ^ first));

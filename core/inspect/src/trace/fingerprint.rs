@@ -43,7 +43,6 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    #[must_use]
     pub fn of(trace: &[Record]) -> Self {
         let mut fingerprinter = Fingerprinter::default();
         for record in trace {
@@ -52,14 +51,12 @@ impl Fingerprint {
         fingerprinter.finish()
     }
 
-    #[must_use]
     pub const fn spacing(&self) -> u64 {
         spacing(self.records)
     }
 }
 
 /// The smallest power of two s with records/s < 17.
-#[must_use]
 pub(crate) const fn spacing(records: u64) -> u64 {
     (records / (MAX_CHECKPOINTS as u64 + 1) + 1).next_power_of_two()
 }
@@ -79,7 +76,6 @@ impl Default for Fingerprinter {
 }
 
 impl Fingerprinter {
-    #[must_use]
     pub fn finish(self) -> Fingerprint {
         Fingerprint {
             digest: self.digest.value(),
@@ -120,7 +116,6 @@ pub struct Mark {
     pub cycle: Instant,
 }
 
-/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerprintMatch {
     Same(Mark),
@@ -135,13 +130,10 @@ pub enum FingerprintMatch {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
-    /// The trace that was checked.
     This,
-    /// The trace of the fingerprint.
     Other,
 }
 
-/// Compares a trace with a fingerprint.
 pub struct FingerprintCheck<'a> {
     other: &'a Fingerprint,
     spacing: u64,
@@ -153,7 +145,6 @@ pub struct FingerprintCheck<'a> {
 }
 
 impl<'a> FingerprintCheck<'a> {
-    #[must_use]
     pub fn with(other: &'a Fingerprint) -> Self {
         let none = Mark { records: 0, edges: 0, cycle: Instant::RESET };
         Self {
@@ -167,7 +158,6 @@ impl<'a> FingerprintCheck<'a> {
         }
     }
 
-    #[must_use]
     pub fn finish(self) -> FingerprintMatch {
         let Self { other, last, same, differs, .. } = self;
         if let Some(until) = differs {

@@ -19,10 +19,8 @@ pub const MAX_RECORDS: u64 = 48_000_000;
 /// Interval of [`check_records`], in records.
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
-/// The run exceeds [`MAX_RECORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TooLong {
-    /// Steps of the segment lists.
     Steps(u64),
     Edges,
 }

@@ -42,7 +42,6 @@ pub struct RunFingerprint {
     pub controllers: Vec<Fingerprint>,
 }
 
-/// Why a fingerprint cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunFingerprintError {
@@ -72,12 +71,10 @@ impl core::error::Error for RunFingerprintError {}
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl RunFingerprint {
-    #[must_use]
     pub fn of(controllers: Vec<Fingerprint>) -> Self {
         Self { version: VERSION.to_string(), controllers }
     }
 
-    #[must_use]
     pub fn emit(&self) -> String {
         let mut text = format!("{FORM}.{}", self.version.replace('.', "_"));
         for Fingerprint { digest, records, checkpoints } in &self.controllers {
@@ -88,8 +85,6 @@ impl RunFingerprint {
         text + &format!(".{check:08x}")
     }
 
-    /// The sender's version, if it differs from this one.
-    #[must_use]
     pub fn other_version(&self) -> Option<&str> {
         (self.version != VERSION).then_some(self.version.as_str())
     }
@@ -121,20 +116,11 @@ impl RunFingerprint {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verification {
-    Same {
-        edges: u64,
-    },
-    /// The first difference of the first controller that has one.
-    Differs {
-        controller: usize,
-        after: Mark,
-        until: Mark,
-        shorter: Option<Shorter>,
-    },
+    Same { edges: u64 },
+    Differs { controller: usize, after: Mark, until: Mark, shorter: Option<Shorter> },
 }
 
 impl Verification {
-    #[must_use]
     pub fn of<'a>(checks: impl IntoIterator<Item = FingerprintCheck<'a>>) -> Self {
         let mut edges = 0;
         for (controller, check) in checks.into_iter().enumerate() {

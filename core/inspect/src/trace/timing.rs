@@ -42,7 +42,6 @@ use stepscope_scenario::TimingRules;
 
 const WATCHED: u64 = Levels::EN | 0xFFFF_FFFF;
 
-/// A driver's requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Rule {
     StepHigh,
@@ -56,7 +55,6 @@ impl Rule {
     pub const ALL: [Self; 5] =
         [Self::StepHigh, Self::StepLow, Self::DirSetup, Self::DirHold, Self::EnableWake];
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::StepHigh => "step_high",
@@ -68,7 +66,6 @@ impl Rule {
     }
 
     /// The required ns; 0 for none.
-    #[must_use]
     pub const fn nanos(self, rules: &TimingRules) -> u32 {
         match self {
             Self::StepHigh => rules.step_high_ns,
@@ -81,17 +78,14 @@ impl Rule {
 }
 
 /// Minimum cycles that last `nanos`; the product of two `u32` fits in `u64`.
-#[must_use]
 pub const fn cycles_at_least(nanos: u32, clock_hz: u32) -> Cycles {
     Cycles((nanos as u64 * clock_hz as u64).div_ceil(1_000_000_000))
 }
 
-/// A time shorter than required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Violation {
     pub channel: u8,
     pub rule: Rule,
-    /// The edge that came too early.
     pub at: Instant,
     pub measured: Cycles,
     pub required: Cycles,
@@ -116,7 +110,6 @@ pub struct RuleResult {
 }
 
 impl RuleResult {
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.violations.iter().sum()
     }
@@ -129,12 +122,11 @@ struct Edges {
     dir: Option<Instant>,
 }
 
-/// Checks the records of a run.
 #[derive(Clone, Debug)]
 pub struct TimingCheck {
     results: [RuleResult; Rule::ALL.len()],
     violations: Vec<Violation>,
-    most_kept: usize,
+    max_listed: usize,
     levels: Levels,
     edges: [Edges; MAX_CHANNELS],
     /// Reset counts as a rise.
@@ -145,9 +137,8 @@ pub struct TimingCheck {
 }
 
 impl TimingCheck {
-    /// Counts all violations and lists the first `most_kept`.
-    #[must_use]
-    pub fn new(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
+    /// Counts all violations and lists the first `max_listed`.
+    pub fn new(rules: &TimingRules, clock_hz: u32, max_listed: usize) -> Self {
         let result = |rule: Rule| {
             let nanos = rule.nanos(rules);
             let required = cycles_at_least(nanos, clock_hz);
@@ -156,7 +147,7 @@ impl TimingCheck {
         Self {
             results: Rule::ALL.map(result),
             violations: Vec::new(),
-            most_kept,
+            max_listed,
             levels: Levels::RESET,
             edges: [Edges::default(); MAX_CHANNELS],
             enabled: Instant::RESET,
@@ -173,9 +164,8 @@ impl TimingCheck {
     }
 
     /// For times rounded to cycles: a time that may have been long enough is no violation.
-    #[must_use]
-    pub fn of_rounded(rules: &TimingRules, clock_hz: u32, most_kept: usize) -> Self {
-        let mut check = Self::new(rules, clock_hz, most_kept);
+    pub fn of_rounded(rules: &TimingRules, clock_hz: u32, max_listed: usize) -> Self {
+        let mut check = Self::new(rules, clock_hz, max_listed);
         for result in &mut check.results {
             result.required = Cycles(u64::from(result.nanos) * u64::from(clock_hz) / 1_000_000_000);
         }
@@ -183,9 +173,8 @@ impl TimingCheck {
     }
 
     /// For records in ticks of `numerator / denominator` seconds, which no clock represents exactly.
-    #[must_use]
-    pub fn in_ticks(rules: &TimingRules, (numerator, denominator): (u64, u64), most_kept: usize) -> Self {
-        let mut check = Self::new(rules, 1, most_kept);
+    pub fn in_ticks(rules: &TimingRules, (numerator, denominator): (u64, u64), max_listed: usize) -> Self {
+        let mut check = Self::new(rules, 1, max_listed);
         for result in &mut check.results {
             let ticks = (u128::from(result.nanos) * u128::from(denominator))
                 .div_ceil(1_000_000_000 * u128::from(numerator.max(1)));
@@ -194,24 +183,20 @@ impl TimingCheck {
         check
     }
 
-    #[must_use]
     pub const fn results(&self) -> &[RuleResult] {
         &self.results
     }
 
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.results.iter().map(RuleResult::total).sum()
     }
 
     /// In the order of cycles, then channels, then hold, high, low, set-up, wake-up.
-    #[must_use]
     pub fn violations(&self) -> &[Violation] {
         &self.violations
     }
 
     /// Index of the first listed violation after `at`, or the last one before.
-    #[must_use]
     pub fn next(&self, at: Instant, forward: bool) -> Option<usize> {
         if forward {
             let index = self.violations.partition_point(|violation| violation.at <= at);
@@ -277,7 +262,7 @@ impl TimingCheck {
             && let Some(count) = result.violations.get_mut(channel)
         {
             *count += 1;
-            if self.violations.len() < self.most_kept {
+            if self.violations.len() < self.max_listed {
                 let required = result.required;
                 self.violations.push(Violation { channel: number, rule, at, measured, required });
             }

@@ -20,7 +20,6 @@ pub struct TraceWindow<'a> {
 
 impl<'a> TraceWindow<'a> {
     /// The cycles `start..=end`.
-    #[must_use]
     pub fn of(trace: &'a [Record], start: Instant, end: Instant) -> Self {
         let after = trace.partition_point(|record| record.cycle <= start);
         let until = trace.partition_point(|record| record.cycle <= end).max(after);
@@ -28,12 +27,10 @@ impl<'a> TraceWindow<'a> {
         Self { first, rest: trace.get(after..until).unwrap_or_default() }
     }
 
-    #[must_use]
     pub const fn records(&self) -> usize {
         1 + self.rest.len()
     }
 
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<Record> {
         match index.checked_sub(1) {
             None => Some(self.first),

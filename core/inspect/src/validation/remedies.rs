@@ -27,30 +27,26 @@ use stepscope_sim::{ValidatedScenario, axes_of};
 /// Times are rounded up to multiples of this, in s.
 const TIME_STEP_S: f64 = 1e-4;
 
-/// The problem, and changes that solve it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Remedies {
     pub wrong: String,
-    /// The smallest change first.
     pub offers: Vec<Offer>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Offer {
     pub change: String,
-    /// As JSON with every field written.
     pub scenario: String,
 }
 
 impl Remedies {
     /// `None` where no motion is too fast for its bus.
-    #[must_use]
-    pub fn of(judged: &ValidatedScenario) -> Option<Self> {
+    pub fn of(validated: &ValidatedScenario) -> Option<Self> {
         let is_too_fast = |cause: &Cause| matches!(cause, Cause::Motion(problem::Cause::TooManySteps { .. }));
-        if !judged.problems().iter().any(|problem| is_too_fast(&problem.cause)) {
+        if !validated.problems().iter().any(|problem| is_too_fast(&problem.cause)) {
             return None;
         }
-        let scenario = &**judged.scenario();
+        let scenario = &**validated.scenario();
         let controllers = (0..=scenario.controllers.len()).map(|index| Rates::of(scenario, index));
         let slow: Vec<Rates> = controllers.filter(|rates| rates.needed > rates.limit).collect();
         let worst = slow
@@ -108,7 +104,6 @@ fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
     Some((format!("slot {period} cycles{whose}"), changed))
 }
 
-/// Longer times for the moves that are too fast.
 fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
     let mut changed = scenario.clone();
     let mut texts = Vec::new();

@@ -12,7 +12,6 @@ const MILLI: f64 = 1000.0;
 const GRAM_CM2: f64 = 1e-7;
 const MIN_PERIOD_S: f64 = 1e-6;
 
-/// An axis' motor, driver and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
     constant: f64,
@@ -29,7 +28,6 @@ pub struct Machine {
 
 impl Machine {
     /// `None` without a motor, or if the mechanics have no angle.
-    #[must_use]
     pub fn of(axis: &Axis) -> Option<Self> {
         let motor = axis.motor.as_ref()?;
         let (full_step_deg, step_deg) = (axis.mechanics.full_step_deg()?, axis.mechanics.step_deg()?);
@@ -47,7 +45,6 @@ impl Machine {
         })
     }
 
-    #[must_use]
     pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
         Self {
             constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
@@ -64,7 +61,6 @@ impl Machine {
     }
 
     /// The motor of the channel's axis, otherwise that of the scenario's plant (F9).
-    #[must_use]
     pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
         let axis = axes_of(scenario, controller).get(channel);
         if let Some(machine) = axis.and_then(Self::of) {
@@ -81,7 +77,6 @@ impl Machine {
 
     /// Period of the rotor with its load in the field of the regulated current, in s: 2*pi*sqrt(J/(p*k*I)), at least
     /// 1 us.
-    #[must_use]
     pub fn natural_period_s(&self) -> f64 {
         let stiffness = self.pole_pairs * self.constant * self.current_a;
         libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), MIN_PERIOD_S)
@@ -91,20 +86,16 @@ impl Machine {
         libm::fmax(1.0, libm::round(PI / (4.0 * self.pole_pairs * self.step_rad))) as usize
     }
 
-    /// The stated maximum rate in steps/s.
-    #[must_use]
     pub fn working_rate(&self) -> Option<f64> {
         self.working_rate
     }
 
-    #[must_use]
     pub fn load_mn_m(&self) -> f64 {
         self.load_n_m * MILLI
     }
 
     /// Maximum torque in mN*m of the driver at a rate in steps/s. Below 0 the motor brakes at any current, so it
     /// cannot stay in step.
-    #[must_use]
     pub fn available_mn_m(&self, rate: f64) -> f64 {
         let speed = libm::fabs(rate) * self.step_rad;
         let back_emf = self.constant * speed;
@@ -118,7 +109,6 @@ impl Machine {
 
     /// Torque in mN*m in the direction of motion that a signed speed and acceleration need; negative where the motor
     /// brakes.
-    #[must_use]
     pub fn needed_mn_m(&self, speed: f64, acceleration: f64) -> f64 {
         // From rest it moves in the direction of the acceleration.
         let ahead = if speed == 0.0 { acceleration } else { speed };
@@ -144,7 +134,6 @@ impl Machine {
 
     /// Maximum rate in steps/s with the full regulated current; 0 if voltage limits at rest, `None` if it never does
     /// up to 10^7 steps/s.
-    #[must_use]
     pub fn corner_rate(&self) -> Option<f64> {
         greatest(|rate| {
             let speed = rate * self.step_rad;
@@ -156,13 +145,11 @@ impl Machine {
 
     /// Maximum rate in steps/s with enough torque for the load at constant speed; 0 for none, `None` for all up to
     /// 10^7 steps/s.
-    #[must_use]
     pub fn torque_rate(&self) -> Option<f64> {
         greatest(|rate| self.available_mn_m(rate) >= self.load_mn_m())
     }
 
     /// B4's f_s: the lower of [`Self::torque_rate`] and [`Self::working_rate`], in steps/s.
-    #[must_use]
     pub fn greatest_rate(&self) -> Option<f64> {
         match (self.torque_rate(), self.working_rate) {
             (Some(by_torque), Some(stated)) => Some(libm::fmin(by_torque, stated)),
@@ -170,17 +157,15 @@ impl Machine {
         }
     }
 
-    /// (Rate in steps/s, available torque in mN*m) at `points` rates from 0 to `most_rate`.
-    pub fn curve(&self, most_rate: f64, points: u32) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub fn curve(&self, max_rate: f64, points: u32) -> impl Iterator<Item = (f64, f64)> + '_ {
         let last = f64::from(points.saturating_sub(1).max(1));
         (0..points).map(move |point| {
-            let rate = most_rate * f64::from(point) / last;
+            let rate = max_rate * f64::from(point) / last;
             (rate, self.available_mn_m(rate))
         })
     }
 
     /// The rate up to which a curve shows all that matters, in steps/s.
-    #[must_use]
     pub fn shown_rate(&self, used: f64) -> f64 {
         let corner = self.corner_rate().unwrap_or(0.0);
         let greatest = self.greatest_rate().unwrap_or(0.0);

@@ -12,7 +12,6 @@ pub struct Moment {
 }
 
 impl Moment {
-    #[must_use]
     pub fn margin_mn_m(&self) -> f64 {
         self.available_mn_m - libm::fabs(self.needed_mn_m)
     }

@@ -30,48 +30,43 @@
 //! assert!(!asked(266).is_met());
 //! ```
 
-use super::{Demand, MAX_SHORTAGES, Machine, Moment, Shortage};
+use super::{Demand, Machine, Moment, Shortages};
 use alloc::vec::Vec;
 use stepscope_peripheral::trace::Step;
 
 impl Demand {
     /// What steps in cycles of `clock_hz` require. The jump is the maximum rate next to a rest or turn.
-    #[must_use]
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
-        let mut looked = Looked {
-            demand: Self {
-                shortages: Vec::new(),
-                total: 0,
-                least: None,
-                greatest_rate: 0.0,
-                over_working_rate: None,
-                jump: jump(machine, steps, clock_hz),
-            },
-            last: None,
-            open: None,
-        };
-        moments(machine, steps, clock_hz, &mut |moment| looked.take(moment));
-        looked.close();
-        let Looked { mut demand, .. } = looked;
-        let rate = demand.greatest_rate;
-        demand.over_working_rate = machine.working_rate().filter(|most| rate > *most).map(|_| rate);
-        demand
+        let mut found = Shortages::new(0.0, jump(machine, steps, clock_hz));
+        let mut last: Option<Moment> = None;
+        moments(machine, steps, clock_hz, &mut |moment| {
+            found.demand.greatest_rate = libm::fmax(found.demand.greatest_rate, moment.rate);
+            // The margin is straight between moments.
+            found.add(moment, moment.at_s, 1.0, || match last {
+                Some(last) => {
+                    let before = last.margin_mn_m();
+                    last.at_s + (moment.at_s - last.at_s) * before / (before - moment.margin_mn_m())
+                }
+                None => moment.at_s,
+            });
+            last = Some(moment);
+        });
+        found.finish(machine)
     }
 }
 
 /// As [`needed_over_rate`](super::needed_over_rate), for steps.
-#[must_use]
 pub fn steps_needed_over_rate(
     machine: &Machine,
     steps: &[Step],
     clock_hz: u32,
-    most_rate: f64,
+    max_rate: f64,
     bins: usize,
 ) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     moments(machine, steps, clock_hz, &mut |moment| {
         let moves = moment.rate > 0.0 || moment.needed_mn_m != 0.0;
-        let bin = (moment.rate / most_rate * bins as f64) as usize;
+        let bin = (moment.rate / max_rate * bins as f64) as usize;
         if let Some(most) = needed.get_mut(bin).filter(|_| moves) {
             *most = libm::fmax(*most, libm::fabs(moment.needed_mn_m));
         }
@@ -161,7 +156,6 @@ fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     greatest
 }
 
-/// One side of a step.
 struct Side {
     /// To the next step; infinite where there is none.
     interval_s: f64,
@@ -182,55 +176,5 @@ impl Side {
         };
         let (interval_s, direction) = next.unwrap_or((f64::INFINITY, 0.0));
         Self { interval_s, direction, rate: libm::fmin(rate(next), rate(all)) }
-    }
-}
-
-struct Looked {
-    demand: Demand,
-    last: Option<Moment>,
-    open: Option<Shortage>,
-}
-
-impl Looked {
-    fn take(&mut self, moment: Moment) {
-        let margin = moment.margin_mn_m();
-        self.demand.greatest_rate = libm::fmax(self.demand.greatest_rate, moment.rate);
-        if self.demand.least.is_none_or(|least| margin < least.margin_mn_m()) {
-            self.demand.least = Some(moment);
-        }
-        // The zero of the margin since the last moment.
-        let border_s = || match self.last {
-            Some(last) => {
-                let before = last.margin_mn_m();
-                last.at_s + (moment.at_s - last.at_s) * before / (before - margin)
-            }
-            None => moment.at_s,
-        };
-        match (&mut self.open, margin < 0.0) {
-            (None, false) => {}
-            (None, true) => {
-                self.open =
-                    Some(Shortage { from_s: border_s(), to_s: moment.at_s, times: 1.0, worst: moment });
-            }
-            (Some(open), true) => {
-                open.to_s = moment.at_s;
-                if margin < open.worst.margin_mn_m() {
-                    open.worst = moment;
-                }
-            }
-            (Some(open), false) => {
-                open.to_s = border_s();
-                self.close();
-            }
-        }
-        self.last = Some(moment);
-    }
-
-    fn close(&mut self) {
-        let Some(shortage) = self.open.take() else { return };
-        self.demand.total += 1;
-        if self.demand.shortages.len() < MAX_SHORTAGES {
-            self.demand.shortages.push(shortage);
-        }
     }
 }

@@ -8,7 +8,6 @@ use stepscope_motion::{Curve, Profile, bisection::border, curves::Cosine};
 
 /// Ramps that are tried, evenly up to half of the time.
 const TRIED: u32 = 512;
-/// Samples per ramp.
 const LOOKS: u32 = 128;
 
 /// Ramps that a motor can follow, in s.
@@ -32,7 +31,6 @@ pub struct Ramps {
 
 impl Ramps {
     /// `None` unless the move has ramps of a shape.
-    #[must_use]
     pub fn of(machine: &Machine, profile: &Profile) -> Option<Self> {
         match profile {
             Profile::Cosine(curve) => {

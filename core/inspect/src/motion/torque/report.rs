@@ -41,13 +41,11 @@ pub struct MoveRamps {
 pub struct TorqueCurve {
     pub rate: Vec<f64>,
     pub available: Vec<f64>,
-    /// Maximum that the plan needs; NaN at rates that it does not have.
     pub needed: Vec<f64>,
 }
 
 impl TorqueReport {
     /// `None` without a motor.
-    #[must_use]
     pub fn of(axis: &Axis, plan: &AxisPlan) -> Option<Self> {
         let machine = Machine::of(axis)?;
         let demand = Demand::of(&machine, plan);
@@ -59,8 +57,6 @@ impl TorqueReport {
         Some(Self { ramps: ramps.collect(), ..found })
     }
 
-    /// For steps without a plan, in cycles of `clock_hz`.
-    #[must_use]
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(machine, steps, clock_hz);
         let most = machine.shown_rate(demand.greatest_rate);
@@ -94,7 +90,6 @@ impl TorqueCurve {
     }
 
     /// The curve up to a rate in steps/s.
-    #[must_use]
     pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, most: f64) -> Self {
         Self::with(machine, most, |most, bins| {
             plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, most, bins))

@@ -40,7 +40,6 @@ impl PacketTable<'_> {
     }
 }
 
-/// Quotes a field if necessary.
 struct Quoted<'a>(&'a str);
 
 impl fmt::Display for Quoted<'_> {

@@ -26,7 +26,6 @@ pub struct Detail {
     pub gap_cycles: Option<u64>,
     /// From the end of the frame to the rise of DE; `None` for recorded replies.
     pub drive_cycles: Option<u64>,
-    /// From there to the first start bit.
     pub turnaround_cycles: Option<u64>,
     pub answers: Option<usize>,
 }
@@ -40,7 +39,6 @@ pub struct FieldRow {
 }
 
 impl PacketTable<'_> {
-    #[must_use]
     pub fn detail(&self, index: usize) -> Option<Detail> {
         let (row, meaning) = (self.row(index)?, self.meaning(index)?);
         let (check, sums) = match meaning.check {

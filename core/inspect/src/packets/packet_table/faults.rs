@@ -23,14 +23,12 @@ pub struct FaultPlace {
     pub name: &'static str,
     pub times: u64,
     pub cycle: u64,
-    /// The row that first raised it.
     pub row: Option<usize>,
 }
 
 impl PacketTable<'_> {
     /// Such as `3 of 4 bytes, then 45 bit times of silence`; empty where nothing failed, or where
     /// [`Row::outcome`](super::Row::outcome) is enough.
-    #[must_use]
     pub fn why(&self, index: usize) -> String {
         let Some(row) = self.logged(index) else { return String::new() };
         let bytes = self.bytes(index);
@@ -66,8 +64,6 @@ impl PacketTable<'_> {
         }
     }
 
-    /// Raised flags, in the order of their bits.
-    #[must_use]
     pub fn fault_places(&self) -> Vec<FaultPlace> {
         let mut places: Vec<FaultPlace> = Vec::new();
         let mut raise = |fault: Faults, cycle: u64, row: Option<usize>| {
@@ -100,9 +96,9 @@ impl PacketTable<'_> {
     /// The first command of a tick that exceeds the tick's slots.
     fn too_many(&self, commands: &[u8]) -> String {
         let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
-        let asked =
+        let moves =
             commands.iter().enumerate().map(|(place, &byte)| (place, ChannelCommand::parse(byte).steps));
-        let Some((place, steps)) = asked.into_iter().find(|(_, steps)| *steps > slots) else {
+        let Some((place, steps)) = moves.into_iter().find(|(_, steps)| *steps > slots) else {
             return String::new();
         };
         let tick = match place / channels {

@@ -9,7 +9,6 @@ use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 pub struct Filter {
     request: Option<Request>,
     shown: Vec<u32>,
-    /// Positions among the shown rows.
     matches: Vec<u32>,
     next: usize,
 }
@@ -28,7 +27,6 @@ pub struct Request {
 impl Request {
     /// Filters are empty for any; the text is searched in hex, words and numbers. Also returns what is wrong with the
     /// text, if anything.
-    #[must_use]
     pub fn new(text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> (Self, String) {
         let (needle, note) = Needle::parse(text);
         (Self { needle, kind: kind.to_owned(), address, mark: mark.to_owned(), only }, note)
@@ -132,7 +130,6 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
 }
 
 impl Filter {
-    #[must_use]
     pub fn new(request: Request) -> Self {
         Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
     }
@@ -162,18 +159,14 @@ impl Filter {
         until == total
     }
 
-    #[must_use]
     pub fn shown(&self, total: usize) -> usize {
         if self.request.is_some() { self.shown.len() } else { total }
     }
 
-    #[must_use]
     pub fn matches(&self) -> usize {
         self.matches.len()
     }
 
-    /// The row at a position among the shown rows.
-    #[must_use]
     pub fn row(&self, position: usize) -> Option<usize> {
         if self.request.is_none() {
             return Some(position);
@@ -181,8 +174,6 @@ impl Filter {
         self.shown.get(position).map(|&row| row as usize)
     }
 
-    /// The position of a row, if it is shown.
-    #[must_use]
     pub fn position(&self, row: usize) -> Option<usize> {
         if self.request.is_none() {
             return Some(row);
@@ -190,14 +181,11 @@ impl Filter {
         self.shown.binary_search(&(row as u32)).ok()
     }
 
-    /// Rank of the match at a position, from 0.
-    #[must_use]
     pub fn rank(&self, position: usize) -> Option<usize> {
         self.matches.binary_search(&(position as u32)).ok()
     }
 
     /// Position of the next or previous match, wrapping around.
-    #[must_use]
     pub fn next_match(&self, position: Option<usize>, forward: bool) -> Option<usize> {
         let found = match (position, forward) {
             (Some(at), true) => {

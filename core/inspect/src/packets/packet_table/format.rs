@@ -13,7 +13,6 @@ use stepscope_peripheral::{
     units::Cycles,
 };
 
-/// The outcome at a glance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Good,
@@ -24,7 +23,6 @@ pub enum Mark {
 }
 
 impl Mark {
-    #[must_use]
     pub const fn of(outcome: RowOutcome) -> Self {
         match outcome {
             RowOutcome::Packet(PacketOutcome::Queued)
@@ -37,7 +35,6 @@ impl Mark {
         }
     }
 
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -93,7 +90,6 @@ pub struct TimeScale {
 }
 
 impl TimeScale {
-    #[must_use]
     pub(super) fn of(Cycles(cycles): Cycles, clock_hz: u32) -> Self {
         let clock_hz = u64::from(clock_hz.max(1));
         let (unit, per_s, digits) = match cycles / clock_hz {

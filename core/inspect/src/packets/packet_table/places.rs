@@ -23,7 +23,6 @@ impl PacketTable<'_> {
             .is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_) | RowOutcome::Recorded))
     }
 
-    #[must_use]
     pub fn placed(&self, index: usize) -> Vec<PlacedByte> {
         self.placed_from(index, 0).collect()
     }
@@ -44,7 +43,6 @@ impl PacketTable<'_> {
         })
     }
 
-    #[must_use]
     pub fn line_end(&self, index: usize) -> u64 {
         let Some(row) = self.logged(index) else { return 0 };
         match row.outcome {
@@ -60,8 +58,6 @@ impl PacketTable<'_> {
         }
     }
 
-    /// Cycles since the end of the row before; `None` where they overlap.
-    #[must_use]
     pub fn gap(&self, index: usize) -> Option<u64> {
         let is_sent = |row: &usize| self.logged(*row).is_some_and(|row| row.outcome != RowOutcome::Collision);
         let row = self.logged(index).filter(|_| is_sent(&index))?;

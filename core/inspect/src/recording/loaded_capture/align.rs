@@ -78,7 +78,7 @@ impl LoadedCapture {
             step.cycle = moved(step.cycle);
         }
         for line in &mut self.report.lines {
-            line.heard.bytes.iter_mut().for_each(|byte| byte.start = Instant(moved(byte.start.0)));
+            line.decoded.bytes.iter_mut().for_each(|byte| byte.start = Instant(moved(byte.start.0)));
         }
         self.end_s += by as f64 / hz;
         let channels = self.report.channels.iter().map(|channel| channel.channel);

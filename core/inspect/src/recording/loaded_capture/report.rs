@@ -7,7 +7,7 @@ use crate::{
         open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ, valid_clock},
         remedy::{Note, Remedy},
         report::{ChannelReport, LineReport, Report, steps},
-        serial::{Heard, HeardByte},
+        serial::{DecodedByte, DecodedLine},
     },
     trace::timing::Rule,
 };
@@ -15,7 +15,6 @@ use alloc::{borrow::ToOwned, format, vec::Vec};
 use stepscope_capture::{Capture, ChannelMap, capture::TimedByte, recorded::Records, timebase::Timebase};
 use stepscope_peripheral::{signal::Levels, units::Instant, wire::BitTimes};
 
-/// Bit rate of bytes with times.
 const USUAL_BAUD: u32 = 115_200;
 /// Maximum steps of position rows; two rows can demand any number.
 const MAX_MADE_STEPS: u64 = 10_000_000;
@@ -59,7 +58,7 @@ impl LoadedCapture {
         let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
         let mut report = None;
         if !capture.bytes.is_empty() {
-            let all = heard(capture.bytes.iter(), cycle);
+            let all = decoded(capture.bytes.iter(), cycle);
             let baud = options.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
             if options.baud.is_none() {
                 self.notes.push(Note::from(format!(
@@ -68,7 +67,7 @@ impl LoadedCapture {
             }
             let lines = self.lines_of(capture, map).into_iter();
             let lines = lines.map(|(line, bytes)| {
-                LineReport::of_heard_on(line, heard(bytes.into_iter(), cycle), clock_hz, baud)
+                LineReport::of_decoded_on(line, decoded(bytes.into_iter(), cycle), clock_hz, baud)
             });
             report = Some(Report { channels: Vec::new(), lines: lines.collect() });
         } else if !capture.positions.is_empty() {
@@ -80,7 +79,6 @@ impl LoadedCapture {
         Ok(report)
     }
 
-    /// Decoded bytes per line; a single channel is RX.
     pub(super) fn lines_of<'c>(
         &mut self,
         capture: &'c Capture,
@@ -147,13 +145,13 @@ impl LoadedCapture {
         let mut last = 0;
         for (line, bytes) in self.lines_of(capture, map) {
             let bytes = (0..).zip(bytes);
-            let bytes = bytes.map(|(index, timed)| HeardByte {
+            let bytes = bytes.map(|(index, timed)| DecodedByte {
                 start: Instant(1 + times.byte(index).0),
                 byte: timed.byte,
             });
-            let heard = Heard { bytes: bytes.collect(), ..Heard::default() };
-            last = last.max(heard.bytes.len() as u64);
-            self.report.lines.push(LineReport::of_heard_on(line, heard, self.clock_hz, baud));
+            let decoded = DecodedLine { bytes: bytes.collect(), ..DecodedLine::default() };
+            last = last.max(decoded.bytes.len() as u64);
+            self.report.lines.push(LineReport::of_decoded_on(line, decoded, self.clock_hz, baud));
         }
         self.end_s = times.byte(last).0 as f64 / f64::from(self.clock_hz);
         self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
@@ -167,23 +165,23 @@ impl LoadedCapture {
     }
 }
 
-fn heard<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> Heard {
-    let mut heard = Heard::default();
+fn decoded<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> DecodedLine {
+    let mut decoded = DecodedLine::default();
     for byte in bytes {
         let start = Instant(cycle(byte.tick));
         if byte.framing_error {
-            heard.framing_errors.push(start);
+            decoded.framing_errors.push(start);
         } else {
-            heard.bytes.push(HeardByte { start, byte: byte.byte });
+            decoded.bytes.push(DecodedByte { start, byte: byte.byte });
         }
     }
-    heard
+    decoded
 }
 
 /// The closest two bytes are back to back. Bytes of one line of text share a time; then the usual rate or more.
-fn likely_baud(heard: &Heard, clock_hz: u32) -> u32 {
+fn likely_baud(decoded: &DecodedLine, clock_hz: u32) -> u32 {
     let (mut needed, mut shared, mut count) = (0.0_f64, false, 1_u32);
-    for (before, byte) in heard.bytes.iter().zip(heard.bytes.iter().skip(1)) {
+    for (before, byte) in decoded.bytes.iter().zip(decoded.bytes.iter().skip(1)) {
         match byte.start.0.saturating_sub(before.start.0) {
             0 => (count, shared) = (count.saturating_add(1), true),
             cycles => {

@@ -9,13 +9,11 @@ use alloc::{format, string::String, vec::Vec};
 use stepscope_peripheral::{trace::Step, wire::BitTimes};
 use stepscope_scenario::{Scenario, SegmentLists, Source};
 
-/// Maximum segments of a scenario in a form.
 const MAX_SHOWN: usize = 20_000;
 const MAX_TITLE: usize = 120;
 
 impl LoadedCapture {
     /// The scenario to show: [`Self::scenario`], or an idle one with its clock, channels and duration.
-    #[must_use]
     pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
         let made = if self.part.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
         let made = made.filter(|made| made.clock_hz == self.clock_hz && entries(made) <= MAX_SHOWN);
@@ -32,11 +30,11 @@ impl LoadedCapture {
         let last = self.records.last().map_or(0, |record| record.cycle.0);
         let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
         // The last byte ends after the last edge.
-        let heard = self.report.rx().filter(|line| self.part.is_none() && line.baud > 0).and_then(|line| {
+        let decoded = self.report.rx().filter(|line| self.part.is_none() && line.baud > 0).and_then(|line| {
             let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
-            Some(scenario::end_of(&line.heard, bit_cycles)?.0 + bit_cycles)
+            Some(scenario::end_of(&line.decoded, bit_cycles)?.0 + bit_cycles)
         });
-        scenario.run_cycles = Some(end.max(last).max(heard.unwrap_or(0)) + 1);
+        scenario.run_cycles = Some(end.max(last).max(decoded.unwrap_or(0)) + 1);
         scenario
     }
 
@@ -51,20 +49,20 @@ impl LoadedCapture {
     ) -> Result<Scenario, Refused> {
         let (clock_hz, channels) = (self.clock_hz, self.channels);
         let within_cycles = (error_us * 1e-6 * f64::from(clock_hz)) as u64;
-        let asked = Steps { clock_hz, channels, within_cycles };
-        let rx = self.report.rx().filter(|line| !line.heard.bytes.is_empty() && !steps);
+        let request = Steps { clock_hz, channels, within_cycles };
+        let rx = self.report.rx().filter(|line| !line.decoded.bytes.is_empty() && !steps);
         let made: Made = match (rx, &self.position_steps) {
             (Some(line), _) => {
-                let asked = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
-                scenario::of_bytes(&line.heard, &asked, base)
+                let request = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
+                scenario::of_bytes(&line.decoded, &request, base)
             }
-            (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &asked),
+            (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &request),
             // Generated pulses have no width of their own.
             (None, None) if self.unchecked().any(|(_, rule)| rule == Rule::StepHigh) => {
                 let all: Vec<Vec<Step>> = (0..channels).map(|channel| self.steps_of(channel)).collect();
-                scenario::of_step_times(&all, &asked)
+                scenario::of_step_times(&all, &request)
             }
-            (None, None) => scenario::of_steps(&self.records, &asked),
+            (None, None) => scenario::of_steps(&self.records, &request),
         }?;
         let mut scenario = Scenario { note: scenario::note(file, &made), ..made.scenario };
         scenario.title = title(file);

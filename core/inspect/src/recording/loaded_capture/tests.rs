@@ -26,7 +26,8 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
     let lines = |map: Option<&str>| {
         let options = OpenOptions { map: map.map(Into::into), baud: Some(9600), ..OpenOptions::default() };
         let loaded = LoadedCapture::new(read(log), &options).expect("it opens");
-        let bytes = |line: &LineReport| line.heard.bytes.iter().map(|heard| heard.byte).collect::<Vec<_>>();
+        let bytes =
+            |line: &LineReport| line.decoded.bytes.iter().map(|decoded| decoded.byte).collect::<Vec<_>>();
         loaded.report.lines.iter().map(|line| (line.name, bytes(line))).collect::<Vec<_>>()
     };
     assert_eq!(lines(None), [("RX", vec![1]), ("TX", vec![0x55, 0xaa])]);
@@ -35,9 +36,10 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
     let annotations = "uart-1: rx-data: 41\nuart-1: tx-data: 42\nuart-1: tx-data: AA\n";
     let options = OpenOptions { baud: Some(9600), ..OpenOptions::default() };
     let loaded = LoadedCapture::new(read(annotations), &options).expect("it opens");
-    let found: Vec<_> = loaded.report.lines.iter().map(|line| (line.name, line.heard.bytes.len())).collect();
+    let found: Vec<_> =
+        loaded.report.lines.iter().map(|line| (line.name, line.decoded.bytes.len())).collect();
     assert_eq!(found, [("RX", 1), ("TX", 2)]);
-    assert_eq!(loaded.report.lines[1].heard.bytes[0].start, loaded.report.lines[0].heard.bytes[0].start);
+    assert_eq!(loaded.report.lines[1].decoded.bytes[0].start, loaded.report.lines[0].decoded.bytes[0].start);
     // Times without a unit are no places: their length is asked for.
     let table = "0,55\n1041,AA\n2083,01\n";
     let asked = |sample_rate_hz| OpenOptions { sample_rate_hz, baud: Some(9600), ..OpenOptions::default() };
@@ -46,15 +48,16 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
         Some(OpenError::NoSampleRate(Format::HexBytes))
     );
     let loaded = LoadedCapture::new(read(table), &asked(Some(1_000_000))).expect("it opens");
-    let starts = loaded.report.lines[0].heard.bytes.iter().map(|heard| heard.start.0).collect::<Vec<_>>();
+    let starts =
+        loaded.report.lines[0].decoded.bytes.iter().map(|decoded| decoded.start.0).collect::<Vec<_>>();
     assert_eq!(starts, [0, 1041, 2083]);
 }
 
 #[test]
 fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
     let whole = loaded();
-    let part = |most, from_s, to_s| {
-        LoadedCapture::of_part(&capture(), &asked(), &Part { most, from_s, to_s }).expect("it opens")
+    let part = |max_records, from_s, to_s| {
+        LoadedCapture::of_part(&capture(), &asked(), &Part { max_records, from_s, to_s }).expect("it opens")
     };
     assert_eq!(part(9, None, None), whole);
     // From one part to another it is as if it were loaded with that at once.
@@ -70,7 +73,7 @@ fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
             let again = part(most, from_s, to_s).with_part(
                 &capture(),
                 &asked(),
-                &Part { most: after, from_s: from, to_s: to },
+                &Part { max_records: after, from_s: from, to_s: to },
             );
             assert_eq!(
                 again,

@@ -7,15 +7,12 @@ use alloc::{rc::Rc, vec, vec::Vec};
 
 pub(super) type Pair = (usize, usize);
 
-/// Hypotheses at a time.
 const WIDTH: usize = 16;
-/// Hypotheses that cost this much more than the best one are dropped.
 const MARGIN: f64 = 2.5;
 /// Maximum extra cost of a hypothesis that may try gaps.
 const SPAWNING: f64 = 1.5;
 /// Steps that are tried as missing or extra in any case.
 const NEAR: usize = 3;
-/// The same before the first match, where no clock is known.
 const NEAR_START: usize = 8;
 /// Intervals that identify a start far from the first steps.
 const SIGNATURE: usize = 32;
@@ -62,9 +59,7 @@ struct Hypothesis {
     /// Includes the minimum cost of the rest.
     estimate: f64,
     clock: Option<Clock>,
-    /// Cost of the current row of late steps.
     late: f64,
-    /// Cost of the current row of wrong directions or values.
     differing: f64,
     last_gap: Option<(usize, bool)>,
     start: Rc<Start>,
@@ -161,7 +156,6 @@ impl<'a> Search<'a> {
         self.step(&start, None);
     }
 
-    /// Relative difference of the intervals from two steps on.
     fn unlike(&self, one: Side<'a>, from: usize, other: Side<'a>, other_from: usize) -> f64 {
         let interval = |side: &Side<'a>, index: usize| Some(side.at_s(index + 1)? - side.at_s(index)?);
         let mut sum = 0.0;
@@ -176,7 +170,6 @@ impl<'a> Search<'a> {
         sum
     }
 
-    /// Finds the first intervals of the needle.
     fn find(&self, hay: Side<'a>, needle: Side<'a>) -> Option<usize> {
         if needle.steps.len() <= SIGNATURE {
             return None;
@@ -184,7 +177,6 @@ impl<'a> Search<'a> {
         let (mut least, mut found) = (0.1 * SIGNATURE as f64, None);
         for at in 0..=hay.steps.len().checked_sub(SIGNATURE + 1)? {
             let unlike = self.unlike(hay, at, needle, 0);
-            // Of similar ones the first is taken.
             if unlike < 0.9 * least {
                 (least, found) = (unlike, Some(at));
             }
@@ -223,7 +215,6 @@ impl<'a> Search<'a> {
     }
 
     fn go_on(&mut self, mut hypothesis: Hypothesis) {
-        // Needs no alternatives while it is on time.
         let block = hypothesis.block();
         while self.follow(&mut hypothesis) {
             if hypothesis.block() > block {
@@ -254,7 +245,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Gaps behind which the next step is on time.
     fn due_gaps(&self, hypothesis: &Hypothesis, gaps: &mut Vec<Gap>) {
         let Hypothesis { model, recorded, .. } = *hypothesis;
         let (Some(clock), Some(due), Some(came)) =
@@ -309,7 +299,6 @@ impl<'a> Search<'a> {
             || self.model.values.get(model) != self.recorded.values.get(recorded)
     }
 
-    /// A gap, where one side has more left.
     fn rest(&self, hypothesis: &Hypothesis) -> f64 {
         let model = self.model.steps.len().saturating_sub(hypothesis.model);
         gap(model.abs_diff(self.recorded.steps.len().saturating_sub(hypothesis.recorded)))
