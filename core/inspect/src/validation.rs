@@ -4,10 +4,10 @@
 //! use stepscope_inspect::validation::Validation;
 //! use stepscope_sim::ValidatedScenario;
 //!
-//! let validation = Validation::of(&Judged::from_json("{}"));
+//! let validation = Validation::of(&ValidatedScenario::from_json("{}"));
 //! assert_eq!(validation.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
 //!
-//! let validation = Validation::of(&Judged::from_json(r#"{ "bus": { "slots": 0 } }"#));
+//! let validation = Validation::of(&ValidatedScenario::from_json(r#"{ "bus": { "slots": 0 } }"#));
 //! assert_eq!(validation.problems[0].path, "bus.slots");
 //! assert!(validation.cost.is_none()); // what does not run costs nothing
 //! ```
