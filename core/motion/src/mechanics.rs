@@ -116,7 +116,6 @@ impl Mechanics {
     }
 
     /// Whether a number, and all its own, which are above 0, are printed as decimals.
-    #[inline(never)]
     fn can_tell(&self, number: f64) -> bool {
         let (one, other) = match self {
             Self::Rotary(m) => (m.full_step_deg, 1.0),
@@ -128,7 +127,6 @@ impl Mechanics {
     }
 
     /// So many degrees in steps.
-    #[inline(never)]
     fn degrees(&self, given: Exact) -> Option<Exact> {
         let (full_step_deg, microsteps) = match self {
             Self::Rotary(m) => (m.full_step_deg, m.microsteps),
@@ -140,7 +138,6 @@ impl Mechanics {
     }
 
     /// So many millimetres in steps; none of a wheel, whose circumference has pi.
-    #[inline(never)]
     fn millimetres(&self, given: Exact) -> Option<Exact> {
         match self {
             Self::Rotary(_) | Self::Wheel(_) => None,
