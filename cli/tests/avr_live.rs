@@ -1,13 +1,13 @@
-//! A firmware at the other end of `stepscope send`: `firmware/avr/tick_controller.c`, built by avr-gcc, run by simavr in real time
-//! with its UART on a pseudo-terminal; and its pins, which simavr has recorded, beside the model's.
+//! `stepscope send` against `firmware/avr/tick_controller.c` in simavr, in real time over a pseudo-terminal; compares
+//! the recorded pins with the model's.
 //!
-//! `cargo xtask test --only avr` installs all that it needs first, and runs it.
+//! `cargo xtask test --only avr` installs the tools and runs it.
 #![cfg(unix)]
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 mod avr;
 
-use avr::{LIMIT, call, compile, folder, in_the_repository};
+use avr::{call, compile, folder, in_the_repository};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use std::{
@@ -18,18 +18,15 @@ use std::{
     path::{Path, PathBuf},
     process::{Child, ChildStdout, Command, Output, Stdio},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
-/// Where simavr's headers lie.
 const SIMAVR: [&str; 2] = ["-I/usr/include/simavr", "-I/usr/local/include/simavr"];
-/// How far a step may be from the model's once both have the first one at one time: interrupts of others, and the few cycles in
-/// which the program looks at its timer.
+/// Tolerance after aligning the first steps: other interrupts, and the few cycles of a timer check.
 const WITHIN_US: f64 = 2.0;
-/// A machine that stands still for longer than the queue lasts has the motors stop: then it is tried again.
+/// A machine that stops for longer than the queue lasts stops the motors; the test is then repeated.
 const ATTEMPTS: usize = 3;
 
-/// The firmware on a simulated chip, while it runs.
 struct Board {
     child: Child,
     out: BufReader<ChildStdout>,
@@ -59,7 +56,7 @@ impl Board {
             .expect("it starts");
         let mut out = BufReader::new(child.stdout.take().expect("piped"));
         let mut port = String::new();
-        // simavr speaks, too.
+        // simavr prints, too.
         while !port.starts_with("pty:") {
             port.clear();
             assert!(out.read_line(&mut port).expect("text") > 0, "it says where its port is");
@@ -67,16 +64,9 @@ impl Board {
         Self { child, out, port: port.trim().to_owned(), folder }
     }
 
-    /// Who had the port open has closed it: the recording.
+    /// Call after the port is closed.
     fn recording(mut self) -> PathBuf {
-        let begun = Instant::now();
-        let code = loop {
-            match self.child.try_wait().expect("it is our own") {
-                Some(status) => break status.code(),
-                None if begun.elapsed() > LIMIT => panic!("it runs on"),
-                None => thread::sleep(Duration::from_millis(10)),
-            }
-        };
+        let code = self.child.wait().expect("it is our own").code();
         let mut said = String::new();
         self.out.read_to_string(&mut said).expect("text");
         assert_eq!(code, Some(0), "{said}");
@@ -114,13 +104,12 @@ fn scenario() -> PathBuf {
     in_the_repository("firmware/avr", "tick-controller.json")
 }
 
-/// Sends a scenario to a board; what was recorded of its pins.
 fn sent(name: &str, scenario: &Path) -> PathBuf {
     for _ in 0..ATTEMPTS {
         let board = Board::on(name);
         let (code, out, err) = run(&["send", text(scenario), "--port", &board.port, "--slack", "500"]);
         let recording = board.recording();
-        // Either the host stood still, or the board did, whose queue then has no place where there should be one.
+        // The host or the board stopped for too long.
         if code == Some(3) && (err.contains("UNDERRUN") || err.contains("QUEUE_OVERFLOW")) {
             continue;
         }
@@ -152,7 +141,7 @@ fn the_firmware_does_what_is_sent_and_its_pins_are_the_models() {
         assert_eq!(row["compares"], "steps", "{row}");
         let steps = Value::from(steps);
         assert_eq!([&row["recorded"], &row["model"], &row["compared"]], [&steps; 3], "{row}");
-        // One quartz for both: simavr's cycles are the model's.
+        // simavr's cycles are the model's, so there is no drift.
         assert!(number("drift_ppm").abs() < 1.0 && number("rms_s") < WITHIN_US * 1e-6, "{row}");
         let us = |column| 1e6 * number(column);
         println!(
@@ -186,7 +175,7 @@ fn ctrl_c_stops_the_firmware_and_it_tells_where_its_pins_are() {
     let steps: Vec<_> =
         (0..2).map(|channel| recorded["tables"]["steps"][channel]["position"].as_i64()).collect();
     assert_eq!(steps, told, "{out}");
-    // The windings are without current in the end.
+    // At the end the windings have no current.
     let edges = recording.with_file_name("edges.csv");
     let (code, out, err) = run(&["capture", text(&recording), "--csv", text(&edges)]);
     assert_eq!(code, Some(0), "{out}{err}");

@@ -1,4 +1,4 @@
-//! What a command writes: nothing is destroyed by a mistake, by Ctrl-C, by a full disk or by a pipe that is closed.
+//! Outputs: mistakes, Ctrl-C, full disks and closed pipes destroy nothing.
 
 use crate::program::stepscope;
 use std::{
@@ -7,14 +7,13 @@ use std::{
     path::PathBuf,
     process::{Command, Stdio},
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
 
-/// A motion of 2000 s: the run takes long enough to be ended before its end.
+/// 2000 s of motion: long enough to be interrupted.
 const LONG: &str = r#"{"clock_hz":1000000,"bus":{"step_period_cycles":50,"pulse_width_cycles":4,"dir_setup_cycles":4},
     "line":{"baud":57600},"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":30000000},"speed":{"steps_s":15000}}}]}]}}}"#;
 
-/// A folder of a test's own, empty.
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("outputs-{name}"));
     let _ = fs::remove_dir_all(&folder);
@@ -22,7 +21,6 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Names of the files in a folder.
 fn files(folder: &PathBuf) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut names: Vec<String> =
@@ -89,7 +87,7 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
     assert_eq!(fs::read_to_string(folder.join("old.csv")).expect("a file"), "old");
 }
 
-/// What is compared with is an input, too.
+/// A compared scenario is an input, too.
 #[test]
 fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
     let folder = folder("compared");
@@ -105,7 +103,7 @@ fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
     assert_eq!(fs::read_to_string(folder.join("s.json")).expect("a file"), "{}");
 }
 
-/// A device is what the system says is one, not what lies in a folder of devices.
+/// The system decides what a device is, not the folder.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_in_a_folder_of_devices_is_a_file() {
@@ -144,7 +142,7 @@ fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
         use std::os::unix::fs::PermissionsExt;
         let mode = |name| fs::metadata(folder.join(name)).expect("a file").permissions().mode() & 0o777;
         assert_eq!(mode("old.trace"), 0o640, "as it was");
-        // As any new file, and not as a temporary one.
+        // Permissions are those of a new file, not of a temporary one.
         fs::write(folder.join("plain"), "").expect("a file");
         assert_eq!(mode("new.csv"), mode("plain"));
         fs::remove_file(folder.join("plain")).expect("it was there");
@@ -154,7 +152,6 @@ fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
     assert_eq!(files(&folder), ["in.json", "new.csv", "old.trace"]);
 }
 
-/// What fails late leaves every file as it was, also those that were whole.
 #[test]
 fn a_command_that_fails_changes_no_file() {
     let folder = folder("failed");
@@ -169,7 +166,6 @@ fn a_command_that_fails_changes_no_file() {
     assert_eq!(fs::read_to_string(folder.join("old.trace")).expect("a file"), "old");
 }
 
-/// A name that cannot be given at the end is refused at the beginning.
 #[test]
 fn the_name_of_a_folder_is_no_output() {
     let folder = folder("names");
@@ -201,7 +197,7 @@ fn a_full_disk_is_an_error_and_a_device_is_not_replaced() {
     assert!(fs::metadata("/dev/null").expect("it is there").file_type().is_char_device());
 }
 
-/// Whether who runs the tests ignores one of SIGHUP, SIGINT and SIGTERM, as nohup does: then the command does, too.
+/// The command inherits ignored signals, as under nohup.
 #[cfg(unix)]
 fn signals_are_ignored() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -220,9 +216,7 @@ fn ended_by(signal: &str, folder: &PathBuf) -> Option<i32> {
         .current_dir(folder)
         .spawn()
         .expect("it starts");
-    let begun = Instant::now();
     while files(folder).len() < 4 {
-        assert!(begun.elapsed() < Duration::from_secs(600), "it hangs: {:?}", files(folder));
         assert!(child.try_wait().expect("a child").is_none(), "it has ended");
         thread::sleep(Duration::from_millis(5));
     }
@@ -240,7 +234,7 @@ fn a_run_that_is_ended_leaves_what_stood_under_the_names() {
         assert_eq!(files(&folder), ["in.json", "old.trace"], "{signal}");
         assert_eq!(fs::read_to_string(folder.join("old.trace")).expect("a file"), "old");
     }
-    // Nobody is told of this one: temporary files are left, and nothing under a name.
+    // SIGKILL leaves temporary files, but no incomplete output.
     let folder = folder("ended-KILL");
     assert_eq!(ended_by("-KILL", &folder), None);
     let left = files(&folder);
@@ -249,7 +243,7 @@ fn a_run_that_is_ended_leaves_what_stood_under_the_names() {
     assert!(!folder.join("new.vcd").exists());
 }
 
-/// As `| head -1` does.
+/// Like `| head -1`.
 #[test]
 fn a_closed_pipe_ends_silently_and_soon() {
     let folder = folder("pipe");
@@ -257,7 +251,7 @@ fn a_closed_pipe_ends_silently_and_soon() {
     for arguments in [
         &["run", "in.json", "--trace", "-"] as &[&str],
         &["run", "in.json", "--vcd", "-"],
-        // Some 20 times what a pipe holds.
+        // About 20 times a pipe's capacity.
         &["sine", "sweep", "--points", "20000"],
     ] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))

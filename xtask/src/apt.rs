@@ -1,4 +1,4 @@
-//! Debian's packages, for what no Rust registry has: browsers, an emulator and a waveform viewer.
+//! Installs Debian packages that no Rust registry has: browsers, an emulator and a waveform viewer.
 
 use anyhow::{Result, bail};
 use tokio::process::Command;
@@ -7,10 +7,10 @@ use tokio::sync::Mutex;
 use crate::aside::say;
 use crate::run;
 
-/// The system has one list of packages, and two steps may want some at once.
+/// apt allows one installation at a time, and two steps may need one at once.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 
-/// Installs `packages` where that is one command and nobody needs to be asked.
+/// Installs `packages` if that needs no password and no question.
 pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" and ");
     let apt = match which::which("apt-get") {
@@ -28,13 +28,11 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).await
 }
 
-/// Whether this program may do all.
 #[cfg(unix)]
 pub(crate) fn is_root() -> bool {
     rustix::process::geteuid().is_root()
 }
 
-/// Whether this program may do all.
 #[cfg(not(unix))]
 pub(crate) fn is_root() -> bool {
     false

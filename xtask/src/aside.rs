@@ -1,4 +1,4 @@
-//! What a step says that runs beside another: it is kept, and printed whole when the step has ended.
+//! Buffers the output of a step that runs next to another one; the whole output is printed when the step ends.
 
 use std::fmt;
 use std::fs::File;
@@ -8,11 +8,9 @@ use std::io::{self, Read, Seek, Write};
 use anyhow::{Context, Result};
 
 tokio::task_local! {
-    /// Where the work under way writes; there is none where its words go straight to the terminal.
     static KEPT: File;
 }
 
-/// Does `work`, and gives beside its result all that it and its children said.
 pub(crate) async fn kept<T>(work: impl Future<Output = T>) -> Result<(T, Vec<u8>)> {
     let mut file = tempfile::tempfile().context("a file for a step's words can't be made")?;
     let done = KEPT.scope(file.try_clone()?, work).await;
@@ -22,18 +20,17 @@ pub(crate) async fn kept<T>(work: impl Future<Output = T>) -> Result<(T, Vec<u8>
     Ok((done, said))
 }
 
-/// Says a line of a step's own.
 pub(crate) fn say(line: impl fmt::Display) {
-    // Nobody hears the refusal of words, and the step goes on without them.
+    // A step does not fail because its output cannot be printed.
     let _ = match file() {
         Ok(Some(mut file)) => writeln!(file, "{line}"),
         _ => writeln!(io::stdout(), "{line}"),
     };
 }
 
-/// The file into which the work under way writes; `None` where its output goes straight to the terminal.
+/// The file that buffers the output of the current step; `None` if it prints to the terminal.
 pub(crate) fn file() -> Result<Option<File>> {
-    // They share one place in the file: what is written later stands behind.
+    // The clones share one file position, so the parts stay in order.
     match KEPT.try_with(File::try_clone) {
         Ok(file) => Ok(Some(file.context("a step's words can't be kept")?)),
         Err(_) => Ok(None),

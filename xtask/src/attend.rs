@@ -1,8 +1,8 @@
-//! `cargo xtask attend PROGRAM …`: a program that ends when whoever started this one does, however that ends.
+//! `cargo xtask attend PROGRAM …` runs a program that ends when the process that started this one ends.
 //!
-//! A test can be stopped in the middle, and what it started is nobody's then. So it starts this, and holds the other
-//! end of this one's standard input: the system closes that with the test's last breath, and here the program goes,
-//! with all that it started and with the folder that its files were in.
+//! A test may be killed, and then nothing would stop the programs that it started. The test holds the other end of
+//! this process's standard input. The system closes it when the test dies, and this process then ends the program,
+//! its process group and its folder of files.
 
 use std::ffi::OsString;
 use std::io::Read;
@@ -15,12 +15,10 @@ use tokio::sync::oneshot;
 
 use crate::run;
 
-/// Longest that the folder of a program is tried to be removed: what dies still writes.
+/// A dying program may still write to its folder, so removing the folder is tried again for this time.
 const CLEARING: Duration = Duration::from_secs(5);
-/// Rest between two attempts.
 const TRY_AGAIN: Duration = Duration::from_millis(20);
 
-/// A folder for the program's files; it goes with this.
 struct Folder(PathBuf);
 
 impl Drop for Folder {
@@ -35,14 +33,13 @@ impl Drop for Folder {
     }
 }
 
-/// Runs the program in the words' first, with the others as its arguments, until it or standard input ends.
 pub(crate) async fn attend(words: &[OsString]) -> Result<()> {
     let (program, arguments) = words.split_first().context("name a program")?;
     let folder = Folder(std::env::temp_dir().join(format!("stepscope-attend-{}", std::process::id())));
     std::fs::create_dir_all(&folder.0).with_context(|| format!("{} can't be made", folder.0.display()))?;
     let mut command = Command::new(program);
     command.args(arguments).env("TMPDIR", &folder.0);
-    // Declared after the folder, and so dropped before it.
+    // Declared after the folder and so dropped before it.
     let mut group = run::start(command)?;
     tokio::select! {
         () = end_of_input() => {}
@@ -51,7 +48,7 @@ pub(crate) async fn attend(words: &[OsString]) -> Result<()> {
     group.end().await
 }
 
-/// A thread of its own, for which nobody waits at the end: the runtime's would be waited for.
+/// Not a task of the runtime: the runtime would wait for it at the end.
 async fn end_of_input() {
     let (ended, end) = oneshot::channel();
     std::thread::spawn(move || {

@@ -1,5 +1,5 @@
-//! The programs in `firmware/avr`: tests of `cli` build them and run them in simavr. The recordings in `core/capture/recordings`
-//! are made again, and a controller does what `stepscope send` has it do.
+//! Builds the programs in `firmware/avr` and runs them in simavr: they make the recordings in
+//! `core/capture/recordings` again and answer `stepscope send`. The tests are in `cli`.
 
 use std::path::Path;
 
@@ -7,13 +7,11 @@ use anyhow::{Context, Result, bail};
 
 use crate::{apt, judges, run, toolchain};
 
-/// The packages in Debian, the programs of them that the test calls, and headers that these read.
 const PACKAGES: [&str; 6] = ["gcc-avr", "avr-libc", "simavr", "libsimavr-dev", "sigrok-cli", "gcc"];
 const PROGRAMS: [&str; 4] = ["avr-gcc", "simavr", "sigrok-cli", "cc"];
 const HEADERS: [&str; 2] = ["simavr/avr/avr_mcu_section.h", "simavr/sim_avr.h"];
 const INCLUDES: [&str; 2] = ["/usr/include", "/usr/local/include"];
 
-/// Installs what is missing and runs the test.
 pub(crate) async fn test() -> Result<()> {
     if found().is_err() {
         apt::install(&PACKAGES).await.with_context(remedy)?;
@@ -21,7 +19,7 @@ pub(crate) async fn test() -> Result<()> {
     }
     let mut command = toolchain::ignored_tests(&["avr_recordings", "avr_live"]);
     command.env("STEPSCOPE_PYTHON", judges::python().await?);
-    run::to_end(command).await
+    run::cargo_test(command).await
 }
 
 fn found() -> Result<()> {

@@ -1,31 +1,30 @@
-//! The golden cases on a microcontroller: `tests/cortex-m3`, built, and run in QEMU.
+//! Runs the golden cases (`tests/cortex-m3`) in QEMU.
 
 use anyhow::{Context, Result};
+use tokio::process::Command;
 
 use crate::toolchain::{self, BARE_METAL};
 use crate::{apt, run};
 
-/// The crate of the program.
 pub(crate) const PACKAGE: &str = "stepscope-cortex-m3";
 
-/// The emulator, as `.cargo/config.toml` calls it, and its package's name in Debian.
+/// The emulator that `.cargo/config.toml` names; Debian's package has the same name.
 const QEMU: &str = "qemu-system-arm";
 
-/// Builds the program and runs it; an error unless every case gives what it gives everywhere.
 pub(crate) async fn test() -> Result<()> {
     toolchain::target(BARE_METAL).await?;
     if which::which(QEMU).is_err() {
         apt::install(&[QEMU]).await.with_context(remedy)?;
         which::which(QEMU).with_context(remedy)?;
     }
-    cargo("build").await?;
-    cargo("run").await
+    run::to_end(cargo("build")).await?;
+    run::test(cargo("run")).await
 }
 
-async fn cargo(what: &str) -> Result<()> {
+fn cargo(what: &str) -> Command {
     let mut command = toolchain::cargo();
     command.args([what, "--release", "--locked", "--package", PACKAGE, "--target", BARE_METAL]);
-    run::to_end(command).await
+    command
 }
 
 fn remedy() -> String {

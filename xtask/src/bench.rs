@@ -1,14 +1,12 @@
-//! `cargo xtask bench`: criterion's figure of each kernel, and ratios between kernels and between
-//! native code and the browser.
+//! `cargo xtask bench`: criterion's time of each kernel, and ratios between kernels and between native code and the
+//! browser.
 //!
-//! A time by itself says more of the machine than of the code, and a busy machine changes its speed
-//! from second to second. So the ratios come from blocks: in each, a native process and then the
-//! page in a browser call all kernels in turn, several rounds long; what else runs on the machine
-//! only ever adds time, so the best call of a kernel in the block is the one that counts. The table
-//! gives the median of the blocks' ratios and, as the measure of what noise is left, their median
-//! absolute deviation.
+//! A busy machine changes its speed from second to second, so a single time says little. The ratios come from blocks:
+//! in each, a native process and then the page call all kernels in turn. Other programs only add time, so the best
+//! call of a kernel in a block counts. The table gives the median of the blocks' ratios and their median absolute
+//! deviation.
 //!
-//! With `--against` the blocks of an earlier commit stand between those of the tree, in a clone of its own.
+//! With `--against`, blocks of an earlier commit, built in a clone, alternate with those of the working tree.
 
 mod page;
 mod readme;
@@ -26,17 +24,14 @@ use crate::{root, run, steps, toolchain};
 use page::Page;
 use table::{Block, Estimate, Report};
 
-/// The crate of the kernels, from the workspace's folder.
 const FOLDER: &str = "tests/bench";
 const PACKAGE: &str = "stepscope-bench";
 
-/// The figures of a run, beside what is made of the kernels.
 const RESULTS: &str = "results.json";
 
-/// How long to measure.
 struct Effort {
     blocks: usize,
-    /// Rounds of a block.
+    /// Rounds per block.
     rounds: u32,
     criterion: [&'static str; 6],
 }
@@ -58,7 +53,6 @@ const QUICK: Effort = Effort {
     criterion: ["--sample-size", "10", "--warm-up-time", "0.1", "--measurement-time", "0.4"],
 };
 
-/// Builds the kernels for both, measures, and prints the tables.
 pub(crate) async fn run(quick: bool) -> Result<()> {
     let effort = if quick { QUICK } else { FULL };
     let browser = Browser::ready().await?;
@@ -87,8 +81,7 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
     keep(&tree.home, &table::json(&blocks, None, Some(figures))?)
 }
 
-/// Measures the kernels of an earlier commit and those of the tree as it stands in turn, and prints how fast these are in
-/// parts of the speed of those.
+/// Measures the kernels of an earlier commit and of the working tree in turn, and prints the ratios of their speeds.
 pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
     let effort = if quick { QUICK } else { FULL };
     let browser = Browser::ready().await?;
@@ -113,7 +106,6 @@ pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
     keep(&now.home, &table::json(&blocks, Some(&before), None)?)
 }
 
-/// Keeps what was measured, for whoever goes on with it.
 fn keep(home: &Path, json: &str) -> Result<()> {
     let path = home.join(RESULTS);
     std::fs::write(&path, json).with_context(|| format!("{} can't be written", path.display()))?;
@@ -121,27 +113,23 @@ fn keep(home: &Path, json: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes README's table, of the figures of the last run.
 pub(crate) fn readme() -> Result<()> {
     readme::write()
 }
 
-/// Sources whose kernels are measured.
 struct Tree {
     root: PathBuf,
-    /// What is made of them.
     home: PathBuf,
-    /// Of another commit: its builds have a folder of their own.
+    /// Another commit's builds have their own target folder.
     target: Option<PathBuf>,
 }
 
 impl Tree {
-    /// The workspace as it stands.
     fn here() -> Self {
         Self { root: root().to_path_buf(), home: root().join("target").join("bench"), target: None }
     }
 
-    /// The workspace of a commit, in a clone that stays until another commit is asked for.
+    /// A clone of a commit, which stays until another commit is requested.
     async fn of(rev: &str) -> Result<Self> {
         let git = |folder: &Path, words: &[&str]| {
             let mut command = Command::new("git");
@@ -170,12 +158,11 @@ impl Tree {
             clone.arg(root()).arg(&tree);
             run::to_end(clone).await?;
         }
-        // Also where it stands: an earlier run may have been ended before its files were there.
+        // Also if the clone is at this commit: an earlier run may have been stopped before the checkout was complete.
         run::to_end(git(&tree, &["checkout", "--quiet", "--detach", "--force", commit])).await?;
         Ok(Self { root: tree, target: Some(home.join("target")), home })
     }
 
-    /// This command, in the tree.
     fn at_home(&self, mut command: Command) -> Command {
         command.current_dir(&self.root);
         if let Some(target) = &self.target {
@@ -188,7 +175,6 @@ impl Tree {
         self.home.join("pkg")
     }
 
-    /// Both builds of the kernels.
     async fn build(&self, tools: &WasmTools) -> Result<()> {
         std::fs::create_dir_all(&self.home)
             .with_context(|| format!("{} can't be made", self.home.display()))?;
@@ -197,17 +183,14 @@ impl Tree {
         run::to_end(self.at_home(kernels(&["--no-run"]))).await
     }
 
-    /// The kernels in a browser.
     async fn page(&self, browser: &Browser) -> Result<Page> {
         Page::open(browser, &self.root.join(FOLDER).join("page"), &self.package(), &self.home).await
     }
 
-    /// A native process, and right after it the browser.
     async fn block(&self, page: &mut Page, rounds: u32) -> Result<Block> {
         Ok(Block { native: self.native(rounds).await?, browser: page.rounds(rounds).await? })
     }
 
-    /// One native process of so many rounds.
     async fn native(&self, rounds: u32) -> Result<Vec<Report>> {
         let path = self.home.join("native.json");
         let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
@@ -220,8 +203,6 @@ impl Tree {
     }
 }
 
-/// Measures the page as it is shipped, in Chromium, and leaves what it found in a file. Its times are of this machine and
-/// this moment.
 pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     let command = "bench --package stepscope-tests --features browser --bench page --locked";
     let mut command = steps::with_page(command).await?;
@@ -231,16 +212,14 @@ pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     run::to_end(command).await
 }
 
-/// Measures the command's server. Its times are of this machine and this moment.
 pub(crate) async fn live() -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["bench", "--package", "stepscope-cli", "--bench", "live", "--locked"]);
     run::to_end(command).await
 }
 
-/// Criterion's benchmarks, each kernel by itself; their results lie under `home` then.
 async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
-    // What an earlier run left would only be compared with.
+    // Criterion would only compare with the results of an earlier run.
     if home.exists() {
         std::fs::remove_dir_all(home).with_context(|| format!("{} can't be removed", home.display()))?;
     }
@@ -249,14 +228,12 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     run::to_end(command).await
 }
 
-/// Criterion's estimate of a kernel.
 fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {
     let file = home.join("kernels").join(kernel).join("new").join("estimates.json");
     let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
     Estimate::from_json(&text).with_context(|| format!("{} is not what it should be", file.display()))
 }
 
-/// A call of the kernels as native code with cargo's `options`, to which their own can be added.
 fn kernels(options: &[&str]) -> Command {
     let mut command = toolchain::cargo();
     command.args(["bench", "--package", PACKAGE, "--features", "criterion", "--bench", "kernels"]);

@@ -1,4 +1,4 @@
-//! Chromium and its driver, for the tests that need a real browser.
+//! Finds Chromium and its driver, for the tests that need a browser.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -9,19 +9,17 @@ use crate::apt;
 use crate::aside::say;
 use crate::tools::version_answer;
 
-/// A browser and the driver that goes with it.
 pub(crate) struct Browser {
     pub(crate) chromium: PathBuf,
     pub(crate) chromedriver: PathBuf,
 }
 
-/// Environment variables that name the two where PATH does not, and by which tests are told of them.
+/// Environment variables that name the programs if PATH does not; the tests read them, too.
 pub(crate) const CHROMIUM: &str = "STEPSCOPE_CHROMIUM";
-/// See [`CHROMIUM`].
 pub(crate) const CHROMEDRIVER: &str = "STEPSCOPE_CHROMEDRIVER";
 
 impl Browser {
-    /// Finds the two; installs them where that is one command and nobody needs to be asked.
+    /// Finds both, or installs them if that needs no question.
     pub(crate) async fn ready() -> Result<Self> {
         if let Some(found) = Self::find() {
             return Ok(found);
@@ -30,8 +28,8 @@ impl Browser {
         Self::find().with_context(remedy)
     }
 
-    /// The same engine without windows, menus and what they cost, of the driver's version: a load of the page takes a third
-    /// less. It is installed beside Debian's own Chromium. Chromium itself where it cannot be had, or another was asked for.
+    /// Chrome's headless shell in the driver's version: it loads the page in two thirds of the time. Falls back to
+    /// Chromium itself if the shell is not available or another browser was requested.
     pub(crate) async fn headless(&self) -> PathBuf {
         if env::var_os(CHROMIUM).is_some() {
             return self.chromium.clone();
@@ -59,7 +57,7 @@ impl Browser {
     }
 }
 
-/// Whether two programs say the same number before the first dot of their versions: `Chromium 156.0.8078.79`.
+/// Compares major versions, as in `Chromium 156.0.8078.79`.
 async fn fits(shell: &Path, driver: &Path) -> bool {
     let major = async |program: &Path| {
         let answer = version_answer(program).await?;
@@ -72,7 +70,6 @@ async fn fits(shell: &Path, driver: &Path) -> bool {
     }
 }
 
-/// The first of these programs that is on PATH.
 fn on_path(names: &[&str]) -> Option<PathBuf> {
     names.iter().find_map(|name| which::which(name).ok())
 }

@@ -1,13 +1,13 @@
-//! `cargo xtask dist`: the page as any static host can serve it.
+//! `cargo xtask dist`: the page for any static host.
 //!
-//! | in `dist/` | what it is |
+//! | in `dist/` | contents |
 //! | --- | --- |
-//! | `index.html`, other pages, `manifest.webmanifest`, `sw.js` | under their own names, asked for anew at each visit |
-//! | `assets/` | all else that these name, made by esbuild; the hash in a name changes with what the file and all that it imports hold, so hosts and browsers may keep it for ever |
-//! | `_headers` | `web/_headers` and the rules for keeping |
+//! | `index.html`, other pages, `manifest.webmanifest`, `sw.js` | under their own names, requested again at each visit |
+//! | `assets/` | all other files, made by esbuild; a name contains the hash of the file and its imports, so it may be cached forever |
+//! | `_headers` | `web/_headers` and the rules for caching |
 //!
-//! Only pages and the manifest name files that no script imports: the worker's script and the wasm, too, stand in
-//! `index.html`. So new names are written there, and nowhere else. The result depends on the files and the commit alone.
+//! Only pages and the manifest name files that no script imports, so new names are written there alone. The result
+//! depends only on the files and the commit.
 
 mod esbuild;
 mod licences;
@@ -22,35 +22,26 @@ use walkdir::WalkDir;
 use crate::{headers, root, run};
 use esbuild::Bundles;
 
-/// Where what has a hash in its name lies.
 const ASSETS: &str = "assets";
-/// The page.
 const PAGE: &str = "index.html";
-/// The service worker, which holds the list of files.
+/// The service worker holds the list of files.
 const SERVICE_WORKER: &str = "sw.js";
-/// The licences' page, which no source is of.
 const LICENCES: &str = "licenses.html";
-/// What stands in the sources where the build writes what it is.
+/// The placeholder in the sources that the build replaces.
 const UNBUILT: &str = "development";
-/// The service worker's line that the build fills.
 const UNLISTED: &str = "const build = { id: \"development\", files: [] };";
 
-/// Where the page as it is shipped lies.
 pub(crate) fn folder() -> PathBuf {
     root().join("dist")
 }
 
-/// Which files of `dist` load when, by their paths.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
-    /// What opening the page loads.
     pub(crate) opening: BTreeSet<String>,
-    /// What more loads at another page, or when something is opened for the first time: by the page, or by the source
-    /// that is asked for.
+    /// What loads later, by the page or the source that needs it.
     pub(crate) later: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// Builds the folder `dist` from the built page in `web`.
 pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
     let mut site = Site::read(web)?;
     site.texts.insert(LICENCES.to_owned(), licences::page().await?);
@@ -65,7 +56,7 @@ pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
     Ok(site.parts(&bundles))
 }
 
-/// The commit's short name, with a `+` where files differ from it; none outside of a clone.
+/// The commit's short name, with a `+` if files differ from it; `None` outside a clone.
 async fn commit() -> Option<String> {
     let git = |arguments: &[&str]| {
         let mut command = tokio::process::Command::new("git");
@@ -77,22 +68,18 @@ async fn commit() -> Option<String> {
     Some(format!("{}{}", name.trim(), if changes.is_empty() { "" } else { "+" }))
 }
 
-/// The files that keep their names.
 struct Site {
-    /// Pages, manifest and service worker, by their names.
     texts: BTreeMap<String, String>,
-    /// `web/_headers`.
     headers: String,
 }
 
-/// Whether a file names others that have hashes in their names.
 fn names_others(file: &str) -> bool {
     file.ends_with(".html") || file.ends_with(".webmanifest")
 }
 
 /// Where a page or the manifest names a file that loads with it.
 const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
-/// Where a page names a file that its scripts ask for later; those of one row load together.
+/// Where a page names a file that its scripts request later; the files of one row load together.
 const LATER: [&[&str]; 4] = [
     &["data-study-worker=\"", "data-tools-core=\"", "data-study-style=\""],
     &["data-capture-worker=\"", "data-tools-core=\""],
@@ -100,12 +87,11 @@ const LATER: [&[&str]; 4] = [
     &["data-live-worker=\"", "data-tools-core=\"", "data-live-style=\""],
 ];
 
-/// Every file of this site that a page or the manifest names, in its order.
 fn named(text: &str) -> impl Iterator<Item = &str> {
     files_at(text, &AT_ONCE).chain(LATER.iter().flat_map(move |places| files_at(text, places)))
 }
 
-/// Those that stand behind one of these; the page's own address, `./`, is none.
+/// `./`, the page's own address, is skipped.
 fn files_at<'a>(text: &'a str, places: &'a [&str]) -> impl Iterator<Item = &'a str> {
     let values = places.iter().flat_map(|place| text.split(place).skip(1));
     let addresses = values.filter_map(|rest| rest.split('"').next()).filter(|address| !address.contains(':'));
@@ -130,30 +116,25 @@ impl Site {
         Ok(Self { texts, headers: read(headers::FILE)? })
     }
 
-    /// The pages and the manifest.
     fn naming(&self) -> impl Iterator<Item = (&str, &str)> {
         let texts = self.texts.iter().filter(|(name, _)| names_others(name));
         texts.map(|(name, text)| (name.as_str(), text.as_str()))
     }
 
-    /// The sources that become files with hashes in their names.
     fn sources(&self) -> BTreeSet<&str> {
         self.naming().flat_map(|(_, text)| named(text)).filter(|file| !names_others(file)).collect()
     }
 
-    /// The page's own script.
     fn script(&self) -> Result<&str> {
         let page = self.texts.get(PAGE).map_or("", String::as_str);
         files_at(page, &["src=\""]).next().with_context(|| format!("{PAGE} names no script"))
     }
 
-    /// The files of bundles that this page or manifest names at these places.
     fn wanted<'a>(&self, name: &str, places: &[&str], bundles: &'a Bundles) -> BTreeSet<&'a str> {
         let text = self.texts.get(name).map_or("", String::as_str);
         files_at(text, places).filter_map(|source| bundles.of(source)).collect()
     }
 
-    /// Every file of the result beside the bundles, by its name.
     fn built(
         &self,
         bundles: &Bundles,
@@ -164,7 +145,7 @@ impl Site {
         for (name, text) in self.naming() {
             built.insert(name.to_owned(), self.renamed(name, text, bundles)?);
         }
-        // Without a commit the files themselves say which build this is.
+        // Without a commit the hash of the files identifies the build.
         let own = format!("{:08x}", hash_of(&built) >> 32);
         let page = built.get_mut(PAGE).with_context(|| format!("there is no {PAGE}"))?;
         *page = unindented(&stamped(page, &format!("{version} ({})", commit.unwrap_or(&own)))?);
@@ -182,7 +163,7 @@ impl Site {
         Ok(built)
     }
 
-    /// A page or manifest with the names that files have now, and with links by which a page's modules load side by side.
+    /// Puts in the new names, and links by which the browser loads a page's modules in parallel.
     fn renamed(&self, name: &str, text: &str, bundles: &Bundles) -> Result<String> {
         let mut renamed = text.to_owned();
         for file in named(text).collect::<BTreeSet<_>>() {
@@ -205,7 +186,6 @@ impl Site {
         Ok(renamed.replacen("</head>", &format!("{links}</head>"), 1))
     }
 
-    /// Which files load when.
     fn parts(&self, bundles: &Bundles) -> Parts {
         let with = |files: BTreeSet<&str>| -> BTreeSet<String> {
             files.into_iter().flat_map(|file| bundles.at_once(file)).map(str::to_owned).collect()
@@ -240,7 +220,7 @@ impl Site {
         Parts { opening, later }
     }
 
-    /// `web/_headers` without its rules for keeping, and rules for keeping of each file.
+    /// Replaces the rules for caching in `web/_headers`.
     fn rules<'a>(&self, entries: impl Iterator<Item = &'a str>) -> String {
         let kept = self.headers.lines().filter(|line| !line.trim_start().starts_with("Cache-Control:"));
         let mut rules: String = kept.map(|line| format!("{line}\n")).collect();
@@ -252,7 +232,6 @@ impl Site {
     }
 }
 
-/// The page with what it is written where its source says that it is under development.
 fn stamped(page: &str, build: &str) -> Result<String> {
     let places = [format!("data-build=\"{UNBUILT}\""), format!("<span id=\"version\">{UNBUILT}</span>")];
     for place in &places {
@@ -261,7 +240,6 @@ fn stamped(page: &str, build: &str) -> Result<String> {
     Ok(places.iter().fold(page.to_owned(), |page, place| page.replace(place, &place.replace(UNBUILT, build))))
 }
 
-/// A script without the lines that say something to its reader alone.
 fn without_comments(script: &str) -> String {
     let lines = script.lines().filter(|line| {
         let text = line.trim_start();
@@ -270,12 +248,11 @@ fn without_comments(script: &str) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// The page without the indents of its lines; it holds no text that keeps them.
 fn unindented(page: &str) -> String {
     page.lines().map(|line| format!("{}\n", line.trim_start())).collect()
 }
 
-/// Of all that is built: the texts hold the names of all else, and these change with what that holds.
+/// The texts name all other files, whose names contain their hashes; so this covers the whole build.
 fn hash_of(texts: &BTreeMap<String, String>) -> u64 {
     let mut held = Vec::new();
     for (name, text) in texts {
@@ -285,7 +262,6 @@ fn hash_of(texts: &BTreeMap<String, String>) -> u64 {
     XxHash64::oneshot(0, &held)
 }
 
-/// Takes away whatever an earlier build left in `dist`.
 fn clear(dist: &Path) -> Result<()> {
     if dist.exists() {
         ensure!(

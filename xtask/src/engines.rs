@@ -1,4 +1,4 @@
-//! Firefox and WebKit with their drivers, and a display for WebKit, which has no mode without a window.
+//! Finds Firefox and WebKit with their drivers, and a display for WebKit, which has no headless mode.
 
 use std::env;
 use std::path::PathBuf;
@@ -9,21 +9,17 @@ use tokio::process::Command;
 
 use crate::{apt, run, tools};
 
-/// Environment variables that name the programs where PATH does not, and by which tests are told of them.
+/// Environment variables that name the programs if PATH does not; the tests read them, too.
 pub(crate) const FIREFOX: &str = "STEPSCOPE_FIREFOX";
-/// See [`FIREFOX`].
 pub(crate) const GECKODRIVER: &str = "STEPSCOPE_GECKODRIVER";
-/// See [`FIREFOX`].
 pub(crate) const WEBKITDRIVER: &str = "STEPSCOPE_WEBKITDRIVER";
 
-/// Firefox and its driver.
 pub(crate) struct Firefox {
     pub(crate) firefox: PathBuf,
     pub(crate) geckodriver: PathBuf,
 }
 
 impl Firefox {
-    /// Finds the two; installs them where nobody needs to be asked.
     pub(crate) async fn ready() -> Result<Self> {
         let firefox = program(FIREFOX, &["firefox", "firefox-esr"], "firefox-esr").await.with_context(|| {
             format!(
@@ -41,16 +37,14 @@ impl Firefox {
     }
 }
 
-/// WebKit's driver, which starts its own browser, and the display that it draws on as long as this lives.
+/// WebKit's driver starts the browser itself. The display lives as long as this value.
 pub(crate) struct WebKit {
     pub(crate) driver: PathBuf,
-    /// As `DISPLAY` has it.
     pub(crate) display: String,
     _server: run::Group,
 }
 
 impl WebKit {
-    /// Finds the driver and starts a display; installs both programs where nobody needs to be asked.
     pub(crate) async fn ready() -> Result<Self> {
         let driver = program(WEBKITDRIVER, &["WebKitWebDriver"], "webkit2gtk-driver").await.with_context(|| {
             format!(
@@ -63,7 +57,7 @@ impl WebKit {
              root) so that it is on PATH",
         )?;
         let mut command = Command::new(server);
-        // It takes a free number and says which.
+        // Xvfb takes a free display number and prints it.
         command.args(["-displayfd", "1", "-screen", "0", "1600x1200x24", "-nolisten", "tcp"]);
         command.stdout(Stdio::piped()).stderr(Stdio::null());
         let mut server = run::start(command)?;
@@ -72,7 +66,6 @@ impl WebKit {
     }
 }
 
-/// The program that a variable names, or the first of these that is on PATH, or what Debian's package brings there.
 async fn program(variable: &str, names: &[&str], package: &str) -> Result<PathBuf> {
     let on_path = || names.iter().find_map(|name| which::which(name).ok());
     if let Some(found) = env::var_os(variable).map(PathBuf::from).or_else(on_path) {

@@ -1,10 +1,10 @@
-//! `cargo xtask fuzz`: libFuzzer over the checks of `tests/src/fuzzing.rs`, through cargo-fuzz.
+//! `cargo xtask fuzz` runs libFuzzer on the checks of `tests/src/fuzzing.rs`, through cargo-fuzz.
 //!
-//! cargo-fuzz's sanitizers need a nightly Rust; what they look for, safe Rust does not have. With `--sanitizer none` the
-//! stable one counts coverage all the same, and builds with debug assertions and overflow checks.
+//! Sanitizers need a nightly Rust and find what safe Rust cannot contain. With `--sanitizer none` stable Rust counts
+//! coverage, too; debug assertions and overflow checks are on.
 //!
-//! Every run begins anew with the same inputs (seeds made from the repository, and what was found before), so the same
-//! `--seed` takes the same way; another seed takes another, and a run without one takes a new one and prints it.
+//! Every run starts with the same inputs: seeds made from the repository, and earlier findings. So the same `--seed`
+//! repeats a run. Without one a run draws a seed and prints it.
 
 mod report;
 
@@ -20,29 +20,24 @@ use tokio::process::Command;
 use crate::{root, run, toolchain, tools};
 use report::Report;
 
-/// Time beyond its own within which a target ends: its first inputs, and the last one.
+/// Additional time for a target's first inputs and its last one.
 const GRACE: Duration = Duration::from_secs(120);
-/// One input may take so long, in seconds, and so much memory, in MB.
+/// Maximum time (s) and memory (MB) per input.
 const INPUT_SECONDS: u32 = 10;
 const MEMORY_MB: u32 = 2048;
 
-/// How to fuzz.
 pub(crate) struct Options {
-    /// Names of the targets; all if empty.
     pub(crate) targets: Vec<String>,
-    /// How long each runs.
     pub(crate) seconds: u32,
-    /// libFuzzer's seed; not 0, which means any.
+    /// Not 0, which libFuzzer takes as "any".
     pub(crate) seed: u32,
 }
 
-/// A seed that nobody has chosen.
 pub(crate) fn new_seed() -> u32 {
     let chance = RandomState::new().hash_one(std::process::id());
     (chance as u32).max(1)
 }
 
-/// Builds, runs the targets one after another, and says what each did; an error if one found something.
 pub(crate) async fn run(options: Options) -> Result<()> {
     let manifest = root().join("fuzz").join("Cargo.toml");
     let text =
@@ -69,7 +64,6 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     Ok(())
 }
 
-/// Names of the targets in the text of fuzz/Cargo.toml.
 fn names(manifest: &str) -> Result<Vec<String>> {
     #[derive(Deserialize)]
     struct Manifest {
@@ -83,7 +77,6 @@ fn names(manifest: &str) -> Result<Vec<String>> {
     Ok(manifest.bin.into_iter().map(|bin| bin.name).collect())
 }
 
-/// The targets that are asked for: all, if none is named.
 fn chosen(all: &[String], asked: &[String]) -> Result<Vec<String>> {
     if let Some(unknown) = asked.iter().find(|name| !all.contains(name)) {
         bail!("{unknown} is no fuzz target; give {}, or none for all", all.join(", "));
@@ -91,7 +84,6 @@ fn chosen(all: &[String], asked: &[String]) -> Result<Vec<String>> {
     Ok(if asked.is_empty() { all.to_vec() } else { asked.to_vec() })
 }
 
-/// Builds all targets; the folder of their programs.
 async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     let cargo_fuzz = tools::cargo_fuzz().await?;
     let mut fetch = toolchain::cargo();
@@ -102,7 +94,7 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     let triple = toolchain::host().await?;
     let mut command = Command::new(cargo_fuzz);
     command.current_dir(root()).args(["build", "--sanitizer", "none"]);
-    // What is compared is at times an address, which differs from run to run; without it coverage is as good.
+    // libFuzzer may compare addresses, which differ between runs; coverage alone finds as much.
     command.args(["--no-trace-compares", "--target", &triple, "--target-dir"]).arg(folder);
     run::to_end(command).await.context(
         "the fuzz targets were not built; libFuzzer needs a C++ compiler (Debian: apt-get install g++)",
@@ -110,7 +102,6 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(folder.join(triple).join("release"))
 }
 
-/// Writes what each target begins with.
 async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);
@@ -118,7 +109,6 @@ async fn inputs(home: &Path) -> Result<()> {
     run::to_end(command).await
 }
 
-/// Runs one target in its folder.
 async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report> {
     fs::create_dir_all(folder.join("findings"))?;
     let mut names = Vec::new();
@@ -150,7 +140,7 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     }
 }
 
-/// What to do with a finding, as commands for the workspace's folder.
+/// The commands that repeat a finding and save it, for the workspace's folder.
 fn advice(target: &str, input: &Path, program: &Path) -> String {
     let short = |path: &Path| path.strip_prefix(root()).unwrap_or(path).display().to_string();
     let (input, program) = (short(input), short(program));

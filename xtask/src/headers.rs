@@ -1,17 +1,14 @@
-//! `web/_headers`: the one place that says which headers go with which path.
+//! Reads `web/_headers`, the one place that sets headers per path.
 //!
-//! The format is that of the static hosts that read such a file: a path at the start of a line, its
-//! headers indented below it, `#` for comments. Of the path patterns only the exact path and a `*`
-//! at the end are taken; whatever else a host might know is refused, so that the file can't mean one
-//! thing there and another here.
+//! The format is that of static hosts: a path, its headers indented below it, `#` for comments. Only exact paths and
+//! a `*` at the end are accepted: other patterns might mean different things on different hosts.
 
 use anyhow::{Context, Result, bail};
 use axum::http::{HeaderName, HeaderValue};
 
-/// The file of rules, in the page's folder; hosts send it to nobody.
+/// Hosts never send this file.
 pub(crate) const FILE: &str = "_headers";
 
-/// The rules of one `_headers` file, in its order.
 #[derive(Debug, Default)]
 pub(crate) struct Headers {
     rules: Vec<Rule>,
@@ -19,7 +16,6 @@ pub(crate) struct Headers {
 
 #[derive(Debug)]
 struct Rule {
-    /// An exact path, or a prefix followed by `*`.
     path: String,
     headers: Vec<(HeaderName, HeaderValue)>,
 }
@@ -34,7 +30,6 @@ impl Rule {
 }
 
 impl Headers {
-    /// Reads a `_headers` file; an error names the line.
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let mut rules: Vec<Rule> = Vec::new();
         for (index, line) in text.lines().enumerate() {
@@ -60,7 +55,7 @@ impl Headers {
         Ok(Self { rules })
     }
 
-    /// The headers of an answer for `path`, those of earlier rules first.
+    /// The headers of a reply for `path`, those of earlier rules first.
     pub(crate) fn of(&self, path: &str) -> impl Iterator<Item = (&HeaderName, &HeaderValue)> {
         let covering = self.rules.iter().filter(move |rule| rule.covers(path));
         covering.flat_map(|rule| rule.headers.iter().map(|(name, value)| (name, value)))
@@ -103,7 +98,6 @@ mod tests {
         }
     }
 
-    /// The value of one header of the page itself, from the workspace's own file.
     fn own(name: &str) -> String {
         let text = std::fs::read_to_string(crate::root().join("web/_headers")).unwrap();
         let headers = Headers::parse(&text).unwrap();
@@ -128,7 +122,7 @@ mod tests {
         let Ok(page) = std::fs::read_to_string(crate::root().join("web/index.html")) else {
             return;
         };
-        // Browsers ignore frame-ancestors in a meta tag, and complain about it.
+        // Browsers ignore frame-ancestors in a meta tag and warn about it.
         let policy = own("content-security-policy").replace("; frame-ancestors 'none'", "");
         let tag = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\"");
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,5 +1,5 @@
-//! The live commands before judges that others wrote: Python's packages for serial ports, COBS and CRC-32C, and socat. A test
-//! of `cli` calls them.
+//! Tests the live commands with independent software: Python's packages for serial ports, COBS and CRC-32C, and
+//! socat. The tests are in `cli`.
 
 use std::path::{Path, PathBuf};
 
@@ -10,23 +10,19 @@ use crate::aside::say;
 use crate::tools::cache;
 use crate::{apt, run, toolchain};
 
-/// The packages of Python's registry, in these versions.
 const PACKAGES: [&str; 3] = ["pyserial==3.5", "cobs==1.2.2", "google-crc32c==1.9.0"];
-/// In this folder, which is of these versions.
+/// The folder's number changes with these versions.
 const HOME: &str = "live-judges-1";
-/// Imports what was installed.
 const PROBE: &str = "import serial, cobs.cobs, google_crc32c";
 
-/// Installs what is missing and runs the tests.
 pub(crate) async fn test() -> Result<()> {
     let python = python().await?;
     socat().await?;
     let mut command = toolchain::ignored_tests(&["live_judges"]);
     command.env("STEPSCOPE_PYTHON", python);
-    run::to_end(command).await
+    run::cargo_test(command).await
 }
 
-/// Installs socat if it is missing.
 pub(crate) async fn socat() -> Result<()> {
     if which::which("socat").is_err() {
         apt::install(&["socat"]).await.context("the live tests need socat on PATH: install it")?;
@@ -34,7 +30,7 @@ pub(crate) async fn socat() -> Result<()> {
     Ok(())
 }
 
-/// A Python with the packages, in an environment of its own in the tools' cache.
+/// A Python environment with these packages in the tools' cache.
 pub(crate) async fn python() -> Result<PathBuf> {
     let home = cache()?.join("tools").join(HOME);
     let python = home.join("bin").join("python");

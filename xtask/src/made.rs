@@ -1,7 +1,5 @@
-//! What was made of what: whether a folder of built files is still what the same build would make again.
-//!
-//! Binding and optimising the page's wasm takes minutes, and so does building the library crates from their packages;
-//! most changes are of neither.
+//! Decides whether a folder of built files is up to date. Optimizing the page's wasm and building the packages take
+//! minutes, and most changes touch neither.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -13,33 +11,29 @@ use walkdir::WalkDir;
 
 use crate::{THIS_PROGRAM, root, toolchain};
 
-/// What decides, beside its sources, what becomes of any crate of the workspace.
 const WORKSPACE: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
-/// Beginnings of the names of variables by which cargo and rustc are told what to make.
+/// Prefixes of environment variables that change cargo's or rustc's result.
 const TOLD_BY: [&str; 6] =
     ["CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_BUILD_", "CARGO_ENCODED_", "RUSTC", "RUSTFLAGS"];
 
-/// The hash of this program, taken when it started: it may be built anew while it runs.
+/// Hashed at the start: this program may be rebuilt while it runs.
 pub(crate) static PROGRAM: LazyLock<Option<u64>> = LazyLock::new(|| {
     let program = fs::read(THIS_PROGRAM.as_ref().ok()?).ok()?;
     Some(XxHash64::oneshot(0, &program))
 });
 
-/// A folder, and all that it is made of.
 pub(crate) struct Made<'a> {
     folder: &'a Path,
     sources: &'a [&'a str],
-    /// How it is made, and what else tells cargo.
     how: Vec<String>,
-    /// Where it is kept what the folder was made of last, and what it was then.
+    /// The file that records the inputs of the last build.
     note: PathBuf,
-    /// The hash of what it is made of.
     from: u64,
 }
 
 impl<'a> Made<'a> {
-    /// `folder`, made by this program and this Rust of what lies in these folders of the workspace, by `how`.
+    /// `folder`, built by this program and this Rust from these folders of the workspace with the options `how`.
     pub(crate) async fn of(folder: &'a Path, sources: &'a [&'a str], how: &[&str]) -> Result<Self> {
         let mut how: Vec<_> = how.iter().map(|&word| word.to_owned()).collect();
         how.push(toolchain::version().await?);
@@ -56,13 +50,12 @@ impl<'a> Made<'a> {
         Ok(Self { folder, sources, how, note, from })
     }
 
-    /// Whether the folder was made of the same and nobody has changed it since.
+    /// Whether the folder is up to date and unchanged since it was built.
     pub(crate) fn stands(&self) -> Result<bool> {
         let Ok(noted) = fs::read_to_string(&self.note) else { return Ok(false) };
         Ok(self.folder.is_dir() && noted == self.words()?)
     }
 
-    /// Takes away what was made before.
     pub(crate) fn clear(&self) -> Result<()> {
         if self.note.exists() {
             fs::remove_file(&self.note)
@@ -75,7 +68,7 @@ impl<'a> Made<'a> {
         Ok(())
     }
 
-    /// Keeps that the folder is made, unless what it is made of has changed meanwhile.
+    /// Records the build, unless an input has changed meanwhile.
     pub(crate) fn keep(&self) -> Result<()> {
         if from(self.sources, &self.how)? != self.from {
             return Ok(());
@@ -93,7 +86,6 @@ impl<'a> Made<'a> {
     }
 }
 
-/// The hash of all that something is made of.
 fn from(sources: &[&str], how: &[String]) -> Result<u64> {
     let mut held = PROGRAM.context("this program's own file can't be read")?.to_le_bytes().to_vec();
     for name in WORKSPACE {
@@ -108,7 +100,6 @@ fn from(sources: &[&str], how: &[String]) -> Result<u64> {
     Ok(XxHash64::oneshot(0, &held))
 }
 
-/// Adds all files of a folder, by their names and what they hold.
 fn hold_folder(held: &mut Vec<u8>, folder: &Path) -> Result<()> {
     for entry in WalkDir::new(folder).sort_by_file_name() {
         let entry = entry.with_context(|| format!("{} can't be read", folder.display()))?;
@@ -125,7 +116,7 @@ fn hold_file(held: &mut Vec<u8>, file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Adds the length and the hash of a part, so that nothing can move from one to the next unseen.
+/// Adds length and hash, so that no byte can move from one part to the next unnoticed.
 fn hold(held: &mut Vec<u8>, part: &[u8]) {
     held.extend_from_slice(&part.len().to_le_bytes());
     held.extend_from_slice(&XxHash64::oneshot(0, part).to_le_bytes());

@@ -1,21 +1,14 @@
-//! `cargo xtask`: everything that is done with this workspace beyond plain cargo.
+//! `cargo xtask`: the project's tasks beyond plain cargo.
 //!
-//! | file | what it holds |
+//! | file | what it does |
 //! | --- | --- |
-//! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | what a fresh machine lacks, installed once per user |
-//! | `page` | the optimised wasm of the page, and what each file that it loads weighs |
-//! | `made` | whether what was built is still what the same build would make again |
-//! | `sources` | form, lints and types of the page's sources |
-//! | `dist` | the page as hosts serve it: names with hashes, lists, licences |
-//! | `headers`, `serve` | the local server, whose headers are `web/_headers`' |
-//! | `steps`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr` | `cargo xtask test`, step by step |
-//! | `bench` | `cargo xtask bench` |
-//! | `fuzz` | `cargo xtask fuzz` |
-//! | `mutants` | `cargo xtask mutants` |
-//! | `package` | the crates and the npm package as others would get them |
-//! | `aside` | what a step says that runs beside another |
-//! | `run` | child processes: time limit, no input, killed as a group |
-//! | `attend` | a program that ends with whoever started it, for the page's tests |
+//! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | install missing tools once per user |
+//! | `page`, `dist`, `made` | build the page, unless it is up to date |
+//! | `sources` | format, lint and type-check the page's sources |
+//! | `headers`, `serve` | the local server |
+//! | `steps`, `aside`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr`, `judges`, `package` | `cargo xtask test` |
+//! | `bench`, `fuzz`, `mutants` | the commands of these names |
+//! | `run`, `attend` | child processes |
 
 mod apt;
 mod aside;
@@ -157,7 +150,6 @@ enum Task {
     },
 }
 
-/// Whether wasm-opt goes over the page's wasm.
 #[derive(Args, Clone, Copy)]
 struct Optimising {
     /// Leave wasm-opt out: a larger and slower page, but no wasm-opt is needed
@@ -171,21 +163,20 @@ impl Optimising {
     }
 }
 
-/// The workspace's folder.
 fn root() -> &'static Path {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().unwrap_or(here)
 }
 
-/// Where this program lies, for the tests that start it again. It is read before anything else happens: a step that
-/// compiles the workspace may put a newer build in its place, and the system would then name a file that is gone.
+/// This program's path, for tests that start it again. Read first: a step may replace the program by a new build, and
+/// the system would then report a missing file.
 static THIS_PROGRAM: LazyLock<io::Result<PathBuf>> = LazyLock::new(env::current_exe);
 
 async fn perform(task: Task) -> Result<()> {
     let web = root().join("web");
     match task {
         Task::Demo { port, no_open, optimising } => {
-            // The port first: nobody should wait for a build to hear that it is taken.
+            // Bind first: a taken port is reported before the build.
             let listener = serve::bind(port)?;
             page::shipped(optimising.wanted()).await?;
             serve::serve(listener, &dist::folder(), !no_open).await
@@ -230,7 +221,7 @@ async fn main() -> ExitCode {
     LazyLock::force(&THIS_PROGRAM);
     LazyLock::force(&made::PROGRAM);
     let task = Cli::parse().task;
-    // Dropping the task's future kills the process group of whatever child it was waiting for.
+    // Dropping the future ends the process group of the child that it waits for.
     let done = tokio::select! {
         done = perform(task) => done,
         signal = run::interrupted() => match signal {

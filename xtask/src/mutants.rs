@@ -1,8 +1,8 @@
-//! `cargo xtask mutants`: do the tests notice when the code is wrong? cargo-mutants changes one thing at a time (a `<` to
-//! `<=`, a function's result to 0) in the peripheral and the motions, and the tests have to fail.
+//! `cargo xtask mutants`: cargo-mutants changes one expression at a time (a `<` to `<=`, a result to 0) in the
+//! peripheral and the motions, and the tests have to fail.
 //!
-//! All mutants together take days. A run draws a sample; the same `--seed` draws the same one from the same sources. What
-//! is left out altogether, and why, is in `.cargo/mutants.toml`.
+//! All mutants together take days, so a run draws a sample; the same `--seed` draws the same one.
+//! `.cargo/mutants.toml` lists what is excluded and why.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -17,13 +17,10 @@ use tokio::process::Command;
 
 use crate::{root, run, tools};
 
-/// Packages that are changed.
 const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
-/// Packages whose tests run.
 const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
-/// Their unit tests, and these.
 const TESTS: [&str; 2] = ["all", "exact_curves"];
-/// But these of them, which are about something else, or slow and about nothing that the others do not look at.
+/// Skipped: tests of something else, and slow ones that check what others check, too.
 const SKIPPED: [&str; 15] = [
     "architecture::",
     "controller_model::",
@@ -41,27 +38,20 @@ const SKIPPED: [&str; 15] = [
     "theme::",
     "web_layers::",
 ];
-/// Of the mutants that can be built, so many in a hundred have to be caught.
 const MIN_CAUGHT_PERCENT: usize = 95;
-/// Time that a mutant's tests have at least before they are stopped; else it is a few times what those of the unchanged
-/// code take.
+/// Minimum time for a mutant's tests. cargo-mutants may allow a multiple of the unchanged tests' time.
 const TEST_LIMIT: Duration = Duration::from_secs(2 * 60);
-/// Time for the copy, its first build, and the tests as they are.
+/// Time for the copy, its first build and the unchanged tests.
 const START: Duration = Duration::from_secs(40 * 60);
-/// Most time for one mutant, on average.
+/// Average time per mutant, at most.
 const EACH: Duration = Duration::from_secs(4 * 60);
 
-/// How to look for what the tests do not notice.
 pub(crate) struct Options {
-    /// How many mutants are drawn.
     pub(crate) sample: usize,
-    /// Which.
     pub(crate) seed: u64,
-    /// Of these packages; of both if empty.
     pub(crate) packages: Vec<String>,
 }
 
-/// Draws a sample, tests each, and says what was missed; an error if too much was.
 pub(crate) async fn run(options: Options) -> Result<()> {
     let packages = chosen(&options.packages)?;
     let program = tools::cargo_mutants().await?;
@@ -74,7 +64,7 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     let results = folder.join("mutants.out");
     leave_out(&results, all.iter().filter(|name| !sample.contains(*name)))?;
     let limit = START + EACH * u32::try_from(sample.len()).unwrap_or(u32::MAX);
-    // It fails where something is missed, too; what it wrote tells which.
+    // It fails if it missed a mutant; the files that it wrote give the result.
     let ended = run::within(testing(&program, &packages, &folder), limit).await;
     let Ok(text) = fs::read_to_string(results.join("outcomes.json")) else {
         return ended.context("cargo-mutants did not get as far as its first outcome");
@@ -96,7 +86,6 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     Ok(())
 }
 
-/// The packages that are asked for: both, if none is named.
 fn chosen(asked: &[String]) -> Result<Vec<&str>> {
     for package in asked {
         ensure!(
@@ -108,7 +97,6 @@ fn chosen(asked: &[String]) -> Result<Vec<&str>> {
     Ok(if asked.is_empty() { PACKAGES.to_vec() } else { asked.iter().map(String::as_str).collect() })
 }
 
-/// A call of cargo-mutants.
 fn cargo_mutants(program: &Path, packages: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root()).arg("mutants");
@@ -118,7 +106,7 @@ fn cargo_mutants(program: &Path, packages: &[&str]) -> Command {
     command
 }
 
-/// The names of all mutants, in the order of the sources; `file` takes what cargo-mutants says of them.
+/// cargo-mutants writes its list to `file`.
 async fn list(program: &Path, packages: &[&str], file: &Path) -> Result<Vec<String>> {
     #[derive(Deserialize)]
     struct Mutant {
@@ -133,15 +121,14 @@ async fn list(program: &Path, packages: &[&str], file: &Path) -> Result<Vec<Stri
     Ok(mutants.into_iter().map(|mutant| mutant.name).collect())
 }
 
-/// So many of all, or all if there are fewer.
 fn drawn(mut all: Vec<String>, sample: usize, seed: u64) -> BTreeSet<String> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     all.sort_by_cached_key(|_| random.next_u64());
     all.into_iter().take(sample).collect()
 }
 
-/// Makes cargo-mutants believe that these were caught before: with `--iterate` it tries the rest, and only that. Its own
-/// filters by name let some kinds through.
+/// Marks mutants as caught, so that `--iterate` skips them. cargo-mutants' own filters by name let some kinds
+/// through.
 fn leave_out<'a>(results: &Path, names: impl Iterator<Item = &'a String>) -> Result<()> {
     let problem = || format!("{} can't be made anew", results.display());
     if results.exists() {
@@ -156,30 +143,28 @@ fn testing(program: &Path, packages: &[&str], folder: &Path) -> Command {
     let mut command = cargo_mutants(program, packages);
     command.args(["--iterate", "--no-times", "--colors=never", "--jobs=1", "--output"]).arg(folder);
     command.arg(format!("--minimum-test-timeout={}", TEST_LIMIT.as_secs()));
-    // For building and for testing: else all the tests of all these packages would be built for each mutant.
+    // Both for building and testing: without it every mutant would build all tests of all packages.
     let packages = TESTED.iter().flat_map(|package| ["--package", package]);
     let tests = TESTS.iter().flat_map(|test| ["--test", test]);
     for argument in ["--locked", "--lib"].into_iter().chain(packages).chain(tests) {
         command.arg(format!("--cargo-arg={argument}"));
     }
-    // Behind cargo-mutants' own arguments those of cargo, and behind these those of the tests.
+    // cargo-mutants' own arguments, then cargo's, then those of the tests.
     command.args(["--", "--"]).args(SKIPPED.iter().flat_map(|name| ["--skip", name]));
     command
 }
 
-/// What became of the sample.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Verdict {
     caught: usize,
-    /// The tests ran so long that they were stopped: caught, too.
+    /// The tests were stopped because they took too long, which counts as caught.
     timeouts: Vec<String>,
-    /// Not to be built: no mutants after all.
+    /// Mutants that do not compile do not count.
     unviable: usize,
     missed: Vec<String>,
 }
 
 impl Verdict {
-    /// Of the text of cargo-mutants' outcomes.json.
     fn of(text: &str) -> Result<Self> {
         #[derive(Deserialize)]
         struct Outcomes {

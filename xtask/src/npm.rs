@@ -1,5 +1,4 @@
-//! Packages of the npm registry that checks and builds use; none of them is shipped. Each version has a folder
-//! of its own in the tools' cache.
+//! Packages of npm that checks and builds use; none is shipped. Each version has its own folder in the tools' cache.
 
 use std::path::{Path, PathBuf};
 
@@ -10,17 +9,14 @@ use crate::aside::say;
 use crate::tools::{cache, find, version_answer};
 use crate::{apt, run};
 
-/// The accessibility rules that a page test runs in the page.
 const AXE: Npm = Npm { package: "axe-core", version: "4.14.1" };
 
-/// A package in one version.
 pub(crate) struct Npm {
     pub(crate) package: &'static str,
     pub(crate) version: &'static str,
 }
 
 impl Npm {
-    /// Where it and what it needs lie.
     pub(crate) fn modules(&self, cache: &Path) -> PathBuf {
         self.home(cache).join("node_modules")
     }
@@ -29,7 +25,6 @@ impl Npm {
         cache.join("tools").join(format!("{}-{}", self.package, self.version))
     }
 
-    /// Installs it by the npm that is on PATH.
     pub(crate) async fn install(&self, cache: &Path) -> Result<()> {
         let (home, name) = (self.home(cache), format!("{}@{}", self.package, self.version));
         say(format_args!("installing {name} (once)"));
@@ -40,7 +35,6 @@ impl Npm {
         run::to_end(command).await
     }
 
-    /// The same, after npm itself where that is one command.
     async fn install_with_npm(&self, cache: &Path) -> Result<()> {
         let remedy = || {
             format!(
@@ -54,8 +48,7 @@ impl Npm {
         self.install(cache).await.with_context(remedy)
     }
 
-    /// The path of the package's command `program`, which answers with the package's version; installs it if it is
-    /// missing.
+    /// The path of the package's command `program`, which must report the package's version; installs it if missing.
     pub(crate) async fn program(&self, program: &str) -> Result<PathBuf> {
         let cache = cache()?;
         let folder = self.modules(&cache).join(".bin");

@@ -1,5 +1,5 @@
-//! The packages as others would get them: the library crates, packed and built from what was packed; and the npm package,
-//! packed, installed, and used by a plain Node program. Nothing is published.
+//! Builds and uses the packages as others get them: the library crates from what cargo packed, the npm package in a
+//! plain Node program. Publishes nothing.
 
 use std::env;
 use std::fs;
@@ -15,7 +15,7 @@ use crate::made::Made;
 use crate::npm::node_program;
 use crate::{page, root, run, toolchain};
 
-/// What others may use, each after what it needs.
+/// Each after its dependencies.
 const LIBRARIES: [&str; 10] = [
     "registers",
     "peripheral",
@@ -28,21 +28,19 @@ const LIBRARIES: [&str; 10] = [
     "inspect",
     "core",
 ];
-/// What the npm package has beside what wasm-pack lists: whose types its own are, and under which terms it comes.
+/// Files that wasm-pack does not list: the types and the licenses.
 const BESIDE: [&str; 4] = ["stepscope_wasm_bg.wasm.d.ts", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
-/// The oldest Node that the test's program is written for.
+/// The oldest version that the test's program supports.
 const NODE: &str = ">=20.6";
 
-/// Packs, builds and uses all of them.
 pub(crate) async fn test() -> Result<()> {
     crates().await?;
     npm().await
 }
 
-/// Packs the library crates and builds each from its package, with the packages of the others.
 async fn crates() -> Result<()> {
-    // cargo takes a package of one name and version for one that never changes. Here it changes with the sources, so what
-    // was unpacked and built of it before must go.
+    // cargo assumes that a version of a package never changes, but here it does. So earlier unpacked and built copies
+    // are removed.
     let folder = root().join("target").join("packages");
     let packages = folder.join("package");
     let made = Made::of(&packages, &["core", "LICENSE-MIT", "LICENSE-APACHE"], &[]).await?;
@@ -56,7 +54,7 @@ async fn crates() -> Result<()> {
         clear(&unpacked)?;
     }
     let mut command = toolchain::cargo();
-    // Packages are made of work in progress, too.
+    // Uncommitted changes are packaged, too.
     command.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&folder);
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
@@ -65,7 +63,6 @@ async fn crates() -> Result<()> {
     made.keep()
 }
 
-/// Where cargo keeps what it has unpacked.
 fn cargo_home() -> Result<PathBuf> {
     match env::var_os("CARGO_HOME") {
         Some(home) => Ok(home.into()),
@@ -73,8 +70,8 @@ fn cargo_home() -> Result<PathBuf> {
     }
 }
 
-/// The library crates among what is unpacked in `sources`, in the folders of registries that are folders themselves: these
-/// have no host, so their names begin with the hyphen that follows it.
+/// Our crates among those unpacked in `sources`. A registry in a folder has no host, so its folder's name begins with
+/// a hyphen.
 fn unpacked(sources: &Path) -> Vec<PathBuf> {
     let registries = fs::read_dir(sources).into_iter().flatten().flatten();
     let own = registries.filter(|registry| registry.file_name().to_string_lossy().starts_with('-'));
@@ -91,7 +88,7 @@ fn clear(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Clears what was made of the library crates; what they need of others stays.
+/// Keeps the builds of other authors' crates.
 fn clear_own(folder: &Path) -> Result<()> {
     if !folder.exists() {
         return Ok(());
@@ -114,7 +111,6 @@ fn clear_own(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Packs the npm package, installs it where nothing else is, and runs a program that uses it.
 async fn npm() -> Result<()> {
     let npm = node_program("npm").await?;
     let home = root().join("target").join("npm");
@@ -139,10 +135,9 @@ async fn npm() -> Result<()> {
     fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
     let mut node = Command::new(node_program("node").await?);
     node.arg(&script).arg(tests.join("golden"));
-    run::to_end(node).await.with_context(|| format!("the program needs Node {NODE}"))
+    run::test(node).await.with_context(|| format!("the program needs Node {NODE}"))
 }
 
-/// The one package in a folder.
 fn packed(folder: &Path) -> Result<PathBuf> {
     let files = fs::read_dir(folder).with_context(|| format!("{} can't be read", folder.display()))?;
     let mut packages = files.filter_map(|entry| entry.ok().map(|entry| entry.path()));
@@ -159,7 +154,6 @@ pub(crate) fn complete(folder: &Path) -> Result<()> {
     fs::write(&file, completed(&text)?).with_context(|| format!("{} can't be written", file.display()))
 }
 
-/// The text of package.json, with all that is to be packed and the Node that it is tested with.
 fn completed(text: &str) -> Result<String> {
     let mut package: Value = serde_json::from_str(text).context("wasm-pack's package.json is no JSON")?;
     let files = package.get_mut("files").and_then(Value::as_array_mut);

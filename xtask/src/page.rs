@@ -1,4 +1,4 @@
-//! The page's wasm, optimised, and what each file of the page weighs on the way to a visitor.
+//! Builds the page's optimized wasm and computes the download size of each file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -15,21 +15,19 @@ use crate::made::Made;
 use crate::tools::{Optimise, WasmTools};
 use crate::{dist, headers, package, root, run};
 
-/// What all files that opening the page loads may weigh together, in bytes, compressed by brotli as hosts do.
+/// Maximum bytes that opening the page loads, compressed by brotli as hosts do.
 const OPENING_BUDGET: usize = 700_000;
 /// The same for all files of the page.
 const TOTAL_BUDGET: usize = 1_300_000;
 
-/// The folder of the page's wasm crate.
 const CRATE: &str = "wasm";
 
-/// The page as it is shipped, but made once only in this program's life: for steps that use the same page.
+/// Builds the page once per process, for the steps that share it.
 pub(crate) async fn built() -> Result<&'static Parts> {
     static BUILT: tokio::sync::OnceCell<Parts> = tokio::sync::OnceCell::const_new();
     BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await
 }
 
-/// Builds the page into `dist`.
 pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
     build(optimise).await?;
     dist::make(&root().join("web"), &dist::folder()).await
@@ -38,7 +36,6 @@ pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
 /// The wasm modules of the page: the folder of each in `web`, and its feature of the crate. The second one loads in the background.
 pub(crate) const MODULES: [(&str, &str); 2] = [("pkg", "view"), ("pkg-tools", "tools")];
 
-/// Builds the wasm crate into the packages that the page loads, installing the tools first if they are missing.
 pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     let tools = WasmTools::ready(optimise).await?;
     for (folder, features) in MODULES {
@@ -54,7 +51,6 @@ pub(crate) async fn build(optimise: Optimise) -> Result<()> {
     Ok(())
 }
 
-/// Builds the wasm crate with all that it has into `package`, a whole npm package.
 pub(crate) async fn npm(package: &Path) -> Result<()> {
     let tools = WasmTools::ready(Optimise::Yes).await?;
     let made = made(&tools, package, &[]).await?;
@@ -67,16 +63,13 @@ pub(crate) async fn npm(package: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What the wasm crate is made of.
 const SOURCES: [&str; 4] = ["core", CRATE, "LICENSE-MIT", "LICENSE-APACHE"];
 
-/// What `package` is made of. What wasm-pack does takes long, and is not done again where nothing is new.
+/// wasm-pack is slow, so it is skipped if nothing has changed.
 async fn made<'a>(tools: &WasmTools, package: &'a Path, options: &[&str]) -> Result<Made<'a>> {
     Made::of(package, &SOURCES, &[&tools.words(), options].concat()).await
 }
 
-/// Builds the crate in `folder` of a workspace for the browser into `package`, by a call of wasm-pack in that workspace and with
-/// these options of cargo.
 pub(crate) async fn wasm_by(
     tools: &WasmTools,
     mut command: tokio::process::Command,
@@ -89,7 +82,6 @@ pub(crate) async fn wasm_by(
     tools.judge(run::to_end(command).await)
 }
 
-/// The sizes of one file, in bytes.
 #[derive(Clone, Copy, Default)]
 struct Sizes {
     raw: usize,
@@ -98,7 +90,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    /// As a static host would send it at its best settings.
+    /// Compressed as a static host does at its best settings.
     fn of(bytes: &[u8]) -> Result<Self> {
         let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
         gzip.write_all(bytes)?;
@@ -112,7 +104,6 @@ impl Sizes {
     }
 }
 
-/// What some files weigh that load together, or for the same reason.
 #[derive(Default)]
 struct Weight {
     files: Vec<(String, Sizes)>,
@@ -124,13 +115,11 @@ impl Weight {
     }
 }
 
-/// A table of what a host sends; `Display` prints it.
 pub(crate) struct Weights {
-    /// What opening the page loads.
     opening: Weight,
-    /// What more each part loads that is opened later. Some files stand under several.
+    /// A file may be counted under several parts.
     later: Vec<(String, Weight)>,
-    /// All else: kept for use without a network.
+    /// Files that are only kept for use without a network.
     beside: Weight,
 }
 
@@ -177,12 +166,11 @@ impl fmt::Display for Weights {
     }
 }
 
-/// Weighs the files of `dist`.
 pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
     let mut all = BTreeMap::new();
     for entry in WalkDir::new(dist) {
         let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
-        // The host's own rules are not sent to anybody.
+        // Hosts do not send the file of their own rules.
         if entry.file_type().is_file() && entry.file_name() != headers::FILE {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;

@@ -1,5 +1,5 @@
-//! Child processes. Each gets a process group of its own and no standard input, and is stopped when it prints nothing for too
-//! long. When it ends, however it ends, the whole group goes with it, so that no browser or driver stays behind.
+//! Child processes without standard input, each in its own process group. The whole group ends with the child, so that no
+//! browser or driver is left running.
 
 use std::io::{self, PipeReader, Read, Write};
 use std::path::Path;
@@ -14,18 +14,19 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use crate::aside;
 
-/// A child that prints nothing for this long hangs. However long it takes in all, on a slow or busy machine, is no error.
+/// Tests that print nothing for this long hang. Their total time is not limited, for slow machines. Compilers have no
+/// limit either: cargo prints nothing while it compiles one large crate.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10 * 60);
-/// The most that a child takes whose output goes to a file.
+/// Maximum time of a child whose output goes to a file.
 pub(crate) const LIMIT: Duration = Duration::from_secs(2 * 60 * 60);
-/// How long the output of a child is read after its end; a process that has left its group may hold it open.
+/// Time to read the rest of a child's output; a process that has left the group may hold it open.
 const DRAIN: Duration = Duration::from_secs(10);
 
 /// A running child; dropping it kills its process group.
 pub(crate) struct Group(Box<dyn ChildWrapper>);
 
 impl Group {
-    /// The first line that the child writes to its piped output; an error if there is none within [`SILENCE`].
+    /// The first line of the piped output; an error if there is none within [`SILENCE`].
     pub(crate) async fn first_line(&mut self) -> Result<String> {
         let output = self.0.stdout().take().context("the output is not piped")?;
         let mut lines = BufReader::new(output).lines();
@@ -33,7 +34,6 @@ impl Group {
         line.context("it printed nothing for ten minutes")??.context("it ended without output")
     }
 
-    /// Waits until the child has ended by itself; an error if it failed.
     pub(crate) async fn ended(&mut self) -> Result<()> {
         let status = self.0.wait().await.context("it was lost")?;
         if !status.success() {
@@ -42,7 +42,6 @@ impl Group {
         Ok(())
     }
 
-    /// Ends the child and its group, and waits until it has.
     pub(crate) async fn end(mut self) -> Result<()> {
         self.0.start_kill()?;
         self.0.wait().await?;
@@ -52,12 +51,11 @@ impl Group {
 
 impl Drop for Group {
     fn drop(&mut self) {
-        // After a tidy end the group is empty, and the refusal says only that.
+        // Fails if the group has already ended.
         let _ = self.0.start_kill();
     }
 }
 
-/// Starts `command`, which runs until it ends or what is returned is dropped.
 pub(crate) fn start(mut command: Command) -> Result<Group> {
     let name = name(&command);
     command.stdin(Stdio::null());
@@ -69,12 +67,40 @@ pub(crate) fn start(mut command: Command) -> Result<Group> {
     Ok(Group(wrap.spawn().with_context(|| format!("{name} can't be started"))?))
 }
 
-/// Runs `command` to its end; an error if it can't be started, fails, or prints nothing for [`SILENCE`].
+/// Runs `command` to its end, however long it takes; an error if it can't be started or fails.
 pub(crate) async fn to_end(command: Command) -> Result<()> {
-    unless_silent(command, SILENCE).await
+    watched(command, None).await
 }
 
-/// Runs a command whose output goes where its caller has it go; an error if it takes longer than `limit`.
+/// Runs a program under test: as [`to_end`], but an error if it prints nothing for [`SILENCE`].
+pub(crate) async fn test(command: Command) -> Result<()> {
+    watched(command, Some(SILENCE)).await
+}
+
+/// Runs a call of `cargo test`: first compiles all of it, then runs it like [`test()`].
+pub(crate) async fn cargo_test(command: Command) -> Result<()> {
+    to_end(only_compiling(&command)).await?;
+    test(command).await
+}
+
+/// The same call of `cargo test` with `--no-run`, without the arguments of the tests.
+fn only_compiling(command: &Command) -> Command {
+    let command = command.as_std();
+    let mut copy = Command::new(command.get_program());
+    copy.args(command.get_args().take_while(|argument| *argument != "--")).arg("--no-run");
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => copy.env(name, value),
+            None => copy.env_remove(name),
+        };
+    }
+    if let Some(folder) = command.get_current_dir() {
+        copy.current_dir(folder);
+    }
+    copy
+}
+
+/// Runs a command that does not print here; an error if it takes longer than `limit`.
 pub(crate) async fn within(command: Command, limit: Duration) -> Result<()> {
     let name = name(&command);
     let mut group = start(command)?;
@@ -84,16 +110,16 @@ pub(crate) async fn within(command: Command, limit: Duration) -> Result<()> {
     succeeded(&name, status)
 }
 
-async fn unless_silent(mut command: Command, silence: Duration) -> Result<()> {
+async fn watched(mut command: Command, silence: Option<Duration>) -> Result<()> {
     let name = name(&command);
     let mut chunks = passed_on(&mut command)?;
     let mut group = start(command)?;
-    let status = watched(group.0.wait(), &mut chunks, silence).await;
-    // What is left of the group would hold its output open.
+    let status = unless_silent(group.0.wait(), &mut chunks, silence).await;
+    // The rest of the group would hold the output open.
     drop(group);
-    let Some(status) = status else {
-        bail!("{name} printed nothing for {} s and was stopped", silence.as_secs_f64());
-    };
+    let status = status.map_err(|silence| {
+        anyhow::anyhow!("{name} printed nothing for {} s and was stopped", silence.as_secs_f64())
+    })?;
     let _ = tokio::time::timeout(DRAIN, async { while chunks.recv().await.is_some() {} }).await;
     succeeded(&name, status)
 }
@@ -106,29 +132,32 @@ fn succeeded(name: &str, status: io::Result<std::process::ExitStatus>) -> Result
     Ok(())
 }
 
-/// Waits for `end`; `None` if no chunk of output comes for `silence`.
-async fn watched<T>(
+/// Waits for `end`; an error with `silence`, if that is limited and no chunk of output comes for so long.
+async fn unless_silent<T>(
     end: impl Future<Output = T>,
     chunks: &mut UnboundedReceiver<()>,
-    silence: Duration,
-) -> Option<T> {
+    silence: Option<Duration>,
+) -> Result<T, Duration> {
+    let Some(silence) = silence else {
+        return Ok(end.await);
+    };
     tokio::pin!(end);
     let mut is_open = true;
     loop {
         tokio::select! {
-            ended = &mut end => return Some(ended),
+            ended = &mut end => return Ok(ended),
             chunk = chunks.recv(), if is_open => is_open = chunk.is_some(),
-            () = tokio::time::sleep(silence) => return None,
+            () = tokio::time::sleep(silence) => return Err(silence),
         }
     }
 }
 
-/// Has a command's output passed on to where the work under way prints; a message for each chunk of it.
+/// Passes on the command's output to the terminal or the step's buffer; sends a message per chunk.
 fn passed_on(command: &mut Command) -> Result<UnboundedReceiver<()>> {
     let (heard, chunks) = unbounded_channel();
     let (out, out_end) = io::pipe().context("a pipe can't be made")?;
     if let Some(file) = aside::file()? {
-        // One pipe for both, so that the file has them in their order.
+        // One pipe for both keeps their order.
         command.stdout(out_end.try_clone()?).stderr(out_end);
         pass_on(out, file, heard);
     } else {
@@ -154,7 +183,6 @@ fn pass_on(mut from: PipeReader, mut to: impl Write + Send + 'static, heard: Unb
     });
 }
 
-/// The call as one would type it, for messages.
 fn name(command: &Command) -> String {
     let command = command.as_std();
     let program = Path::new(command.get_program());
@@ -164,14 +192,14 @@ fn name(command: &Command) -> String {
     format!("`{}`", words.join(" "))
 }
 
-/// What `command` prints, or `None` if it can't be started or fails: for asking a tool its version.
+/// The output of a short command such as `--version`; `None` if it fails.
 pub(crate) async fn output(mut command: Command) -> Option<String> {
     command.stdin(Stdio::null()).stderr(Stdio::null()).kill_on_drop(true);
     let output = tokio::time::timeout(SILENCE, command.output()).await.ok()?.ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Waits for the user's or the system's wish to stop; gives the exit code that says so.
+/// Waits for a signal to stop; returns the exit code for it.
 #[cfg(unix)]
 pub(crate) async fn interrupted() -> Result<u8> {
     use tokio::signal::unix::{SignalKind, signal};
@@ -183,11 +211,10 @@ pub(crate) async fn interrupted() -> Result<u8> {
         _ = interrupt.recv() => 2,
         _ = terminate.recv() => 15,
     };
-    // Shells report a death by signal n as 128 + n.
+    // The code that shells report for signal n.
     Ok(128 + number)
 }
 
-/// Waits for the user's wish to stop; gives the exit code that says so.
 #[cfg(not(unix))]
 pub(crate) async fn interrupted() -> Result<u8> {
     tokio::signal::ctrl_c().await?;
@@ -213,13 +240,13 @@ mod tests {
     #[tokio::test]
     async fn a_silent_child_is_stopped_with_its_children() {
         let (mut reader, writer) = std::io::pipe().unwrap();
-        let error = unless_silent(shell("sleep 1000 & wait"), Duration::from_millis(300)).await.unwrap_err();
+        let error = watched(shell("sleep 1000 & wait"), Some(Duration::from_millis(300))).await.unwrap_err();
         assert!(error.to_string().ends_with("` printed nothing for 0.3 s and was stopped"), "{error}");
         let mut command = shell("sleep 1000 & wait");
         command.stdout(writer);
         let error = within(command, Duration::from_millis(300)).await.unwrap_err();
         assert!(error.to_string().ends_with("` was not done after 0.3 s and was stopped"), "{error}");
-        // The pipe ends when nobody holds it any more, the grandchild neither.
+        // The pipe ends when no process holds it, the grandchild included.
         let (ended, end) = tokio::sync::oneshot::channel();
         std::thread::spawn(move || ended.send(std::io::Read::read_to_end(&mut reader, &mut Vec::new())));
         let end = tokio::time::timeout(Duration::from_secs(60), end).await;
@@ -232,24 +259,47 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn only_silence_ends_a_wait() {
-        let silence = Duration::from_secs(600);
-        let (heard, mut chunks) = unbounded_channel();
+    async fn only_silence_ends_a_test() {
+        const SILENCE: Duration = Duration::from_secs(600);
+        let (sender, mut chunks) = unbounded_channel();
         // Two hours of work that prints every nine minutes.
         let works = tokio::time::sleep(Duration::from_secs(7200));
         let prints = async {
             for _ in 0..13 {
                 tokio::time::sleep(Duration::from_secs(540)).await;
-                heard.send(()).unwrap();
+                sender.send(()).unwrap();
             }
         };
-        let (found, ()) = tokio::join!(watched(works, &mut chunks, silence), prints);
-        assert_eq!(found, Some(()));
-        let started = tokio::time::Instant::now();
-        assert_eq!(watched(std::future::pending::<()>(), &mut chunks, silence).await, None);
-        assert_eq!(started.elapsed(), silence);
-        // Output that has been closed is silence, too.
-        drop(heard);
-        assert_eq!(watched(std::future::pending::<()>(), &mut chunks, silence).await, None);
+        let (found, ()) = tokio::join!(unless_silent(works, &mut chunks, Some(SILENCE)), prints);
+        assert_eq!(found, Ok(()));
+        let never = std::future::pending::<()>;
+        assert_eq!(unless_silent(never(), &mut chunks, Some(SILENCE)).await, Err(SILENCE));
+        // Closed output counts as silence.
+        drop(sender);
+        assert_eq!(unless_silent(never(), &mut chunks, Some(SILENCE)).await, Err(SILENCE));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn silence_does_not_end_a_compiler() {
+        let (_sender, mut chunks) = unbounded_channel();
+        let compiles = tokio::time::sleep(Duration::from_secs(7200));
+        assert_eq!(unless_silent(compiles, &mut chunks, None).await, Ok(()));
+    }
+
+    #[test]
+    fn cargo_test_compiles_the_tests_that_it_runs() {
+        let rows = [
+            ("test --workspace --locked", "test --workspace --locked --no-run"),
+            ("test --test page -- --skip engines::", "test --test page --no-run"),
+        ];
+        for (given, expected) in rows {
+            let mut command = Command::new("cargo");
+            command.args(given.split(' ')).env("NAME", "value").env_remove("GONE").current_dir("..");
+            let compiling = only_compiling(&command);
+            assert_eq!(name(&compiling), format!("`cargo {expected}`"));
+            let (given, compiling) = (command.as_std(), compiling.as_std());
+            assert!(compiling.get_envs().eq(given.get_envs()));
+            assert_eq!(compiling.get_current_dir(), given.get_current_dir());
+        }
     }
 }

@@ -1,5 +1,5 @@
-//! A port of the system for the page's tests: a pseudo-terminal in the place of `/dev/ttyS0`, in a mount namespace of Chromium's
-//! own (LIVE H6). Not every machine can have that; what it lacks is printed.
+//! Provides a serial port for the page's tests: a pseudo-terminal mounted over `/dev/ttyS0` in a mount namespace of
+//! Chromium. Prints what is missing on machines that cannot do this.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -9,17 +9,15 @@ use tokio::process::Command;
 
 use crate::{apt, run, toolchain};
 
-/// Names the command `stepscope` for the tests.
 pub(crate) const COMMAND: &str = "STEPSCOPE_COMMAND";
-/// The port, of which Chromium takes none whose driver is of another type.
+/// Chromium accepts only ports of known drivers, and this is one.
 const PORT: &str = "/dev/ttyS0";
 const DRIVERS: &str = "/proc/tty/drivers";
-/// Where Chromium looks for policies; in its namespace an own one lies there.
+/// Chromium's folder of policies, replaced in the namespace.
 const POLICIES: &str = "/etc/chromium";
-/// What the test mounts, with nothing behind it.
 const TRIAL: &str = "mount --bind /dev/null /dev/ttyS0 && mount -t tmpfs none /etc/chromium";
 
-/// Tries, where Chromium is installed, what its namespace needs; the error is why this machine cannot have the port.
+/// Tries the mounts; the error says why this machine cannot have the port.
 pub(crate) async fn possible() -> Result<()> {
     let drivers = fs::read_to_string(DRIVERS).with_context(|| format!("{DRIVERS} can't be read"))?;
     ensure!(has_serial_ports(&drivers), "{DRIVERS} has no driver of serial ports /dev/ttyS");
@@ -33,7 +31,7 @@ pub(crate) async fn possible() -> Result<()> {
     Ok(())
 }
 
-/// Whether the kernel's list of drivers has the serial ones of `/dev/ttyS0`: `serial /dev/ttyS 4 64 serial`.
+/// Looks for `serial /dev/ttyS 4 64 serial` in the kernel's list of drivers.
 fn has_serial_ports(drivers: &str) -> bool {
     drivers.lines().any(|line| {
         let words: Vec<_> = line.split_whitespace().collect();
@@ -41,7 +39,6 @@ fn has_serial_ports(drivers: &str) -> bool {
     })
 }
 
-/// Builds the command, and says where it lies: beside this program.
 pub(crate) async fn command() -> Result<PathBuf> {
     let mut build = toolchain::cargo();
     build.args(["build", "--workspace", "--bin", "stepscope", "--locked"]);

@@ -1,5 +1,4 @@
-//! The local server: the files of one folder on 127.0.0.1, with the headers that the folder's own
-//! `_headers` states, so that a page seen here behaves as it will on a static host.
+//! The local server: serves one folder on 127.0.0.1 with the headers of its `_headers` file, like a static host.
 
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, TcpListener};
@@ -16,7 +15,7 @@ use tower_http::services::ServeDir;
 
 use crate::headers::{FILE, Headers};
 
-/// Takes `port` on 127.0.0.1 (0: any free one); says what to do if it is taken.
+/// Binds `port` on 127.0.0.1; 0 takes any free one.
 pub(crate) fn bind(port: u16) -> Result<TcpListener> {
     match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
         Ok(listener) => Ok(listener),
@@ -27,8 +26,6 @@ pub(crate) fn bind(port: u16) -> Result<TcpListener> {
     }
 }
 
-/// Serves `web` until the process is stopped. Prints the address; opens it in a browser if asked
-/// to and if there is a desktop.
 pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Result<()> {
     let file = web.join(FILE);
     let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
@@ -46,7 +43,6 @@ pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Resu
     axum::serve(listener, router).await.context("the server stopped")
 }
 
-/// Whether a browser window can appear here.
 fn has_desktop() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
@@ -56,7 +52,6 @@ fn router(web: &Path, headers: Headers) -> Router {
     Router::new().fallback_service(ServeDir::new(web)).layer(from_fn_with_state(Arc::new(headers), dress))
 }
 
-/// Answers `request` and puts the headers of its path on the answer.
 async fn dress(State(headers): State<Arc<Headers>>, request: Request, next: Next) -> Response {
     let path = request.uri().path().to_owned();
     let mut response = if path.strip_prefix('/') == Some(FILE) {

@@ -14,25 +14,20 @@ const TESTS: &str = "tests/scripts";
 const TEST_ENDING: &str = ".test.mjs";
 /// Formatter and linter; `web/biome.jsonc` says how it is meant.
 const BIOME: Npm = Npm { package: "@biomejs/biome", version: "2.6.8" };
-/// The compiler whose checker reads the page's modules and their JSDoc types.
 const TYPESCRIPT: Npm = Npm { package: "typescript", version: "7.0.2" };
 
-/// Writes scripts, style sheets and JSON files in the one form, imports in order.
 pub(crate) async fn format() -> Result<()> {
     biome(&["check", "--linter-enabled=false", "--write"]).await
 }
 
-/// An error where `format` would change something.
 pub(crate) async fn check_format() -> Result<()> {
     biome(&["check", "--linter-enabled=false", "--error-on-warnings"]).await
 }
 
-/// An error where the linter has anything to say.
 pub(crate) async fn lint() -> Result<()> {
     biome(&["lint", "--error-on-warnings"]).await
 }
 
-/// Checks the types of the page's modules; `web/pkg` must be built, for they use it.
 pub(crate) async fn check_types() -> Result<()> {
     let mut command = Command::new(TYPESCRIPT.program("tsc").await?);
     command.arg("--project").arg(root().join("web").join("jsconfig.json"));

@@ -1,5 +1,4 @@
-//! `cargo xtask test`: every check of the project, step by step, with its time; some beside others. A step that fails stops
-//! no other.
+//! `cargo xtask test` runs every check, step by step; a step that fails does not stop the others.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -21,11 +20,10 @@ use crate::{
     avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
 };
 
-/// Both workspaces: the fuzz targets are one of their own.
+/// The fuzz targets are a workspace of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 
-/// The steps, in the order in which they are begun but for those of [`ROWS`] that run beside others: what fails fastest comes
-/// first.
+/// The steps in their order (see [`ROWS`]); those that fail fastest come first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Step {
     /// rustfmt and Biome find nothing to change
@@ -97,7 +95,11 @@ impl Step {
                 command.args(words("doc --no-deps --workspace --locked")).env("RUSTDOCFLAGS", "-D warnings");
                 run::to_end(command).await
             }
-            Self::Native => cargo("test --workspace --locked --no-fail-fast").await,
+            Self::Native => {
+                let mut command = toolchain::cargo();
+                command.args(words("test --workspace --locked --no-fail-fast"));
+                run::cargo_test(command).await
+            }
             Self::Vcd => dump_readers::test().await,
             Self::Avr => avr::test().await,
             Self::Live => judges::test().await,
@@ -114,7 +116,6 @@ impl Step {
     }
 }
 
-/// The arguments in a line as one would type it, where none holds a space.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     line.split_whitespace()
 }
@@ -138,19 +139,19 @@ async fn wasm() -> Result<()> {
     command.args(["test", "--headless", "--chrome", "--chromedriver"]).arg(&browser.chromedriver);
     command.args(["--firefox", "--geckodriver"]).arg(geckodriver);
     command.args(["--mode", "no-install", "wasm", "--locked"]);
-    // Seconds for the whole run in the browser; the runner's own 20 are few on a busy machine.
+    // In seconds, for the whole run; the runner's default of 20 is too short on a busy machine.
     command.env("WASM_BINDGEN_TEST_TIMEOUT", "600");
-    run::to_end(command).await
+    // wasm-pack compiles and tests in one call.
+    cargo(&format!("build --tests --package stepscope-wasm --locked --target {WASM}")).await?;
+    run::test(command).await
 }
 
-/// The page's tests in the whole Chromium, as yet without the words that choose among them.
 async fn page_tests() -> Result<Command> {
-    // The whole workspace, so that its packages keep the features, and with them the builds, of the native step.
+    // The whole workspace, so that the packages keep the features and builds of the native step.
     with_page("test --workspace --features stepscope-tests/browser --test page --locked --").await
 }
 
-/// Cargo's call of something that drives the page in Chromium. It starts the driver and the server itself; the
-/// environment says where all of it is.
+/// A call of cargo for something that drives the page in Chromium. Its environment names the driver and the files.
 pub(crate) async fn with_page(line: &str) -> Result<Command> {
     let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
@@ -166,7 +167,7 @@ pub(crate) async fn with_page(line: &str) -> Result<Command> {
     Ok(command)
 }
 
-/// What only a browser with windows can tell.
+/// Needs a browser with windows.
 const INSTALLED: &str = "offline::the_page_can_be_installed";
 
 async fn page() -> Result<()> {
@@ -176,15 +177,15 @@ async fn page() -> Result<()> {
     say(&weights);
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::", "--skip", INSTALLED]);
-    // A visitor rests now and then: one more than there are cores keeps them busy.
+    // A visitor waits at times, so one more than the number of cores keeps them busy.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     command.arg(format!("--test-threads={}", cores + 1));
     command.env("STEPSCOPE_AXE", npm::axe().await?);
     command.env(browser::CHROMIUM, Browser::ready().await?.headless().await);
-    run::to_end(command).await
+    run::cargo_test(command).await
 }
 
-/// All three engines or none: one that can't be had is an error, so that no run passes without it.
+/// All three engines or none: a missing one is an error, so that no run passes without it.
 async fn engines() -> Result<()> {
     built_for(Step::Engines).await?;
     let Firefox { firefox, geckodriver } = Firefox::ready().await?;
@@ -205,10 +206,9 @@ async fn engines() -> Result<()> {
             "skipped: the page on a port of the system, which this machine cannot have: {why:#}"
         )),
     }
-    run::to_end(command).await
+    run::cargo_test(command).await
 }
 
-/// Writes all sources in the form that the step `format` asks for.
 pub(crate) async fn format() -> Result<()> {
     toolchain::components().await?;
     for workspace in RUSTFMT {
@@ -217,28 +217,27 @@ pub(crate) async fn format() -> Result<()> {
     sources::format().await
 }
 
-/// Prints the steps' names and what each holds.
 pub(crate) fn list() {
     for value in Step::value_variants().iter().filter_map(ValueEnum::to_possible_value) {
         println!("{:12}{}", value.get_name(), value.get_help().map(ToString::to_string).unwrap_or_default());
     }
 }
 
-/// The steps that run beside each other: in a row those of each lane, one after the other, and the rows one after the other.
-/// Those of the second lane wait for other programs more than they compute; their output is buffered.
+/// Each row runs two lanes in parallel; the rows run one after the other. The steps of the second lane mostly wait
+/// for other programs; their output is buffered.
 const ROWS: [[&[Step]; 2]; 5] = [
     [&[Step::Format, Step::Scripts, Step::Lint, Step::Docs], &[]],
     [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
     [&[Step::Types, Step::Package], &[]],
-    // Either keeps all cores busy, and lines that are live are held to their times.
+    // These use all cores, and live lines have deadlines.
     [&[Step::Page], &[]],
     [&[Step::Engines], &[]],
 ];
 
-/// Runs the steps named in `only`, or all if it is empty. Those after one that fails run, too.
+/// Runs the steps named in `only`, or all if it is empty.
 ///
 /// # Errors
-/// The names of the steps that failed, and of those that were skipped.
+/// The names of failed and skipped steps.
 pub(crate) async fn run(only: &[Step]) -> Result<()> {
     let start = Instant::now();
     let report = RefCell::default();
@@ -277,13 +276,11 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
     Ok(())
 }
 
-/// What became of a step.
 #[derive(Debug, PartialEq)]
 enum Outcome {
     Passed,
-    /// Why.
     Failed(String),
-    /// What it needs failed in a step before it.
+    /// A step that it depends on has failed.
     Skipped(String),
 }
 
@@ -307,7 +304,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// A step needs the built page, and its build failed in a step before.
+/// The page's build failed in an earlier step.
 #[derive(Debug)]
 struct NotBuilt(String);
 
@@ -319,7 +316,7 @@ impl fmt::Display for NotBuilt {
 
 impl std::error::Error for NotBuilt {}
 
-/// The built page, for a step. Its build is tried once.
+/// Builds the page at most once.
 async fn built_for(step: Step) -> Result<&'static Parts> {
     static FAILED_IN: OnceLock<String> = OnceLock::new();
     if let Some(step) = FAILED_IN.get() {
@@ -330,10 +327,8 @@ async fn built_for(step: Step) -> Result<&'static Parts> {
     })
 }
 
-/// The steps that have ended, how long each took, and what became of it.
 type Report = RefCell<Vec<(Step, Duration, Outcome)>>;
 
-/// Runs steps whose output is read as it comes.
 async fn in_front(steps: &[Step], report: &Report) {
     for step in steps {
         println!("\n=== {}", step.name());
@@ -342,7 +337,7 @@ async fn in_front(steps: &[Step], report: &Report) {
     }
 }
 
-/// Runs steps beside those in front; their output is buffered.
+/// Runs the steps of the second lane, with buffered output.
 async fn beside_it(steps: &[Step], report: &Report) {
     for step in steps {
         let start = Instant::now();

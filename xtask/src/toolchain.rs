@@ -1,4 +1,4 @@
-//! The Rust tool chain that runs this: calling its cargo, and adding what it lacks.
+//! Calls cargo and adds missing parts of the Rust tool chain.
 
 use std::env;
 use std::path::Path;
@@ -8,20 +8,18 @@ use tokio::process::Command;
 
 use crate::{root, run};
 
-/// The page's target.
 pub(crate) const WASM: &str = "wasm32-unknown-unknown";
-/// A Cortex-M3, on which the core must run without an operating system.
+/// A Cortex-M3 without an operating system.
 pub(crate) const BARE_METAL: &str = "thumbv7m-none-eabi";
 
-/// A cargo call in the workspace's folder.
 pub(crate) fn cargo() -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(root());
     command
 }
 
-/// Cargo's call of tests that ask programs of others, which all other calls leave out. The whole workspace, so that its packages
-/// keep the features, and with them the builds, of the native step.
+/// The tests that need other programs. Selects the whole workspace, so that the packages keep the features and builds
+/// of the native step.
 pub(crate) fn ignored_tests(names: &[&str]) -> Command {
     let mut command = cargo();
     command.args(["test", "--workspace", "--locked"]);
@@ -29,21 +27,19 @@ pub(crate) fn ignored_tests(names: &[&str]) -> Command {
     command
 }
 
-/// What rustc says of itself: version, commit and this machine's target, a line each.
+/// rustc's version, commit and target, one per line.
 pub(crate) async fn version() -> Result<String> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).arg("-vV");
     run::output(command).await.context("rustc does not answer")
 }
 
-/// The target of this machine, such as `x86_64-unknown-linux-gnu`.
 pub(crate) async fn host() -> Result<String> {
     let answer = version().await?;
     let host = answer.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).context("rustc does not name its host")
 }
 
-/// Makes sure that the tool chain can build for `target`.
 pub(crate) async fn target(target: &str) -> Result<()> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).args(["--print", "target-libdir", "--target", target]);
@@ -54,7 +50,6 @@ pub(crate) async fn target(target: &str) -> Result<()> {
     rustup(&["target", "add", target]).await
 }
 
-/// Makes sure that `cargo fmt` and `cargo clippy` are there.
 pub(crate) async fn components() -> Result<()> {
     for (subcommand, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
         let mut command = cargo();

@@ -1,6 +1,5 @@
-//! What a fresh machine lacks. Tools are installed once per user, each version in a folder of its own
-//! under the user's cache folder, so that another clone of the project finds them; a tool of the right
-//! version on PATH is used as it is.
+//! Installs missing tools, each version once per user in a folder of the user's cache. A tool of the right version on
+//! PATH is used instead.
 
 use std::env;
 use std::ffi::OsString;
@@ -19,40 +18,30 @@ const CARGO_FUZZ: &str = "0.13.2";
 const CARGO_MUTANTS: &str = "27.1.0";
 const GECKODRIVER: &str = "0.37.1";
 
-/// Whether the page's wasm goes through wasm-opt.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Optimise {
-    /// It must; what is missing for it is an error.
     Yes,
-    /// The user asked to leave it out, or the result is not a page for users.
+    /// The user opted out, or the result is not for users.
     No,
 }
 
-/// Where wasm-opt comes from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum WasmOpt {
-    /// It lies in one of the tools' folders.
     Found,
-    /// wasm-pack downloads its own.
     FetchedByWasmPack,
-    /// It is not used.
     LeftOut,
 }
 
-/// The tools that turn the wasm crate into the page's files.
 pub(crate) struct WasmTools {
     wasm_pack: PathBuf,
-    /// Folders of the tools that are not on PATH.
     folders: Vec<PathBuf>,
-    /// wasm-pack's own cache: it must exist, or wasm-pack fails with a bare "os error 2".
+    /// Must exist, or wasm-pack fails with a bare "os error 2".
     wasm_pack_cache: PathBuf,
     wasm_opt: WasmOpt,
-    /// What wasm-opt answers when it is asked for its version.
     wasm_opt_version: String,
 }
 
 impl WasmTools {
-    /// Finds the tools, installing what is missing.
     pub(crate) async fn ready(optimise: Optimise) -> Result<Self> {
         toolchain::target(toolchain::WASM).await?;
         let cache = cache()?;
@@ -61,7 +50,7 @@ impl WasmTools {
             .with_context(|| format!("{} can't be made", wasm_pack_cache.display()))?;
 
         let lock = std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock can't be read")?;
-        // wasm-bindgen's command and library must be equal to the last digit.
+        // wasm-bindgen's command and library must have exactly the same version.
         let wasm_bindgen = locked_version(&lock, "wasm-bindgen")?;
         let wasm_pack = Tool { package: "wasm-pack", program: "wasm-pack", version: WASM_PACK.to_owned() };
         let wasm_bindgen =
@@ -80,20 +69,18 @@ impl WasmTools {
                 None => WasmOpt::FetchedByWasmPack,
             },
         };
-        // What is on PATH already stays where it is: its folder may hold another cargo, too.
+        // Tools on PATH are not added: their folder may contain another cargo.
         let own = programs.iter().filter(|program| program.starts_with(&cache));
         let folders = own.filter_map(|program| program.parent()).map(Path::to_owned).collect();
         Ok(Self { wasm_pack, folders, wasm_pack_cache, wasm_opt, wasm_opt_version })
     }
 
-    /// A wasm-pack call in the workspace's folder, with its helpers first on PATH.
     pub(crate) fn wasm_pack(&self) -> Result<Command> {
         let mut command = Command::new(&self.wasm_pack);
         command.current_dir(root()).env("WASM_PACK_CACHE", &self.wasm_pack_cache).env("PATH", self.path()?);
         Ok(command)
     }
 
-    /// The options with which `wasm-pack build` treats wasm-opt as was decided.
     pub(crate) fn build_options(&self) -> &'static [&'static str] {
         match self.wasm_opt {
             WasmOpt::Found => &["--mode", "no-install"],
@@ -102,13 +89,13 @@ impl WasmTools {
         }
     }
 
-    /// What they do, and which they are: the names of their own folders hold their versions.
+    /// Identifies the build: the options, and the tools' folders, whose names contain versions.
     pub(crate) fn words(&self) -> Vec<&str> {
         let folders = self.folders.iter().filter_map(|folder| folder.to_str());
         self.build_options().iter().copied().chain(folders).chain([self.wasm_opt_version.as_str()]).collect()
     }
 
-    /// Judges a build by more than `done`, how wasm-pack ended: was the wasm optimised, if it was to be?
+    /// wasm-pack reports success even if wasm-opt did not run, so this checks for it.
     pub(crate) fn judge(&self, done: Result<()>) -> Result<()> {
         let done = done.context("the page was not built");
         match self.wasm_opt {
@@ -124,25 +111,21 @@ impl WasmTools {
     }
 }
 
-/// The path of cargo-fuzz, installing it if it is missing.
 pub(crate) async fn cargo_fuzz() -> Result<PathBuf> {
     let tool = Tool { package: "cargo-fuzz", program: "cargo-fuzz", version: CARGO_FUZZ.to_owned() };
     ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz was lost")
 }
 
-/// The path of cargo-mutants, installing it if it is missing.
 pub(crate) async fn cargo_mutants() -> Result<PathBuf> {
     let tool = Tool { package: "cargo-mutants", program: "cargo-mutants", version: CARGO_MUTANTS.to_owned() };
     ready(&cache()?, &[tool]).await?.pop().context("cargo-mutants was lost")
 }
 
-/// The path of geckodriver, Firefox's driver, installing it if it is missing.
 pub(crate) async fn geckodriver() -> Result<PathBuf> {
     let tool = Tool { package: "geckodriver", program: "geckodriver", version: GECKODRIVER.to_owned() };
     ready(&cache()?, &[tool]).await?.pop().context("geckodriver was lost")
 }
 
-/// The paths of the tools, installing what is missing.
 async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
     let mut programs = Vec::new();
     let mut installed = false;
@@ -156,13 +139,12 @@ async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
         });
     }
     if installed {
-        // What they share is built by now; should it stay, only the disk is fuller.
+        // Only disk space is lost if it stays.
         let _ = std::fs::remove_dir_all(build_folder(cache));
     }
     Ok(programs)
 }
 
-/// A command that cargo can install.
 struct Tool {
     package: &'static str,
     program: &'static str,
@@ -174,7 +156,6 @@ impl Tool {
         cache.join("tools").join(format!("{}-{}", self.package, self.version))
     }
 
-    /// The tool's path, if it is there in the right version.
     async fn find(&self, cache: &Path) -> Option<PathBuf> {
         let own = find(self.program, &self.home(cache).join("bin"));
         for program in [own, which::which(self.program).ok()].into_iter().flatten() {
@@ -191,7 +172,7 @@ impl Tool {
         let mut command = toolchain::cargo();
         command.args(["install", "--force", "--locked", self.package]);
         command.args(["--version", &self.version, "--root"]).arg(&home);
-        // As fast in use as the full profile, and built in half its time; what the tools share is built once.
+        // As fast in use as the full profile, but built in half the time. The tools share one build folder.
         command
             .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")
             .env("CARGO_PROFILE_RELEASE_LTO", "off")
@@ -217,26 +198,23 @@ impl Tool {
     }
 }
 
-/// What `program` says to `--version`.
 pub(crate) async fn version_answer(program: &Path) -> Option<String> {
     let mut command = Command::new(program);
     command.arg("--version");
     run::output(command).await
 }
 
-/// The same of a subcommand of cargo's that answers only as cargo calls it: `cargo-mutants mutants --version`.
+/// Some subcommands report a version only if called as cargo does: `cargo-mutants mutants --version`.
 async fn asked_as_by_cargo(program: &Path) -> Option<String> {
     let mut command = Command::new(program);
     command.args([program.file_stem()?.to_str()?.strip_prefix("cargo-")?, "--version"]);
     run::output(command).await
 }
 
-/// `program` in `folder`, with whatever ending the system gives to programs.
 pub(crate) fn find(program: &str, folder: &Path) -> Option<PathBuf> {
     which::which_in(program, Some(folder), root()).ok()
 }
 
-/// Where the tools lie, for all clones of the project of this user.
 pub(crate) fn cache() -> Result<PathBuf> {
     let strategy =
         etcetera::base_strategy::choose_native_strategy().context("the user has no home folder")?;
@@ -247,7 +225,7 @@ fn build_folder(cache: &Path) -> PathBuf {
     cache.join("build")
 }
 
-/// The version of `package` in the text of a Cargo.lock; an error unless there is exactly one.
+/// An error unless the lock file has exactly one version of the package.
 fn locked_version(lock: &str, package: &str) -> Result<String> {
     #[derive(Deserialize)]
     struct Lock {

@@ -1,9 +1,8 @@
-//! wasm-opt, the one tool that can break the page while saying that all went well.
+//! Finds a wasm-opt that does not break the page.
 //!
-//! Up to binaryen 108 it exports the wrong table, and the page fails to start; up to 116 it can't read
-//! the `table.fill` that wasm-bindgen emits, which rules out the `wasm-opt` crate. So: a recent one on
-//! PATH, else binaryen's npm package, else the one that wasm-pack fetches by itself. An old one on PATH
-//! without npm is an error, because wasm-pack would take it.
+//! Up to binaryen 108 it exports the wrong table and the page does not start; up to 116 it cannot read wasm-bindgen's
+//! `table.fill`, which rules out the `wasm-opt` crate. In this order: a recent one on PATH, binaryen's npm package,
+//! the one that wasm-pack downloads. An old one on PATH without npm is an error, because wasm-pack would use it.
 
 use std::path::{Path, PathBuf};
 
@@ -13,13 +12,11 @@ use crate::aside::say;
 use crate::npm::Npm;
 use crate::tools::{find, version_answer};
 
-/// The npm package's version.
 const BINARYEN: &str = "132.0.0";
-/// The oldest that is trusted: the one that wasm-pack 0.15.1 fetches.
+/// The version that wasm-pack 0.15.1 downloads.
 const AT_LEAST: u32 = 130;
 
-/// The path of a wasm-opt that is recent enough, installed by npm into `cache` if need be; `None` if
-/// wasm-pack must fetch one.
+/// `None` if wasm-pack must download one.
 pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
     let npm = Npm { package: "binaryen", version: BINARYEN };
     let own = npm.modules(cache).join(".bin");
@@ -42,8 +39,7 @@ pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
     Ok(None)
 }
 
-/// After a build for which wasm-pack was to fetch wasm-opt: did it? On platforms that it has none for
-/// it goes on without, with a mere note.
+/// On platforms without a download wasm-pack goes on without wasm-opt and only prints a note.
 pub(crate) fn judge_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
     done.map_err(|error| anyhow!("{error:#}\nif it was wasm-opt that could not be fetched: {}", remedy()))?;
     let entries = std::fs::read_dir(wasm_pack_cache).context("wasm-pack's cache can't be read")?;
@@ -52,7 +48,6 @@ pub(crate) fn judge_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()
     Ok(())
 }
 
-/// What the user can do about a missing wasm-opt.
 fn remedy() -> String {
     format!("install Node.js with npm, or binaryen {AT_LEAST} or later; or do without wasm-opt by --no-opt")
 }
@@ -61,7 +56,7 @@ async fn fits(program: &Path) -> bool {
     version_answer(program).await.is_some_and(|answer| version(&answer) >= Some(AT_LEAST))
 }
 
-/// The number in `wasm-opt version 132 (version_132)`.
+/// Parses `wasm-opt version 132 (version_132)`.
 fn version(answer: &str) -> Option<u32> {
     answer.split_whitespace().nth(2)?.parse().ok()
 }

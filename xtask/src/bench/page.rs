@@ -1,5 +1,5 @@
-//! The kernels in a browser. Their page asks by itself how many rounds to measure next, so that
-//! nothing stands between it and this but the local server.
+//! The kernels in a browser. Their page requests the number of rounds itself, so only the local server is between it
+//! and this process.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -21,29 +21,24 @@ use crate::browser::Browser;
 use crate::run::{self, Group};
 use crate::{root, serve};
 
-/// How long the page may be silent: the browser starts, or measures the rounds of a block.
+/// Maximum time between two messages of the page: the browser starts, or it measures the rounds of a block.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// What the page says.
 enum Word {
-    /// The report of the last rounds, at first an empty one: it waits for the number of the next.
+    /// The report of the last rounds, empty at first; the page then waits for the next number of rounds.
     Report(String),
-    /// Why it can't go on.
     Failed(String),
 }
 
-/// The page, open in a browser; dropping it closes the browser.
 pub(super) struct Page {
     words: mpsc::Receiver<Word>,
     rounds: mpsc::Sender<u32>,
     server: JoinHandle<()>,
     _browser: Group,
-    /// What the browser prints.
     log: PathBuf,
 }
 
 impl Page {
-    /// Opens `page`, whose wasm lies in `package`; the browser's own files go to `home`.
     pub(super) async fn open(browser: &Browser, page: &Path, package: &Path, home: &Path) -> Result<Self> {
         let listener = serve::bind(0)?;
         let address = format!("http://{}/", listener.local_addr()?);
@@ -61,7 +56,6 @@ impl Page {
         Ok(Self { words, rounds, server, _browser: browser, log })
     }
 
-    /// Has the page measure so many rounds.
     pub(super) async fn rounds(&mut self, rounds: u32) -> Result<Vec<Report>> {
         self.rounds.send(rounds).await.context("the server stopped")?;
         let text = hear(&mut self.words, &self.log).await?;
@@ -75,7 +69,6 @@ impl Drop for Page {
     }
 }
 
-/// The next report; an error if the page fails or stays silent.
 async fn hear(words: &mut mpsc::Receiver<Word>, log: &Path) -> Result<String> {
     match tokio::time::timeout(PATIENCE, words.recv()).await {
         Ok(Some(Word::Report(text))) => Ok(text),
@@ -89,13 +82,12 @@ async fn hear(words: &mut mpsc::Receiver<Word>, log: &Path) -> Result<String> {
     }
 }
 
-/// The page, its wasm, and the two addresses to which it speaks.
 fn router(page: &Path, package: &Path, words: mpsc::Sender<Word>, rounds: mpsc::Receiver<u32>) -> Router {
     let failed = words.clone();
     let rounds = Arc::new(Mutex::new(rounds));
     let report = move |text: String| async move {
         let _ = words.send(Word::Report(text)).await;
-        // 0 lets the page end.
+        // 0 ends the page.
         rounds.lock().await.recv().await.unwrap_or(0).to_string()
     };
     let fail = move |why: String| async move {
@@ -108,7 +100,7 @@ fn router(page: &Path, package: &Path, words: mpsc::Sender<Word>, rounds: mpsc::
         .fallback_service(ServeDir::new(page))
 }
 
-/// The call of the browser, with the flags that the wasm crate's tests have.
+/// Uses the same flags as the wasm crate's tests.
 fn command(browser: &Browser, address: &str, home: &Path, log: &Path) -> Result<Command> {
     #[derive(Deserialize)]
     struct WebDriver {

@@ -1,4 +1,4 @@
-//! `cargo xtask bench --readme`: the table in README, of what was measured last. Nobody types its numbers.
+//! `cargo xtask bench --readme`: writes README's table from the results of the last run.
 
 use std::path::Path;
 
@@ -7,11 +7,9 @@ use anyhow::{Context, Result, bail};
 use super::{RESULTS, table};
 use crate::root;
 
-/// Between these two lines stands the table.
 const BEGIN: &str = "<!-- Made by `cargo xtask bench --readme`: begin. -->\n";
 const END: &str = "<!-- End. -->\n";
 
-/// Writes the table of the last results.
 pub(super) fn write() -> Result<()> {
     let results = root().join("target").join("bench").join(RESULTS);
     let text = std::fs::read_to_string(&results).with_context(|| {
@@ -30,7 +28,6 @@ fn shown(path: &Path) -> String {
     path.strip_prefix(root()).unwrap_or(path).display().to_string()
 }
 
-/// The text with this table in the place of its own.
 fn with(text: &str, table: &str) -> Result<String> {
     let parts = text.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
     let Some((head, tail)) = parts else {

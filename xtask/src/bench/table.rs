@@ -1,22 +1,19 @@
-//! What was measured, and the tables of it.
+//! The results of the benchmarks and their tables.
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// One kernel's times in the rounds of one process, as it reports them.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Report {
     name: String,
-    /// What it does; empty in a commit whose kernels do not say so.
+    /// Empty in a commit whose kernels have no description.
     #[serde(default)]
     what: String,
-    /// What a call makes, and how many.
     unit: String,
     units: u64,
-    /// Single-signal edges of a call.
+    /// Single-signal edges per call.
     edges: Option<u64>,
-    /// The kernel that its speed is compared with.
     yardstick: Option<String>,
     aim: Option<f64>,
     browser_aim: Option<f64>,
@@ -24,32 +21,28 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// All kernels of a process.
     pub(super) fn all_from_json(text: &str) -> Result<Vec<Self>> {
         serde_json::from_str(text).with_context(|| format!("this is no report of the kernels: {text:?}"))
     }
 
-    /// Units a second of the best call: what else runs on the machine only ever adds time.
+    /// Units per second of the best call; other programs on the machine only add time.
     fn best(&self) -> f64 {
         self.units as f64 / self.seconds.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Rounds as native code, and right after them in the browser.
 #[derive(Serialize)]
 pub(super) struct Block {
     pub(super) native: Vec<Report>,
     pub(super) browser: Vec<Report>,
 }
 
-/// Criterion's estimate of the time of one call.
 pub(super) struct Estimate {
     median_s: f64,
     deviation_s: f64,
 }
 
 impl Estimate {
-    /// Reads criterion's `estimates.json`.
     pub(super) fn from_json(text: &str) -> Result<Self> {
         #[derive(Deserialize)]
         struct Estimates {
@@ -58,7 +51,6 @@ impl Estimate {
         }
         #[derive(Deserialize)]
         struct Point {
-            /// In ns.
             point_estimate: f64,
         }
         let Estimates { median, median_abs_dev } = serde_json::from_str(text)?;
@@ -66,7 +58,6 @@ impl Estimate {
     }
 }
 
-/// A ratio of speeds over all blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 struct Ratio {
     median: f64,
@@ -102,7 +93,6 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// Both tables: what each kernel does as native code, and which part of that in the browser.
 pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimate>) -> Result<String> {
     let first = blocks.first().context("nothing was measured")?;
     let mut native =
@@ -120,7 +110,6 @@ pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimat
 /// Slower than this part of before is told.
 const MIN_OF_BEFORE: f64 = 0.95;
 
-/// What each kernel does now in parts of what it did before, as native code and in the browser.
 pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
     let first = now.first().context("nothing was measured")?;
     let mut rows = vec![["kernel", "native", "", "browser", ""].map(str::to_owned)];
@@ -136,7 +125,7 @@ pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
     Ok(align(&rows))
 }
 
-/// A kernel's speed now by that before, as native code and in the browser; none where it was not measured before.
+/// `None` if the kernel was not measured before.
 fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
     let of = |side: fn(&Block) -> &[Report]| -> Option<Ratio> {
         let pairs = now.iter().zip(before);
@@ -149,23 +138,19 @@ fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
     [of(|block| &block.native), of(|block| &block.browser)]
 }
 
-/// A kernel in `results.json`.
 #[derive(Deserialize, Serialize)]
 struct Kernel {
     name: String,
     what: String,
     unit: String,
-    /// Native speed in parts of its yardstick's.
     of_yardstick: Option<Ratio>,
     yardstick: Option<String>,
-    /// Speed in the browser in parts of the native one, if it is measured there.
+    /// `None` if the kernel is not measured in the browser.
     of_native: Option<Ratio>,
-    /// Speeds in parts of those before.
     native_of_before: Option<Ratio>,
     browser_of_before: Option<Ratio>,
 }
 
-/// The kernels of `results.json` that are compared with anything, and what they are compared with, as a table in Markdown.
 pub(super) fn markdown(results: &str) -> Result<String> {
     #[derive(Deserialize)]
     struct Results {
@@ -190,7 +175,6 @@ pub(super) fn markdown(results: &str) -> Result<String> {
     Ok(lines.join("\n") + "\n")
 }
 
-/// All that was measured, and the ratios of each kernel, as JSON, with the page's own figures as `page` where there are some.
 pub(super) fn json(blocks: &[Block], before: Option<&[Block]>, page: Option<Value>) -> Result<String> {
     #[derive(Serialize)]
     struct Results<'b> {
@@ -261,7 +245,6 @@ fn browser_row(kernel: &Report, blocks: &[Block]) -> Result<[String; 5]> {
     ])
 }
 
-/// The ratio of the best speeds of two reports that `pair` finds in each block.
 fn ratio<'b>(
     blocks: &'b [Block],
     pair: impl Fn(&'b Block) -> Result<(&'b Report, &'b Report)>,
@@ -275,7 +258,6 @@ fn find<'r>(reports: &'r [Report], name: &str) -> Result<&'r Report> {
     reports.iter().find(|report| report.name == name).with_context(|| format!("{name} was not measured"))
 }
 
-/// Columns side by side, the first to the left and the others to the right.
 fn align<const N: usize>(rows: &[[String; N]]) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(width);
@@ -288,7 +270,6 @@ fn align<const N: usize>(rows: &[[String; N]]) -> String {
     rows.iter().map(line).collect()
 }
 
-/// A number in three digits with the prefix that fits, from nano to giga.
 fn si(value: f64, unit: &str) -> String {
     let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
     let (scale, prefix) = prefixes.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-9, "n"));
@@ -307,7 +288,6 @@ fn si(value: f64, unit: &str) -> String {
 mod tests {
     use super::*;
 
-    /// A report of 1000 units a call.
     fn report(name: &str, yardstick: Option<&str>, seconds: &[f64]) -> Report {
         Report {
             name: name.to_owned(),
@@ -324,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_ratio_is_of_the_best_calls_of_each_block_and_the_median_of_the_blocks() {
-        // In each block the yardstick's best call is 1 ms; a call that was disturbed changes nothing.
+        // In each block the yardstick's best call takes 1 ms; a disturbed call changes nothing.
         let blocks: Vec<Block> = [[0.004, 0.9], [0.9, 0.005], [0.002, 0.004]]
             .iter()
             .map(|seconds| Block {

@@ -1,10 +1,8 @@
-//! esbuild makes the files with hashes: what a page or worker begins with, what several of these share, and what comes
-//! later, each as one minified module; style sheets, minified; and copies of the wasm and the icons. The hash in a name
-//! is of the file and of all that it imports.
+//! Runs esbuild, which minifies modules and style sheets and puts a hash of the file and its imports into each name.
 //!
-//! By itself esbuild makes a file of whatever another set of them shares. The page and its later parts shared twenty, and many small
-//! files weigh more than one. So esbuild works on a copy of the sources in which each later part imports the page's script:
-//! what both need is where that is, and loads with it.
+//! esbuild puts code that several entries share into one file per set of entries: twenty small files that weigh more
+//! than one. So it gets a copy of the sources in which each later part imports the page's script. Shared code then
+//! stays in that script and loads with it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -20,7 +18,6 @@ use crate::run;
 
 const ESBUILD: Npm = Npm { package: "esbuild", version: "0.28.2" };
 
-/// A copy of the sources, which goes when it is done with.
 struct Work {
     folder: PathBuf,
 }
@@ -53,7 +50,6 @@ impl Drop for Work {
     }
 }
 
-/// Has esbuild make files of these `sources` of `web` in the folder `out`; its note of what it made.
 async fn esbuild(web: &Path, sources: &BTreeSet<&str>, out: &Path) -> Result<String> {
     let note = out.with_extension("json");
     let path = |option: &str, path: &Path| format!("--{option}={}", path.display());
@@ -69,8 +65,8 @@ async fn esbuild(web: &Path, sources: &BTreeSet<&str>, out: &Path) -> Result<Str
     Ok(text)
 }
 
-/// The sources that only the page's `script` loads, and only later: what another page or a worker has as well must not
-/// bring that script along.
+/// The sources that only the page's `script` loads, and only later. A part that another page or a worker also needs
+/// must not import that script.
 pub(super) fn later_parts(note: &str, sources: &BTreeSet<&str>, script: &str) -> Result<BTreeSet<String>> {
     #[derive(Deserialize)]
     struct Note {
@@ -85,13 +81,12 @@ pub(super) fn later_parts(note: &str, sources: &BTreeSet<&str>, script: &str) ->
     Ok(parts.cloned().collect())
 }
 
-/// One of the sources, as esbuild read it.
 #[derive(Debug, Deserialize)]
 struct Input {
     imports: Vec<Import>,
 }
 
-/// These sources and all that they import, now or later.
+/// These sources and all their imports, static or dynamic.
 fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut waiting: Vec<&'a str>) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     while let Some(source) = waiting.pop() {
@@ -104,15 +99,13 @@ fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut waiting: Vec<&'a str>) -
     found
 }
 
-/// Every file that esbuild made, by its path in `dist`.
 #[derive(Debug)]
 pub(super) struct Bundles(BTreeMap<String, Output>);
 
-/// One of them, as esbuild describes it.
 #[derive(Debug, Deserialize)]
 struct Output {
     imports: Vec<Import>,
-    /// The source that it stands for; none for what others share.
+    /// `None` for code that several entries share.
     #[serde(rename = "entryPoint")]
     entry: Option<String>,
 }
@@ -124,15 +117,13 @@ struct Import {
 }
 
 impl Import {
-    /// Whether it is loaded only when something asks for it.
     fn is_later(&self) -> bool {
         self.kind == "dynamic-import"
     }
 }
 
 impl Bundles {
-    /// Makes files of these `sources` of `web`, and of all that they import, in the folder of assets of `dist`; `script` is
-    /// the page's own among them.
+    /// Bundles `sources` of `web` and their imports into `dist`'s folder of assets; `script` is the page's own.
     pub(super) async fn make(
         web: &Path,
         sources: &BTreeSet<&str>,
@@ -152,7 +143,6 @@ impl Bundles {
         Self::parse(&esbuild(&work.web(), sources, &dist.join(ASSETS)).await?)
     }
 
-    /// Reads esbuild's note of what it made.
     pub(super) fn parse(note: &str) -> Result<Self> {
         #[derive(Deserialize)]
         struct Note {
@@ -170,18 +160,16 @@ impl Bundles {
         Ok(Self(outputs.collect()))
     }
 
-    /// The paths of all files.
     pub(super) fn files(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
     }
 
-    /// The file that stands for this source.
     pub(super) fn of(&self, source: &str) -> Option<&str> {
         let found = self.0.iter().find(|(_, output)| output.entry.as_deref() == Some(source));
         found.map(|(path, _)| path.as_str())
     }
 
-    /// All that loads before this file runs, itself included.
+    /// Everything that loads before this file runs, including the file.
     pub(super) fn at_once(&self, file: &str) -> BTreeSet<&str> {
         let mut loaded = BTreeSet::new();
         let mut waiting = vec![file];
@@ -196,7 +184,7 @@ impl Bundles {
         loaded
     }
 
-    /// What one of these files loads only when something asks for it, by its source.
+    /// What these files load later, by source.
     pub(super) fn later<'a>(&'a self, files: &BTreeSet<&str>) -> BTreeMap<&'a str, &'a str> {
         let imports = files.iter().filter_map(|file| self.0.get(*file)).flat_map(|output| &output.imports);
         let paths = imports.filter(|import| import.is_later()).map(|import| import.path.as_str());

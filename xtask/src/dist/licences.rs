@@ -1,4 +1,4 @@
-//! The page that says whose work the wasm holds besides Stepscope's own, with the texts of the licences.
+//! The page that lists the other authors' crates in the wasm, with their licenses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -11,27 +11,22 @@ use tokio::process::Command;
 use crate::toolchain::{self, WASM};
 use crate::{root, run};
 
-/// The crate that becomes the wasm.
 const PACKAGE: &str = "stepscope-wasm";
 
-/// A crate in the wasm.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Part {
     name: String,
     version: String,
-    /// SPDX expression.
     licence: String,
-    /// The texts that go with it, of a choice the shortest way.
+    /// If the license offers a choice, only the texts of the shortest option.
     texts: Vec<String>,
 }
 
-/// The whole page.
 pub(super) async fn page() -> Result<String> {
     let own = std::fs::read_to_string(root().join("LICENSE-MIT")).context("LICENSE-MIT can't be read")?;
     Ok(print(&parts().await?, &own))
 }
 
-/// All crates of others whose code the wasm can hold, in the order of their names.
 async fn parts() -> Result<Vec<Part>> {
     let mut tree = toolchain::cargo();
     tree.args(["tree", "--locked", "--package", PACKAGE, "--target", WASM]);
@@ -51,7 +46,7 @@ async fn parts() -> Result<Vec<Part>> {
         version: String,
         license: Option<String>,
         manifest_path: PathBuf,
-        /// None for the workspace's own.
+        /// `None` for crates of the workspace.
         source: Option<String>,
     }
     let metadata: Metadata = serde_json::from_str(&metadata).context("cargo metadata")?;
@@ -74,13 +69,13 @@ async fn answer(command: Command) -> Result<String> {
     run::output(command).await.context("cargo does not say of which crates the page is made")
 }
 
-/// Name and version in a line of `cargo tree`, such as `serde v1.0.0 (*)`.
+/// Parses a line of `cargo tree`, such as `serde v1.0.0 (*)`.
 fn named(line: &str) -> Option<(&str, &str)> {
     let mut words = line.split_whitespace();
     Some((words.next()?, words.next()?.strip_prefix('v')?))
 }
 
-/// The texts of a crate's licence; of a choice that offers MIT, MIT's alone.
+/// If the license offers a choice that includes MIT, only MIT's text.
 fn texts(folder: &Path, licence: &str) -> Result<Vec<String>> {
     let mut files: Vec<String> = std::fs::read_dir(folder)?
         .flatten()
@@ -103,7 +98,6 @@ fn texts(folder: &Path, licence: &str) -> Result<Vec<String>> {
     Ok(texts)
 }
 
-/// Of the files of licences those that must go along.
 fn chosen<'a>(files: &'a [String], licence: &str) -> Vec<&'a str> {
     let has = |file: &str, word: &str| file.to_uppercase().contains(word);
     let of_mit = files.iter().any(|file| has(file, "MIT")) && licence.contains("MIT");
@@ -115,7 +109,7 @@ fn chosen<'a>(files: &'a [String], licence: &str) -> Vec<&'a str> {
     files.iter().map(String::as_str).filter(wanted).collect()
 }
 
-/// The parts as a page; a text that several have stands in it once.
+/// A text that several crates share is printed once.
 fn print(parts: &[Part], own: &str) -> String {
     let mut page = String::from(HEAD);
     let _ = write!(page, "<pre>{}</pre>\n<h2>What it is made of</h2>\n<ul>\n", escaped(own.trim()));

@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// A site with these texts besides its own.
 fn site(changed: &[(&str, &str)]) -> Site {
     let texts = [
         (
@@ -30,8 +29,7 @@ fn site(changed: &[(&str, &str)]) -> Site {
     Site { texts: texts.collect(), headers }
 }
 
-/// What esbuild would say: `main.js` and the worker share a file, and so do `main.js` and the help's page with what
-/// comes later.
+/// esbuild's result: `main.js` shares one file with the worker and another with the later part of the help page.
 fn bundles(hash: &str) -> Bundles {
     let import =
         |path: &str, kind: &str| format!("{{\"path\": \"../dist/assets/{path}\", \"kind\": \"{kind}\"}}");

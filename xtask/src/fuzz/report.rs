@@ -1,35 +1,28 @@
-//! What a libFuzzer run did, read from what it prints.
+//! Reads the result of a libFuzzer run from its output.
 
 use std::fmt;
 
-/// A run of one target.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Report {
-    /// Inputs that were run.
     executions: u64,
     executions_a_second: u64,
-    /// Coverage counters that were reached, and those that there are: edges of the program with all it links, so the
-    /// second is never reached.
+    /// Coverage counters reached and in total. The total includes everything that is linked, so it is never reached.
     covered: u64,
     counters: u64,
-    /// Inputs that reached something new.
     kept: u64,
-    /// Slowest input in s, and most memory in MB.
+    /// Seconds and MB.
     slowest_s: u64,
     memory_mb: u64,
-    /// The file of an input that broke something, as libFuzzer names it.
     pub(crate) finding: Option<String>,
-    /// What it broke, in the words of the panic or of libFuzzer.
     broken: Vec<String>,
 }
 
-/// Lines of a panic that are shown.
+/// Lines of a panic that are printed.
 const TOLD_LINES: usize = 6;
-/// Characters of each: a scenario in it is long.
+/// Characters per line: a panic may contain a whole scenario.
 const TOLD_CHARACTERS: usize = 200;
 
 impl Report {
-    /// Reads a log; what is not in it stays 0.
     pub(crate) fn of(log: &str) -> Self {
         let mut report = Self::default();
         let number = |text: &str| text.trim().parse().unwrap_or(0);
@@ -64,7 +57,7 @@ impl Report {
     }
 }
 
-/// The panic, without what follows from it; else libFuzzer's own error.
+/// The panic without its consequences, or libFuzzer's own error.
 fn broken(log: &str) -> Vec<String> {
     let from = |mark: &str| log.lines().skip_while(|line| !line.contains(mark)).collect::<Vec<_>>();
     let panic = from("panicked at ");
