@@ -1,9 +1,9 @@
-//! `cargo xtask bench --live`: what `stepscope serve` takes of a machine, and how late it is. Printed, and judged by nobody: a busy
-//! machine is later. Beside the replies stands a thread that only sleeps, so that it shows what is the machine's doing.
+//! `cargo xtask bench --live` measures `stepscope serve`. A thread that only sleeps shows how much delay the machine
+//! itself adds.
 //!
-//! - replies: how late each is after its cycle (LIVE H2), of one controller at 115200 baud;
-//! - load: processor time of the server in parts of the session's, with 1, 4 and 32 controllers under way;
-//! - a day: 86400 s of a session at full speed, 16 channels moving all the time, and the memory of the server.
+//! - replies: delay after their cycle, one controller at 115200 baud (LIVE H2);
+//! - load: processor time per session time, with 1, 4 and 32 active controllers;
+//! - a day: 86400 s at full speed, 16 channels moving, and the server's memory.
 #![cfg_attr(
     not(target_os = "linux"),
     allow(dead_code, unused_imports, reason = "processes are looked at in /proc")
@@ -29,9 +29,7 @@ use stepscope_core::peripheral::{
     wire::frame::{Ticks, emit},
 };
 
-/// Seconds of motion, where time is real.
 const SECONDS: u32 = 20;
-/// Upper ends of what is counted, in ms, as `serve` has them.
 const BARS_MS: [f64; 9] = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 
 #[cfg(not(target_os = "linux"))]
@@ -56,14 +54,14 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("text")
 }
 
-/// So many controllers on a line, each with a motor at 2000 steps/s all the time, in ticks of 100 slots of so many cycles, of
-/// which so many are in a frame.
+/// `controllers` on a line, each with a motor at 2000 steps/s; ticks of 100 slots of `slot` cycles, `ticks` per
+/// frame.
 fn scenario(controllers: usize, (baud, slot, ticks): (u32, u32, u32), seconds: u32) -> String {
     let axes = format!(
         r#"[ {{ "moves": [ {{ "constant": {{ "speed": {{ "steps_s": 2000 }}, "distance": {{ "steps": {} }} }} }} ] }} ]"#,
         2000 * seconds
     );
-    // The queue bears that the machine stands still for more than a second.
+    // The queue covers a machine that stops for more than a second.
     let bus = format!(r#"{{ "step_period_cycles": {slot}, "queue_depth": 200, "boot_cycles": 0 }}"#);
     let other = |address| format!(r#"{{ "address": {address}, "bus": {bus}, "axes": {axes} }}"#);
     let others: Vec<String> = (1..controllers).map(other).collect();
@@ -80,7 +78,6 @@ fn scenario(controllers: usize, (baud, slot, ticks): (u32, u32, u32), seconds: u
     )
 }
 
-/// A server, and where it is.
 struct Server {
     child: Child,
     out: BufReader<ChildStdout>,
@@ -107,7 +104,7 @@ impl Server {
         fs::read_to_string(format!("/proc/{}/{name}", self.child.id())).expect("it runs")
     }
 
-    /// Seconds on a processor, and seconds in which it waited for one.
+    /// Seconds on a processor, and seconds waiting for one.
     fn processor_s(&self) -> (f64, f64) {
         let told = self.proc("schedstat");
         let mut ns = told.split_whitespace().map(|word| word.parse::<f64>().expect("a number"));
@@ -115,7 +112,7 @@ impl Server {
         (next(), next())
     }
 
-    /// Memory now, and at most so far, in MB.
+    /// Current and maximum memory, in MB.
     fn memory_mb(&self) -> (f64, f64) {
         let told = self.proc("status");
         let of = |name: &str| {
@@ -125,7 +122,6 @@ impl Server {
         (of("VmRSS:"), of("VmHWM:"))
     }
 
-    /// What it says at its end.
     fn end(mut self) -> String {
         let mut kill = Command::new("kill");
         let ended = kill.args(["-TERM", &self.child.id().to_string()]).status();
@@ -144,14 +140,14 @@ impl Drop for Server {
     }
 }
 
-/// Has it all done; whether it is confirmed.
+/// Returns whether every tick is confirmed.
 fn send(scenario: &Path, server: &Server) -> bool {
     let mut send = Command::new(env!("CARGO_BIN_EXE_stepscope"));
     send.args(["send", text(scenario), "--port", &server.place, "--slack", "5000"]);
     send.stdout(Stdio::null()).status().expect("it runs").success()
 }
 
-/// How late a thread wakes that only sleeps for 5 ms, again and again, as a line of `serve`'s histogram.
+/// Measures how late a thread wakes from repeated sleeps of 5 ms.
 struct Sleeper {
     until: Arc<AtomicBool>,
     thread: thread::JoinHandle<Vec<f64>>,
@@ -225,10 +221,10 @@ fn load() {
     println!();
 }
 
-/// Ticks of 16 channels, 31 with a step each way and one at rest, frame after frame, and what the server's memory comes to.
+/// Ticks of 16 channels: 31 with a step each, alternating in direction, and one idle.
 fn day() {
     const HOURS: u64 = 24;
-    // 20 ms: M = 100 slots of 200 us. At 9600 baud a frame of 32 ticks takes hardly less than they last.
+    // 20 ms: M = 100 slots of 200 us. At 9600 baud a frame of 32 ticks takes nearly that long.
     const TICK_MS: u64 = 20;
     const TICKS: u64 = 32;
     let json = r#"{ "bus": { "channels": 16, "step_period_cycles": 3200, "queue_depth": 64, "boot_cycles": 0 },
@@ -262,7 +258,7 @@ fn day() {
                 (frame * body) as f64 / 1e6,
                 begun.elapsed().as_secs_f64()
             );
-            // By then more has come than a recording may have: nothing is kept any more.
+            // By now the recording is full, so nothing is added to it.
             if hours == 3 {
                 settled_mb = now;
             }
@@ -270,7 +266,7 @@ fn day() {
         }
         if frame < frames {
             let ticks = Ticks::emit(frame as u8, 16, &orders);
-            // The queue holds two frames; one that finds no room is said again.
+            // The queue holds two frames; a refused frame is repeated.
             while ask(Kind::Ticks, &ticks).get(2) == Some(&0xff) {}
         }
     }

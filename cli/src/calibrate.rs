@@ -1,4 +1,4 @@
-//! `stepscope calibrate`: steps a millimetre from measured lengths (DESIGN B3, Zhang 2012).
+//! `stepscope calibrate`: steps per millimeter from measured lengths (DESIGN B3, Zhang 2012).
 
 use crate::{failure::Failure, json::Tables, scenarios, terminal};
 use clap::Args;
@@ -9,10 +9,9 @@ use std::{
 };
 use stepscope_core::inspect::motion::calibration::{Calibration, Fit, Pair};
 
-/// Columns that a length may stand in, with mm in one of its units.
+/// Possible columns of a length, with mm per unit.
 const LENGTHS: [(&str, f64); 3] = [("length_mm", 1.0), ("length_cm", 10.0), ("length_m", 1000.0)];
 
-/// What `stepscope calibrate` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// A CSV file with the columns length_mm (or length_cm, length_m) and steps, a measurement a row; `-` reads
@@ -23,7 +22,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Fits the lines and prints them.
 pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
     let text = scenarios::text(&arguments.table)?;
     let bad = |what| Failure::Table(arguments.table.clone(), what);
@@ -35,7 +33,6 @@ pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
     print(&found, &pairs).map_err(Failure::output)
 }
 
-/// What is printed, as tables.
 fn tables(found: &Calibration, pairs: &[Pair]) -> Tables {
     let row = |name: &str, fit: &Fit| {
         let k = fit.steps_per_unit;
@@ -55,7 +52,6 @@ fn tables(found: &Calibration, pairs: &[Pair]) -> Tables {
     Tables::of("calibrate").with("fits", fits)
 }
 
-/// The pairs of a table, lengths in mm.
 fn pairs(text: &str) -> Result<Vec<Pair>, String> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -95,8 +91,7 @@ fn print(found: &Calibration, pairs: &[Pair]) -> io::Result<()> {
     writeln!(out, "\"mechanics\": {{ \"direct\": {{ \"step_mm\": {step_mm} }} }}")
 }
 
-/// A number above 0 with so many decimals; with a power of ten where those would cut off what counts of it, or
-/// it is long.
+/// Uses an exponent if the decimals would cut off significant digits, or the text would be long.
 fn digits(number: f64, decimals: usize) -> String {
     if (1e-3..1e9).contains(&number) { format!("{number:.decimals$}") } else { format!("{number:.9e}") }
 }

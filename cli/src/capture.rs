@@ -39,10 +39,9 @@ use stepscope_core::{
     scenario::{Scenario, SegmentLists, Source},
 };
 
-/// Maximum bytes of a recording from standard input or a pipe, which is kept in memory: it cannot be read twice.
+/// A pipe's recording is kept in memory, because it cannot be read twice.
 const MAX_PIPED: u64 = 1 << 30;
 
-/// Reads the recording, reports on it and writes the requested files.
 pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     let Reading { capture, error } = read(arguments)?;
@@ -54,7 +53,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let base = against.as_ref().map(|(scenario, _)| &**scenario);
     let rules = arguments.timing.rules(&arguments.file, &base.cloned().unwrap_or_default())?;
     let most_kept = arguments.timing.most_kept();
-    // In the file's own ticks before its memory is taken over: rounded to cycles, a short pulse could pass.
+    // Uses the file's ticks: rounded to cycles, a short pulse might pass. Runs before the capture's memory is reused.
     let in_ticks = rules.as_ref().map(|rules| {
         LoadedCapture::timing_in_ticks(&capture, &arguments.open_options(), rules, most_kept)
             .map_err(|error| arguments.cannot_open(&error))
@@ -101,7 +100,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         }
         tables.print()?;
     } else {
-        // A file on standard output must not be mixed with text.
+        // Text must not be mixed with a file on standard output.
         if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
             text::print(&recording, arguments.map.is_none(), beside.as_ref(), &driven)
                 .map_err(Failure::output)?;
@@ -131,7 +130,6 @@ fn driven(arguments: &Arguments, recording: &LoadedCapture, base: Option<&Scenar
     recording.report.channels.iter().filter_map(|found| channel(found.channel)).collect()
 }
 
-/// Reads the file, as far as it can be read.
 fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     let path = &arguments.file;
     let failed = |error: io::Error| Failure::File(path.clone(), error);
@@ -156,7 +154,7 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     }
     let mut file = match pipe::to_read(path) {
         Ok(file) => file,
-        // A sample of that name, where there is no such file.
+        // If there is no such file, it may be a sample's name.
         Err(error) => {
             let sample = path.to_str().and_then(sample).ok_or_else(|| failed(error))?;
             return Ok(read::read(Cursor::new(sample.bytes), &limits, &mut |_| true));

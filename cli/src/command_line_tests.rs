@@ -1,4 +1,4 @@
-//! Every option of every command is classified: its paths in `paths.rs`, its numbers in `quantity.rs`.
+//! Tests that every option of every command is classified: its paths in `paths.rs`, its numbers in `quantity.rs`.
 
 use crate::{
     failure::Failure,
@@ -7,7 +7,7 @@ use crate::{
 use clap::Command;
 use std::{any::TypeId, collections::BTreeSet, fs, path::PathBuf};
 
-/// Command lines that together have every path of their command, each as NAME of a file of its own: `{NAME}`.
+/// Command lines with every path of their commands, each as `{NAME}`.
 const LINES: &[&str] = &[
     "run {scenario} --driver {driver} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
     "serve {scenario} --record {record} --pty {pty}",
@@ -29,7 +29,6 @@ const LINES: &[&str] = &[
     "points {table}",
 ];
 
-/// Every command without commands of its own, and its name.
 fn commands(command: &Command, name: &str, found: &mut Vec<(String, Command)>) {
     if !command.has_subcommands() {
         found.push((name.trim_start().to_owned(), command.clone()));
@@ -39,7 +38,7 @@ fn commands(command: &Command, name: &str, found: &mut Vec<(String, Command)>) {
         .for_each(|inner| commands(inner, &format!("{name} {}", inner.get_name()), found));
 }
 
-/// Arguments that are paths by their type, or files by their name in the help.
+/// Arguments with a path type, or named as files in the help.
 fn paths_of(command: &Command) -> BTreeSet<String> {
     const NAMES: [&str; 5] = ["FILE", "FOLDER", "TABLE", "DEVICE", "PORT"];
     let is_path = |argument: &&clap::Arg| {
@@ -63,7 +62,6 @@ fn every_path_of_every_command_is_classified() {
     }
 }
 
-/// The command line, with `file` of each name but where `instead` says otherwise.
 fn line(template: &str, file: impl Fn(&str) -> String, instead: Option<(&str, String)>) -> Vec<String> {
     let word = |word: &str| match word.strip_prefix('{').and_then(|word| word.strip_suffix('}')) {
         None => word.to_owned(),
@@ -109,7 +107,7 @@ fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
     assert!(matches!(judged(twice), Err(Failure::Option(_))));
 }
 
-/// A new option of a number takes a type of quantity.rs.
+/// A new numeric option needs a type of quantity.rs.
 #[test]
 fn every_option_of_a_number_refuses_what_is_none() {
     let mut all = Vec::new();
@@ -128,7 +126,7 @@ fn every_option_of_a_number_refuses_what_is_none() {
                 let words = ["stepscope"].into_iter().chain(name.split(' ')).chain([option.as_str()]);
                 let error = crate::command_line().try_get_matches_from(words).expect_err(&option);
                 let error = error.to_string();
-                // An empty one is refused by clap itself.
+                // clap itself refuses an empty one.
                 let is_told = ["use ", "give ", "possible values", "lists them"];
                 assert!(
                     error.contains(&format!("--{}", argument.get_long().unwrap_or_default()))

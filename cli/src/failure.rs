@@ -1,4 +1,4 @@
-//! Why a command has no result, in words and as an exit code.
+//! Failures of a command: message and exit code.
 
 use crate::terminal::Escaped;
 use std::{
@@ -14,45 +14,39 @@ use stepscope_core::{
     scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError},
 };
 
-/// Exit code of a command that a signal ended.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// Why there is no result.
 #[derive(Debug)]
 pub(crate) enum Failure {
     File(PathBuf, io::Error),
-    /// An output that cannot be used, and why.
+    /// The output, and why it cannot be used.
     Output(PathBuf, &'static str),
-    /// The dump's timescale is coarser than a cycle.
     Timescale(TooCoarse),
-    /// The file is longer than this many bytes.
+    /// The file, and the maximum bytes.
     TooLong(PathBuf, u64),
-    /// A scenario too long to be read again; what makes it shorter.
+    /// The scenario is too long to read again; the text names a remedy.
     LongScenario(PathBuf, &'static str),
     NotText(PathBuf),
     Scenario(PathBuf, Vec<Problem>),
-    /// The link is wrong, or the scenario does not fit in one.
     Link(LinkError),
     /// A link without its sender's digests cannot be verified.
     NoProof,
-    /// Its sender's digests cannot be read.
     RunFingerprint(RunFingerprintError),
-    /// The run differs from that of the link's sender; the first difference.
+    /// The first difference.
     OtherRun(String),
     LongAnalysis(PathBuf, TooLong),
     Preset(String),
     NoPanel(PathBuf),
-    /// Power cuts of a run that is too long.
     LongRun(PathBuf),
     NoStandAlone(PathBuf),
     NoDriver(PathBuf),
-    /// The number given, and the number of controllers.
+    /// The given number, and the number of controllers.
     Controller(PathBuf, usize, usize),
-    /// The number given, and the number of axes.
+    /// The given number, and the number of axes.
     Axis(PathBuf, usize, usize),
     Table(PathBuf, String),
     Recording(PathBuf, String),
-    /// A recording is truncated, and why.
+    /// A truncated recording.
     PartOnly(PathBuf, String),
     /// A recording differs from the plan.
     NotTheModel(String),
@@ -63,39 +57,35 @@ pub(crate) enum Failure {
     Port(String, String),
     Option(String),
     LostPort(String),
-    /// How often the session's clock was set back, and by how many ms.
+    /// Number of set-backs, and their sum in ms.
     NotRealTime(u64, f64),
-    /// A recording does not reproduce its session.
     NotRecorded(PathBuf, String),
-    /// Sent ticks that are not confirmed.
     NotVerified(String),
     /// Ctrl-C, after the report.
     Interrupted,
-    /// Seeds of a fault sweep with wrong steps in spite of the framed protocol.
+    /// Number of seeds with wrong steps on a framed line.
     WrongSteps(u64),
-    /// Power cuts that left a wrong position that is trusted.
+    /// Number of power cuts after which a wrong position is trusted.
     SilentlyWrong(u64),
 }
 
 impl Failure {
-    /// Standard output could not be written.
     pub(crate) fn output(error: io::Error) -> Self {
         Self::File(PathBuf::from("standard output"), error)
     }
 
-    /// The system cannot start threads.
     pub(crate) fn threads(error: io::Error) -> Self {
         Self::File(PathBuf::from("threads"), error)
     }
 
-    /// Whether the reader of standard output is gone, as behind `| head`.
+    /// Such as behind `| head`.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::File(_, error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
 
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            // As a shell reports a command that SIGPIPE ended.
+            // The code that a shell reports for SIGPIPE.
             _ if self.is_closed_pipe() => ExitCode::from(141),
             Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
@@ -133,7 +123,6 @@ impl Failure {
     }
 }
 
-/// A refusal: the scenario has no plant.
 pub(crate) fn no_plant(path: &Path) -> Failure {
     let detail = "no plant, so nothing is driven; give \"plant\": {}";
     let problem = Problem::new("plant", ValueError::Conflict { detail });

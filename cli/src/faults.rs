@@ -1,4 +1,4 @@
-//! `stepscope faults`: the same orders over a line that goes wrong in thousands of ways.
+//! `stepscope faults`: runs a scenario with random line faults, one run per seed.
 
 use crate::{
     failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenario_file, scenarios,
@@ -18,16 +18,15 @@ use stepscope_core::{
     sim::fault_sweep::{FaultSweep, Tally},
 };
 
-/// Seeds that a thread takes at once.
+/// Seeds per batch of a thread.
 const BATCH: u64 = 64;
-/// The number of seeds that there are: of 32 bits.
+/// Seeds have 32 bits.
 const SEEDS: u64 = 1 << 32;
-/// The name of the protocol that nothing may go wrong with.
+/// The protocol that must never give wrong steps.
 const FRAMED: &str = "framed";
-/// Seeds that are named where something went wrong.
+/// Maximum seeds that are listed.
 const MAX_NAMED: usize = 8;
 
-/// What `stepscope faults` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
@@ -64,7 +63,6 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
-/// Which protocols a fault sweep runs.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Which {
     /// Packets without a check, as in RU 2704486.
@@ -85,11 +83,9 @@ impl Which {
     }
 }
 
-/// What the seeds of one protocol came to.
 #[derive(Default)]
 struct Report {
     tally: Tally,
-    /// The first seeds that went wrong, rising.
     wrong: Vec<u32>,
 }
 
@@ -109,7 +105,6 @@ impl Report {
     }
 }
 
-/// Runs the fault sweep and prints its table, or writes the scenario of a seed.
 pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
     let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the small scenario"));
@@ -147,14 +142,13 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print(&reports).map_err(Failure::output)?;
     }
-    // On a raw line wrong steps are what is to be seen.
+    // On a raw line wrong steps are expected.
     match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
         Some((_, report)) => Err(Failure::WrongSteps(report.tally.wrong_seeds)),
         None => Ok(()),
     }
 }
 
-/// Runs seeds, a batch at a time on each thread.
 fn run(
     sweep: &FaultSweep,
     seeds: &Range<u64>,
@@ -181,7 +175,6 @@ fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> 
     Ok(report)
 }
 
-/// Writes the scenarios of a seed, one for each protocol.
 fn write(path: &Path, scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
     scenarios.iter().try_for_each(|scenario| {
         if !as_links {
@@ -192,7 +185,7 @@ fn write(path: &Path, scenarios: &[Scenario], as_links: bool) -> Result<(), Fail
     })
 }
 
-/// The table's rows: a name, whether raw lines have it, too, and what of a tally it shows.
+/// Name, whether it applies to raw lines, figure.
 type Row = (&'static str, bool, fn(&Tally) -> u64);
 const ROWS: &[Row] = &[
     ("seeds", true, |tally| tally.seeds),
@@ -222,7 +215,6 @@ const ROWS: &[Row] = &[
     ("given up: other reasons", false, |tally| tally.stuck),
 ];
 
-/// The counts as tables: a row for each protocol and each count, and the first seeds that went wrong.
 fn tables(reports: &[(&str, Report)]) -> Tables {
     let counts = reports.iter().flat_map(|(protocol, report)| {
         let shown = ROWS.iter().filter(move |(_, everywhere, _)| *everywhere || *protocol == FRAMED);

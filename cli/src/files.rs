@@ -1,4 +1,4 @@
-//! Files that `stepscope run` writes while a run is made.
+//! Files that `stepscope run` writes during the run.
 
 use crate::output::Out;
 use std::{
@@ -23,18 +23,16 @@ use stepscope_core::{
     sim::{Experiment, Run},
 };
 
-/// A file that takes a run and is finished after it.
+/// A sink that writes a file and is finished after the run.
 pub(crate) trait Output: Sink {
-    /// Whether writing has failed, so that nothing more will be written.
     fn has_failed(&self) -> bool {
         false
     }
 
-    /// Writes what is left; the first error of all writing.
+    /// Writes the rest; returns the first error so far.
     fn finish(self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()>;
 }
 
-/// Lines of text, one a record.
 struct Lines<F> {
     out: Out,
     line: F,
@@ -59,7 +57,6 @@ impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
     }
 }
 
-/// The trace: cycle and levels in hexadecimal.
 pub(crate) fn trace(out: Out) -> Box<dyn Output> {
     let mut text = String::new();
     let line = move |out: &mut Out, record| {
@@ -70,7 +67,6 @@ pub(crate) fn trace(out: Out) -> Box<dyn Output> {
     Box::new(Lines { out, line, result: Ok(()) })
 }
 
-/// A table: cycle, time in s, and each signal's level.
 pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
     let mut text = String::new();
     write_edges_head(&mut text, channels).map_err(io::Error::other)?;
@@ -83,7 +79,6 @@ pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<d
     Ok(Box::new(Lines { out, line, result: Ok(()) }))
 }
 
-/// A value change dump.
 pub(crate) fn vcd(
     out: Out,
     timescale: Timescale,
@@ -103,12 +98,12 @@ impl Output for VcdWriter<Out> {
     }
 }
 
-/// A table of the packets of controller `controller`, one a row, with what it did with it.
+/// One row per packet, with the controller's reaction.
 pub(crate) fn packets(out: Out, controller: usize) -> Box<dyn Output> {
     Box::new(Packets { out, controller, log: PacketLog::default() })
 }
 
-/// Rows are written at the end, when it is known what became of each packet.
+/// Written at the end, when every packet's outcome is known.
 struct Packets {
     out: Out,
     controller: usize,
@@ -139,24 +134,18 @@ impl Output for Packets {
     }
 }
 
-/// Files that a run writes, each with its path.
 pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 
-/// All that is taken down of one controller.
+/// The outputs for one controller.
 #[derive(Default)]
 pub(crate) struct Station {
-    /// The digest of its trace.
     pub(crate) digest: Digest,
-    /// Its fingerprint, for a link.
     pub(crate) fingerprint: Option<Fingerprinter>,
-    /// Its files.
     pub(crate) files: Files,
-    /// Its timing check.
     pub(crate) timing: Option<TimingCheck>,
 }
 
 impl Station {
-    /// Whether one of its files cannot be written.
     pub(crate) fn has_failed(&self) -> bool {
         self.files.iter().any(|(_, file)| file.has_failed())
     }

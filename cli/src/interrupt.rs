@@ -1,7 +1,7 @@
-//! Ctrl-C and requests to end: SIGINT, SIGTERM and SIGHUP, or what the system has in their place.
+//! Handles Ctrl-C and requests to end: SIGINT, SIGTERM and SIGHUP, or the system's equivalents.
 //!
-//! From its first line on, a command that is ended so removes its temporary files and ends with exit code 130. A live session
-//! counts them instead ([`watch`]): it has motors to stop.
+//! A command removes its temporary files and ends with exit code 130. A live session counts the signals instead
+//! ([`watch`]): it has to stop motors first.
 
 use crate::{
     failure::{Failure, INTERRUPTED},
@@ -12,26 +12,25 @@ use std::{
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
-/// After this many a command ends at once, whatever it does.
+/// A command ends at once after this many signals.
 const AT_ONCE: usize = 3;
 
 static WATCHED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
-/// Ends the command in order from now on, also while it waits for a file or plans a long motion. A signal that was ignored
-/// when the command started, as by `nohup`, stays ignored.
+/// Ends the command on a signal, even while it waits for a file. Signals ignored at the start, as by `nohup`, stay
+/// ignored.
 pub(crate) fn install() {
-    // Without a handler the system ends the command by itself.
+    // Without a handler the system ends the command.
     let _ = system::install();
 }
 
-/// Counts from now on. Signals that were ignored count, too: a session in the background needs an end, and motors their STOP.
+/// Counts signals from now on, ignored ones included: a session in the background must be stoppable.
 pub(crate) fn watch() -> Result<(), Failure> {
     WATCHED.store(true, Ordering::SeqCst);
     system::listen_to_all().map_err(|error| Failure::Port("Ctrl-C".to_owned(), error.to_string()))
 }
 
-/// How many there were.
 pub(crate) fn count() -> usize {
     COUNT.load(Ordering::SeqCst)
 }
@@ -41,7 +40,8 @@ fn came() {
     if WATCHED.load(Ordering::SeqCst) && !at_once {
         return;
     }
-    // Held until the end of the process: no file is renamed meanwhile. Where files are in place already, the command ends by itself.
+    // Held until the process ends, so that no file is renamed meanwhile. If all files have their names, the command
+    // ends by itself.
     let committed = output::committed();
     if *committed && !at_once {
         return;
@@ -77,7 +77,7 @@ mod system {
         ALL.into_iter().try_for_each(|signal| handle.add_signal(signal))
     }
 
-    /// The signals that are ignored, a bit for each; none where the system does not tell.
+    /// A bit per ignored signal; 0 if the system does not tell.
     fn ignored() -> u64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

@@ -1,11 +1,11 @@
-//! Runs that a command keeps in memory: all of them go through here, and have one limit.
+//! Runs that a command keeps in memory, with one limit for all.
 
 use crate::failure::Failure;
 use std::path::Path;
 use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{inspect::trace::recorded_run::record_run, sim::Experiment};
 
-/// What the first controller of a scenario's run does.
+/// The recording of the scenario's first controller.
 ///
 /// # Errors
 /// [`Failure::LongAnalysis`].

@@ -1,4 +1,4 @@
-//! `stepscope settling`, `stepscope limits` and `stepscope resonance`: what the motors of a scenario's plant can do.
+//! `stepscope settling`, `stepscope limits` and `stepscope resonance`: limits of the motors of a scenario's plant.
 
 use crate::{
     failure::{Failure, no_plant},
@@ -29,7 +29,6 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// What all three take.
 #[derive(Args)]
 pub(crate) struct Common {
     /// Scenario with a plant: a JSON file or a preset's name; `-` reads standard input
@@ -50,7 +49,6 @@ pub(crate) struct Common {
     progress: bool,
 }
 
-/// What `stepscope settling` takes.
 #[derive(Args)]
 pub(crate) struct SettlingArguments {
     #[command(flatten)]
@@ -66,7 +64,6 @@ pub(crate) struct SettlingArguments {
     write: Option<PathBuf>,
 }
 
-/// What `stepscope limits` takes.
 #[derive(Args)]
 pub(crate) struct LimitsArguments {
     #[command(flatten)]
@@ -79,7 +76,6 @@ pub(crate) struct LimitsArguments {
     ramp: Acceleration,
 }
 
-/// What `stepscope resonance` takes.
 #[derive(Args)]
 pub(crate) struct ResonanceArguments {
     #[command(flatten)]
@@ -98,16 +94,15 @@ pub(crate) struct ResonanceArguments {
 // The default of --ramp.
 const _: () = assert!(RAMP_STEPS_S2 == 200_000.0);
 
-/// Most rates of a map.
 const MAX_RATES: f64 = 100_000.0;
 
-/// A motor alone on its supply, and the channels that have one like it.
+/// A motor with a supply of its own, and all channels with an equal motor.
 struct SingleMotor {
     channels: Vec<usize>,
     setup: Setup,
 }
 
-/// The motors of the first controller's plant, each once.
+/// The distinct motors of the first controller's plant.
 fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
     let path = &common.scenario;
     let (scenario, experiment) = common.replacing.judged(path)?;
@@ -133,7 +128,7 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), F
     Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), found))
 }
 
-/// The results of `job` for 0 to `count` - 1 in this order, on several threads.
+/// Runs `job` on several threads; returns the results in order.
 fn on_threads<T: Send>(
     common: &Common,
     what: &'static str,
@@ -159,7 +154,6 @@ fn channels(alone: &SingleMotor) -> String {
     all.join(", ")
 }
 
-/// Measures how long each motor's supply current takes to settle after a step.
 pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let share = arguments.share.get();
@@ -168,7 +162,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let (mut scenario, experiment, motors) = motors(common)?;
     let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
-    // A step is looked at for eleven of them, in samples that are kept.
+    // A step is observed for 11 T_step; all samples are kept.
     for SingleMotor { setup, .. } in &motors {
         let grid = u64::from(setup.grid_cycles());
         if t_step < grid || 11 * t_step / grid > MAX_SAMPLES {
@@ -187,7 +181,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     if let Some(file) = &arguments.write {
         let greatest = all.iter().map(|response| response.reached).max().flatten();
         let settled = all.iter().all(|response| response.reached.is_some());
-        // As the self-test: T_step where one does not settle.
+        // Like the self-test: T_step if a channel does not settle.
         let cycles = greatest.filter(|_| settled).unwrap_or(t_step);
         scenario.bus.settle_cycles = u32::try_from(cycles).unwrap_or(u32::MAX);
         let text = scenario_file::text(file, &scenario, "give a shorter scenario")?;
@@ -232,13 +226,12 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Searches the start-stop rate and the pull-out rate of each motor.
 pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let ramp = arguments.ramp.get();
     let (_, _, motors) = motors(common)?;
     let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_a_turn);
-    // The pull-out rates first: they take longer.
+    // The pull-out rates take longer, so they come first.
     let all = on_threads(common, "limits", 2 * motors.len(), |index| {
         let Some(alone) = motors.get(index / 2) else { return Ok(None) };
         let setup = &alone.setup;
@@ -281,15 +274,14 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Samples of the supply current that a measurement of a settling time keeps, at most.
+/// Maximum samples of a settling time measurement.
 const MAX_SAMPLES: u64 = 10_000_000;
-/// Steps of a search at one rate, at most.
+/// Maximum steps of a search at one rate.
 const MAX_STEPS: u64 = 10_000_000;
-/// Motor-steps of a map, at most (PLANT F1), and how long each rate runs, in s.
+/// Maximum motor steps of a map (PLANT F1), and seconds per rate.
 const MAX_MOTOR_STEPS: f64 = 1e10;
 const RATE_S: f64 = 0.6;
 
-/// Maps where each motor resonates, as CSV.
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let [from, to, rung] = [arguments.from, arguments.to, arguments.rung].map(Rate::get);

@@ -1,4 +1,4 @@
-//! `stepscope run --line`: what was done to the line in a run, as a scenario of its own.
+//! `stepscope run --line`: writes a run's line as a scenario.
 
 use crate::{failure::Failure, output::Out, scenario_file};
 use std::{io::Write, path::Path};
@@ -7,7 +7,7 @@ use stepscope_core::{
     sim::{Experiment, Run, scripted},
 };
 
-/// Writes the scenario that gives the same traces without host, noise and motion.
+/// The scenario gives the same traces without host, noise and motion.
 pub(crate) fn write(
     (path, mut out): (&Path, Out),
     scenario: Scenario,
@@ -15,7 +15,7 @@ pub(crate) fn write(
     run: &Run,
 ) -> Result<(), Failure> {
     let scripted = scripted(scenario, experiment, run);
-    // A long noisy run may have more forced levels than a scenario may.
+    // A long noisy run may have more forced levels than a scenario allows.
     let text =
         scenario_file::text(path, &scripted, "end the run sooner with run_cycles, or give a shorter motion")?;
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());

@@ -1,5 +1,5 @@
-//! The wall clock's side of `stepscope serve` and `stepscope send` (LIVE H1 to H3): ports, the clock, Ctrl-C. What is said on
-//! a line, and in which cycle, the core decides.
+//! The real-time side of `stepscope serve` and `stepscope send` (LIVE H1 to H3): ports, clock, Ctrl-C. The core
+//! decides what is sent in which cycle.
 
 mod buttons;
 mod closed_peer;

@@ -1,6 +1,4 @@
-//! The `stepscope` command: the native front of the model.
-//!
-//! Results go to standard output, errors to standard error.
+//! The `stepscope` command. Results go to standard output, errors to standard error.
 
 mod calibrate;
 mod capture;
@@ -48,7 +46,7 @@ use std::{
 };
 use stepscope_core::inspect::export::plain_text::is_unsafe;
 
-/// Follows the help of each command.
+/// Printed below the help of each command.
 const EXIT_CODES: &str = "\
 Exit codes:
   0    success
@@ -161,9 +159,8 @@ enum Command {
     },
 }
 
-/// The command line, with the exit codes below the help of each command.
 fn command_line() -> clap::Command {
-    // `-1` is a value that is out of range, and no option.
+    // `-1` is a value out of range, not an option.
     fn negative(argument: clap::Arg) -> clap::Arg {
         let takes = argument.get_long().is_some() && argument.get_action().takes_values();
         if takes { argument.allow_negative_numbers(true) } else { argument }
@@ -199,7 +196,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a command.
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(arguments) => run::run(&arguments),
@@ -226,9 +222,8 @@ fn run(command: Command) -> Result<(), Failure> {
     }
 }
 
-/// Prints help, the version, or the error in the command line; returns the exit code.
 fn usage(error: &clap::Error) -> io::Result<ExitCode> {
-    // The message repeats what was typed.
+    // The message repeats the user's text.
     let is_unsafe = |c| is_unsafe(c) && c != '\n' && c != '\t';
     if !error.use_stderr() {
         error.print()?;

@@ -1,4 +1,4 @@
-//! `stepscope measures`: how good an axis of a run is, in numbers.
+//! `stepscope measures`: tracking error, peaks and distortion of an axis.
 
 mod arguments;
 mod distortion;
@@ -19,7 +19,6 @@ use stepscope_core::{
     scenario::{Problem, Scenario, Source},
 };
 
-/// Runs the scenario and writes the measures.
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
@@ -30,7 +29,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
             _ => scenario.bus.channels.into(),
         };
         let axis = selected(scenario);
-        // Without axes the scenario has a problem of its own.
+        // A scenario without axes has a problem of its own.
         if axis < axes || axes == 0 { Ok(()) } else { Err(Failure::Axis(path.clone(), axis, axes)) }
     })?;
     let Source::Motion(motion) = &scenario.source else {
@@ -39,7 +38,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let axis = selected(&scenario);
     let plan = experiment.plans().get(axis);
     let plan = plan.ok_or_else(|| Failure::Axis(path.clone(), axis, experiment.plans().len()))?;
-    // The recording has the steps of all axes.
+    // The recording has all axes' steps.
     let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
     within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;
     let recording = kept_run::of(path, &experiment)?;

@@ -1,4 +1,4 @@
-//! `--motor` and `--drive`, and `stepscope plant --motors`: motors and drivers out of the list.
+//! Options that select listed motors and drivers: `--motor`, `--drive`, `stepscope plant --motors`.
 
 use crate::{
     failure::{Failure, no_plant},
@@ -20,7 +20,6 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Motor and driver in the place of the scenario's.
 #[derive(Args)]
 pub(crate) struct Replacing {
     /// Give every motor these figures, at its rated current
@@ -35,7 +34,6 @@ pub(crate) struct Replacing {
     drive: Option<&'static DriveSheet>,
 }
 
-/// The motor that torque is judged for.
 #[derive(Args)]
 pub(crate) struct Named {
     /// Check this motor at its rated current, in place of the scenario's
@@ -49,7 +47,6 @@ pub(crate) struct Named {
 }
 
 impl Named {
-    /// Puts it in the place of every motor of a scenario.
     pub(crate) fn put_into(&self, scenario: &mut Scenario) {
         let Some(motor) = self.motor else { return };
         motor.put_into(scenario);
@@ -57,7 +54,7 @@ impl Named {
         motors.for_each(|entry| entry.microsteps = self.microsteps.unwrap_or(entry.microsteps));
     }
 
-    /// The scenario with it, from which the motor of each channel can be told ([`Machine::of_channel`]).
+    /// The scenario with the named motor, for [`Machine::of_channel`].
     ///
     /// [`Machine::of_channel`]: stepscope_core::inspect::motion::torque::Machine::of_channel
     pub(crate) fn named<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
@@ -79,13 +76,12 @@ fn drive(id: &str) -> Result<&'static DriveSheet, String> {
     motors::drive(id).ok_or_else(|| "no such driver; `stepscope plant --motors` lists them".to_owned())
 }
 
-/// Refuses a scenario that drives nothing.
 fn has_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
     scenario.plant.as_ref().map(|_| ()).ok_or_else(|| no_plant(path))
 }
 
 impl Replacing {
-    /// The scenario with these, judged, which has a plant; `-` is standard input.
+    /// The scenario with these motors, which must have a plant; `-` is standard input.
     pub(crate) fn judged(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
         if self.motor.is_none() && self.drive.is_none() {
             return scenarios::judged_after(path, |scenario| has_plant(path, scenario));
@@ -104,7 +100,6 @@ impl Replacing {
     }
 }
 
-/// Lists motors and drivers with their figures.
 pub(crate) fn list(as_json: bool) -> Result<(), Failure> {
     if as_json {
         let motor = |sheet: &MotorSheet| {
@@ -172,7 +167,7 @@ fn write(out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// How a scenario's file has it.
+/// The value as in a scenario's JSON.
 fn word(value: &impl Compact) -> String {
     value.compact().as_str().unwrap_or_default().to_owned()
 }

@@ -1,12 +1,13 @@
-//! Output files: they get their names only when all of them are written.
+//! Writes output files atomically.
 //!
 //! ```text
-//! judge     no output is the input or another output, by whatever path; at most one is standard output
+//! check     no output is an input or another output, by any path; at most one is standard output
 //! create    a temporary file next to each
-//! commit    every temporary file gets its name
+//! commit    rename all temporary files
 //! ```
 //!
-//! An error, a full disk, Ctrl-C or a kill before that leaves the existing files. Pipes and devices are written directly.
+//! Until the commit an error, a full disk, Ctrl-C or a kill leaves the existing files. Pipes and devices are written
+//! directly.
 
 use crate::{failure::Failure, pipe};
 use same_file::Handle;
@@ -18,32 +19,31 @@ use std::{
 };
 use tempfile::TempPath;
 
-/// Standard input or output in place of a path.
+/// Stands for standard input or output.
 pub(crate) const STANDARD: &str = "-";
-/// Links to follow before a path counts as a circle.
+/// Maximum symbolic links to follow.
 const MAX_LINKS: u32 = 40;
 
 pub(crate) type Out = BufWriter<Box<dyn Write>>;
 
-/// The outputs of one command.
 #[derive(Default)]
 pub(crate) struct Outputs {
     waiting: Vec<Waiting>,
 }
 
-/// A written file without its name.
+/// A complete temporary file.
 struct Waiting {
     given: PathBuf,
-    /// The file that a link leads to, or itself.
+    /// The target of a link, or the path itself.
     name: PathBuf,
     temporary: TempPath,
 }
 
 #[derive(PartialEq)]
 enum Identity {
-    /// An existing file, by whatever path or hard link.
+    /// An existing file, by any path or hard link.
     There(Handle),
-    /// A new file, in its real folder.
+    /// A new file, by its real folder.
     New(PathBuf),
 }
 
@@ -78,10 +78,10 @@ impl Identity {
 }
 
 impl Outputs {
-    /// Checks the outputs of a command before any of them is written.
+    /// Checks the outputs before any is written.
     ///
     /// # Errors
-    /// [`Failure::Output`] if two of them, or one and an input, are the same.
+    /// [`Failure::Output`] if an output is another output or an input.
     pub(crate) fn judge<'p>(
         inputs: impl IntoIterator<Item = &'p (impl AsRef<Path> + ?Sized + 'p)>,
         outputs: impl IntoIterator<Item = &'p Path>,
@@ -115,7 +115,6 @@ impl Outputs {
         Ok(Self::default())
     }
 
-    /// Creates a file next to `path`; `-` is standard output.
     pub(crate) fn create(&mut self, path: &Path) -> Result<Out, Failure> {
         let out = self.open(path).map_err(|error| Failure::File(path.to_owned(), error))?;
         Ok(BufWriter::new(out))
@@ -134,7 +133,7 @@ impl Outputs {
             return Ok(Box::new(pipe::to_write(&name)?));
         }
         if known.is_some() {
-            // A file that cannot be written must not be replaced.
+            // A read-only file must not be replaced.
             fs::OpenOptions::new().append(true).open(&name)?;
         }
         let mut start = name.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_owned();
@@ -160,8 +159,8 @@ impl Outputs {
         Ok(Box::new(file))
     }
 
-    /// Gives every file its name; all have been written and flushed. A signal ends the command before all of them or after. If
-    /// one file cannot get its name, what the others replaced is restored.
+    /// Renames all complete files; a signal ends the command before or after all of them. If a rename fails, replaced
+    /// files are restored.
     pub(crate) fn commit(self) -> Result<(), Failure> {
         let mut committed = committed();
         if let Some(folder) = self.waiting.iter().find(|waiting| waiting.name.is_dir()) {
@@ -183,11 +182,10 @@ impl Outputs {
     }
 }
 
-/// A file that another one replaces.
 struct Replaced {
     name: PathBuf,
     existed: bool,
-    /// A second name of what it was; none where the file system has no hard links.
+    /// A hard link to the old file, if the file system supports them.
     backup: Option<TempPath>,
 }
 
@@ -203,7 +201,7 @@ impl Replaced {
 
     fn restore(self) {
         if let Some(backup) = self.backup {
-            // What cannot be restored stays under its second name.
+            // A file that cannot be restored keeps its second name.
             if let Err(error) = backup.persist(&self.name) {
                 let _ = error.path.keep();
             }
@@ -215,12 +213,11 @@ impl Replaced {
 
 static COMMITTED: Mutex<bool> = Mutex::new(false);
 
-/// Whether files have their names; locked while they get them.
+/// Whether the files have been renamed; locked meanwhile.
 pub(crate) fn committed() -> MutexGuard<'static, bool> {
     COMMITTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Writes one file.
 pub(crate) fn write_whole(
     mut outputs: Outputs,
     path: &Path,
@@ -232,7 +229,6 @@ pub(crate) fn write_whole(
     outputs.commit()
 }
 
-/// The folder of a file.
 fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -240,7 +236,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// The file that links lead to, even if it does not exist yet.
+/// Follows links even if their target does not exist.
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -253,13 +249,13 @@ fn followed(path: &Path) -> PathBuf {
     path
 }
 
-/// Whether a path is a file that a process has open, as `/dev/stdout` is: it cannot be replaced.
+/// Such as `/dev/stdout`, which cannot be replaced.
 fn is_open_file(path: &Path) -> bool {
     let folder = fs::canonicalize(folder(path)).unwrap_or_default();
     cfg!(unix) && (folder.starts_with("/proc") || folder.starts_with("/dev/fd"))
 }
 
-/// Whether a path is that of a file, or of one that can be made: no device, pipe, folder or standard output.
+/// A file, or a path where one can be created.
 pub(crate) fn can_be_file(path: &Path) -> bool {
     let name = followed(path);
     path != Path::new(STANDARD)
@@ -269,12 +265,11 @@ pub(crate) fn can_be_file(path: &Path) -> bool {
             .map_or_else(|error| error.kind() == io::ErrorKind::NotFound, |known| known.is_file())
 }
 
-/// Whether a path is that of a folder even if nothing is there: `name/`.
+/// `name/` is a folder's name even if it does not exist.
 fn is_folder_name(path: &Path) -> bool {
     path.to_string_lossy().ends_with(std::path::is_separator)
 }
 
-/// Whether a path, or standard output for `-`, leads to a plain file.
 fn is_file(path: &Path) -> bool {
     if path != Path::new(STANDARD) {
         return fs::metadata(path).is_ok_and(|known| known.is_file());
@@ -288,13 +283,12 @@ fn lock() -> MutexGuard<'static, Vec<PathBuf>> {
     TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files before a command is ended.
 pub(crate) fn remove_temporary() {
     let temporary = lock();
     for path in temporary.iter() {
         let _ = fs::remove_file(path);
     }
-    // Nobody may create another one.
+    // Blocks the creation of others.
     std::mem::forget(temporary);
 }
 
@@ -320,7 +314,7 @@ mod tests {
                     .expect("there is room");
             }
             if is_late {
-                // Its folder is gone, with the file in it.
+                // The folder is gone, and the file with it.
                 fs::remove_dir_all(path("file")).expect("it is ours");
             } else {
                 fs::create_dir_all(path("folder/full")).expect("a folder");

@@ -1,5 +1,5 @@
-//! What stand-alone controllers show and are given, as files of a run: the panel's records, and tables and dumps in which
-//! states and inputs stand beside the signals of the bus.
+//! Output files for stand-alone controllers: panel records, and tables and dumps with states and inputs next to the
+//! signals.
 
 use crate::{files::Output, output::Out};
 use std::io::{self, Write};
@@ -17,12 +17,11 @@ use stepscope_core::{
     sim::{Experiment, Run},
 };
 
-/// The panel's records, controller after controller.
 pub(crate) fn records(out: Out) -> Box<dyn Output> {
     Box::new(Records(out))
 }
 
-/// They are written at the end, from the run.
+/// Written after the run.
 struct Records(Out);
 
 impl Sink for Records {
@@ -45,7 +44,6 @@ impl Output for Records {
     }
 }
 
-/// The table of edges with states and inputs, a row for each cycle in which anything changes.
 pub(crate) fn csv(
     mut out: Out,
     (clock_hz, channels): (u32, u8),
@@ -61,7 +59,7 @@ pub(crate) fn csv(
     Ok(Box::new(Table { out, clock_hz, channels, signals, row, result: Ok(()) }))
 }
 
-/// A row that may still change: everything of a cycle stands in one.
+/// A row collects everything of one cycle, so it may still change.
 struct Row {
     cycle: Option<Instant>,
     levels: Levels,
@@ -77,7 +75,6 @@ struct Table {
 }
 
 impl Table {
-    /// What follows is of this cycle: the row of the one before is whole.
     fn at(&mut self, cycle: Instant) {
         if self.row.cycle != Some(cycle) {
             self.end_row();
@@ -125,7 +122,6 @@ impl Output for Table {
     }
 }
 
-/// A value change dump with states and inputs.
 pub(crate) fn vcd(
     out: Out,
     timescale: Timescale,

@@ -1,5 +1,4 @@
-//! Work on all cores. What is made of each number comes back in the numbers' order, so that how many threads there are
-//! shows in nothing but the time.
+//! Runs work on all cores and returns results in order, whatever the number of threads.
 
 use crate::{progress::Progress, terminal};
 use rayon::{
@@ -13,11 +12,10 @@ use std::{
     thread::available_parallelism,
 };
 
-/// Threads per core, at most: more of them take memory, and time from everybody else, and gain nothing.
+/// More threads cost memory and gain nothing.
 const MAX_THREADS_PER_CORE: usize = 4;
 
-/// The number of threads to use: as many as there are cores for `None`, at most four times as many for a number. Each thread
-/// takes memory, so more are not started; standard error says so.
+/// One per core by default, at most four times as many; standard error reports a limited number.
 fn threads(wanted: Option<NonZero<usize>>) -> usize {
     let cores = available_parallelism().map_or(1, NonZero::get);
     let most = MAX_THREADS_PER_CORE * cores;
@@ -34,10 +32,10 @@ fn threads(wanted: Option<NonZero<usize>>) -> usize {
     wanted.min(most)
 }
 
-/// What `make` makes of each number below `count`, on so many threads or on as many as there are cores.
+/// Runs `make` for each number below `count`; the results are in order.
 ///
 /// # Errors
-/// The system has no threads to give.
+/// Threads cannot be started.
 pub(crate) fn each<R: Send>(
     count: u64,
     threads: Option<NonZero<usize>>,
@@ -48,11 +46,10 @@ pub(crate) fn each<R: Send>(
     Ok(pool(threads)?.install(|| (0..count).into_par_iter().map(&made).collect()))
 }
 
-/// The sum of all that `make` makes, in memory that does not grow with `count`. Parts are added as they come, so `add` must
-/// give the same in any order.
+/// Adds up results without storing them. `add` must not depend on the order.
 ///
 /// # Errors
-/// The system has no threads to give.
+/// Threads cannot be started.
 pub(crate) fn sum<R: Default + Send, E: Send>(
     count: u64,
     threads: Option<NonZero<usize>>,
@@ -69,7 +66,6 @@ fn pool(wanted: Option<NonZero<usize>>) -> io::Result<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(threads(wanted)).build().map_err(io::Error::other)
 }
 
-/// The same, with its progress.
 fn shown<R>(count: u64, progress: Progress, make: impl Fn(u64) -> R + Sync) -> impl Fn(u64) -> R + Sync {
     let progress = Mutex::new((progress, 0));
     move |number| {

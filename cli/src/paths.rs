@@ -1,5 +1,4 @@
-//! The files of the command line: which of them a command reads, and which it writes. No command overwrites what it reads,
-//! or writes a file twice; that is checked here, for all commands at once, before one begins.
+//! The file arguments of all commands. Checks before a command starts that no output is an input or another output.
 
 use crate::{
     failure::Failure,
@@ -8,7 +7,7 @@ use crate::{
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
-/// A command, the arguments that it reads files from, those that it writes files to, and paths that are neither.
+/// A command and its arguments that are inputs, outputs, or neither.
 pub(crate) struct Paths {
     pub(crate) command: &'static str,
     pub(crate) read: &'static [&'static str],
@@ -17,9 +16,9 @@ pub(crate) struct Paths {
     pub(crate) other: &'static [&'static str],
 }
 
-/// Every command that takes a path. A test walks all commands and fails at a path that is missing here.
+/// Every command with a path; a test fails if one is missing.
 pub(crate) const PATHS: &[Paths] = &[
-    // A driver's limits may be a file.
+    // The driver's limits may be a file.
     of("run", &["scenario", "driver"], &["trace", "vcd", "csv", "packets", "panel", "line", "violations"]),
     // A device is opened, not created.
     Paths { other: &["port"], ..of("serve", &["scenario"], &["record", "pty"]) },
@@ -44,7 +43,7 @@ pub(crate) const PATHS: &[Paths] = &[
     of("sine vertices", &[], &["out"]),
     of("sine segments", &["scenario"], &["out"]),
     of("points", &["table"], &[]),
-    // A folder for files with names of their own.
+    // A folder of files with fixed names.
     Paths { other: &["dir"], ..of("man", &[], &[]) },
 ];
 
@@ -55,7 +54,8 @@ const fn of(command: &'static str, read: &'static [&'static str], written: &'sta
 /// Checks the paths of a command line.
 ///
 /// # Errors
-/// [`Failure::Output`] if an output is an input or another output, and [`Failure::Option`] if two inputs are standard input.
+/// [`Failure::Output`] if an output is an input or another output, [`Failure::Option`] if two inputs are standard
+/// input.
 pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
     let (mut name, mut inner) = (String::new(), matches);
     while let Some((command, arguments)) = inner.subcommand() {

@@ -1,5 +1,4 @@
-//! Opens files that may be named pipes. The system opens such a pipe only when another program opens its other end, so the wait for
-//! that is bounded.
+//! Opens files that may be named pipes, and limits the wait for the other end.
 
 use std::{
     fs::{File, OpenOptions},
@@ -10,15 +9,12 @@ use std::{
     time::Duration,
 };
 
-/// How long the other end of a pipe may take to open.
 const WAIT: Duration = Duration::from_secs(10);
 
-/// Opens a file to read it.
 pub(crate) fn to_read(path: &Path) -> io::Result<File> {
     open(path, OpenOptions::new().read(true), "writes to")
 }
 
-/// Opens a file or a device that exists, to write to it.
 pub(crate) fn to_write(path: &Path) -> io::Result<File> {
     open(path, OpenOptions::new().write(true), "reads from")
 }
@@ -29,7 +25,7 @@ fn open(path: &Path, options: &OpenOptions, does: &str) -> io::Result<File> {
     }
     let (sender, opened) = sync_channel(1);
     let (name, options) = (path.to_owned(), options.clone());
-    // The system cannot be interrupted while it opens a pipe: in a thread, which ends with the command.
+    // Opening a pipe cannot be interrupted, so a thread does it; it ends with the command.
     let open = move || drop(sender.send(options.open(name)));
     thread::Builder::new().name("pipe".to_owned()).spawn(open)?;
     opened.recv_timeout(WAIT).unwrap_or_else(|_| {
@@ -41,7 +37,6 @@ fn open(path: &Path, options: &OpenOptions, does: &str) -> io::Result<File> {
     })
 }
 
-/// Whether a path leads to a pipe.
 pub(crate) fn is_named_pipe(path: &Path) -> bool {
     #[cfg(unix)]
     {

@@ -1,4 +1,4 @@
-//! `stepscope plant`: what the pulses of a scenario do to its motors, their supply and its sensors.
+//! `stepscope plant`: simulates the motors, supply and sensors that a scenario's pulses drive.
 
 use crate::{
     failure::{Failure, no_plant},
@@ -41,12 +41,11 @@ use stepscope_core::{
     sim::{Experiment, plant_run::PlantRun},
 };
 
-/// Cycles between two looks at how far a run is.
+/// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);
-/// Slips that are listed.
+/// Maximum slips that are listed.
 const MAX_SLIPS: usize = 20;
 
-/// What `stepscope plant` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Scenario with a plant: a JSON file or a preset's name; `-` reads standard input
@@ -80,7 +79,6 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
-/// Writes points while the plant runs.
 #[derive(Clone, Default)]
 struct Files(Rc<RefCell<Open>>);
 
@@ -121,7 +119,6 @@ impl Observer for Files {
     }
 }
 
-/// Runs the scenario with its plants and tells what they did.
 pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     let Some(path) = &arguments.scenario else { return motors::list(arguments.json) };
     let mut outputs = Outputs::default();
@@ -300,7 +297,6 @@ fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_
 }
 
 fn tables(report: &PlantReport) -> Tables {
-    /// Rows of numbers, texts and truth values are always JSON.
     fn rows<T: Serialize>(rows: &[T]) -> Vec<Value> {
         rows.iter().map(|row| serde_json::to_value(row).unwrap_or_default()).collect()
     }

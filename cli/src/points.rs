@@ -1,4 +1,4 @@
-//! `stepscope points`: a table of times and positions as a scenario whose one move is the curve through them.
+//! `stepscope points`: converts a table of times and positions to a scenario.
 
 use crate::{failure::Failure, quantity::Millimeters, scenario_file, scenarios};
 use clap::{Args, ValueEnum};
@@ -12,7 +12,6 @@ use stepscope_core::{
     scenario::{Motion, Scenario, Source, of_motion, points_of_table},
 };
 
-/// What `stepscope points` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The table: two columns, time in s and position, with or without a line of names; `-` reads
@@ -29,7 +28,6 @@ pub(crate) struct Arguments {
     straight: bool,
 }
 
-/// Units of positions on the command line.
 #[derive(Clone, Copy, ValueEnum)]
 enum UnitName {
     Steps,
@@ -37,7 +35,6 @@ enum UnitName {
     Deg,
 }
 
-/// Writes the scenario of a table as JSON.
 pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.table;
     let points = points_of_table(&scenarios::text(path)?)

@@ -1,4 +1,4 @@
-//! `stepscope powercut`: what a stand-alone controller knows of its position after the power went away, cut by cut.
+//! `stepscope powercut`: cuts a stand-alone controller's power and checks the restored position.
 
 use crate::{
     failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenarios, terminal,
@@ -20,12 +20,11 @@ use stepscope_core::{
     sim::power_cut::{PowerCuts, Tally, Wear, least_hold_up, tally, wear, with_memory},
 };
 
-/// Parts that the cuts are divided into: each begins its run anew.
+/// Parts of the cuts; each starts its run again.
 const PARTS: usize = 16;
-/// Byte times that a record takes where another byte is under way.
+/// Byte times of a record if another byte is being written.
 const BYTE_TIMES: u64 = 17;
 
-/// What `stepscope powercut` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Scenario with a source `standalone`: a JSON file or a preset's name; `-` reads standard input
@@ -51,16 +50,13 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
-/// One memory and what its cuts came to.
 struct Row {
     policy: Policy,
     hold_up_cycles: u64,
-    /// What this hold-up is.
     what: &'static str,
     tally: Tally,
 }
 
-/// Cuts the power and prints what is known then; what is silently wrong is a failure.
 pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     let none = || Failure::NoStandAlone(arguments.scenario.clone());
     let (_, experiment) = scenarios::judged_after(&arguments.scenario, |scenario| {
@@ -102,8 +98,8 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The memories that are compared: both policies, without a buffer, with one that is a cycle too short, just enough, and that of
-/// the first controller.
+/// The compared memories: both policies, each without buffer, with one that is a cycle too short, with a sufficient
+/// one, and with the first controller's own.
 fn memories(checked: &CheckedSetup) -> Vec<(Policy, u64, &'static str)> {
     let of = |one: &std::rc::Rc<Parameters>| BYTE_TIMES * u64::from(one.memory.byte_write_cycles) - 1;
     let enough = checked.controllers().iter().map(of).max().unwrap_or(0);
@@ -121,12 +117,11 @@ fn memories(checked: &CheckedSetup) -> Vec<(Policy, u64, &'static str)> {
     all
 }
 
-/// All cuts, a part on each thread.
 fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress) -> Result<Tally, Failure> {
     let cycles = cuts.cycles();
     let part = cycles.len().div_ceil(PARTS).max(1);
     let parts: Vec<&[u64]> = cycles.chunks(part).collect();
-    // What a thread takes with it.
+    // The data that a thread takes with it.
     let setup: Setup = cuts.checked().setup();
     let each = |index: u64| {
         let checked = setup.clone().check();
@@ -138,7 +133,7 @@ fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress
     Ok(whole)
 }
 
-/// The hold-up that is just enough for the policy `power_loss`, up to 18 byte times.
+/// The shortest sufficient hold-up time of the policy `power_loss`, up to 18 byte times.
 fn least(checked: &CheckedSetup, end: Instant, arguments: &Arguments) -> Result<u64, Failure> {
     let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
     let mut failed = None;

@@ -1,8 +1,7 @@
-//! How far a long command has come, on standard error.
+//! Progress of a long command, in percent on standard error.
 
 use std::io::{self, IsTerminal, Write};
 
-/// A line that says how far it is, in per cent; nothing where nobody looks.
 pub(crate) struct Progress {
     shown: bool,
     what: &'static str,
@@ -10,26 +9,25 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Progress of `what`, shown on a terminal, or wherever it is `wanted`.
+    /// Shown on a terminal, or if `wanted`.
     pub(crate) fn new(what: &'static str, wanted: bool) -> Self {
         Self { shown: wanted || io::stderr().is_terminal(), what, percent: None }
     }
 
-    /// Says that `done` of `all` is done, if that is another per cent.
     pub(crate) fn tell(&mut self, done: u64, all: u64) {
         let percent = (u128::from(done.min(all)) * 100 / u128::from(all.max(1))) as u64;
         if self.shown && self.percent.is_none_or(|before| before < percent) {
             self.percent = Some(percent);
-            // On a terminal each overwrites the one before; elsewhere each is a line.
+            // On a terminal each line overwrites the one before.
             let end = if io::stderr().is_terminal() { '\r' } else { '\n' };
-            // Who has closed standard error does not want to know.
+            // If standard error is closed, progress is not needed.
             let _ = write!(io::stderr(), "{}: {percent:3} %{end}", self.what);
         }
     }
 }
 
 impl Drop for Progress {
-    /// What follows begins on a line of its own.
+    /// Start a new line for later output.
     fn drop(&mut self) {
         if self.percent.is_some() && io::stderr().is_terminal() {
             let _ = writeln!(io::stderr());

@@ -1,5 +1,5 @@
-//! Checked numbers of the command line: one type per quantity, each finite and within its range, so that NaN, infinities
-//! and negative values end as errors of the command line (exit code 2).
+//! Number types of the command line, one per quantity, with a finite range. NaN and values out of range are usage
+//! errors.
 //!
 //! ```text
 //! --within-us NaN     not a number; use 0 to 1000000000 microseconds
@@ -12,7 +12,6 @@
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 use stepscope_core::{capture::read::decimal::Decimal, inspect::recording::tolerance::Tolerance};
 
-/// Defines number types with their range and unit.
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $range:expr, $unit:literal;)*) => {$(
         $(#[$doc])*
@@ -43,25 +42,16 @@ macro_rules! quantities {
 }
 
 quantities! {
-    /// A time in us.
     Microseconds: 0.0..=1e9, "microseconds";
-    /// A time in s that something divides by.
     Seconds: 1e-6..=1e9, "seconds";
-    /// A frequency in Hz.
     Hertz: 1e-6..=1e9, "Hz";
-    /// A length in mm that something divides by.
     Millimeters: 1e-9..=1e6, "mm";
-    /// A rate in steps/s.
     Rate: 1e-6..=1e6, "steps/s";
-    /// An acceleration in steps/s^2 of a ramp from rest.
     Acceleration: 1000.0..=1e9, "steps/s^2";
-    /// A part of an amplitude.
     AmplitudePart: 1e-6..=1.0, "of the amplitude";
-    /// A part of a peak, less than all of it.
     PeakPart: 0.0..=0.999_999, "of the peak";
 }
 
-/// Reads a number and checks its range.
 fn number(text: &str, from: f64, to: f64, unit: &str) -> Result<f64, String> {
     let allowed = || format!("use {from} to {to} {unit}");
     match text.parse::<f64>() {
@@ -71,7 +61,7 @@ fn number(text: &str, from: f64, to: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// The `value_parser` of a whole number. `range` has no maximum where the number is compared with something else later.
+/// The `value_parser` of an integer. `range` has no maximum if the number is checked later.
 pub(crate) fn whole<T: FromStr>(
     range: RangeInclusive<u64>,
 ) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static {
@@ -91,7 +81,7 @@ pub(crate) fn whole<T: FromStr>(
     }
 }
 
-/// A time in us, kept as the decimal number that was given.
+/// A time in us as an exact decimal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ExactMicroseconds(pub(crate) Tolerance);
 

@@ -1,4 +1,4 @@
-//! `stepscope run`: one scenario, from its file to digest, status and files.
+//! `stepscope run`: runs a scenario; prints digest and status, writes files.
 
 use crate::{
     failure::Failure,
@@ -29,10 +29,9 @@ use stepscope_core::{
     sim::{Experiment, Run, Summary},
 };
 
-/// Records between two reports of the progress.
+/// Records between progress reports.
 const SLICE: u64 = 1 << 16;
 
-/// What `stepscope run` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
@@ -102,7 +101,6 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    /// Whether anything but digest and status is requested.
     const fn asks_for_a_file(&self) -> bool {
         self.trace.is_some()
             || self.vcd.is_some()
@@ -115,7 +113,7 @@ impl Arguments {
     }
 }
 
-/// Runs the scenario and writes the requested files and texts; by default digest and status.
+/// By default prints digest and status.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let mut outputs = Outputs::default();
@@ -197,7 +195,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     timing.map_or(Ok(()), |timing| arguments.timing.verdict(&timing))
 }
 
-/// The share link of a scenario, with the digests of its run.
 fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Failure> {
     let link = link::encode(scenario).map_err(Failure::Link)?;
     let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
@@ -205,7 +202,7 @@ fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Fail
     Ok(link::with_part(link, "d", &proof.emit()))
 }
 
-/// Runs to the end, or until a file cannot be written.
+/// Stops early if a file cannot be written.
 fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
     let mut progress = Progress::new("run", wanted);
     let mut run = experiment.start();
@@ -221,7 +218,6 @@ fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
     run
 }
 
-/// The files that take the run, each with its path.
 fn open(
     arguments: &Arguments,
     outputs: &mut Outputs,

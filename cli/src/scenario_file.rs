@@ -1,5 +1,4 @@
-//! Scenarios that a command writes. What is written can be read again: it is validated first, short enough, and refused before
-//! a file is begun where it is not.
+//! Writes scenarios that can be read again: they are validated, and refused if too long, before a file is created.
 
 use crate::{failure::Failure, terminal};
 use std::{
@@ -8,10 +7,10 @@ use std::{
 };
 use stepscope_core::scenario::Scenario;
 
-/// The text of a scenario for the file `path`, with its last line feed. `help` says what makes it shorter.
+/// The text for the file `path`. `help` says how to shorten it.
 ///
 /// # Errors
-/// If the scenario has problems, or is longer than one that is read.
+/// The scenario is invalid or too long to be read.
 pub(crate) fn text(path: &Path, scenario: &Scenario, help: &'static str) -> Result<String, Failure> {
     scenario.check().map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
     let text = scenario.to_file_json().ok_or_else(|| Failure::LongScenario(path.to_owned(), help))?;
@@ -20,10 +19,6 @@ pub(crate) fn text(path: &Path, scenario: &Scenario, help: &'static str) -> Resu
     Ok(text)
 }
 
-/// Prints a scenario.
-///
-/// # Errors
-/// As [`text`], and those of standard output.
 pub(crate) fn print(path: &Path, scenario: &Scenario, help: &'static str) -> Result<(), Failure> {
     let text = text(path, scenario, help)?;
     io::stdout().write_all(text.as_bytes()).map_err(Failure::output)

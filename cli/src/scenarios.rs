@@ -1,4 +1,4 @@
-//! Scenarios from files; `stepscope open` and `stepscope presets`: from links and from the documents.
+//! Reads scenarios from files; `stepscope open` and `stepscope presets`.
 
 use crate::{failure::Failure, json, pipe, scenario_file, terminal, verify};
 use serde_json::json;
@@ -16,7 +16,7 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Reads a scenario of the right types; `-` is standard input.
+/// Checks types only; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
     match Scenario::from_json_lenient(&scenario_text(path)?) {
         (scenario, problems) if problems.is_empty() => Ok(scenario),
@@ -24,12 +24,12 @@ pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
     }
 }
 
-/// A scenario that was judged, and its experiment; `-` is standard input.
+/// A validated scenario and its experiment; `-` is standard input.
 pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
     judged_after(path, |_| Ok(()))
 }
 
-/// As [`judged`], after a check of the scenario alone: long motions take long to plan, and a refusal need not wait for that.
+/// Like [`judged`], but checks the scenario alone first: planning long motions takes time.
 pub(crate) fn judged_after(
     path: &Path,
     check: impl FnOnce(&Scenario) -> Result<(), Failure>,
@@ -48,7 +48,7 @@ pub(crate) fn judged_after(
     Ok((Rc::new(scenario), Rc::new(experiment)))
 }
 
-/// The text of a scenario: as [`text`], or of the preset of that name where there is no such file.
+/// A file, or else a preset.
 fn scenario_text(path: &Path) -> Result<String, Failure> {
     match text(path) {
         Err(Failure::File(path, error)) if error.kind() == io::ErrorKind::NotFound => {
@@ -62,7 +62,7 @@ fn scenario_text(path: &Path) -> Result<String, Failure> {
     }
 }
 
-/// The text of a file, or of standard input for `-`. Of what is too long no more is read than shows it.
+/// Reads only as much as needed to see that the text is too long.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     let failed = |error| Failure::File(path.to_owned(), error);
     let input: Box<dyn Read> = if path == Path::new("-") {
@@ -78,7 +78,6 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
 }
 
-/// Those of the page, and those with a plant.
 fn all_presets() -> impl Iterator<Item = &'static Preset> {
     PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).chain(CONTROLLER_PLANT_PRESETS)
 }
@@ -87,19 +86,17 @@ fn preset(id: &str) -> Option<&'static Preset> {
     all_presets().find(|preset| preset.id == id)
 }
 
-/// Writes the scenario of a link, or of an address that ends with one, as JSON; with `verify` it is also
-/// run and held against what the link's sender saw.
+/// With `verify`, runs the scenario and compares it with the link's digests.
 pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
     let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
     let scenario = link::decode(fragment).map_err(Failure::Link)?;
-    // As a run refuses it.
+    // Refuse what `run` refuses.
     let path = Path::new("the link");
     Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
     scenario_file::print(path, &scenario, "open the link in the page")?;
     if verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
 }
 
-/// Lists the presets, or writes one as JSON.
 pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
     if let Some(id) = id {
         let preset = preset(id).ok_or_else(|| Failure::Preset(id.to_owned()))?;
@@ -113,7 +110,6 @@ pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
     print(&all_presets().map(line).collect::<Vec<_>>().join("\n"))
 }
 
-/// Writes a text to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     writeln!(terminal::out(), "{text}").map_err(Failure::output)
 }

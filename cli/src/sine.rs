@@ -1,4 +1,4 @@
-//! `stepscope sine`: which segments make a sine with least distortion, as tables (CSV).
+//! `stepscope sine`: segments of sines and their distortion (CSV).
 
 use crate::{
     failure::Failure,
@@ -28,7 +28,6 @@ use stepscope_core::{
     scenario::{Problem, Scenario, Source, ValueError},
 };
 
-/// What `stepscope sine` does.
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Report segments, distortion and distance for each maximum deviation d1 of a range
@@ -72,7 +71,6 @@ pub(crate) enum Command {
     },
 }
 
-/// A range of d1.
 #[derive(Args)]
 pub(crate) struct Range {
     /// Minimum d1, as a part of the amplitude
@@ -94,10 +92,8 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// Its ends.
-    ///
     /// # Errors
-    /// A range that falls.
+    /// From is above to.
     fn ends(&self) -> Result<(f64, f64), Failure> {
         let (from, to) = (self.from.get(), self.to.get());
         if from <= to {
@@ -114,7 +110,6 @@ impl Range {
     }
 }
 
-/// What all of them take.
 #[derive(Args)]
 pub(crate) struct Common {
     /// Highest harmonic of the distortion
@@ -124,7 +119,6 @@ pub(crate) struct Common {
     written: Written,
 }
 
-/// Where a table goes, and how.
 #[derive(Args)]
 pub(crate) struct Written {
     /// Output file (`-`: standard output)
@@ -135,7 +129,6 @@ pub(crate) struct Written {
     json: bool,
 }
 
-/// Writes the table.
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     let written = match command {
         Command::Sweep { range, .. } | Command::Best { range, .. } => &range.common.written,
@@ -161,14 +154,12 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     })
 }
 
-/// A sine in segments, and where it stands.
 struct Placed {
     axis: usize,
     index: usize,
     sine: SineSegments,
 }
 
-/// The sines of a scenario's axes.
 fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
     let (_, experiment) = scenarios::judged_after(scenario, |given| has_sines(scenario, given, only))?;
     let plans = experiment.plans();
@@ -203,7 +194,7 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
     Err(Failure::Scenario(path.to_owned(), vec![problem]))
 }
 
-/// The report of DESIGN B5: each segment of a quarter, the others follow by symmetry.
+/// Each segment of a quarter (DESIGN B5); the others follow by symmetry.
 fn segments(sines: &[Placed], as_json: bool, out: &mut impl Write) -> io::Result<()> {
     let rows = sines.iter().flat_map(|placed| {
         let Memory { segments: segment_bytes, intervals } = placed.sine.memory();
@@ -306,7 +297,6 @@ fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
     writeln!(out)
 }
 
-/// A row as JSON.
 fn cells(row: &Row) -> Value {
     let distortion = row.distortion;
     json!({

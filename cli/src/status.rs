@@ -1,4 +1,4 @@
-//! What `stepscope run` prints: digests, and what controllers and host have come to.
+//! Prints digests and status of `stepscope run`.
 
 use crate::{json::Tables, terminal};
 use serde_json::{Value, json};
@@ -8,13 +8,11 @@ use stepscope_core::{
     sim::{ControllerSummary, StandAloneSummary, Summary},
 };
 
-/// One digest a line.
 pub(crate) fn digests(summary: &Summary) -> io::Result<()> {
     let mut out = terminal::out();
     summary.controllers.iter().try_for_each(|controller| writeln!(out, "{:016x}", controller.digest))
 }
 
-/// Digests, and the summary below them.
 pub(crate) fn print(summary: &Summary) -> io::Result<()> {
     let mut out = terminal::out();
     for controller in &summary.controllers {
@@ -23,7 +21,7 @@ pub(crate) fn print(summary: &Summary) -> io::Result<()> {
     write!(out, "{summary}")
 }
 
-/// The same as tables; the first of the controllers has the number `first`.
+/// `first` is the number of the first controller.
 pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables {
     let numbered = || (first..).zip(&summary.controllers);
     let run = json!({

@@ -1,24 +1,22 @@
-//! Step times of any origin, from a table: what `stepscope tables --steps` compresses.
+//! Reads step times for `stepscope tables --steps`.
 
 use std::iter;
 use stepscope_core::motion::ScheduledStep;
 
-/// Columns that a time may stand in, with those of its units in a second; `cycle` has the clock's.
+/// Possible columns of a time, with units per second; `None` for clock cycles.
 const TIMES: [(&str, Option<u32>); 4] =
     [("cycle", None), ("time_s", Some(1)), ("time_ms", Some(1000)), ("time_us", Some(1_000_000))];
-/// The column of the direction, and how others call it: one that is passed over would turn no motor round.
+/// Ignoring a direction column would turn no motor around, so its other names are accepted, too.
 const WAY: &str = "dir";
 const WAY_IN_FULL: &str = "direction";
-/// Digits after the point that a time may have.
 const MAX_DIGITS: usize = 12;
-/// Greatest cycle.
 const MAX_CYCLE: u128 = 1 << 48;
 
-/// The steps of a table: a row each, with its time in cycle, `time_s`, `time_ms` or `time_us`, and its direction, if there is
-/// a column dir, or direction: 1 or right, 0 or left. A time is rounded to the nearest cycle, half up, by its decimals.
+/// Reads one step per row: time in `cycle`, `time_s`, `time_ms` or `time_us`, and direction in `dir` or `direction`
+/// (1 or right, 0 or left). Times are rounded to the nearest cycle, halves up, from their decimals.
 ///
 /// # Errors
-/// What is wrong with the first line that cannot be used.
+/// The first unusable line.
 pub(crate) fn steps_of_table(text: &str, clock_hz: u32) -> Result<Vec<ScheduledStep>, String> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
@@ -58,7 +56,7 @@ pub(crate) fn steps_of_table(text: &str, clock_hz: u32) -> Result<Vec<ScheduledS
     if steps.is_empty() { Err("no step; give a row for each".to_owned()) } else { Ok(steps) }
 }
 
-/// The cycle of a time as it is printed: floor(time*clock + 1/2).
+/// floor(time*clock + 1/2), from the decimal digits.
 fn cycle(text: &str, a_second: Option<u32>, clock_hz: u32) -> Option<u64> {
     let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
     let is_number = |digits: &str| digits.bytes().all(|digit| digit.is_ascii_digit());
@@ -86,7 +84,6 @@ mod tests {
             ("17", None, Some(17)),
             ("16.5", None, Some(17)),
             ("16.499999999999", None, Some(16)),
-            // 0.5 us of 1 MHz.
             ("0.0000005", Some(1), Some(1)),
             ("0.4999", Some(1_000_000), Some(0)),
             (".25", Some(1000), Some(250)),

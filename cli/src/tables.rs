@@ -1,4 +1,4 @@
-//! `stepscope tables`: the step times of a scenario's axes as tables for a firmware, and what each form costs.
+//! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
 use crate::{
     failure::Failure,
@@ -34,7 +34,6 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// What `stepscope tables` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Where its source is no motion, the steps
@@ -92,7 +91,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Where a step may be.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum WindowName {
     /// Early or late.
@@ -110,7 +108,6 @@ impl WindowName {
     }
 }
 
-/// How a compressed table is made.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Search {
     /// No table has fewer entries, as far as the summary's column surplus says.
@@ -119,7 +116,6 @@ enum Search {
     Quick,
 }
 
-/// How step times are kept.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum FormName {
     /// Every step in its cycle.
@@ -140,7 +136,6 @@ impl FormName {
     }
 }
 
-/// What is written.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Written {
     /// C99.
@@ -182,7 +177,6 @@ fn name(text: &str) -> Result<String, String> {
     }
 }
 
-/// The axes of a scenario, ready to be kept.
 struct Axes {
     path: PathBuf,
     title: String,
@@ -193,7 +187,6 @@ struct Axes {
     search: Search,
 }
 
-/// The steps of an axis.
 enum Steps {
     Planned(AxisPlan),
     Listed(Vec<ScheduledStep>),
@@ -204,7 +197,7 @@ impl Axes {
         let scenario = arguments.scenario.as_deref().map(scenarios::read).transpose()?.unwrap_or_default();
         let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
-        // Without a motion the steps are those of its run.
+        // Without a motion, use the steps of the scenario's run.
         let made = match (&scenario.source, &arguments.steps) {
             (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
             _ => Some(made(&path, &scenario)?),
@@ -260,7 +253,7 @@ impl Axes {
     }
 }
 
-/// The steps that a scenario's run makes, of each channel that steps up to the last of them, from cycle 1 on.
+/// Steps of the scenario's run from cycle 1, for each channel up to the last one with steps.
 fn made(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Failure> {
     let wrong = |problems| Failure::Scenario(path.to_owned(), problems);
     let experiment = Experiment::new(scenario).map_err(wrong)?;
@@ -278,7 +271,6 @@ fn made(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Fai
     Ok(all)
 }
 
-/// Writes the table, or the summary.
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = Outputs::default();
     let axes = Axes::new(arguments)?;
@@ -302,13 +294,13 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
         written.and_then(|()| out.write_all(text.as_bytes()))
     })?;
     for warning in source.warnings(language) {
-        // The same stands in the file.
+        // The file contains the same warning.
         let _ = writeln!(terminal::err(), "warning: {warning}");
     }
     Ok(())
 }
 
-/// Each requested axis, form and width, with its table or why there is none.
+/// For each axis, form and width, the table or the reason why there is none.
 fn each<'a>(
     axes: &'a Axes,
     arguments: &'a Arguments,
@@ -327,7 +319,7 @@ fn each<'a>(
     })
 }
 
-/// A row for each axis, form and width.
+/// A row per axis, form and width.
 fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -343,7 +335,6 @@ fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Resu
     Ok(())
 }
 
-/// The same as JSON.
 fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
     let micros = |cycles: f64| cycles * 1e6 / f64::from(axes.clock_hz.max(1));
     let rows = each(axes, arguments).map(|(axis, form, format, table)| {

@@ -1,7 +1,7 @@
-//! Text for standard output and standard error. Names and values come from files, links and other machines, so control
-//! characters in them are printed as `\u{1b}`: they can neither steer a terminal nor reorder its text.
+//! Text for standard output and standard error. Escapes control characters as `\u{1b}`: names and values come from
+//! files, links and other machines, and must not control the terminal or reorder its text.
 //!
-//! Data that a command writes to standard output in place of a file (`output.rs`) stays as it is.
+//! Data written to standard output in place of a file (`output.rs`) is not escaped.
 
 use std::{
     fmt::{self, Write as _},
@@ -10,20 +10,18 @@ use std::{
 };
 use stepscope_core::inspect::export::plain_text::is_unsafe;
 
-/// Standard output for text.
 pub(crate) fn out() -> Text<StdoutLock<'static>> {
     Text { to: io::stdout().lock(), split: Vec::new() }
 }
 
-/// Standard error for text.
 pub(crate) fn err() -> Text<StderrLock<'static>> {
     Text { to: io::stderr().lock(), split: Vec::new() }
 }
 
-/// A writer of text that escapes what is unsafe in it. Line feeds and tabs stay.
+/// Escapes unsafe characters, but not line feeds and tabs.
 pub(crate) struct Text<W> {
     to: W,
-    /// The beginning of a character whose other bytes have not come yet.
+    /// The first bytes of an incomplete character.
     split: Vec<u8>,
 }
 
@@ -51,7 +49,7 @@ impl<W: Write> Write for Text<W> {
             self.put(chunk.valid())?;
             let invalid = chunk.invalid();
             let is_last = invalid.as_ptr_range().end == joined.as_ptr_range().end;
-            // Up to three bytes at the end may be a character's beginning.
+            // Up to three bytes at the end may be the start of a character.
             if is_last && std::str::from_utf8(invalid).is_err_and(|error| error.error_len().is_none()) {
                 self.split = invalid.to_vec();
             } else {
@@ -66,11 +64,10 @@ impl<W: Write> Write for Text<W> {
     }
 }
 
-/// A name or a message inside a line of text: everything unsafe is escaped, line feeds and tabs among it.
+/// A name or message within a line; line feeds and tabs are escaped, too.
 pub(crate) struct Escaped<T>(pub(crate) T);
 
 impl Escaped<std::path::Display<'_>> {
-    /// Of a path.
     pub(crate) fn path(path: &Path) -> Escaped<std::path::Display<'_>> {
         Escaped(path.display())
     }
@@ -92,13 +89,13 @@ impl<T: fmt::Display> fmt::Display for Escaped<T> {
     }
 }
 
-/// JSON text with the same characters escaped as JSON has it: it means the same. Outside of its texts there are none but line
+/// Escapes the same characters as JSON does, so the meaning stays. Outside its strings, JSON contains only line
 /// feeds.
 pub(crate) fn json(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
         if is_unsafe(c) && c != '\n' {
-            // All of them are below U+10000. A String takes everything.
+            // All of them are below U+10000. Writing to a String cannot fail.
             let _ = write!(safe, "\\u{:04x}", u32::from(c));
         } else {
             safe.push(c);
@@ -129,7 +126,6 @@ mod tests {
         ];
         for (given, expected) in rows {
             assert_eq!(written(&[given.as_bytes()]), expected);
-            // However it comes.
             let bytes: Vec<&[u8]> = given.as_bytes().chunks(1).collect();
             assert_eq!(written(&bytes), expected);
         }

@@ -1,4 +1,4 @@
-//! `stepscope run --timing` and `stepscope drivers`: could a driver follow the pulses?
+//! The timing check of `stepscope run --timing`, and `stepscope drivers`.
 
 use crate::{failure::Failure, json::Tables, output::Out, scenarios, terminal};
 use clap::Args;
@@ -17,12 +17,11 @@ use stepscope_core::{
     scenario::{Scenario, TimingRules},
 };
 
-/// Violations that the screen shows.
+/// Maximum violations on the screen.
 const MAX_SHOWN: usize = 20;
-/// Violations that a file holds.
+/// Maximum violations in a file.
 const MAX_WRITTEN: usize = 1_000_000;
 
-/// What `stepscope run` takes about the timing check.
 #[derive(Args)]
 pub(crate) struct Options {
     /// Check the pulses against the scenario's driver
@@ -44,10 +43,10 @@ pub(crate) struct Options {
     strict: bool,
 }
 
-/// What limits of one's own begin with.
+/// Prefix of custom limits.
 const CUSTOM: &str = "custom:";
 
-/// The limits of a driver that is listed, of `custom:field=ns,...`, or of a JSON file.
+/// A listed driver, `custom:field=ns,...`, or a JSON file.
 fn driver(path: &Path) -> Result<TimingRules, String> {
     let text = path.to_str().unwrap_or_default();
     if let Some(sheet) = DRIVERS.into_iter().find(|sheet| sheet.id == text) {
@@ -69,7 +68,7 @@ fn driver(path: &Path) -> Result<TimingRules, String> {
     rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
 }
 
-/// Limits as `field=ns`, with commas between.
+/// Parses `field=ns,...`.
 fn custom(fields: &str) -> Result<TimingRules, String> {
     let mut rules = serde_json::Map::new();
     for field in fields.split(',') {
@@ -85,7 +84,7 @@ fn custom(fields: &str) -> Result<TimingRules, String> {
     rules_of(Value::Object(rules))
 }
 
-/// Limits from JSON: a scenario's `driver_timing`, with or without that name and `rules` around the limits.
+/// Accepts a scenario's `driver_timing`, with or without that name and `rules` around the limits.
 fn rules_of(found: Value) -> Result<TimingRules, String> {
     let inner = found.get("driver_timing").cloned().unwrap_or(found);
     let is_whole = inner.get("rules").is_some() || inner.get("preset").is_some();
@@ -103,19 +102,16 @@ fn rules_of(found: Value) -> Result<TimingRules, String> {
     }
 }
 
-/// The fields of limits.
 fn allowed() -> String {
     let fields = Rule::ALL.map(|rule| format!("{}_ns", rule.name())).join(", ");
     format!("use {fields}, each 0 to 1000000000")
 }
 
 impl Options {
-    /// Whether any option requests a timing check.
     pub(crate) const fn asked(&self) -> bool {
         self.timing || self.driver.is_some() || self.violations.is_some() || self.strict
     }
 
-    /// The limits to check against, if a check was requested.
     pub(crate) fn rules(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingRules>, Failure> {
         if !self.asked() {
             return Ok(None);
@@ -127,38 +123,33 @@ impl Options {
         rules.map(Some).ok_or_else(|| Failure::NoDriver(path.to_owned()))
     }
 
-    /// Violations that are listed.
     pub(crate) const fn most_kept(&self) -> usize {
         if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN }
     }
 
-    /// The check of a run, if one was requested.
     pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
         let rules = self.rules(path, scenario)?;
         Ok(rules.map(|rules| TimingCheck::new(&rules, scenario.clock_hz, self.most_kept())))
     }
 
-    /// Prints what the check found.
     pub(crate) fn report(&self, check: &TimingCheck, unit: TimeUnit) -> Result<(), Failure> {
-        // A table on standard output must not be mixed with text.
+        // Text must not be mixed with a table on standard output.
         if self.violations.is_none() || self.timing {
             print(check, unit).map_err(Failure::output)?;
         }
         Ok(())
     }
 
-    /// Fails if a strict check of a recording has no step to check.
     pub(crate) const fn needs_steps(&self, is_empty: bool) -> Result<(), Failure> {
         if self.strict && is_empty { Err(Failure::NoSteps) } else { Ok(()) }
     }
 
-    /// Fails if nothing was to be found, and something was.
+    /// With --strict, violations are a failure.
     pub(crate) fn verdict(&self, check: &TimingCheck) -> Result<(), Failure> {
         if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
     }
 }
 
-/// What the check found as tables.
 pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tables {
     let rule = |result: &RuleResult| {
         let least = result.least.as_ref();
@@ -186,7 +177,6 @@ pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tab
     tables.with("timing", check.results().iter().map(rule)).with("violations", violations)
 }
 
-/// Lists the drivers with their figures.
 pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
     if as_json {
         let figure = |sheet: &'static DataSheet| {
@@ -211,19 +201,16 @@ pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
     list(&mut terminal::out()).map_err(Failure::output)
 }
 
-/// Every limit, as `--driver` takes it.
 fn example() -> String {
     let fields = Rule::ALL.map(|rule| format!("{}_ns={}", rule.name(), rule.nanos(&drivers::DRV8825.rules)));
     format!("{CUSTOM}{}", fields.join(","))
 }
 
-/// What rules ask for, in words.
 fn figures(rules: &TimingRules) -> String {
     let asked = Rule::ALL.iter().filter(|rule| rule.nanos(rules) > 0);
     asked.map(|rule| format!("{} {} ns", rule.name(), rule.nanos(rules))).collect::<Vec<_>>().join(", ")
 }
 
-/// The violations as a file.
 pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     writeln!(out, "cycle,time_s,channel,rule,measured_cycles,required_cycles,measured_ns,required_ns")?;
     for found in check.violations() {
@@ -261,7 +248,7 @@ fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     }
 }
 
-/// A rule's columns; `-` without a limit or a measurement.
+/// `-` without a limit or a measurement.
 fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, String, String) {
     let none = || "-".to_owned();
     let asked = result.nanos > 0;
@@ -277,11 +264,11 @@ fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, Stri
     )
 }
 
-/// A time in ns with three decimal places. All times in a row are whole picoseconds, so what is printed adds up; rounded down, so
-/// that what is below zero stays below.
+/// A time in ns with three decimal places. Times are whole picoseconds, rounded down, so that sums agree and negative
+/// slack stays negative.
 struct Picoseconds(i128);
 
-/// The unit of a check's times: a cycle, or a tick of a recording that no clock has whole cycles for.
+/// A cycle, or a tick of a recording that no clock fits.
 #[derive(Clone, Copy)]
 pub(crate) struct TimeUnit {
     base: Timebase,
@@ -297,7 +284,6 @@ impl TimeUnit {
         Self { base, clock_hz }
     }
 
-    /// What `measured` has over `nanos`.
     fn over(self, measured: Cycles, nanos: u32) -> Picoseconds {
         let (numerator, denominator) = self.base.parts();
         let scale = u128::from(numerator).saturating_mul(1_000_000_000_000);
@@ -305,18 +291,16 @@ impl TimeUnit {
         Picoseconds(i128::try_from(whole).unwrap_or(i128::MAX).saturating_sub(i128::from(nanos) * 1000))
     }
 
-    /// The cycle of an edge.
     fn cycle(self, at: Instant) -> u64 {
         self.base.cycle(at.0, self.clock_hz).unwrap_or(u64::MAX)
     }
 
-    /// Whole cycles of a measured time.
     fn cycles(self, time: Cycles) -> u64 {
         let (scaled, denominator) = self.scaled(time);
         u64::try_from(scaled / denominator).unwrap_or(u64::MAX)
     }
 
-    /// Cycles of a required time, rounded up: a violation is shorter in cycles, too.
+    /// Rounded up: a violation is then shorter in cycles, too.
     fn cycles_up(self, time: Cycles) -> u64 {
         let (scaled, denominator) = self.scaled(time);
         u64::try_from(scaled.div_ceil(denominator)).unwrap_or(u64::MAX)
@@ -330,7 +314,6 @@ impl TimeUnit {
 }
 
 impl Picoseconds {
-    /// In ns.
     fn nanos(&self) -> f64 {
         self.0 as f64 / 1000.0
     }

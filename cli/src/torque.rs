@@ -1,4 +1,4 @@
-//! `stepscope torque`: does a motor have what a plan, or the steps themselves, ask of it, and which ramps can it follow?
+//! `stepscope torque`: compares available torque with the demand, and reports feasible ramps.
 
 mod arguments;
 mod driven;
@@ -28,12 +28,11 @@ use stepscope_core::{
     sim::{BUDGET_MOTOR_STEPS, Experiment, plant_run::PlantRun},
 };
 
-/// Cycles between two looks at how far the plant's run is.
+/// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);
-/// Rates of the curve.
+/// Number of rates of the curve.
 const POINTS: u32 = 201;
 
-/// Writes what the motors have and what is asked of them.
 pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = Outputs::default();
     let mut scenario = scenarios::read(&arguments.scenario)?;
@@ -55,7 +54,7 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// The axes that are asked for and have a motor: at least one.
+/// The selected axes with a motor: at least one.
 fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
@@ -89,7 +88,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     Ok(found.collect())
 }
 
-/// Runs the plant, where there is one or one is asked for, and holds it against the curve.
+/// Runs the plant if there is one or it is requested, and compares it with the torque curve.
 fn hold_against_plant(
     arguments: &Arguments,
     mut scenario: Scenario,

@@ -1,4 +1,4 @@
-//! `stepscope open --verify`: whether a run is the one that the sender of a link saw.
+//! `stepscope open --verify`: compares a run with that of the link's sender.
 
 use crate::{failure::Failure, progress::Progress, terminal};
 use std::{io::Write, path::PathBuf};
@@ -12,10 +12,9 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Records between two looks at how far the run is.
+/// Records between progress reports.
 const SLICE: u64 = 1 << 16;
 
-/// Runs the scenario and says on standard error how it stands to the link's part `d`.
 pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
     let proof = part.ok_or(Failure::NoProof)?;
     let proof = RunFingerprint::parse(proof).map_err(Failure::RunFingerprint)?;
@@ -35,7 +34,7 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         Verification::Same { edges } => {
             let digests: Vec<String> =
                 proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
-            // Who has closed standard error has the exit code.
+            // If standard error is closed, the exit code remains.
             let _ = writeln!(
                 terminal::err(),
                 "identical, bit for bit: {edges} edges, digest {}",

@@ -1,8 +1,8 @@
-//! The recordings in `core/capture/recordings` are what the programs in `firmware/avr` do: built by avr-gcc from what the
-//! command exports, run by simavr, and compared edge by edge.
+//! Makes the recordings in `core/capture/recordings` again: builds `firmware/avr` with avr-gcc from exported tables,
+//! runs it in simavr and compares edge by edge.
 //!
-//! `cargo xtask test --only avr` installs both first, and runs it.
-//! `STEPSCOPE_BLESS=1` writes the recordings; the numbers in their README are then to be measured anew.
+//! `cargo xtask test --only avr` installs the tools and runs it. `STEPSCOPE_BLESS=1` writes the recordings; then
+//! measure the numbers in their README again.
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 mod avr;
@@ -19,20 +19,19 @@ use std::{
 };
 use vcd::{Command as Entry, IdCode, Parser, ScopeItem, TimescaleUnit, Value};
 
-/// The compiler with which the recordings were made. Another one's programs take some cycles more or less.
+/// The compiler of the recordings; others differ by some cycles.
 const COMPILER: &str = "5.4.0";
 
-/// How far such an edge may be from the recording's.
+/// Tolerance for another compiler.
 const OTHER_COMPILER_NS: u64 = 20_000;
 
-/// A recording in a logic analyser's session is sampled: every 10th unit of simavr's 10 ns, at 10 MHz.
+/// A logic analyzer's session is sampled at 10 MHz: every 10th unit of simavr's 10 ns.
 const SAMPLED: &str = "vcd:downsample=10";
 
 fn recording(name: &str) -> PathBuf {
     in_the_repository("core/capture/recordings", name)
 }
 
-/// Builds a program of `firmware/avr` with the header that lies in the folder, and runs it: what simavr has recorded.
 fn simulated(folder: &Path, program: &str) -> PathBuf {
     let elf = format!("{program}.elf");
     compile(folder, &elf, &[&format!("{program}.c"), &format!("{program}_pins.c")]);
@@ -40,7 +39,6 @@ fn simulated(folder: &Path, program: &str) -> PathBuf {
     folder.join(format!("{program}.vcd"))
 }
 
-/// The edges of each signal: time in ns, and the level from then on.
 type Edges = BTreeMap<String, Vec<(u64, bool)>>;
 
 fn edges(dump: &Path) -> Edges {
@@ -62,7 +60,7 @@ fn edges(dump: &Path) -> Edges {
     for entry in parser {
         match entry.expect("an entry") {
             Entry::Timestamp(at) => now = at * unit_ns,
-            // A pin that no program has set yet.
+            // The program has not set this pin yet.
             Entry::ChangeScalar(_, Value::X) => {}
             Entry::ChangeScalar(code, value) => {
                 edges.entry(names[&code].to_owned()).or_default().push((now, value == Value::V1));
@@ -94,7 +92,6 @@ fn compare(found: &Edges, expected: &Edges, folder: &Path) {
     }
 }
 
-/// Writes the recording if that is asked for.
 fn bless(made: &Path, recording: &Path) {
     if env::var_os("STEPSCOPE_BLESS").is_some() {
         fs::copy(made, recording).expect("it is written");
@@ -115,7 +112,7 @@ fn the_step_tables_recording_is_what_its_program_does() {
     compare(&edges(&dump), &edges(&recording), &folder);
 }
 
-/// The packets of the scenario's own host, and its pace, as `packets.h`.
+/// The packets and pace of the scenario's host, as `packets.h`.
 fn packets_of(scenario: &str) -> String {
     let scenario: Json = serde_json::from_str(scenario).expect("a scenario");
     let number = |value: &Json| value.as_u64().expect("a whole number");

@@ -1,5 +1,5 @@
-//! `stepscope capture`, as a script sees it: what a recording is told to be, beside a model and as a scenario, and what is
-//! asked for where a file leaves something open.
+//! `stepscope capture` in scripts: reports, comparison with a scenario, output scenarios, and questions about
+//! incomplete files.
 
 use crate::program::stepscope;
 use serde_json::Value;
@@ -8,13 +8,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Two axes with a turn; a framed line.
 const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "engine": "segments", "axes": [
     { "moves": [ { "cosine": { "distance": { "steps": 400 } } }, { "cosine": { "distance": { "steps": -100 } } } ] },
     { "moves": [ { "constant": { "distance": { "steps": -300 }, "speed": { "steps_s": 5000 } } } ] } ] } } }"#;
 const FRAMED: &str = r#"{"line":{"protocol":"framed","address":3}}"#;
 
-/// A folder of a test's own.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("capture").join(name);
     fs::create_dir_all(&folder).expect("a folder");
@@ -25,26 +23,22 @@ fn text(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// Writes a file and tells where it is.
 fn file(folder: &Path, name: &str, held: impl AsRef<[u8]>) -> String {
     let path = folder.join(name);
     fs::write(&path, held).expect("a file");
     text(&path)
 }
 
-/// A recording of `core/capture/recordings`.
 fn recording(name: &str) -> String {
     text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/capture/recordings").join(name))
 }
 
-/// Runs a scenario and writes files of it.
 fn run(scenario: &str, outputs: &[&str]) -> String {
     let (code, out, err) = stepscope(&[&["run", scenario], outputs].concat(), "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     out
 }
 
-/// The cycles of a channel's steps.
 fn steps(recording: &str, options: &[&str]) -> Vec<u64> {
     let (code, out, err) = stepscope(&[&["capture", recording, "--steps", "-"], options].concat(), "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -52,7 +46,6 @@ fn steps(recording: &str, options: &[&str]) -> Vec<u64> {
     rows.map(|cycle| cycle.expect("a cycle")).collect()
 }
 
-/// The one row of a table.
 fn row(arguments: &[&str], table: &str) -> Value {
     let (_, out, err) = stepscope(&[arguments, &["--json"]].concat(), "");
     let all: Value = serde_json::from_str(&out).expect(&err);
@@ -85,7 +78,6 @@ fn a_dump_of_ones_own_run_is_the_models() {
     }
 }
 
-/// The cycle of a trace's line, and the rest of it.
 fn of_trace(line: &str) -> (u64, &str) {
     let (cycle, levels) = line.split_once(' ').expect("two words");
     (u64::from_str_radix(cycle, 16).expect("a cycle"), levels)
@@ -96,7 +88,7 @@ fn a_step_that_comes_late_is_found_by_its_number() {
     let folder = folder("late");
     let (motion, trace) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.trace")));
     run(&motion, &["--trace", &trace]);
-    // The 124th rise of STEP0, and its fall, come 100 cycles later.
+    // From the 124th rise of STEP0, move edges by 100 cycles.
     let own = fs::read_to_string(&trace).expect("a trace");
     let (mut rises, mut was_high) = (0, false);
     let rows = own.lines().map(|line| {
@@ -111,7 +103,7 @@ fn a_step_that_comes_late_is_found_by_its_number() {
     });
     let mut rows: Vec<(u64, &str)> = rows.collect();
     rows.sort_by_key(|(cycle, _)| *cycle);
-    // Signals that change between are the other channel's; one row may hold both, so only STEP0 is looked at.
+    // Changes in between belong to the other channel; one row may have both, so only STEP0 is compared.
     let changed: String = rows.iter().map(|(cycle, levels)| format!("{cycle:x} {levels}\n")).collect();
     let changed = file(&folder, "late.trace", changed);
     let table = text(&folder.join("late.csv"));
@@ -125,10 +117,9 @@ fn a_step_that_comes_late_is_found_by_its_number() {
         matches!(off[..], [row] if row.starts_with("123,123,") && row.contains(",6.25e-6,0,")),
         "{off:?}"
     );
-    // Within 7 us it is not different.
     let (code, out, _) = stepscope(&[&line[..], &["--within-us", "7"]].concat(), "");
     assert_eq!(code, Some(0), "{out}");
-    // Aligned on itself it is all the others that differ.
+    // Aligned to the late step, all others differ.
     let (code, _, err) = stepscope(&[&line[..], &["--align", "123"]].concat(), "");
     assert!(
         code == Some(3)
@@ -157,7 +148,7 @@ fn a_scenario_of_steps_has_each_in_its_cycle() {
         assert_eq!(recorded.len(), if channel == "0" { 500 } else { 300 });
         assert_eq!(made, recorded, "channel {channel}");
     }
-    // With an error allowed there are fewer segments, and no step is further off.
+    // An allowed error takes fewer segments, and no step exceeds it.
     let rough = text(&folder.join("rough.json"));
     let line = ["capture", &dump, "--scenario", &rough, "--error-us", "20", "--clock", "16000000"];
     assert_eq!(stepscope(&line, "").0, Some(0));
@@ -184,7 +175,7 @@ fn framed_bytes_of_a_recording_make_the_very_run_again() {
     assert_eq!(digest(&run(&based, &[])), digest(&original));
 }
 
-/// What a command line that leaves something open is told, and its exit code.
+/// Expects this message and exit code for an incomplete command line.
 fn asks(rows: &[(&str, &[&str], i32, &str)]) {
     for (input, options, code, told) in rows {
         let (found, out, err) = stepscope(&[&["capture", "-"], *options].concat(), input);
@@ -228,7 +219,7 @@ fn what_a_file_does_not_tell_is_asked_for() {
 #[test]
 fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
     for (bytes, baud) in [
-        // 96 us a byte and more; two bytes a line every 2 ms; ten bytes a line every ms.
+        // At least 96 us per byte; two bytes per line every 2 ms; ten bytes per line every ms.
         ("0.001: 81\n0.001096: 05\n0.003: 81\n", "104167"),
         ("0.010: 81 05\n0.012: 82 05\n0.014: 83 05\n", "115200"),
         ("0.010: 00 00 00 00 00 00 00 00 00 00 00 00\n0.011: 82 05\n", "120000"),
@@ -279,7 +270,7 @@ fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing(
     assert!(code == Some(2) && err.contains("the file is empty"), "{err}");
     let (code, _, err) = stepscope(&["capture", "there-is-no-such-file"], "");
     assert!(code == Some(1) && err.starts_with("there-is-no-such-file: "), "{err}");
-    // An output that cannot be one is refused before anything is read.
+    // A bad output is refused before anything is read.
     let dump = file(&folder("outputs"), "own.vcd", DUMP);
     let (code, _, err) = stepscope(&["capture", &dump, "--vcd", &dump], "");
     assert!(code == Some(2) && err.starts_with(&dump), "{err}");
@@ -299,7 +290,6 @@ fn files_of_a_recording_are_read_again() {
     assert_eq!([steps(trace, &rate), steps(csv, &rate)], [own.clone(), own.clone()]);
     assert_eq!(steps(again, &["--clock", "1000000"]), own);
     assert_eq!(fs::read_to_string(bytes).expect("a table"), "line,start_cycle,start_s,bytes\n");
-    // Step times go on to the tables of steps.
     let (_, list, _) = stepscope(&["capture", &dump, "--steps", "-", "--clock", "16000000"], "");
     let (code, out, err) = stepscope(&["tables", "--steps", "-", "--entries", "q16"], &list);
     assert!(code == Some(0) && out.lines().count() > 1, "{out}{err}");
@@ -339,7 +329,7 @@ fn the_packets_of_a_recording_are_those_of_the_run_with_the_devices_replies() {
 
 #[test]
 fn pulses_are_held_against_a_driver() {
-    // A DRV8825 asks for 1.9 us of each level; the pulse at 40 us is 1 us long.
+    // A DRV8825 needs 1.9 us per level; the pulse at 40 us has 1 us.
     let short = DUMP.replace("#20 1!", "#20 1! #21 0!");
     let (code, out, err) = stepscope(&["capture", "-", "--driver", "drv8825", "--strict"], &short);
     assert!(code == Some(3) && err.contains("violation"), "{out}{err}");
@@ -349,7 +339,6 @@ fn pulses_are_held_against_a_driver() {
     assert!(code == Some(2) && err.contains("the scenario names no driver"), "{err}");
 }
 
-/// A dump of 20 steps, one every `interval` ticks, whose pulses are `width` ticks wide.
 fn dump_of(timescale: &str, interval: u64, width: u64) -> String {
     let head = format!(
         "$timescale {timescale} $end $var wire 1 ! STEP $end $var wire 1 d DIR $end $enddefinitions $end #0 0! 1d"
@@ -367,7 +356,7 @@ fn a_time_scale_that_is_no_whole_frequency_is_exact() {
         ("250 ps", 40_000, 4000, 1_000_000_000, 10e-6, 1000.0, 0),
         ("125 ns", 80, 8, 8_000_000, 10e-6, 1000.0, 0),
         ("125 ns", 80, 7, 8_000_000, 10e-6, 875.0, 20),
-        // 3.5 us are no whole frequency, but whole cycles of 2 MHz.
+        // 3.5 us is not a whole frequency, but whole cycles of 2 MHz.
         ("3500 ns", 100, 2, 2_000_000, 350e-6, 7000.0, 0),
         ("30 us", 100, 2, 100_000, 3e-3, 60_000.0, 0),
     ] {
@@ -396,7 +385,7 @@ fn a_time_scale_that_is_no_whole_frequency_is_exact() {
 #[test]
 fn limits_are_compared_in_the_files_own_ticks() {
     let limit = "custom:step_high_ns=1000,step_low_ns=9000";
-    // 100 ps have no whole clock up to 1 GHz: 999.9 ns would become 1000 cycles.
+    // 100 ps has no whole clock up to 1 GHz: 999.9 ns would become 1000 cycles.
     for (interval, width, rule, least_ns) in [
         (100_001, 10_000, None, 1000.0),
         (100_001, 9999, Some("step_high"), 999.9),
@@ -415,7 +404,6 @@ fn limits_are_compared_in_the_files_own_ticks() {
         if rule.is_some() {
             assert!(first["measured_cycles"].as_u64() < first["required_cycles"].as_u64(), "{first}");
         }
-        // A slower clock changes nothing.
         let slow = [&line[..], &["--clock", "16000000"]].concat();
         assert_eq!(stepscope(&slow, &dump).0, code);
     }
@@ -486,10 +474,10 @@ fn the_step_tables_recording_has_the_jitter_of_its_readme() {
     assert_eq!((cycles("rms_s") * 10.0).round(), 163.0);
     assert_eq!((cycles("mean_s") * 10.0).round(), 39.0);
     assert!(found["drift_ppm"].as_f64().is_some_and(|drift| drift.abs() < 0.1), "{found:#}");
-    // 42 steps fell due while interrupts were kept out: 18 cycles late or more.
+    // 42 steps were due while interrupts were disabled: at least 18 cycles late.
     let kept_out = row(&[&line[..], &["--within-us", "1"]].concat(), "comparison");
     assert_eq!(kept_out["differing"], 42);
-    // The first step comes 505 cycles later than in the scenario's run.
+    // The first step is 505 cycles later than in the scenario's run.
     assert_eq!(cycles("offset_s").round(), 505.0);
 }
 
@@ -506,12 +494,12 @@ fn the_late_packets_recording_has_the_gap_of_its_readme() {
         out.contains("\nRX: 250000 baud (250285 measured), 120 bytes, raw packets of 2 bytes\n"),
         "{out}"
     );
-    // Both bytes of packet 24 are 1.484 ms late, and they are the scenario's.
+    // Both bytes of packet 24 are 1.484 ms late and equal the scenario's.
     let found = row(&line, "comparison");
     assert_eq!((&found["compares"], &found["recorded"]), (&"bytes".into(), &120.into()));
     assert_eq!((&found["differing"], &found["first_difference_index"]), (&2.into(), &48.into()));
     assert_eq!((us(&found, "largest_late_s").round(), &found["other_values"]), (1484.0, &0.into()));
-    // The bytes themselves, in samples of 10 MHz.
+    // Start times in samples of 10 MHz.
     let (_, table, _) = stepscope(&["capture", &session, "--bytes", "-"], "");
     let starts: Vec<u64> = table
         .lines()
@@ -524,7 +512,7 @@ fn the_late_packets_recording_has_the_gap_of_its_readme() {
         (0..).zip(&starts).map(|(packet, start)| start - starts[0] - 20_000 * packet).collect();
     assert_eq!(late[24], 14_838);
     assert!((0..60).filter(|packet| *packet != 24).all(|packet| late[packet] <= 1), "{late:?}");
-    // Its scenario: the controller makes all steps, and ends later.
+    // In the output scenario the controller makes all steps and ends later.
     let made = text(&folder.join("made.json"));
     let line = ["capture", &session, "--scenario", &made, "--against", &plan];
     assert_eq!(stepscope(&line, "").0, Some(3));
@@ -550,7 +538,7 @@ fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
         named.contains("\ntorque\nchannel 0: no plan is known") && named.contains("enough torque"),
         "{named}"
     );
-    // What it stands beside has a motor, at the microsteps of its own mechanics.
+    // The scenario has a motor with its own microsteps.
     let model = r#"{"source":{"motion":{"axes":[{"motor":{"load_torque_mn_m":1000},"mechanics":{"rotary":{"microsteps":1}}}]}}}"#;
     let model = file(&folder("torque"), "model.json", model);
     let beside = told(&["--against", &model, "--json"]);
@@ -560,8 +548,8 @@ fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
     assert_eq!(beside["tables"]["shortages"][0]["axis"], 0);
 }
 
-/// A recording of the default motion's steps, changed by `edit`: each step with its index and its cycle of 16 MHz makes as
-/// many as are returned, as cycles with a direction.
+/// A recording of the default motion in which `edit` replaces each step (index, cycle of 16 MHz) by any number of
+/// steps.
 fn edited(folder: &Path, name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool)>) -> (String, String) {
     let (plan, trace) = (file(folder, "plan.json", "{}"), text(&folder.join("plan.trace")));
     run(&plan, &["--trace", &trace]);
@@ -654,7 +642,7 @@ fn exactly_the_allowed_time_is_no_difference() {
 #[test]
 fn timing_limits_of_ones_own_need_no_scenario() {
     let folder = folder("limits");
-    // A step generator that changes DIR while STEP may follow too soon: twice 0.5 ms and 10 ms before a step.
+    // A step generator changes DIR while STEP may follow too soon: twice 0.5 ms, once 10 ms before a step.
     let dump = file(
         &folder,
         "stepgen.vcd",
@@ -696,7 +684,7 @@ fn timing_limits_of_ones_own_need_no_scenario() {
     }
     let (code, _, err) = stepscope(&["run", "framed-link", "--driver", "nonesuch"], "");
     assert!(code == Some(2) && err.contains("use one of a4988, a4979, drv8825"), "{err}");
-    // Its pulses are 2500 ns wide.
+    // Its pulses have 2500 ns.
     for (limit, expected) in [(2500, 0), (2501, 3)] {
         let driver = format!("custom:step_high_ns={limit}");
         let (code, out, _) = stepscope(&["run", "framed-link", "--driver", &driver, "--strict"], "");

@@ -1,9 +1,9 @@
-//! Channel maps of `stepscope capture`: what is proposed, and what a map can say.
+//! Channel maps of `stepscope capture`: proposals, and syntax.
 
 use crate::program::stepscope;
 use std::fmt::Write;
 
-/// A dump, in us, of channels whose levels change at these times; all are low at first, those of `high` high.
+/// Times in us; channels in `high` start high.
 fn dump(names: &[&str], high: u64, edges: &[&[u64]]) -> String {
     let mut text = String::from("$timescale 1 us $end $scope module top $end\n");
     let mut rows: Vec<(u64, usize)> = Vec::new();
@@ -29,7 +29,6 @@ fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
     (0..count).flat_map(|k| [from + k * interval, from + k * interval + width]).collect()
 }
 
-/// What a recording comes to with these options.
 fn told(input: &str, options: &[&str]) -> String {
     let (code, out, err) = stepscope(&[&["capture", "-"], options].concat(), input);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
@@ -57,7 +56,7 @@ fn steps_on_both_edges_are_counted_where_asked_for_and_hinted_at_otherwise() {
         );
         assert!(!out.contains(hint), "{out}");
     }
-    // A pulse that is made has no width to check, and is none of the scenario's.
+    // Pulses that are made have no width to check.
     let out = told(&file, &["--both-edges", "--driver", "tb6600_class", "--strict"]);
     all_of(&out, &["leaves out pulse width and low time", "violations 0"]);
     let scenario = told(&file, &["--both-edges", "--scenario", "-"]);

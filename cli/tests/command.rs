@@ -1,4 +1,4 @@
-//! The `stepscope` command, as a script sees it: what it prints where, and its exit codes.
+//! The `stepscope` command in scripts: output and exit codes.
 
 use std::{
     env, fs,
@@ -9,7 +9,6 @@ use std::{
 use stepscope_core::{inspect::trace::drivers::DRIVERS, sim::Experiment};
 use stepscope_tests::golden::{CASES, Case};
 
-/// What a call gave.
 #[derive(Debug)]
 struct Answer {
     code: Option<i32>,
@@ -18,13 +17,11 @@ struct Answer {
 }
 
 impl Answer {
-    /// Exit code, standard output, standard error.
     fn parts(&self) -> (Option<i32>, &str, &str) {
         (self.code, &self.out, &self.err)
     }
 }
 
-/// Calls the command with `input` as its standard input.
 fn stepscope(arguments: &[&str], input: &str) -> io::Result<Answer> {
     let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
         .args(arguments)
@@ -33,7 +30,7 @@ fn stepscope(arguments: &[&str], input: &str) -> io::Result<Answer> {
         .stderr(Stdio::piped())
         .spawn()?;
     if let Some(mut stdin) = child.stdin.take() {
-        // A command that does not read it may be gone already.
+        // The command may have ended without reading.
         let _ = stdin.write_all(input.as_bytes());
     }
     let output = child.wait_with_output()?;
@@ -41,7 +38,6 @@ fn stepscope(arguments: &[&str], input: &str) -> io::Result<Answer> {
     Ok(Answer { code: output.status.code(), out: text(output.stdout)?, err: text(output.stderr)? })
 }
 
-/// A folder of its own for a test, gone with it.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -58,12 +54,11 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What is left behind in the system's folder for such files harms nobody.
+        // A leftover folder of temporary files is harmless.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
 
-/// The scenario, digest, status and trace of the golden case `tick`.
 fn tick() -> (&'static str, &'static str, &'static str, &'static str) {
     let case = CASES.iter().find(|case| case.name == "tick").expect("it is there");
     let file = |name| case.file(name).expect("it has one");
@@ -105,7 +100,7 @@ fn a_trace_goes_into_its_file_and_nothing_to_the_screen() {
     assert_eq!(answer.parts(), (Some(0), digest, ""));
 }
 
-/// Also the presets, as whole programs: what the tests and a user see is the same.
+/// The presets, too.
 #[test]
 fn every_golden_case_comes_out_of_the_command() {
     let comes_out = |case: &Case| {
@@ -201,7 +196,7 @@ fn the_timing_check_prints_writes_and_is_strict_when_asked() {
     let rows = run(&["--violations", "-"]);
     assert_eq!((rows.code, rows.out.lines().count()), (Some(0), 132));
     assert_eq!(rows.out.lines().nth(1), Some("2930,0.000183125,0,dir_setup,8,11,500,650"));
-    // An A4988 could follow; what the scenario names gives way.
+    // An A4988 can follow; the option overrides the scenario's driver.
     assert_eq!(run(&["--driver", "a4988", "--strict"]).code, Some(0));
     let answer = stepscope(&["run", "-", "--timing"], "{}").expect("it runs");
     assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));

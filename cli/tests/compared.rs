@@ -1,15 +1,14 @@
-//! `stepscope capture FILE --against SCENARIO`: recordings with known edits of a gentle ramp, whose steps look like their
+//! `stepscope capture FILE --against SCENARIO`: edited recordings of a gentle ramp, whose steps resemble their
 //! neighbors.
 
 use crate::program::stepscope;
 use std::{fmt::Write, fs, path::Path};
 
-/// 1500 steps that get faster from 800 to 1400 steps per second and slower again.
+/// 1500 steps that speed up from 800 to 1400 steps per second and slow down again.
 const PLAN: &str = r#"{"source":{"motion":{"axes":[{"moves":[{"trapezoid":{"distance":{"steps":1500},
     "start_speed":{"steps_s":800},"top_speed":{"steps_s":1400},"acceleration":{"steps_s2":1200}}}]}]}}}"#;
 
-/// The events of a recording in which each step, by its index and its time in ns, makes those that are returned, each with
-/// its level of DIR.
+/// `edit` replaces each step (index, time in ns) by any number of events, each with its level of DIR.
 fn events(name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool)>) -> Vec<String> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compared").join(name);
     fs::create_dir_all(&folder).expect("a folder");

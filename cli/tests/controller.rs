@@ -1,4 +1,4 @@
-//! Stand-alone controllers, as a script sees them: their status, their panels, tables and dumps, and power cuts.
+//! Stand-alone controllers in scripts: status, panel files, power cuts.
 
 use crate::program::stepscope;
 use serde_json::Value;
@@ -82,7 +82,7 @@ fn power_cuts_are_counted_and_the_hold_up_that_is_just_enough_is_found() {
         row.and_then(|row| row["lost"].as_u64()).expect("a row")
     };
     assert!(lost(0) > lost(168) && lost(168) > 0 && lost(169) == 0);
-    // 8 slots, two records a power cycle.
+    // 8 slots, two records per power cycle.
     assert_eq!(tables["wear"][0]["life_power_cycles"], 400_000);
     let (code, _, err) = stepscope(&["powercut", "-"], "{}");
     assert!(code == Some(2) && err.contains("give a source standalone"), "{err}");

@@ -1,4 +1,4 @@
-//! Exit codes as docs/command.md has them, for every command.
+//! Exit codes of every command, as in docs/command.md.
 
 use crate::program::stepscope;
 use std::{
@@ -7,7 +7,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// Every command that reads a file: what stands before the file, and behind it.
+/// Every command that reads a file: the arguments before and after the file.
 const READERS: &[(&[&str], &[&str])] = &[
     (&["run"], &[]),
     (&["serve"], &["--tcp", "127.0.0.1:0"]),
@@ -32,7 +32,7 @@ const READERS: &[(&[&str], &[&str])] = &[
 /// The link of `{}`.
 const LINK: &str = "#c=2.j.e30.90f7e4f5";
 
-/// A call of each command that prints something and ends soon.
+/// A quick call of each command that prints something.
 const PRINTERS: &[&[&str]] = &[
     &["--help"],
     &["run", "--help"],
@@ -68,7 +68,6 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The exit code and standard error of a reader with this file.
 fn read(reader: &(&[&str], &[&str]), file: &str) -> (Option<i32>, String) {
     let (code, out, err) = stepscope(&[reader.0, &[file], reader.1].concat(), "");
     assert_eq!(out, "", "{reader:?} {file}");
@@ -143,7 +142,7 @@ fn numbers_that_are_none_are_refused_by_every_option() {
     for option in options {
         for value in ["NaN", "-nan", "inf", "-inf", "-1", "1e999", "", "1e400"] {
             let name = option.last().expect("an option");
-            // As one word: "-nan" alone would be another option.
+            // One word: "-nan" alone would be an option.
             let given = format!("{name}={value}");
             let all = [&option[..option.len() - 1], &[given.as_str()]].concat();
             let (code, out, err) = stepscope(&all, "{}");
@@ -151,7 +150,6 @@ fn numbers_that_are_none_are_refused_by_every_option() {
             assert!(err.contains(name) && (value.is_empty() || err.contains("; use ")), "{all:?}: {err}");
         }
     }
-    // Rates that fall, too many of them, and numbers that are whole.
     for arguments in [
         &["resonance", "resonance-full-steps", "--from", "100", "--to", "50"] as &[&str],
         &["resonance", "resonance-full-steps", "--to", "1000000", "--rung", "0.000001"],
@@ -167,7 +165,7 @@ fn numbers_that_are_none_are_refused_by_every_option() {
     }
 }
 
-/// Numbers that depend on each other or on the scenario: the message has the value given and what is allowed.
+/// The message has the value given and what is allowed.
 #[test]
 fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
     let sweep = "--to 0.002 is below --from 0.06; use --to 0.06 to 1";
@@ -222,15 +220,14 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}: {err}");
         assert!(err.contains(expected), "{arguments:?}: {err}");
     }
-    // The summary of one axis.
     let (code, out, err) = stepscope(&["tables", "framed-link", "--axis", "1", "--form", "exact"], "");
     assert_eq!((code, err.as_str(), out.lines().count()), (Some(0), "", 4), "{out}");
     assert!(out.lines().skip(1).all(|line| line.starts_with("   1 exact")), "{out}");
-    // Both ends may be the same.
+    // Both ends may be equal.
     assert_eq!(stepscope(&["sine", "best", "--from", "0.01", "--to", "0.01"], "").0, Some(0));
 }
 
-/// Analyses that keep a run are refused before it begins where it is too long; a run itself takes any length.
+/// A run itself may have any length.
 #[test]
 fn an_analysis_of_four_thousand_million_steps_is_refused_with_numbers() {
     let long = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":4294967295}}]}]}}}"#;
@@ -257,7 +254,7 @@ fn more_threads_than_four_per_core_are_not_started() {
     assert_eq!(out, stepscope(&["faults", "--seeds", "1"], "").1);
 }
 
-/// As `| head` does, but before the first byte.
+/// Like `| head`, but before the first byte.
 #[test]
 fn a_closed_standard_output_ends_every_command_silently_with_141() {
     for arguments in PRINTERS {
@@ -278,10 +275,9 @@ fn a_closed_standard_output_ends_every_command_silently_with_141() {
     }
 }
 
-/// A link whose scenario a run refuses is refused as well.
 #[test]
 fn open_checks_the_scenario_as_a_run_does() {
-    // A motion of more ticks than a run may have.
+    // A motion with too many ticks for a run.
     let scenario = r#"{"source":{"motion":{"axes":[{"moves":[{"dwell":{"duration_s":86400}},{"dwell":{"duration_s":86400}},{"constant":{}}]}]}}}"#;
     let (code, _, err) = stepscope(&["run", "-"], scenario);
     assert_eq!(code, Some(2), "{err}");
@@ -311,7 +307,7 @@ fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("it starts");
-        // A pipe can be opened for writing without a wait only when a reader is there: the command waits for its bytes then.
+        // Opening a pipe for writing without waiting succeeds only when the command waits for its bytes.
         let nonblocking = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
         let writer = loop {
             match fs::OpenOptions::new().write(true).custom_flags(nonblocking).open(&pipe) {
@@ -322,7 +318,7 @@ fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
         };
         let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill");
         assert!(killed.success());
-        // The end of the bytes ends a command that ignores the signal, with another exit code.
+        // A command that ignored the signal would end with another exit code at the end of the bytes.
         for _ in 0..3000 {
             if child.try_wait().expect("a child").is_some() {
                 break;
@@ -336,7 +332,7 @@ fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
     }
 }
 
-/// A shell lets what it runs in the background ignore Ctrl-C; a request to end still counts.
+/// A shell lets background commands ignore Ctrl-C, but not a request to end.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_command_in_the_background_ends_with_130_by_a_request() {

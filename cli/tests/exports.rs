@@ -1,4 +1,4 @@
-//! The files that `stepscope run` writes, and the ways to a scenario: links and presets.
+//! The files that `stepscope run` writes, links and presets.
 
 use std::{fs, path::PathBuf, process::Command};
 use stepscope_core::scenario::presets::{
@@ -11,7 +11,6 @@ fn stepscope(arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stdout).expect("text"))
 }
 
-/// A path for this test's file, in the folder that cargo keeps for tests.
 fn file(name: &str) -> (PathBuf, String) {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let text = path.display().to_string();
@@ -49,7 +48,6 @@ fn a_link_opens_as_the_scenario_that_it_was_made_of() {
     assert_eq!(stepscope(&["open", "c=1.j"]), (Some(2), String::new()));
 }
 
-/// Exit code and what was said on standard error.
 fn complaint(arguments: &[&str]) -> (Option<i32>, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");

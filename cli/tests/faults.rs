@@ -1,8 +1,7 @@
-//! `stepscope faults`: its table, its exit code, and the scenarios that its seeds stand for.
+//! `stepscope faults`: table, exit code, and the scenarios of its seeds.
 
 use std::{fs, path::PathBuf, process::Command};
 
-/// Exit code, standard output, standard error.
 fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
@@ -10,7 +9,6 @@ fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// The numbers of the table's row of that name.
 fn row(table: &str, name: &str) -> Vec<u64> {
     let row = table.lines().find(|line| line.trim_start().starts_with(name)).expect(name);
     row.trim_start()[name.len()..]
@@ -43,7 +41,7 @@ fn seeds_add_up_from_wherever_they_begin() {
     let parts = frames(&["--seeds", "70"]) + frames(&["--from", "70", "--seeds", "80"]);
     assert_eq!(parts, frames(&["--seeds", "150"]));
     assert_eq!(frames(&["--seed", "149"]), frames(&["--from", "149", "--seeds", "1"]));
-    // Seeds have 32 bits; those beyond are refused.
+    // Seeds have 32 bits; larger ones are refused.
     let (_, table, _) = stepscope(&["faults", "--from", "4294967290", "--seeds", "6"]);
     assert_eq!(row(&table, "seeds"), [6, 6]);
     assert_eq!(stepscope(&["faults", "--from", "4294967290", "--seeds", "7"]).0, Some(2));

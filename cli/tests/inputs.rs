@@ -1,4 +1,4 @@
-//! What a command reads: bounded, and told by what is allowed.
+//! Limits and messages for inputs.
 
 use crate::program::stepscope;
 use std::{
@@ -36,7 +36,7 @@ fn input_without_an_end_is_read_no_further_than_is_allowed() {
     assert!(written <= MAX_TEXT_BYTES + (1 << 20), "{written} bytes");
 }
 
-/// As `yes '{'` gives it, as long as may be: braces within braces need no memory of their own.
+/// As `yes '{'` prints it, at maximum length: nested braces need no additional memory.
 #[test]
 fn a_text_of_braces_is_refused_as_what_it_is() {
     let braces = "{\"bus\":".repeat(1 << 20);
@@ -45,7 +45,7 @@ fn a_text_of_braces_is_refused_as_what_it_is() {
     assert!(err.contains("not JSON at line 1, column "), "{err}");
 }
 
-/// The most memory that a command had at once, in bytes: as the system counted it.
+/// Maximum resident memory in bytes, as the system counted it.
 #[cfg(target_os = "linux")]
 fn peak(arguments: &[&str]) -> u64 {
     use std::{thread, time::Duration};
@@ -86,7 +86,7 @@ fn a_million_segments_take_at_most_ten_times_their_text() {
     assert!(peak > text && peak <= 10 * text, "{peak} bytes for {text}");
 }
 
-/// What is read of an entry takes more than its text, so a list of very many that say nothing is refused.
+/// An entry takes more memory than its text, so the number of entries is limited.
 #[test]
 fn a_short_text_of_very_many_entries_is_refused() {
     let sends = vec!["{}"; 6_000_000].join(",");
@@ -167,7 +167,7 @@ fn a_presets_name_stands_for_its_file_wherever_one_does() {
         assert_eq!(code, Some(0), "{arguments:?}: {err}");
         assert_eq!(out, call("-", preset.json).1, "{arguments:?}");
     }
-    // A file of that name is meant, where there is one.
+    // An existing file wins over a preset of the same name.
     let folder = file("preset-name");
     fs::create_dir_all(&folder).expect("a folder");
     fs::write(folder.join(preset.id), r#"{"clock_hz":0}"#).expect("a file");

@@ -1,9 +1,8 @@
-//! Lines with several controllers, replies and noise: what is printed of each controller, the table of
-//! packets, and the line that is written out.
+//! Lines with several controllers, replies and noise: status, packet table, and the exported line.
 
 use std::{fs, path::PathBuf, process::Command};
 
-/// Three controllers of which one has nothing to do, on a line on which everything goes wrong.
+/// Three controllers, one of them idle, on a line with all kinds of faults.
 const NOISY: &str = r#"{
     "bus": { "channels": 2 },
     "line": { "baud": 230400, "protocol": "framed", "address": 5, "host": { "attempts": 100 },
@@ -18,7 +17,6 @@ const NOISY: &str = r#"{
         { "address": 7, "receiver_baud": 228000, "bus": { "step_period_cycles": 400 }, "axes": [
             { "moves": [ { "constant": { "distance": { "steps": -40 }, "speed": { "steps_s": 1000 } } } ] } ] } ] }"#;
 
-/// Exit code, standard output, standard error.
 fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_stepscope")).args(arguments).output().expect("the command starts");
@@ -26,7 +24,6 @@ fn stepscope(arguments: &[&str]) -> (Option<i32>, String, String) {
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// A path for this test's file, in the folder that cargo keeps for tests.
 fn file(name: &str) -> String {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name).display().to_string()
 }
@@ -66,7 +63,7 @@ fn each_controller_has_its_digest_status_and_files() {
     let block = |from: usize| lines[from..from + 6].to_vec();
     assert_eq!((block(4)[0], block(4)[2], block(4)[5]), ("controller 0", "positions 60 -30", "host done"));
     assert_eq!((block(10)[0], block(10)[2]), ("controller 1", "positions 0"));
-    // Controller 1 has nothing to do: no host speaks with it.
+    // The host sends nothing to controller 1, which has no commands.
     assert!(block(10)[4].starts_with("state READY"), "{status}");
     assert_eq!((block(15)[0], block(15)[2], block(15)[5]), ("controller 2", "positions -40", "host done"));
     assert!(lines[21].starts_with("frames ") && lines[22].starts_with("line_load "), "{status}");
@@ -91,7 +88,7 @@ fn a_host_that_gives_up_says_why_and_how_much_was_done() {
     assert!(status.contains("\nframes 10 repeated 9 replies 0 "), "{status}");
 }
 
-/// The line is written out with what noise did to it, and needs no noise, host or motion any more.
+/// The exported line includes the noise and needs no host or motion.
 #[test]
 fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
     let raw = r#"{ "bus": { "channels": 2 }, "line": { "address": 3,
@@ -110,7 +107,7 @@ fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
         let forced = written["line"]["glitches"].as_array().map_or(0, Vec::len);
         assert!(forced > 1, "{title}: noise forced something");
         assert!(written["source"]["line"]["sends"].as_array().is_some_and(|sends| sends.len() > 5));
-        // What was written is what was done: written once more it is the same.
+        // Exporting it again gives the same.
         let again = file(&format!("{title}-again.json"));
         assert_eq!(out(&["run", &line, "--line", &again]), "");
         assert_eq!(fs::read(&again).expect("the line"), fs::read(&line).expect("the line"), "{title}");
@@ -135,7 +132,7 @@ fn the_table_of_packets_is_read_back_field_by_field() {
     }
 }
 
-/// Replies of other controllers are heard on a shared line; a table that is sent again leaves them out.
+/// A shared line has replies of other controllers; a table that is sent again omits them.
 #[test]
 fn the_table_of_a_shared_line_read_again_sends_what_the_host_sent() {
     let preset = stepscope_core::scenario::presets::PRESETS.iter();

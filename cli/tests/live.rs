@@ -1,5 +1,4 @@
-//! `stepscope serve` and `stepscope send` as they are used: against each other, against devices of our own making, and with
-//! what goes wrong in between.
+//! `stepscope serve` and `stepscope send`: against each other, against test devices, and with failures in between.
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
@@ -17,7 +16,7 @@ use stepscope_core::peripheral::{
     wire::frame::{Deframed, Deframer, Ticks, emit},
 };
 
-/// Four ticks of two channels, the last one without steps, in one frame: no machine is too slow for them.
+/// Four ticks of two channels in one frame, the last without steps: no machine is too slow for this.
 const FEW: &str = r#"{ "bus": { "channels": 2 }, "line": { "protocol": "framed" },
     "source": { "packets": { "packets": [ "8102", "8304", "8201" ] } } }"#;
 /// Four seconds.
@@ -42,7 +41,6 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("text")
 }
 
-/// A server, and where it said that it is.
 struct Server {
     child: Child,
     out: BufReader<ChildStdout>,
@@ -64,7 +62,6 @@ impl Server {
         signal_to(&self.child, signal);
     }
 
-    /// Ends it; its exit code, standard output and standard error.
     fn end(mut self) -> (Option<i32>, String, String) {
         self.signal(Signal::TERM);
         self.wait()
@@ -114,14 +111,14 @@ fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() 
             let mut server = Server::start(&[&[text(&scenario)], place, &more].concat());
             let port =
                 if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
-            // A pseudo-terminal has no end that a host could wait for.
+            // A pseudo-terminal shows no end to wait for.
             let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);
             assert_eq!((code, err.as_str()), (Some(0), ""), "{place:?} {pace}: {out}");
             assert!(out.contains("controller 0 address 0: done\n  ticks 4 of 4 done"), "{out}");
             let told = "positions 6 -7: the sums of the ticks\n  state READY, new faults none";
             assert!(out.contains(told), "{out}");
             let (code, out, err) = server.wait();
-            // A loaded machine may not keep up, which is said.
+            // A loaded machine may be too slow, which is reported.
             assert!(code == Some(0) || code == Some(3) && err.contains("did not keep up"), "{code:?} {err}");
             assert!(err.contains("recorded") && out.contains("positions 6 -7\n"), "{out}{err}");
             let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
@@ -185,7 +182,7 @@ fn a_port_that_is_lost_ends_with_4_and_what_is_known() {
     let scenario = file("lost.json", LONG);
     let link = scenario.with_file_name("live-lost-port");
     for place in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"], &["--pty", text(&link)]] {
-        // A session replaces the link that one before it left behind.
+        // A session replaces the link that an earlier one left behind.
         let server = Server::start(&[&[text(&scenario)], place].concat());
         let port = if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
         let arguments = ["send", text(&scenario), "--port", &port, "--slack", "500"];
@@ -233,7 +230,7 @@ fn one_client_is_served_and_a_second_one_is_told() {
     assert!(err.contains("was sent away"), "{err}");
 }
 
-/// A device that does at once what it is told, but for POSITIONS, which it does not know.
+/// A device that executes everything at once, but does not know POSITIONS.
 fn old_device(listener: &TcpListener) {
     let (mut stream, _) = listener.accept().expect("a host");
     let (mut deframer, mut buffer) = (Deframer::default(), [0; 256]);
@@ -286,7 +283,7 @@ fn a_device_that_is_silent_or_says_nonsense_is_given_up() {
     }
 }
 
-/// Passes bytes on until so many went one way, and then cuts the connection.
+/// Forwards bytes and cuts the connection after these numbers.
 fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = format!("tcp:{}", listener.local_addr().expect("an address"));
@@ -314,7 +311,8 @@ fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
 
 #[test]
 fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not() {
-    // The host sends 7 frames of 8 to 18 bytes, and hears 17 or 25. Each byte: the unit tests of sessions.
+    // The host sends 7 frames of 8 to 18 bytes and gets replies of 17 or 25. Unit tests of sessions cut at every
+    // byte.
     let scenario = file("cut.json", FEW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", "max"]);
     for (to_device, to_host) in [
@@ -365,11 +363,10 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
     }
 }
 
-/// A stand-alone controller that is ready after 1 ms, and goes 100 steps at 1000 Hz from its zero.
+/// Ready after 1 ms; moves 100 steps at 1000 Hz from its zero.
 const PANEL: &str = r#"{ "source": { "standalone": [ { "debounce_cycles": 1000, "groups": [ { "move": { "length": 10, "speed_hz": 1000 } } ],
     "memory": { "byte_write_cycles": 10, "hold_up_cycles": 1000 }, "inputs": [ { "cycle": 400, "input": "estop" } ] } ] } }"#;
 
-/// Serves a panel, types on it, and ends; exit code, standard output and standard error.
 fn typed(arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
     let mut child =
         command(&[&["serve"], arguments].concat()).stdin(Stdio::piped()).spawn().expect("it starts");
@@ -391,7 +388,7 @@ fn buttons_are_lines_on_standard_input_and_the_recording_is_the_session() {
             assert!(err.contains(told), "{told}: {err}");
         }
         assert!(out.contains("\npositions 100\n"), "{out}");
-        // Power was cut and came back: it was READY, with its zero from memory, so it is HELD.
+        // After the power cut it is READY with its zero from memory, so HELD.
         assert!(out.contains("panel 0 READY trust HELD position 100 "), "{out}");
         let line = |start: &str| out.lines().find(|line| line.starts_with(start)).expect(start).to_owned();
         assert_eq!(line("digest "), format!("digest {}", run_digest(&record)), "{pace}");
@@ -400,8 +397,7 @@ fn buttons_are_lines_on_standard_input_and_the_recording_is_the_session() {
         let recorded: Value =
             serde_json::from_str(&fs::read_to_string(&record).expect("it is there")).expect("JSON");
         let inputs = recorded["source"]["standalone"][0]["inputs"].as_array().expect("inputs");
-        // What the scenario itself presses is left out; the second press, while the first one stands, changes nothing but
-        // its release.
+        // The scenario's own presses are left out. The second press during the first only changes the release.
         assert_eq!(inputs.len(), 8, "{inputs:?}");
         let cycle = |index: usize| inputs[index]["cycle"].as_u64().expect("a cycle");
         assert_eq!(cycle(2) - cycle(1), 16 * 20_000, "20 ms");
@@ -423,7 +419,6 @@ fn what_a_press_does_not_do_is_told_and_a_panel_has_no_line() {
     assert!(code == Some(2) && err.contains("has no line") && err.contains("leave out"), "{err}");
 }
 
-/// Frames of a server's replies that come within a generous time.
 fn reply(stream: &mut TcpStream) -> Vec<u8> {
     let mut reply = Vec::new();
     let mut byte = [1];
@@ -435,15 +430,13 @@ fn reply(stream: &mut TcpStream) -> Vec<u8> {
     reply
 }
 
-/// Names of the threads of a process, one per line.
 #[cfg(target_os = "linux")]
 fn threads(child: &Child) -> String {
     let threads = fs::read_dir(format!("/proc/{}/task", child.id())).into_iter().flatten().flatten();
-    // A thread can end meanwhile.
+    // A thread may end meanwhile.
     threads.filter_map(|thread| fs::read_to_string(thread.path().join("comm")).ok()).collect()
 }
 
-/// Resident memory of a process, in KiB.
 #[cfg(target_os = "linux")]
 fn memory(child: &Child) -> u64 {
     let status = fs::read_to_string(format!("/proc/{}/status", child.id())).expect("it runs");
@@ -460,7 +453,7 @@ fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
             Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", pace, "--lag", "60000"]);
         let address = server.place.strip_prefix("tcp:").expect("an address");
         let mut flood = TcpStream::connect(address).expect("it listens");
-        // STATUS again and again: replies, too.
+        // STATUS again and again causes replies, too.
         let status = emit(0, Kind::Status as u8, &[]);
         let chunk = status.repeat(1 << 13);
         flood.set_write_timeout(Some(Duration::from_millis(300))).expect("it can be");
@@ -481,12 +474,12 @@ fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
             server.signal(Signal::TERM);
             continue;
         }
-        // The first reply that the next client gets is that to its own frame. One that meets the end of the flood is lost.
+        // The next client's first reply is to its own frame. A reply during the end of the flood is lost.
         let mut stream = None;
         for _ in 0..200 {
             let mut next = TcpStream::connect(address).expect("it listens");
             next.set_read_timeout(Some(Duration::from_secs(2))).expect("it can be");
-            // A frame that was cut when the client before was dropped ends here.
+            // The delimiter ends a frame that the previous client left incomplete.
             let sent = next.write_all(&[&[0], &emit(0, Kind::Positions as u8, &[])[..]].concat());
             let mut first = [0];
             if sent.is_ok() && matches!(next.peek(&mut first), Ok(1)) && first != *b"s" {
@@ -514,7 +507,7 @@ fn a_client_that_closes_its_sending_half_still_gets_its_replies() {
     stream.shutdown(Shutdown::Write).expect("it is open");
     let mut replies = Vec::new();
     stream.read_to_end(&mut replies).expect("replies");
-    // Sent back to back, the second one meets the reply to the first.
+    // Sent without a pause, the second one collides with the reply to the first.
     assert!(replies.len() >= 17 && replies.len() % 17 == 0, "{}", replies.len());
     let (code, out, err) = server.wait();
     assert_eq!(code, Some(0), "{out}{err}");
@@ -548,7 +541,7 @@ fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
 #[test]
 #[cfg(target_os = "linux")]
 fn ctrl_c_ends_the_wait_for_a_connection() {
-    // One that waits in the queue of a listener of length 0 is neither taken nor refused.
+    // A queued connection of a listener with backlog 0 is neither accepted nor refused.
     let listener =
         rustix::net::socket(rustix::net::AddressFamily::INET, rustix::net::SocketType::STREAM, None)
             .expect("a socket");
@@ -567,7 +560,7 @@ fn ctrl_c_ends_the_wait_for_a_connection() {
         let mut sender = command(&["send", text(&scenario), "--port", &format!("tcp:{address}")])
             .spawn()
             .expect("it starts");
-        // A thread of its own connects.
+        // Connecting takes place in a thread.
         while !threads(&sender).contains("connect\n") {
             assert!(sender.try_wait().expect("a child").is_none(), "it has ended");
             thread::sleep(Duration::from_millis(2));
@@ -608,7 +601,7 @@ fn a_closed_standard_output_costs_no_stop_and_no_recording() {
     signal_to(&sender, Signal::INT);
     let output = sender.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(141), "{}", String::from_utf8_lossy(&output.stderr));
-    // Nobody reads what the server prints at its end either.
+    // The server's last output has no reader either.
     server.out = BufReader::new(
         Command::new("true").stdout(Stdio::piped()).spawn().expect("it runs").stdout.take().expect("piped"),
     );

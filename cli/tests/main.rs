@@ -1,5 +1,5 @@
-//! The command as scripts and people call it: one program of all these tests, so that it is linked once.
-//! Those that need programs of others are programs of their own: `second_reader`, `avr_recordings`, `avr_live`, `live_judges`.
+//! Tests of the command, linked as one program. Tests that need other software are programs of their own:
+//! `second_reader`, `avr_recordings`, `avr_live`, `live_judges`.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! `stepscope measures`, as a script sees it.
+//! `stepscope measures` in scripts.
 
 use crate::program::stepscope;
 
@@ -22,7 +22,7 @@ fn the_three_formats_have_the_same_figures() {
     let rows: Vec<Vec<String>> =
         reader.records().map(|row| row.expect("a row").iter().map(str::to_owned).collect()).collect();
     let (_, text, _) = measures(&["--axis", "1"], MOTION);
-    // group, measure, of; where it is in JSON, and how much of that it is
+    // Group, measure, column; path in JSON, factor.
     let checks = [
         (["deviation", "r.m.s.", "steps"], "/steps/rms_steps", 1.0),
         (["deviation", "1 - correlation", "pulses"], "/pulses/uncorrelated", 1.0),
@@ -100,7 +100,7 @@ fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
             head.iter().position(|each| *each == name).unwrap_or_else(|| panic!("no {name}: {head:?}"));
         rows.iter().map(|row| row[place].parse::<f64>().expect("a number")).collect::<Vec<_>>()
     };
-    // SWorldJournal, issue 11: breakpoints of 2048 a period.
+    // SWorldJournal, issue 11: breakpoints of 2048 per period.
     assert_eq!(column("from_point"), [0.0, 67.0, 136.0, 208.0, 287.0, 381.0]);
     assert_eq!(column("to_point"), [67.0, 136.0, 208.0, 287.0, 381.0, 512.0]);
     for (steps, (rate, lasts)) in
@@ -124,7 +124,7 @@ fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
     }
 }
 
-/// A motion of more steps than may be planned: each refusal below comes before its problem, so nothing was planned for it.
+/// The motion has too many steps to plan, so each refusal below comes before planning.
 #[test]
 fn what_a_scenario_lacks_is_found_before_its_motion_is_planned() {
     const LONG: &str = r#"{ "source": { "motion": { "axes": [

@@ -1,4 +1,4 @@
-//! Named pipes and pipes of a shell, as inputs and as outputs.
+//! Named pipes and shell pipes as inputs and outputs.
 
 use crate::program::stepscope;
 use std::{
@@ -25,7 +25,7 @@ fn preset(id: &str) -> &'static str {
     all.into_iter().find(|preset| preset.id == id).expect("a preset").json
 }
 
-/// Every input of every command: what precedes it, what follows it, and what it contains.
+/// Every input of every command: arguments before, arguments after, contents.
 fn inputs() -> Vec<(&'static [&'static str], &'static [&'static str], &'static str)> {
     let dump =
         "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #90 1! #92 0!";
@@ -68,14 +68,14 @@ fn every_input_can_be_a_pipe() {
         make_pipe(&pipe);
         let to = pipe.clone();
         let text = input.2.to_owned();
-        // It ends with the test where nobody reads.
+        // Ends with the test if nothing reads.
         thread::spawn(move || fs::write(to, text));
         assert_eq!(call(&input, &pipe), expected, "{input:?}");
         fs::remove_file(&pipe).expect("it was there");
     }
 }
 
-/// All of them wait for the same time, side by side.
+/// All of them wait in parallel.
 #[test]
 fn a_named_pipe_without_another_end_is_an_error() {
     let folder = folder("alone");
@@ -109,7 +109,6 @@ fn a_named_pipe_without_another_end_is_an_error() {
     }
 }
 
-/// A recording is two files.
 #[test]
 fn a_recording_goes_to_files_only() {
     let folder = folder("recording");

@@ -1,4 +1,4 @@
-//! `stepscope plant`, `settling`, `limits` and `resonance`, as a script sees them.
+//! `stepscope plant`, `settling`, `limits` and `resonance` in scripts.
 
 use crate::program::stepscope;
 use serde_json::Value;
@@ -50,13 +50,13 @@ fn motors_and_drivers_are_taken_from_the_list() {
     let tables = serde_json::from_str::<Value>(&out).expect("JSON")["tables"].clone();
     assert_eq!(tables["motors"][0]["id"], "song-2021");
     assert_eq!(tables["drives"][1]["decay"], "auto");
-    // The default motor is that of the list, and the driver is another's.
+    // The listed default motor with another driver.
     let digest =
         |options: &[&str]| stepscope(&[&["plant", "song-2021-motor", "--digest"], options].concat(), "").1;
     assert_eq!(digest(&["--motor", "song-2021", "--drive", "ideal"]), digest(&[]));
     assert_ne!(digest(&["--motor", "17hs4401"]), digest(&[]));
     assert_ne!(digest(&["--drive", "a4988"]), digest(&[]));
-    // The larger rotor cannot start so fast.
+    // The larger rotor cannot start as fast.
     let limits = |motor: &str| -> f64 {
         let (code, out, err) = stepscope(&["limits", "-", "--json", "--motor", motor], r#"{"plant":{}}"#);
         assert_eq!((code, err.as_str()), (Some(0), ""));

@@ -1,12 +1,10 @@
-//! Recordings that people have, with the right answers: exports of other programs, odd time bases, serial lines with few
-//! samples per bit, channel names from the field. The files are in `cli/tests/recordings`; the numbers were worked out
-//! independently of this project.
+//! Real-world recordings with independently computed results: exports of other programs, odd time bases, serial lines
+//! with few samples per bit, channel names from the field. The files are in `cli/tests/recordings`.
 
 use crate::program::stepscope;
 use serde_json::Value;
 use std::path::Path;
 
-/// Runs `stepscope capture` on a file of `cli/tests/recordings`.
 fn capture(file: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings");
     let given = |text: &&str| match text.strip_prefix('@') {
@@ -19,7 +17,6 @@ fn capture(file: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     stepscope(&all.collect::<Vec<_>>(), "")
 }
 
-/// The tables of a recording that opens.
 fn tables(file: &str, arguments: &[&str]) -> Value {
     let (code, out, err) = capture(file, &[arguments, &["--json"]].concat());
     assert_eq!(code, Some(0), "{file} {arguments:?}: {err}");
@@ -136,7 +133,6 @@ fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
         assert_eq!(code, Some(2), "{file}: {out}{err}");
         assert!(err.contains(expected), "{file}: {err}");
     }
-    // Bytes without times have no samples.
     let (code, _, err) = capture("xxd.txt", &["--sample-rate", "1000000"]);
     assert!(code == Some(2) && err.contains("--baud"), "{err}");
     // With the rate, rows without a head are times with levels, or with a byte.

@@ -1,4 +1,4 @@
-//! The command as scripts and shells use it: tables as JSON, completions, manual pages, exit codes.
+//! The command in scripts: JSON, completions, manual pages, exit codes.
 
 use crate::program::stepscope;
 use serde_json::{Map, Value};
@@ -8,7 +8,7 @@ const MOTION: &str = r#"{ "bus": { "channels": 2 }, "source": { "motion": { "axe
     { "moves": [ { "cosine": {} } ], "motor": { "working_rate_hz": 19200 } },
     { "moves": [ { "sine_segments": { "amplitude": { "steps": 1000 }, "max_deviation": 0.006, "period_s": 0.5, "periods": 2 } } ] } ] } } }"#;
 
-/// The tables of a command, which have the documented shape.
+/// Checks the documented shape.
 fn tables(arguments: &[&str], input: &str) -> Map<String, Value> {
     let (code, out, err) = stepscope(arguments, input);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{arguments:?}");
@@ -88,7 +88,7 @@ fn the_figures_are_those_of_the_text() {
             .map(|column| rule[column].as_f64()),
         [650.0, 500.0, -150.0, 2930.0, 0.0, 3.0].map(Some)
     );
-    // The exit code is as it is without.
+    // JSON does not change the exit code.
     let broken = stepscope(&["presets", "driver-timing-broken"], "").1;
     assert_eq!(stepscope(&["run", "-", "--strict", "--json"], &broken).0, Some(3));
 }

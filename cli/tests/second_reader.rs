@@ -1,7 +1,7 @@
-//! A value change dump as other people's programs read it, edge by edge as the trace has it: GTKWave's (`vcd2fst` makes its
-//! waveform file of it, `fst2vcd` tells what stands in that) and sigrok's, on which PulseView stands.
+//! Reads value change dumps with GTKWave's (`vcd2fst`, `fst2vcd`) and sigrok's programs and compares every edge with
+//! the trace.
 //!
-//! `cargo xtask test --only vcd` installs both first, and runs it.
+//! `cargo xtask test --only vcd` installs the tools and runs it.
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
 use std::{
@@ -19,13 +19,13 @@ use stepscope_core::{
 };
 use vcd::{Command as Entry, IdCode, Parser, ScopeItem, TimescaleUnit, Value};
 
-/// Two controllers and replies, at a clock of which no cycle is a whole number of nanoseconds.
+/// Two controllers and replies; no cycle is a whole number of nanoseconds.
 const FRAMED: &str = r#"{
     "clock_hz": 14745600, "bus": { "channels": 2 },
     "line": { "protocol": "framed", "noise": { "seed": 3, "lost_bytes_ppm": 20000, "glitches_ppm": 20000 } },
     "source": { "packets": { "packets": [ "8102", "8304", "0506", "8708" ] } } }"#;
 
-/// The changes of each signal: cycle, and the level from then on.
+/// Cycle and new level, per signal.
 type Edges = BTreeMap<String, Vec<(u64, bool)>>;
 
 fn path(name: &str) -> PathBuf {
@@ -42,7 +42,6 @@ fn call(program: &Path, arguments: &[&Path]) {
     assert!(output.status.success(), "{}: {output:?}", program.display());
 }
 
-/// Runs a scenario and writes its trace and its dump.
 fn run(title: &str, json: &str, more: &[&str]) -> (String, PathBuf) {
     let file = |ending: &str| path(&format!("second-reader-{title}.{ending}"));
     let (scenario, trace, dump) = (file("json"), file("trace"), file("vcd"));
@@ -53,7 +52,6 @@ fn run(title: &str, json: &str, more: &[&str]) -> (String, PathBuf) {
     (fs::read_to_string(trace).expect("the trace"), dump)
 }
 
-/// The edges of a trace.
 fn edges_of_trace(text: &str, channels: u8) -> Edges {
     let records: Vec<Record> = text.lines().map(|line| parse_line(line).expect("a record")).collect();
     let signal = |bit: u32| {
@@ -65,9 +63,9 @@ fn edges_of_trace(text: &str, channels: u8) -> Edges {
     shown_signals(channels).map(signal).collect()
 }
 
-/// The edges that a value change dump tells of, each at round(t*clock_hz).
+/// Edges at round(t*clock_hz).
 fn edges_of_dump(text: &[u8], scope: &str, clock_hz: u64) -> Edges {
-    // sigrok-cli says something of its own before.
+    // sigrok-cli prints lines of its own first.
     let start = text.iter().position(|byte| *byte == b'$').unwrap_or(0);
     let mut parser = Parser::new(&text[start..]);
     let header = parser.parse_header().expect("a header");
@@ -94,7 +92,7 @@ fn edges_of_dump(text: &[u8], scope: &str, clock_hz: u64) -> Edges {
     for entry in parser {
         match entry.expect("an entry") {
             Entry::Timestamp(at) => now = cycle(at),
-            // Before its first level a signal is unknown.
+            // A signal is unknown before its first level.
             Entry::ChangeScalar(_, Value::X) => {}
             Entry::ChangeScalar(code, value) => {
                 edges.entry(names[&code].clone()).or_default().push((now, value == Value::V1));
@@ -115,7 +113,7 @@ fn compare(found: &Edges, trace: &str, channels: u8, title: &str) {
     }
 }
 
-/// Title, scenario, clock and channels of what is read back, and the options of the dump.
+/// Title, scenario, clock, channels, dump options.
 fn cases() -> [(&'static str, &'static str, u64, u8, &'static [&'static str]); 4] {
     let preset = PRESETS.iter().find(|preset| preset.id == "patent-2019-four-motors").expect("it is there");
     let clock_hz = preset.scenario().clock_hz.into();
@@ -145,7 +143,7 @@ fn gtkwaves_programs_read_the_same_edges() {
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn sigrok_reads_the_same_edges() {
     let sigrok = program("sigrok-cli");
-    // A picosecond is a sample to sigrok: nobody reads a recording at 1 THz.
+    // sigrok would take samples of 1 ps, which is far too slow.
     for (title, json, clock_hz, channels, options) in
         cases().into_iter().filter(|case| case.0 != "framed-1ps")
     {
@@ -160,7 +158,7 @@ fn sigrok_reads_the_same_edges() {
     }
 }
 
-/// sigrok takes a sample for each unit of the timescale: a second and a half for a nanosecond, 25 minutes for a picosecond.
+/// sigrok takes a sample per timescale unit, so a fine timescale makes a short move very long.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn sigrok_opens_a_move_of_0_4_s_with_few_samples() {

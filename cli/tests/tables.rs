@@ -1,4 +1,4 @@
-//! `stepscope tables` and `stepscope sine`, as a script sees them.
+//! `stepscope tables` and `stepscope sine` in scripts.
 
 use crate::program::stepscope;
 
@@ -27,7 +27,7 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
     assert!(tight.1.lines().nth(2).is_some_and(|line| line.contains(" 0.063 ")), "{}", tight.1);
 }
 
-/// Where Klipper's own program makes 52 entries of the default motion.
+/// Klipper's own program makes 52 entries of the default motion.
 #[test]
 fn klippers_window_and_widths_can_be_asked_for() {
     let options = ["tables", "-", "--form", "compressed", "--entries", "klipper", "--interval-part", "2"];
@@ -37,7 +37,7 @@ fn klippers_window_and_widths_can_be_asked_for() {
         out.lines().nth(1).expect("a row").split_whitespace().map(str::to_owned).collect()
     };
     let early = row(&["--window", "early"]);
-    // Entries with the turn to the right, bytes, and from the end what may be too many, bytes on the line, turns.
+    // Entries including the turn, bytes, surplus, bytes on the line, turns.
     assert_eq!(early[2..5], ["ticks", "49", "392"]);
     assert_eq!(early[9..], ["1", "358", "0"], "{early:?}");
     assert!(row(&[])[3].parse::<u32>().expect("a count") <= 49);
@@ -64,12 +64,11 @@ fn steps_of_any_origin_are_compressed() {
     let count = |row: usize| rows[row][3].parse::<u32>().expect("a count");
     assert_eq!((&rows[1][..3], rows[1][6], rows[1][7]), (["0", "exact", "q16"].as_slice(), "1500", "0.000"));
     assert!(out.contains("a list of steps has no table of its own"), "{out}");
-    // There and back an entry and a turn each.
+    // An entry and a turn in each direction.
     assert!(count(1) > 200 && count(3) == 4, "{out}");
     let (code, out, _) =
         stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
     assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
-    // A pulse that comes too soon, and a row that is none.
     for (list, told) in [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle is \"later\"")]
     {
         let (code, _, err) = stepscope(&["tables", "--steps", "-", "--format", "csv"], list);
@@ -121,8 +120,8 @@ fn a_table_is_written_in_each_language() {
     }
 }
 
-/// A compiler of C takes the files as they are, twice in one source, without a warning; and walking a table, in types as
-/// wide as the comment says, comes to the time and the steps that it says.
+/// The files compile without warnings, twice in one source. The walk, in the types of the comment, ends at the time
+/// and step of the comment.
 #[cfg(unix)]
 #[test]
 fn a_compiler_takes_the_files_and_the_walk_comes_where_the_comment_says() {
@@ -195,7 +194,7 @@ fn an_array_that_the_compiler_may_refuse_is_a_warning_with_numbers() {
         out.contains(&format!(" * WARNING: {}.", warning.trim_start_matches("warning: "))),
         "it is in the file"
     );
-    // What Rust's compiler takes has no such bound.
+    // Rust has no such limit.
     assert_eq!(stepscope(&[&options[..], &["rust"]].concat(), motion).2, "");
 }
 
@@ -245,7 +244,7 @@ fn the_sines_tables_have_their_columns_and_the_documents_rows() {
         let found: f64 = row[2].parse().expect("a number");
         assert!((found - percent).abs() < 3e-4, "{row:?}");
     }
-    // An accelerometer of 50 Hz at 2 Hz: what it feels is the last column, and hardly grows with the order.
+    // With an accelerometer of 50 Hz at 2 Hz the last column hardly grows with the order.
     let filtered = |order: &str| -> f64 {
         let sensor = ["--sensor-hz", "50", "--period-s", "0.5", "--points", "2", "--order", order];
         let (code, out, _) = stepscope(&[&["sine", "sweep"], sensor.as_slice()].concat(), "");

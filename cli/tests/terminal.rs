@@ -1,4 +1,4 @@
-//! What is printed of names and values of others: nothing of it steers a terminal.
+//! Names and values from outside must not control the terminal.
 
 use crate::program::stepscope;
 use std::{fs, path::PathBuf};
@@ -6,7 +6,6 @@ use std::{fs, path::PathBuf};
 /// Erases the screen, sets a title, reverses the text, ends the line.
 const HOSTILE: &str = "x\u{1b}[2J\u{1b}]0;t\u{7}\u{9b}31m\u{202e}y\u{7f}";
 
-/// The same in JSON.
 fn json() -> String {
     HOSTILE.chars().map(|c| format!("\\u{:04x}", u32::from(c))).collect()
 }
@@ -71,7 +70,7 @@ fn no_message_sends_a_control_character_of_others() {
     assert_eq!((code, stepscope(&["run", "-", "--digest"], &out).1), (Some(0), expected));
 }
 
-/// Text goes through `cli/src/terminal.rs`; what does not is named here.
+/// Text goes through `cli/src/terminal.rs`; exceptions are listed here.
 #[test]
 fn nothing_prints_text_but_through_the_one_writer() {
     fn sources(folder: &PathBuf, found: &mut Vec<PathBuf>) {
@@ -83,7 +82,8 @@ fn nothing_prints_text_but_through_the_one_writer() {
             }
         }
     }
-    // The writer itself; data in place of a file; lines that overwrite each other; its own manual; JSON that is escaped; clap's help.
+    // The writer itself, data in place of a file, lines that overwrite each other, the manual, escaped JSON, clap's
+    // help.
     let known = [
         "terminal.rs",
         "json.rs",

@@ -1,4 +1,4 @@
-//! `stepscope torque` and `stepscope calibrate`, as a script sees them.
+//! `stepscope torque` and `stepscope calibrate` in scripts.
 
 use crate::program::stepscope;
 
@@ -69,7 +69,7 @@ fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
     assert!(code == Some(2) && err.contains("36 V beside 24 V of the first motor"), "{err}");
     let (_, out, _) = stepscope(&["torque", "-", "--plant"], &axes(r#"{"motor":{}},{"motor":{}}"#));
     assert_eq!(out.matches("follows; both models agree").count(), 2, "{out}");
-    // What is wrong, or long, is not run unasked.
+    // A broken or long plant runs only on request.
     let scenario = r#"{"plant":{"source_ohm":0},"source":{"motion":{"axes":[{"motor":{}}]}}}"#;
     let (code, out, _) = stepscope(&["torque", "-"], scenario);
     assert!(
@@ -106,7 +106,7 @@ fn what_limits_a_moves_ramps_is_named() {
         "{out}"
     );
     assert!(!out.contains("inf"), "{out}");
-    // No current that 0.1 V leave drives at this rate.
+    // 0.1 V drives no current at this rate.
     let out = of(r#"{"constant":{"speed":{"steps_s":100000}}}"#, r#"{"supply_v":0.1}"#);
     assert!(
         out.contains("  standing torque  11.8 mN*m; the supply is too low for the whole current"),
@@ -143,7 +143,7 @@ fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
     assert!(out.contains("  k                 56.500000 steps/mm, 0.017699115 mm a step\n"), "{out}");
     assert!(out.contains("  offset            0.000 steps, 0.000000 mm\n"), "{out}");
     let mechanics = out.lines().last().expect("a last line");
-    // It is what a scenario takes.
+    // The result is valid in a scenario.
     let scenario = axes(&format!(r#"{{{mechanics},"moves":[{{"cosine":{{"distance":{{"mm":100}}}}}}]}}"#));
     let (code, status, _) = stepscope(&["run", "-"], &scenario);
     assert_eq!(code, Some(0));
@@ -207,7 +207,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
     assert!(heavy_lines.contains("  plant            loses "), "{out}");
     assert!(heavy_lines.contains("both models agree"), "{out}");
 
-    // One by its name, at other microsteps, without a plant; and only one channel.
+    // A named motor at other microsteps, without a plant, on one channel.
     let named = ["torque", "-", "--motor", "nema-8", "--microsteps", "2", "--axis", "1"];
     let (code, out, err) = stepscope(&named, &lists(""));
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -238,7 +238,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
     let (code, _, err) =
         stepscope(&["torque", "-", "--motor", "nema-8", "--microsteps", "4"], &axes(r#"{"motor":{}},{}"#));
     assert!(code == Some(2) && err.contains("an axis has its own in its mechanics"), "{err}");
-    // Of a motion the named motor takes the place of its axes'.
+    // For a motion the named motor replaces those of its axes.
     let (_, out, _) = stepscope(&["torque", "-", "--motor", "nema-8"], &axes("{},{}"));
     assert_eq!(out.matches("  full torque      12.7 mN*m").count(), 2, "{out}");
 }

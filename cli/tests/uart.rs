@@ -1,4 +1,4 @@
-//! Serial lines in recordings: `stepscope capture` decodes them right, or reports what is missing.
+//! Serial lines in recordings: `stepscope capture` decodes them correctly or reports what is missing.
 
 use crate::program::stepscope;
 use serde_json::Value;
@@ -8,7 +8,6 @@ fn recording(name: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name).display().to_string()
 }
 
-/// The bytes of a recording, read from a file or from standard input.
 fn bytes(options: &[&str], input: &str) -> Vec<u8> {
     let (code, out, err) = stepscope(&[&["capture"], options, &["--bytes", "-"]].concat(), input);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
@@ -23,7 +22,7 @@ fn line(options: &[&str], input: &str) -> Value {
     all["tables"]["lines"][0].clone()
 }
 
-/// A table of levels of one channel, a bit lasting `bit_ns`; `stop` is what a byte's stop bits, and the gap after them, last.
+/// Levels of one channel; `stop` is the time of the stop bits and the gap after a byte, in ns.
 fn table(name: &str, bytes: &[u8], bit_ns: u64, stop: u64, inverted: bool) -> String {
     let mut text = format!("Time [s],{name}\n0.0,{}\n", u8::from(!inverted));
     let (mut at, mut before) = (100_000, true);
@@ -67,7 +66,6 @@ fn parity_is_an_option_and_is_proposed() {
         assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}");
         assert!(err.contains("the errors look like even parity: try --uart 8E1"), "{err}");
     }
-    // The rate is known, and so are the errors.
     let given = line(&[&file, "--baud", "115200"], "");
     assert_eq!(given["framing_errors"], 30);
     assert!(given["hint"].as_str().is_some_and(|hint| hint.contains("try --uart 8E1")), "{given}");
@@ -89,7 +87,7 @@ fn parity_is_an_option_and_is_proposed() {
 
 #[test]
 fn a_line_that_no_rate_fits_is_asked_for() {
-    // Pulses of any length, steps beside them.
+    // Random pulses, with steps on other channels.
     let mut state = 1_u64;
     let mut noise = "Time [s],RX,STEP\n0.0,1,0\n".to_owned();
     let mut at = 0_u64;
@@ -105,7 +103,7 @@ fn a_line_that_no_rate_fits_is_asked_for() {
         assert!(all.contains("RX: no bit rate fits its pulses") && all.contains("--baud"), "{all}");
         assert!(!all.contains("bytes,"), "{all}");
     }
-    // A byte of one low pulse may be of several rates.
+    // A byte with one low pulse fits several rates.
     let zero = table("RX", &[0], 8681, 10, false);
     let (code, _, err) = stepscope(&["capture", "-"], &zero);
     assert!(code == Some(2) && err.contains("several bit rates (38400, 115200, 76800)"), "{err}");
@@ -133,7 +131,7 @@ fn a_line_is_proposed_as_rx_whatever_its_polarity_and_never_as_step() {
     let inverted = table("A", &text, 17_361, 10, true);
     let (code, _, err) = stepscope(&["capture", "-", "--map", "RX=A"], &inverted);
     assert!(code == Some(2) && err.contains("the line looks inverted: map it with !"), "{err}");
-    // A map that inverts a line which is not inverted.
+    // An inverting map for a line that is not inverted.
     let upright = table("A", &text, 17_361, 10, false);
     let (code, _, err) = stepscope(&["capture", "-", "--map", "RX=!A"], &upright);
     assert!(

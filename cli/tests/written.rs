@@ -1,4 +1,4 @@
-//! Scenarios that the command writes: it can read each of them again.
+//! Scenarios that the command writes can be read again.
 
 use crate::program::stepscope;
 use std::{fs, path::PathBuf};
@@ -13,7 +13,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Stand-alone controllers have no line: their inputs are what is written.
+/// Stand-alone controllers have no line, so the inputs are written.
 #[test]
 fn the_line_of_stand_alone_controllers_gives_the_same_run() {
     let folder = folder("stand-alone");

@@ -1,14 +1,12 @@
-//! Stepscope: a stepper-motion peripheral modelled to the clock cycle, the motions that drive it, the experiments that
-//! join them, and what one looks at in a run.
+//! Stepscope: a cycle-exact model of a stepper-motion peripheral, with motion planning, experiments and analysis.
 //!
-//! Two things are done with it. One runs a whole **experiment** (a motion, a host, a serial line, controllers) and looks
-//! at its edges, spectrum or timing. Or one tests **firmware**: a driver that is written against a register map runs on
-//! the model as it runs on a chip. Either way a run gives the same edges, bit for bit, on a desk, in a browser and on a
-//! microcontroller.
+//! Use it to run an **experiment** (a motion, a host, a serial line, controllers) and analyze its edges, spectrum or
+//! timing, or to test **firmware** written for the register map. Both give the same edges, bit for bit, on a PC, in a
+//! browser and on a microcontroller.
 //!
 //! # From a scenario to a digest
 //!
-//! A scenario is JSON; every field has a default. The digest of its trace is what two people compare.
+//! A scenario is JSON; every field has a default. The digest identifies its trace.
 //!
 //! ```
 //! # #[cfg(feature = "sim")] {
@@ -29,7 +27,7 @@
 //! assert_eq!(format!("{:016x}", recording.digest.value()), "ed82c77232a01a3a");
 //! assert_eq!(steps(&recording.trace, 0).len(), 3200); // each with its cycle
 //!
-//! // What is wrong with a scenario is told at once, each problem with its path.
+//! // All problems are reported at once, each with its path.
 //! let problems = Experiment::from_json(r#"{ "bus": { "slots": 200 } }"#).unwrap_err();
 //! assert_eq!(problems[0].path, "bus.slots");
 //! # }
@@ -53,29 +51,27 @@
 //! }
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
-//! let mut bus = ModelBus::new(&config, Cycles(8), Digest::default()); // 8 cycles an access
+//! let mut bus = ModelBus::new(&config, Cycles(8), Digest::default()); // 8 cycles per access
 //! bus.wait(Cycles(2_000)); // the peripheral's self-test
 //! nudge(&mut bus);
 //! bus.wait(Cycles(40_000)); // a tick and more
 //! assert_eq!(bus.device().positions()[0], 5);
 //! ```
 //!
-//! Below the bus is the [`Device`](peripheral::device::Device) itself: `clock` advances it one cycle, `run` as fast as its
-//! edges allow, with the same trace. Four short programs are in `examples/`: `firmware_test`, `line_script`,
-//! `segment_list` and `registers`.
+//! The [`Device`](peripheral::device::Device) below the bus advances by one cycle (`clock`) or by edges (`run`), with the
+//! same trace. `examples/` has four short programs: `firmware_test`, `line_script`, `segment_list` and `registers`.
 //!
-//! # The rooms
+//! # Crates
 //!
-//! Each room is a crate of its own, re-exported here. The way of the data is one line; a room may use what stands to its
-//! left, never what stands to its right:
+//! Each module is a crate, re-exported here. A crate depends only on those to its left:
 //!
 //! ```text
 //! registers -> peripheral -> motion, plant, controller, capture -> scenario -> sim -> inspect
 //! ```
 //!
-//! | room | what it holds | feature |
+//! | crate | contents | feature |
 //! | --- | --- | --- |
-//! | [`registers`] | the register map, its data sheet, and the bus that drivers are written against | always |
+//! | [`registers`] | the register map, its data sheet, and the bus for drivers | always |
 //! | [`peripheral`] | the device: serial line, packets, frames, pulses, segments, trace, digest | always |
 #![cfg_attr(
     feature = "motion",
@@ -91,17 +87,17 @@
 )]
 #![cfg_attr(
     feature = "scenario",
-    doc = "| [`scenario`] | what a file, a link and the form hold | `scenario` |"
+    doc = "| [`scenario`] | the scenario format: files, links, the form | `scenario` |"
 )]
-#![cfg_attr(feature = "std", doc = "| [`capture`] | files of logic analyzers, in cycles | `std` |")]
-#![cfg_attr(feature = "sim", doc = "| [`sim`] | a scenario judged, planned and run | `sim` |")]
+#![cfg_attr(feature = "std", doc = "| [`capture`] | recordings of logic analyzers and logs, in cycles | `std` |")]
+#![cfg_attr(feature = "sim", doc = "| [`sim`] | validates, plans and runs scenarios | `sim` |")]
 #![cfg_attr(
     feature = "inspect",
-    doc = "| [`inspect`] | what one looks at: packets, spectra, measures, timing, torque | `inspect` |"
+    doc = "| [`inspect`] | analysis: packets, spectra, measures, timing, torque | `inspect` |"
 )]
 //!
-//! A room's feature brings those to its left. `std` adds the spectrum, value change dumps and recordings; without it all of this is
-//! `no_std` with `alloc`. By default everything is on; firmware tests need no more than
+//! A crate's feature enables the crates to its left. `std` adds the spectrum, value change dumps and recordings; without
+//! it everything is `no_std` with `alloc`. All features are on by default; firmware tests need only
 //! `stepscope-core = { version = "0.1", default-features = false }`.
 //!
 //! # Time, positions, units

@@ -1,10 +1,8 @@
-//! An example of firmware for the peripheral: a driver that knows the registers
-//! ([`stepscope_registers`]) and a bus to reach them by, and nothing else. It runs unchanged on a chip
-//! and, in this crate's tests, on the model; no allocation, no standard library.
+//! Example firmware for the peripheral: a driver on top of the registers ([`stepscope_registers`]), without
+//! allocation or the standard library. It runs unchanged on a chip and, in tests, on the model.
 //!
-//! A motion is a row of ticks, each with an order a channel. The queue evens out when they come: the
-//! program has only to call [`Driver::fill`] often enough that it never runs empty.
-//!
+//! A motion is a sequence of ticks with one command per channel. Call [`Driver::fill`] often enough that the queue
+//! never runs empty.
 //! ```
 //! use stepscope_firmware::{Driver, ChannelCommand};
 //! use stepscope_registers::RegisterBus;
@@ -25,22 +23,22 @@ use stepscope_registers::{
     RegisterBus, capabilities, control, faults, id, orders, position, push, result, slots, status, ticks_done,
 };
 
-/// Why the driver could not do what was asked.
+/// An error of the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// The peripheral is not there: the ID register reads as this.
+    /// No peripheral; the value of the ID register.
     NotFound(u32),
-    /// The peripheral's register map is of this version, which the driver does not know.
+    /// Unknown version of the register map.
     UnknownVersion(u32),
-    /// No free place in the queue: come again.
+    /// The queue is full; try again.
     Full,
-    /// A channel was to make more steps than a tick has slots; or there is no such channel.
+    /// More steps than slots per tick, or no such channel.
     TooManySteps,
-    /// In the self-test; or, to disable, a tick runs or waits: come again.
+    /// In the self-test or, for disable, during a tick; try again.
     Busy,
-    /// Stopped: [`Driver::enable`] comes first.
+    /// Stopped; call [`Driver::enable`] first.
     Stopped,
-    /// The peripheral gave this result, which the driver does not know.
+    /// An unknown result.
     Unexpected(u32),
 }
 
@@ -62,12 +60,12 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// What one channel is to do in one tick.
+/// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChannelCommand {
-    /// Right (DIR high) or left; DIR follows it also where there is no step.
+    /// Right (DIR high) or left; sets DIR even without steps.
     pub right: bool,
-    /// Steps, 0 to the slots of a tick.
+    /// Steps, 0 to the slots per tick.
     pub steps: u8,
 }
 
@@ -84,7 +82,7 @@ impl ChannelCommand {
         Self { right: false, steps }
     }
 
-    /// Its byte in an ORDERS register; `None` if it has more than 127 steps.
+    /// `None` for more than 127 steps.
     const fn byte(self) -> Option<u8> {
         if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
     }
@@ -97,7 +95,7 @@ pub struct Driver<B> {
 }
 
 impl<B: RegisterBus> Driver<B> {
-    /// Looks whether the peripheral is there.
+    /// Checks that the peripheral is present.
     ///
     /// # Errors
     /// [`Error::NotFound`], [`Error::UnknownVersion`].
@@ -112,35 +110,35 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
-    /// The bus, for what the driver does not do.
+    /// The bus.
     pub const fn bus(&mut self) -> &mut B {
         &mut self.bus
     }
 
-    /// Waits until the self-test after reset is over.
+    /// Waits for the end of the self-test after reset.
     pub fn wait_for_self_test(&mut self) {
         while status::STATE.of(self.bus.read(status::OFFSET)) == status::STATE_BUSY {}
     }
 
-    /// Channels of this peripheral, 1 to 16.
+    /// Number of channels, 1 to 16.
     pub fn channels(&mut self) -> u32 {
         capabilities::CHANNELS.of(self.bus.read(capabilities::OFFSET))
     }
 
-    /// The most steps that a channel can make in one tick, 1 to 127.
+    /// Maximum steps per channel and tick, 1 to 127.
     pub fn slots(&mut self) -> u32 {
         self.bus.read(slots::OFFSET)
     }
 
-    /// Drivers on, and out of STOPPED.
+    /// Enables the drivers and leaves STOPPED.
     ///
     /// # Errors
-    /// None that the data sheet knows.
+    /// None according to the data sheet.
     pub fn enable(&mut self) -> Result<(), Error> {
         self.command(control::ENABLE.mask())
     }
 
-    /// Drivers off, once nothing moves.
+    /// Disables the drivers.
     ///
     /// # Errors
     /// [`Error::Busy`] while a tick runs or waits.
@@ -148,13 +146,13 @@ impl<B: RegisterBus> Driver<B> {
         self.command(control::DISABLE.mask())
     }
 
-    /// Emergency stop: drivers off and no pulse from the next cycle on, the queue emptied. One write,
-    /// so an interrupt may do it, too.
+    /// Emergency stop: no pulses from the next cycle on, drivers off, queue empty. A single write, so interrupts may
+    /// call it.
     pub fn stop(&mut self) {
         self.bus.write(control::OFFSET, control::STOP.mask());
     }
 
-    /// Queues a tick with these orders, of channel 0 first; further channels stand still.
+    /// Queues a tick; channels without a command do not move.
     ///
     /// # Errors
     /// [`Error::Full`], [`Error::TooManySteps`], [`Error::Busy`] in the self-test, [`Error::Stopped`].
@@ -174,11 +172,10 @@ impl<B: RegisterBus> Driver<B> {
         self.result()
     }
 
-    /// Fills the queue from `ticks` as far as there are places, and tells how many ticks that were: 0
-    /// if the queue was full already, or nothing was left.
+    /// Fills the queue from `ticks`; returns the number of ticks added.
     ///
     /// # Errors
-    /// As [`Self::push`], but for a full queue. The tick that was refused is taken from `ticks`.
+    /// Like [`Self::push`] except [`Error::Full`]. The refused tick is taken from `ticks`.
     pub fn fill<const N: usize>(
         &mut self,
         ticks: &mut impl Iterator<Item = [ChannelCommand; N]>,
@@ -192,10 +189,10 @@ impl<B: RegisterBus> Driver<B> {
         Ok(pushed)
     }
 
-    /// Whether all ticks have been made.
+    /// Whether all ticks are done.
     ///
     /// # Errors
-    /// [`Error::Stopped`]: they have not, and will not be.
+    /// [`Error::Stopped`]: they will not be.
     pub fn is_done(&mut self) -> Result<bool, Error> {
         let read = self.bus.read(status::OFFSET);
         match status::STATE.of(read) {
@@ -204,23 +201,23 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
-    /// Ticks that have ended since reset, wrapping.
+    /// Ticks done since reset, wrapping.
     pub fn ticks_done(&mut self) -> u32 {
         self.bus.read(ticks_done::OFFSET)
     }
 
-    /// Where channel `channel` is, in steps from reset; 0 of one that is not there.
+    /// A channel's position in steps since reset; 0 if there is no such channel.
     pub fn position(&mut self, channel: u8) -> i32 {
         let offset = position::OFFSET + 4 * u32::from(channel);
         if offset < position::REGISTER.end() { self.bus.read(offset).cast_signed() } else { 0 }
     }
 
-    /// The fault flags that are set: bits of [`faults`].
+    /// Fault flags: bits of [`faults`].
     pub fn faults(&mut self) -> u32 {
         self.bus.read(faults::OFFSET)
     }
 
-    /// Gives the fault flags that were set, and clears these. A fault that comes meanwhile stays.
+    /// Returns and clears the fault flags. A fault that occurs meanwhile stays.
     pub fn clear_faults(&mut self) -> u32 {
         let seen = self.faults();
         self.bus.write(faults::OFFSET, seen);

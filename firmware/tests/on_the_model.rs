@@ -1,4 +1,4 @@
-//! The driver, unchanged, on the model of the peripheral: what it orders is what the STEP lines do.
+//! Tests the unchanged driver on the model: STEP lines follow its commands.
 #![allow(clippy::expect_used, reason = "what is refused fails the test")]
 
 use stepscope_core::peripheral::{
@@ -13,8 +13,7 @@ use stepscope_registers::{RegisterBus, faults};
 
 type Model = ModelBus<Vec<Record>>;
 
-/// Ticks of 10 slots of 100 cycles, a queue of 4. The framed protocol's rule makes a gap between ticks a fault,
-/// UNDERRUN.
+/// Ticks of 10 slots of 100 cycles, a queue of 4. In the framed protocol a gap between ticks is an UNDERRUN.
 fn bus() -> Bus {
     Bus {
         channels: 3,
@@ -28,10 +27,10 @@ fn bus() -> Bus {
     }
 }
 
-/// A tick's cycles.
+/// Cycles per tick.
 const TICK: u64 = 1_000;
 
-/// A driver after the self-test, on a bus whose accesses take so many cycles.
+/// `access`: cycles per bus access.
 fn driver(access: u64) -> Driver<Model> {
     let line = SerialLine { protocol: Protocol::Framed, ..SerialLine::default() };
     let config = Config::new(16_000_000, &bus(), &line).expect("it holds");
@@ -40,12 +39,12 @@ fn driver(access: u64) -> Driver<Model> {
     driver
 }
 
-/// Steps of an axis in tick `tick` of its ramp up, plateau and ramp down over 40 ticks.
+/// A ramp up, plateau and ramp down over 40 ticks.
 fn ramp(tick: u8, top: u8) -> u8 {
     tick.min(39 - tick).min(top)
 }
 
-/// Three axes at once; the last tick is the one of zero counts that says so.
+/// The last tick has zero counts.
 fn three_axes() -> impl Iterator<Item = [ChannelCommand; 3]> {
     (0..40).map(|tick| {
         [
@@ -84,7 +83,7 @@ fn three_axes_end_where_they_should_and_no_tick_waits() {
 
 #[test]
 fn the_queue_bridges_a_slow_poll_and_no_slower_one() {
-    // Between two polls four ticks pass at the most.
+    // The queue covers four ticks between two polls.
     for (pause, gaps) in [(2 * TICK, false), (3 * TICK + TICK / 2, false), (5 * TICK, true)] {
         let mut driver = driver(2);
         let mut ticks = three_axes().chain([[ChannelCommand::default(); 3]]);
@@ -120,7 +119,7 @@ fn an_emergency_stop_ends_the_move_within_the_access() {
         let last = steps(trace, channel as u8).last().map(|step| step.position);
         assert_eq!(Some(position), last, "every pulse was counted");
     }
-    // The rest of the move is not made up for; a new one starts from here.
+    // The rest of the move is lost; a new one starts here.
     driver.enable().expect("it is always taken");
     driver.push(&[ChannelCommand::right(3)]).expect("the queue is empty");
     while !driver.is_done().expect("nobody stops it") {}
@@ -147,7 +146,7 @@ fn a_full_queue_and_too_many_steps_are_reported_and_nothing_of_them_moves() {
     while !driver.is_done().expect("nobody stops it") {}
     assert_eq!(driver.disable(), Ok(()));
     assert_eq!(driver.push(&one), Err(Error::Stopped));
-    // One left the queue to run at once, before the fifth came.
+    // One tick started at once, before the fifth was queued.
     assert_eq!((driver.ticks_done(), positions(&mut driver)), (5, [5, 0, 0]));
 }
 

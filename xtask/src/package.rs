@@ -144,7 +144,6 @@ fn packed(folder: &Path) -> Result<PathBuf> {
     packages.find(|path| path.extension().is_some_and(|end| end == "tgz")).context("npm packed nothing")
 }
 
-/// Adds to the npm package in `folder` what wasm-pack does not know of.
 pub(crate) fn complete(folder: &Path) -> Result<()> {
     let file = folder.join("package.json");
     let text = fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;

@@ -197,7 +197,7 @@ pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
 mod tests {
     use super::*;
 
-    /// What a bench measures is built as what people load.
+    /// The bench must measure the same build as the page.
     #[test]
     fn wasm_opt_does_the_same_for_the_bench_and_for_the_page() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

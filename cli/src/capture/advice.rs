@@ -1,11 +1,10 @@
-//! What would help with a recording, by the options of the command.
+//! Advice on a recording, by options of the command.
 
 use stepscope_core::inspect::recording::{
     remedy::{Note, Remedy},
     report::LineReport,
 };
 
-/// The end of a sentence that says what would help.
 pub(super) fn option(remedy: &Remedy) -> String {
     match remedy {
         Remedy::BothEdges { motor, channel } => {
@@ -24,17 +23,14 @@ pub(super) fn option(remedy: &Remedy) -> String {
     }
 }
 
-/// A note with what would help.
 pub(super) fn note(Note { text, remedy }: &Note) -> String {
     text.clone() + &remedy.as_ref().map(option).unwrap_or_default()
 }
 
-/// What a line says, or why it says nothing, with what would help.
 pub(super) fn line(line: &LineReport) -> String {
     of_line(&line.to_text(), line)
 }
 
-/// A sentence on a line with what would help.
 pub(super) fn of_line(text: &str, line: &LineReport) -> String {
     text.to_owned() + &line.remedies.iter().map(option).collect::<String>()
 }

@@ -1,4 +1,4 @@
-//! A recording compared with a scenario's run.
+//! Compares a recording with a scenario's run.
 
 use super::arguments::Arguments;
 use crate::{failure::Failure, kept_run};
@@ -13,7 +13,6 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// A recording's steps, or bytes, compared with a plan's.
 pub(super) struct Beside {
     pub(super) recorded: Events,
     pub(super) model: Events,
@@ -22,7 +21,6 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// The recording compared with the run of a scenario.
     pub(super) fn of(
         arguments: &Arguments,
         recording: &LoadedCapture,

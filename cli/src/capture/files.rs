@@ -1,4 +1,4 @@
-//! Files of a recording.
+//! Writes the files of a recording.
 
 use super::{arguments::Arguments, beside::Beside};
 use crate::{
@@ -26,7 +26,6 @@ use stepscope_core::{
     scenario::Scenario,
 };
 
-/// Writes the files that were asked for.
 pub(super) fn write(
     arguments: &Arguments,
     outputs: &mut Outputs,
@@ -37,7 +36,7 @@ pub(super) fn write(
     if arguments.vcd.is_some() {
         arguments.vcd_timescale.of_clock(recording.clock_hz).map_err(Failure::Timescale)?;
     }
-    // Validated before a file is begun.
+    // Validate before a file is created.
     let channels = &recording.report.channels;
     if arguments.steps.is_some() && channels.iter().all(|found| found.channel != arguments.channel) {
         let others: Vec<String> = channels.iter().map(|found| found.channel.to_string()).collect();
@@ -93,7 +92,6 @@ pub(super) fn write(
     })
 }
 
-/// The text of the scenario that gives the recording again.
 fn scenario(
     path: &Path,
     arguments: &Arguments,
@@ -115,7 +113,7 @@ fn scenario(
     )
 }
 
-/// How late each step is; one that is missing, or extra, has a row without a time of the other side.
+/// A missing or additional step has a row with one empty time.
 fn late(out: &mut Out, beside: &Beside) -> io::Result<()> {
     let one = beside.recorded.kind.singular();
     writeln!(out, "{one},recorded_{one},recorded_s,late_s,other_direction,event")?;
@@ -138,7 +136,6 @@ fn late(out: &mut Out, beside: &Beside) -> io::Result<()> {
     Ok(())
 }
 
-/// As `stepscope tables --steps` reads them.
 fn steps(out: &mut Out, steps: &[Step]) -> io::Result<()> {
     writeln!(out, "cycle,dir")?;
     let rows = steps.iter().enumerate();

@@ -1,4 +1,4 @@
-//! What `stepscope capture` prints.
+//! Prints the report of `stepscope capture`.
 
 use super::{advice, beside::Beside};
 use crate::{
@@ -10,10 +10,8 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, report::ChannelReport};
 
-/// Differences from the plan that the screen shows.
 const MAX_SHOWN: usize = 10;
 
-/// For the eye.
 pub(super) fn print(
     recording: &LoadedCapture,
     is_proposed: bool,
@@ -135,7 +133,6 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
     }
 }
 
-/// Why the recording is not what was planned.
 pub(super) fn difference(beside: &Beside) -> String {
     let found = &beside.found.differences;
     let first = found.listed.first().map_or_else(String::new, |first| first.to_text(beside.found.kind));
@@ -146,7 +143,6 @@ pub(super) fn difference(beside: &Beside) -> String {
     format!("the recording differs from the plan: {first}{more}")
 }
 
-/// As tables.
 pub(super) fn tables(
     tables: Tables,
     recording: &LoadedCapture,

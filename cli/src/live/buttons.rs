@@ -1,9 +1,9 @@
-//! Lines of text that are buttons, switches, power and a hand on the axis of a stand-alone controller (LIVE H2).
+//! Parses the lines that operate a stand-alone controller: buttons, switches, power, a push on the axis (LIVE H2).
 //!
 //! ```text
-//! press start 100ms     down, and up after 100 ms of the session's time
-//! power 0 2s            without power for 2 s
-//! 1: limit_max 1        of the second controller
+//! press start 100ms     press, and release after 100 ms of session time
+//! power 0 2s            no power for 2 s
+//! 1: limit_max 1        an input of the second controller
 //! ```
 
 use std::{fmt, str::FromStr};
@@ -12,7 +12,6 @@ use stepscope_core::{
     peripheral::units::Cycles,
 };
 
-/// What `help` says.
 pub(crate) const HELP: &str = "\
 press NAME [TIME]     a button, held until `release NAME`, or for a time such as 100ms, 2.5s or 200us
 release NAME
@@ -22,29 +21,26 @@ wait TIME             the lines after it come so much later
 1: LINE               the same of controller 1; without it, of controller 0
 help                  this, and the names of all inputs";
 
-/// Most seconds of a time: a month of session.
+/// A month.
 const MAX_SECONDS: f64 = 2_678_400.0;
 
-/// A line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
-    /// Blank, or a comment after `#`.
+    /// Blank, or a comment.
     Nothing,
     Help,
-    /// What follows comes later.
+    /// The next line comes later.
     Wait(Span),
-    /// An input of a controller changes, for good or for a time.
+    /// Controller, change, and duration if it is not permanent.
     Change(usize, Change, Option<Span>),
 }
 
-/// A time of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
     seconds: f64,
 }
 
 impl Span {
-    /// The nearest number of cycles.
     pub(crate) fn cycles(self, clock_hz: u32) -> Cycles {
         Cycles((self.seconds * f64::from(clock_hz)).round() as u64)
     }
@@ -68,17 +64,14 @@ impl FromStr for Span {
     }
 }
 
-/// Why a line says nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum NoLine {
-    /// It begins with a word that means nothing.
     Word(String),
-    /// There is no such input.
     Input(String),
     Level(String),
     Time(String),
     Steps(String),
-    /// The words, and how many are meant.
+    /// The words, and the expected number.
     Count(String, &'static str),
 }
 

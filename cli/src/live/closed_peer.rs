@@ -1,17 +1,17 @@
-//! Whether the program at the other end of a local connection has closed it, while bytes that it sent still wait in the system.
+//! Detects that a local program has closed its connection while its bytes are still unread.
 //!
-//! TCP itself shows that only when those bytes are read: the end comes behind them. A server that reads no faster than a serial line
-//! would serve nobody else for minutes.
+//! TCP shows this only when the bytes have been read. A server that reads at the speed of a serial line would be
+//! blocked for minutes.
 
 use std::{io, net::SocketAddr};
 
-/// Whether the socket `there`, which was connected to `here`, was closed by its process. False where the system does not show it:
-/// for other machines, and on other systems than Linux.
+/// Whether the process of socket `there`, connected to `here`, has closed it. False for other machines, and on
+/// systems other than Linux.
 pub(super) fn is_closed(here: SocketAddr, there: SocketAddr) -> bool {
     if !cfg!(target_os = "linux") || !there.ip().to_canonical().is_loopback() {
         return false;
     }
-    // An IPv6 socket can be connected to an IPv4 address, so either table can have the row.
+    // An IPv6 socket may be connected to an IPv4 address, so either table may have the row.
     let tables = ["/proc/net/tcp", "/proc/net/tcp6"].map(read);
     tables
         .into_iter()
@@ -19,7 +19,7 @@ pub(super) fn is_closed(here: SocketAddr, there: SocketAddr) -> bool {
         .is_ok_and(|rows| is_closed_in(&rows, there.port(), here.port()))
 }
 
-/// A table of sockets; empty on a system without this family of addresses.
+/// Empty on a system without this address family.
 fn read(table: &str) -> io::Result<String> {
     match std::fs::read_to_string(table) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(String::new()),
@@ -27,8 +27,8 @@ fn read(table: &str) -> io::Result<String> {
     }
 }
 
-/// Whether the rows between two ports are all of closed sockets, which have no inode. Without a row it is unknown: a table is not
-/// read in one moment, so a row can be missing.
+/// Whether all rows between the ports have no inode, as for closed sockets. No row means unknown: tables are not read
+/// atomically.
 fn is_closed_in(rows: &str, from: u16, to: u16) -> bool {
     let port = |address: &str| u16::from_str_radix(address.rsplit(':').next()?, 16).ok();
     let mut inodes = rows
@@ -86,7 +86,7 @@ mod tests {
             client.set_nonblocking(true).expect("it can be");
             while matches!(client.write(&[0; 1 << 16]), Ok(1..)) {}
             assert!(!is_closed(here, there), "{address}");
-            // One that only sends no more may still read.
+            // A client that has only stopped sending may still read.
             client.shutdown(Shutdown::Write).expect("it is open");
             assert!(!is_closed(here, there), "{address}");
             drop(client);

@@ -1,4 +1,4 @@
-//! Standard input as where a stand-alone controller's buttons come from.
+//! Standard input as the port of a stand-alone controller's buttons.
 
 use super::port::{Heard, Port};
 use std::{
@@ -8,26 +8,25 @@ use std::{
     time::Duration,
 };
 
-/// Chunks that wait to be taken; what goes beyond them waits in the system.
+/// Buffered chunks; more input waits in the system.
 const CHUNKS: usize = 4;
 const CHUNK: usize = 1024;
 
-/// Standard input, read by a thread of its own: a system does not wait for it and for time together everywhere.
+/// A thread reads standard input, since not every system can wait for it with a time-out.
 pub(crate) struct Keyboard {
     chunks: Receiver<Vec<u8>>,
-    /// What did not fit when it was read.
+    /// The rest of a chunk that did not fit.
     rest: Vec<u8>,
     ended: bool,
 }
 
 impl Keyboard {
-    /// From now on it is read.
     pub(crate) fn open() -> io::Result<Self> {
         let (sender, chunks) = sync_channel(CHUNKS);
         thread::Builder::new().name("buttons".to_owned()).spawn(move || {
             let mut buffer = [0; CHUNK];
             let mut input = io::stdin();
-            // What cannot be read has ended.
+            // An error counts as the end.
             while let Ok(count @ 1..) = input.read(&mut buffer) {
                 let chunk = buffer.get(..count).unwrap_or_default().to_vec();
                 if sender.send(chunk).is_err() {
@@ -61,7 +60,6 @@ impl Port for Keyboard {
         Ok(Heard::Bytes(count))
     }
 
-    /// Nothing is written to a panel.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         Ok(bytes.len())
     }

@@ -1,20 +1,19 @@
-//! Errors of a real line, as its driver counts them (LIVE H1): beside a session, not in its recording.
+//! Errors of a real line, as its driver counts them (LIVE H1). They are not part of the recording.
 
 use std::fmt;
 
-/// Counts since the system started, or since a port was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct LineErrors {
-    /// Bytes without their stop bit: the other end has another rate, or the line is bad.
+    /// Missing stop bits: the other end has another rate, or the line is bad.
     framing: u32,
-    /// Bytes that came before there was room.
+    /// Bytes without space in the buffer.
     overruns: u32,
     parity: u32,
     breaks: u32,
 }
 
 impl LineErrors {
-    /// What was counted after `begin`; the counters go round.
+    /// The difference; the counters wrap.
     pub(crate) const fn since(self, begin: Self) -> Self {
         Self {
             framing: self.framing.wrapping_sub(begin.framing),
@@ -24,7 +23,6 @@ impl LineErrors {
         }
     }
 
-    /// Whether there was none.
     pub(crate) fn is_none(self) -> bool {
         self == Self::default()
     }
@@ -37,27 +35,27 @@ impl fmt::Display for LineErrors {
     }
 }
 
-/// What the driver of a port has counted; `None` where the system does not tell, as of pseudo-terminals.
+/// `None` if the system does not count, as for pseudo-terminals.
 #[cfg(all(
     target_os = "linux",
     any(target_arch = "x86", target_arch = "x86_64", target_arch = "arm", target_arch = "aarch64")
 ))]
 pub(crate) fn counted(port: &impl std::os::fd::AsFd) -> Option<LineErrors> {
     use rustix::ioctl::{Getter, Opcode, ioctl};
-    /// As these architectures have it.
+    /// The value on these architectures.
     const TIOCGICOUNT: Opcode = 0x545d;
-    /// `struct serial_icounter_struct` of <linux/serial.h>: twenty times `int`.
+    /// `struct serial_icounter_struct` of <linux/serial.h>: twenty `int`s.
     type Counters = [i32; 20];
     const FRAME: usize = 6;
     #[allow(unsafe_code, reason = "no crate that is used here has this call")]
-    // SAFETY: TIOCGICOUNT writes a `serial_icounter_struct`, which is as long as `Counters`, of whose ints any value will do.
+    // SAFETY: TIOCGICOUNT writes a `serial_icounter_struct`, which has the size of `Counters`; every value of its
+    // ints is valid.
     let counters = unsafe { ioctl(port, Getter::<TIOCGICOUNT, Counters>::new()) }.ok()?;
     let [framing, overruns, parity, breaks, ..] = *counters.get(FRAME..)? else { return None };
     let [framing, overruns, parity, breaks] = [framing, overruns, parity, breaks].map(i32::cast_unsigned);
     Some(LineErrors { framing, overruns, parity, breaks })
 }
 
-/// The system does not tell.
 #[cfg(not(all(
     target_os = "linux",
     any(target_arch = "x86", target_arch = "x86_64", target_arch = "arm", target_arch = "aarch64")

@@ -1,5 +1,5 @@
-//! The panel of stand-alone controllers that are served: lines become presses, each after the cycle behind which the model
-//! stands then (LIVE H1, H2).
+//! The panel of served stand-alone controllers: converts lines to presses after the model's current cycle (LIVE H1,
+//! H2).
 
 use super::{
     buttons::{HELP, Line},
@@ -16,42 +16,39 @@ use stepscope_core::{
     sim::session::Session,
 };
 
-/// A line that is longer means nothing.
+/// Longer lines are ignored.
 const MAX_LINE: usize = 200;
-/// While so many lines wait no more are read.
+/// Stops reading while this many lines wait.
 const MAX_LINES: usize = 256;
 
-/// What was typed and is to be done.
 #[derive(Default)]
 pub(crate) struct Panel {
-    /// The beginning of a line.
+    /// The start of an incomplete line.
     begun: Vec<u8>,
     lines: VecDeque<String>,
-    /// The lines that are left come behind this cycle.
+    /// The next lines wait until after this cycle.
     pub(crate) waits: Option<Instant>,
-    /// Presses without meaning that were told, of each controller.
+    /// Ignored presses that were reported, per controller.
     told: Vec<usize>,
 }
 
 impl Panel {
-    /// How many bytes may be typed.
     pub(crate) fn room(&self) -> usize {
         if self.lines.len() < MAX_LINES { usize::MAX } else { 0 }
     }
 
-    /// Bytes of lines.
     pub(crate) fn type_in(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             match byte {
                 b'\n' | b'\r' => self.end_line(),
-                // One more shows that it is too long.
+                // One byte more marks it as too long.
                 _ if self.begun.len() <= MAX_LINE => self.begun.push(byte),
                 _ => {}
             }
         }
     }
 
-    /// Nothing more is typed: the last line may have no end.
+    /// The last line may have no line feed.
     pub(crate) fn end_line(&mut self) {
         let begun = std::mem::take(&mut self.begun);
         let text = String::from_utf8_lossy(&begun).into_owned();
@@ -60,12 +57,10 @@ impl Panel {
         }
     }
 
-    /// Whether no line is left.
     pub(crate) fn is_done(&self) -> bool {
         self.lines.is_empty() && self.waits.is_none()
     }
 
-    /// Does what is to be done behind the cycle in which the model stands, and tells what means nothing.
     pub(crate) fn obey(&mut self, session: &mut Session, told: &mut StatusLine) {
         if self.waits.is_some_and(|until| session.now() >= until) {
             self.waits = None;
@@ -103,7 +98,7 @@ impl Panel {
         }
     }
 
-    /// Presses that did nothing since.
+    /// Reports presses without effect since the last call.
     fn tell_ignored(&mut self, session: &Session, told: &mut StatusLine) {
         let Some(machine) = session.run().stand_alone() else { return };
         self.told.resize(machine.controllers(), 0);
@@ -121,7 +116,6 @@ fn help() -> String {
     format!("{HELP}\nInputs: {}", names.join(" "))
 }
 
-/// How the panels stand, in a line.
 pub(crate) fn status(machine: &StandAlone) -> String {
     let mut text = String::new();
     for index in 0..machine.controllers().min(4) {
@@ -155,7 +149,7 @@ mod tests {
         Session::new(&Scenario::from_json(json).expect("reads")).expect("no problems")
     }
 
-    /// What is recorded after so many cycles, in as many rounds as waits ask for.
+    /// Runs as many rounds as the waits need.
     fn recorded(typed: &[u8], cycles: u64) -> Vec<(u64, String)> {
         let (mut session, mut panel, mut line) = (session(), Panel::default(), StatusLine::new(false));
         session.advance::<Digest>(Instant(9), &mut []);

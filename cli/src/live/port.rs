@@ -1,4 +1,4 @@
-//! Ports: a real one, a pseudo-terminal's side for others, a socket. Each reads for a while and writes what it can.
+//! Ports: a serial port, a pseudo-terminal, a socket. Each reads with a time-out and writes without blocking.
 
 use super::{
     closed_peer,
@@ -15,74 +15,69 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A system does not wait for less.
+/// The system's shortest wait.
 const MIN_WAIT: Duration = Duration::from_millis(1);
-/// How long a write waits for room before it is tried again later.
+/// How long a write waits for space.
 const WRITE_WAIT: Duration = Duration::from_millis(1);
-/// How often it is looked whether Ctrl-C ends the wait for a connection.
+/// Interval of checks for Ctrl-C while connecting.
 const CONNECT_WAIT: Duration = Duration::from_millis(20);
-/// How often the system is asked whether a client is closed whose bytes are not read.
+/// Interval of checks whether a client whose bytes are unread has closed.
 const ASK_TIME: Duration = Duration::from_millis(20);
 
-/// What came of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Heard {
-    /// Nothing in that time.
     Nothing,
-    /// So many bytes.
     Bytes(usize),
-    /// Another client is connected than before.
+    /// A new client.
     Connected,
-    /// No more bytes come. The other end may still read.
+    /// No more bytes come; the other end may still read.
     Ended,
-    /// The other end has disconnected, and what it sent and was not read is lost.
+    /// The other end has disconnected; its unread bytes are lost.
     Gone,
 }
 
 /// One end of a line.
 pub(crate) trait Port {
-    /// Reads what is there, or comes within `wait`.
+    /// Reads what is available or comes within `wait`.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard>;
 
-    /// Waits without reading: what is there stays in the system. Still sees that the other end disconnects.
+    /// Waits without reading, but detects a disconnection.
     fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
         thread::sleep(wait);
         Ok(Heard::Nothing)
     }
 
-    /// Disconnects a client whose bytes have ended.
+    /// Disconnects a client that has stopped sending.
     fn hang_up(&mut self) {}
 
-    /// Writes as much as there is room for, now.
+    /// Writes as much as fits now.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 
-    /// Waits until all that was written has left, where the system tells.
+    /// Waits until everything is sent, if the system can tell.
     fn drain(&mut self) -> io::Result<()> {
         Ok(())
     }
 
-    /// Raises or drops RTS.
     fn set_rts(&mut self, _on: bool) -> io::Result<()> {
         Err(ErrorKind::Unsupported.into())
     }
 
-    /// Looks after what is no data, a few times a second; what is to be told.
+    /// Called several times per second for other events; returns a message for the user.
     fn look(&mut self) -> Option<String> {
         None
     }
 
-    /// Errors that the line had since it was opened, where the system counts them.
+    /// Errors since the port was opened, if the system counts them.
     fn line_errors(&self) -> Option<LineErrors> {
         None
     }
 
-    /// Whether somebody is at the other end.
     fn is_connected(&self) -> bool {
         true
     }
 }
 
-/// Writes all, at the latest by `within`.
+/// Fails after `within`.
 pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration) -> io::Result<()> {
     let begin = Instant::now();
     while !bytes.is_empty() {
@@ -98,7 +93,6 @@ pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration)
     Ok(())
 }
 
-/// What a read of the system comes to.
 fn heard(result: io::Result<usize>) -> io::Result<Heard> {
     match result {
         Ok(0) => Ok(Heard::Gone),
@@ -110,7 +104,6 @@ fn heard(result: io::Result<usize>) -> io::Result<Heard> {
     }
 }
 
-/// What a write of the system comes to.
 fn written(result: io::Result<usize>) -> io::Result<usize> {
     match result {
         Err(error)
@@ -125,7 +118,7 @@ fn written(result: io::Result<usize>) -> io::Result<usize> {
     }
 }
 
-/// How an RS-485 transceiver is turned.
+/// What switches an RS-485 transceiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Rs485 {
     /// The adapter turns by itself.
@@ -137,15 +130,14 @@ pub(crate) enum Rs485 {
     Rts,
 }
 
-/// A real port, or somebody's pseudo-terminal.
 pub(crate) struct Serial {
     port: SerialPort,
-    /// Errors that were counted before.
+    /// Errors counted before the port was opened.
     errors_before: Option<LineErrors>,
 }
 
 impl Serial {
-    /// Opens a port at 8N1 without flow control, for nobody else, and reads back whether it is.
+    /// Opens the port exclusively at 8N1 without flow control and reads the settings back.
     pub(crate) fn open(path: &Path, baud: u32, rs485: Rs485) -> Result<Self, Failure> {
         let name = || path.display().to_string();
         let failed = |error: io::Error| Failure::Port(name(), error.to_string());
@@ -167,7 +159,7 @@ impl Serial {
         port.set_configuration(&wanted).map_err(|error| refused(&error.to_string()))?;
         let told = port.get_configuration().map_err(failed)?;
         let has = told.get_baud_rate().unwrap_or(0);
-        // A divider has its steps; A4's receivers bear some per cent.
+        // Dividers are coarse; receivers tolerate a few percent (A4).
         if u64::from(has.abs_diff(baud)) * 50 > u64::from(baud) {
             return Err(refused(&format!("it says {has} baud")));
         }
@@ -187,7 +179,7 @@ impl Serial {
         if rs485 == Rs485::Rts {
             port.set_rts(false).map_err(failed)?;
         }
-        // What was sent before this port was opened is no answer.
+        // Bytes from before this session are not replies.
         port.discard_buffers().map_err(failed)?;
         let errors_before = line_errors::counted(&port);
         Ok(Self { port, errors_before })
@@ -204,13 +196,12 @@ fn kernel_turns(_port: &SerialPort) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
-/// Waits for bytes, or for the end of them.
 #[cfg(unix)]
 fn has_bytes(port: &impl std::os::fd::AsFd, wait: Duration) -> io::Result<bool> {
     poll_for(port, rustix::event::PollFlags::IN, wait)
 }
 
-/// Waits for what is asked for, and for errors, to the nanosecond: timeouts of ports and sockets are those of the system's tick.
+/// Uses nanoseconds: timeouts of ports and sockets have the resolution of the system's tick.
 #[cfg(unix)]
 fn poll_for(
     port: &impl std::os::fd::AsFd,
@@ -227,7 +218,7 @@ fn poll_for(
     }
 }
 
-/// The timeout that follows is that of the system.
+/// The read's own time-out follows.
 #[cfg(not(unix))]
 fn has_bytes<T>(_port: &T, _wait: Duration) -> io::Result<bool> {
     Ok(true)
@@ -260,24 +251,23 @@ impl Port for Serial {
     }
 }
 
-/// A socket to a program that speaks the bytes as they are.
 pub(crate) struct Socket(TcpStream);
 
 impl Socket {
     pub(crate) fn new(stream: TcpStream) -> io::Result<Self> {
         stream.set_nodelay(true)?;
-        // Where reads are preceded by a wait for bytes neither a read nor a write has to wait itself.
+        // Reads wait with `poll`, so neither reads nor writes need to block.
         stream.set_nonblocking(cfg!(unix))?;
         stream.set_write_timeout(Some(WRITE_WAIT))?;
         Ok(Self(stream))
     }
 
-    /// Connects to an address of another program. Ctrl-C ends the wait for the name and for the connection.
+    /// Ctrl-C ends the wait for the name and the connection.
     pub(crate) fn connect(address: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
         let (sender, connected) = sync_channel(1);
         let to = address.to_owned();
-        // The system looks up names and connects without a way to be interrupted: in a thread, which ends with the command.
+        // Name lookup and connecting cannot be interrupted, so a thread does them; it ends with the command.
         let connect = move || drop(sender.send(TcpStream::connect(to)));
         thread::Builder::new().name("connect".to_owned()).spawn(connect).map_err(Failure::threads)?;
         loop {
@@ -311,48 +301,46 @@ impl Port for Socket {
     }
 }
 
-/// Waits, and gives early whether the connection is broken.
+/// Returns early if the connection is broken.
 #[cfg(unix)]
 fn is_broken(stream: &TcpStream, wait: Duration) -> io::Result<bool> {
     poll_for(stream, rustix::event::PollFlags::empty(), wait)
 }
 
-/// Shows when it is read.
+/// The next read shows it.
 #[cfg(not(unix))]
 fn is_broken(_stream: &TcpStream, wait: Duration) -> io::Result<bool> {
     thread::sleep(wait);
     Ok(false)
 }
 
-/// A client of a [`Listener`].
 struct Client {
     socket: Socket,
     from: SocketAddr,
-    /// It sends no more, and may still read.
+    /// It has stopped sending and may still read.
     ended: bool,
 }
 
 impl Client {
-    /// Whether no process has the other end open any more, though bytes from it may still wait in the system.
+    /// Whether no process has the other end open, although unread bytes may remain.
     fn is_closed(&self) -> bool {
-        // A connection that was reset has no row in the system's tables.
+        // A reset connection has no row in the system's tables.
         is_broken(&self.socket.0, Duration::ZERO).unwrap_or(false)
             || self.socket.0.local_addr().is_ok_and(|here| closed_peer::is_closed(here, self.from))
     }
 }
 
-/// A socket that waits for one client at a time.
+/// A socket that serves one client at a time.
 pub(crate) struct Listener {
     listener: TcpListener,
     client: Option<Client>,
-    /// Whether the client is one that was not told of.
+    /// A client that has not been reported yet.
     is_new: bool,
-    /// When it was last asked whether the client is closed.
     asked: Instant,
 }
 
 impl Listener {
-    /// Listens on an address; on one that others than this machine reach only where that is asked for.
+    /// Accepts connections from other machines only with `open`.
     pub(crate) fn open(address: SocketAddr, open: bool) -> Result<(Self, SocketAddr), Failure> {
         if !address.ip().is_loopback() && !open {
             return Err(Failure::Option(format!(
@@ -366,11 +354,11 @@ impl Listener {
         Ok((Self { listener, client: None, is_new: false, asked: Instant::now() }, address))
     }
 
-    /// Takes a client that waits; one more than there may be is told and sent away.
+    /// Accepts a waiting client; an additional one gets a message and is disconnected.
     fn accept(&mut self) -> Option<String> {
         let (stream, from) = self.listener.accept().ok()?;
         if self.client.as_ref().is_some_and(|client| !client.ended && !client.is_closed()) {
-            // It may speak another protocol: what it reads here it can show.
+            // The client may use another protocol, but can show this text.
             let _ = (&stream).write_all(b"stepscope serve: another client is connected; one at a time\n");
             let _ = stream.shutdown(Shutdown::Both);
             return Some(format!("{from} was sent away: another client is connected"));
@@ -419,7 +407,7 @@ impl Port for Listener {
         if is_broken || asks && client.is_closed() {
             let ended = client.ended;
             self.client = None;
-            // All that one sent whose bytes have ended was read.
+            // A client that has stopped sending has been read completely.
             return Ok(if ended { Heard::Nothing } else { Heard::Gone });
         }
         Ok(Heard::Nothing)
@@ -430,11 +418,11 @@ impl Port for Listener {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // Until the new client is reported, replies are those to the client before.
+        // Until the new client is reported, replies belong to the previous one.
         if self.is_new {
             return Ok(bytes.len());
         }
-        // A reply that nobody reads is lost, as on a wire. A broken connection shows when it is read.
+        // An unread reply is lost, as on a wire. The next read shows a broken connection.
         self.client.as_mut().map_or(Ok(bytes.len()), |client| client.socket.write(bytes).or(Ok(bytes.len())))
     }
 
@@ -461,11 +449,11 @@ mod pty {
     };
     use std::{fs, os::fd::OwnedFd, os::unix::ffi::OsStringExt};
 
-    /// Maximum number of bytes that a system may hold of a client that closed its port.
+    /// Maximum bytes that the system holds for a client that has closed.
     const MAX_DISCARDED: usize = 1 << 20;
 
-    /// Claims a link for this session, until it ends, however it ends: a name among the system's abstract sockets, which leaves no
-    /// file behind. Whether the pseudo-terminal that the link leads to is there says nothing, as systems use its number again.
+    /// Claims a link for this session by an abstract socket, which disappears with the process and leaves no file.
+    /// The link's target does not show whether it is in use, since systems reuse the numbers of pseudo-terminals.
     #[cfg(target_os = "linux")]
     fn claim(link: &Path) -> Result<std::os::unix::net::UnixListener, Failure> {
         use std::{
@@ -475,7 +463,7 @@ mod pty {
         let folder = link.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let failed = |error: io::Error| Failure::File(link.to_owned(), error);
         let place = fs::canonicalize(folder).map_err(failed)?.join(link.file_name().unwrap_or_default());
-        // Names of sockets are short.
+        // Socket names are short, so the path is hashed.
         let mut hasher = DefaultHasher::new();
         place.hash(&mut hasher);
         let name = format!("stepscope-serve-pty-{:016x}", hasher.finish());
@@ -489,23 +477,23 @@ mod pty {
         })
     }
 
-    /// A pseudo-terminal whose other end is a port to somebody.
+    /// A pseudo-terminal; the other end is a port for another program.
     pub(crate) struct Pty {
         master: OwnedFd,
-        /// Of the other end.
+        /// The other end.
         pub(crate) path: PathBuf,
         link: Option<PathBuf>,
-        /// Held while the link is this session's.
+        /// Held while this session owns the link.
         #[cfg(target_os = "linux")]
         _claim: Option<std::os::unix::net::UnixListener>,
         baud: u32,
         connected: bool,
-        /// The rate that was warned of last.
+        /// The rate of the last warning.
         warned: u32,
     }
 
     impl Pty {
-        /// Makes one, raw and at `baud`, with a symbolic link to it.
+        /// Raw and at `baud`, with a symbolic link if requested.
         pub(crate) fn open(link: Option<&Path>, baud: u32) -> Result<Self, Failure> {
             let failed = |error: io::Error| Failure::Port("pty".to_owned(), error.to_string());
             let made = || -> io::Result<(OwnedFd, PathBuf)> {
@@ -516,7 +504,7 @@ mod pty {
                 // A master's settings are those of the other end.
                 let mut settings = tcgetattr(&master)?;
                 settings.make_raw();
-                // A rate that the system has no word for shows as another one: then nobody is warned.
+                // A rate unknown to the system cannot be compared, so there is no warning.
                 let _ = settings.set_speed(baud);
                 tcsetattr(&master, OptionalActions::Now, &settings)?;
                 let path = ptsname(&master, Vec::new())?;
@@ -541,7 +529,7 @@ mod pty {
             Ok(pty)
         }
 
-        /// Waits for the other end; whether bytes are there, and whether nobody has the other end open.
+        /// Returns whether bytes are available, and whether the other end is closed.
         fn poll(&self, flags: PollFlags, wait: Duration) -> io::Result<(bool, bool)> {
             let mut fds = [PollFd::new(&self.master, flags)];
             let timeout =
@@ -555,7 +543,7 @@ mod pty {
             Ok((fd.revents().contains(PollFlags::IN), fd.revents().contains(PollFlags::HUP)))
         }
 
-        /// Drops what nobody will be answered for: at most what the system holds.
+        /// Drops bytes that will get no reply: at most the system's buffer.
         fn discard(&self) {
             let mut buffer = [0; 4096];
             for _ in 0..MAX_DISCARDED / buffer.len() {
@@ -565,8 +553,7 @@ mod pty {
             }
         }
 
-        /// Makes the link. One that a session left behind, and leads to no pseudo-terminal any more or to another one, is
-        /// replaced; nothing else is.
+        /// Replaces only a link that a session left behind and that is no longer in use.
         fn link_to(&mut self, link: &Path) -> io::Result<()> {
             if fs::read_link(link).is_ok_and(|target| target.starts_with("/dev/pts")) {
                 fs::remove_file(link)?;
@@ -606,7 +593,7 @@ mod pty {
                 if was_connected {
                     return Ok(Heard::Ended);
                 }
-                // The system reports it at once, again and again.
+                // The system reports this without waiting.
                 thread::sleep(wait.min(MIN_WAIT));
             }
             Ok(Heard::Nothing)

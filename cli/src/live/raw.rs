@@ -1,5 +1,4 @@
-//! Raw packets to a real line, paced and unanswered (LIVE H3): nobody tells whether they arrive, so nothing is verified. When each is
-//! due, and what is known at the end, the core says.
+//! Sends raw packets to a real line, paced and without replies (LIVE H3). Nothing is confirmed.
 
 use super::{port::Heard, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
 use crate::{failure::Failure, interrupt, json::Tables, terminal};
@@ -10,10 +9,9 @@ use stepscope_core::sim::{
     raw_host::{NotPaced, RawHost, RawReport},
 };
 
-/// How long a write is given.
 const WRITE_WITHIN: Duration = Duration::from_secs(2);
 
-/// The host of a raw experiment that sends the first `lead` packets ahead.
+/// `lead`: number of packets sent ahead.
 pub(super) fn host(experiment: &Experiment, lead: u8) -> Result<RawHost, Failure> {
     RawHost::new(experiment, lead).map_err(|why| match why {
         NotPaced::Nothing => Failure::Option(why.to_string()),
@@ -21,7 +19,6 @@ pub(super) fn host(experiment: &Experiment, lead: u8) -> Result<RawHost, Failure
     })
 }
 
-/// Sends all packets, each at its time.
 pub(super) fn send(
     mut host: RawHost,
     wire: &mut Wire,
@@ -47,7 +44,7 @@ pub(super) fn send(
     }
     drop(line);
     if lost.is_none() {
-        // What is queued at the controller runs on.
+        // The controller executes what is in its queue.
         let _ = wire.port.drain();
     }
     print(&host.report(interrupted), lost.as_deref(), as_json)?;
@@ -61,7 +58,7 @@ pub(super) fn send(
     }
 }
 
-/// Waits for a time, listening for an echo meanwhile; false where Ctrl-C came first.
+/// Reads an echo while waiting; false on Ctrl-C.
 fn wait_until(due_ns: u64, watch: StopWatch, wire: &mut Wire) -> Result<bool, Failure> {
     let mut buffer = [0; 256];
     while interrupt::count() == 0 {

@@ -1,4 +1,4 @@
-//! What a session leaves: the scenario that gives it again, and its wall-clock times beside it (LIVE H5).
+//! Writes a session's recording: a scenario, and its wall-clock times (LIVE H5).
 
 use crate::{failure::Failure, output::Out, terminal};
 use std::{
@@ -16,17 +16,15 @@ use stepscope_core::{
     },
 };
 
-/// A file, and where it will be.
 pub(crate) type Named = (PathBuf, Out);
 
-/// The path of `NAME.session.json` beside a recording's.
 pub(crate) fn beside(record: &Path) -> PathBuf {
     let mut name = record.file_stem().unwrap_or_default().to_os_string();
     name.push(".session.json");
     record.with_file_name(name)
 }
 
-/// Writes the recording, and what was of the wall clock; gives whether it is the same run again.
+/// Returns whether the scenario's run is the same.
 pub(crate) fn write(
     session: &Session,
     (clock, times): (&SessionClock, &SessionTimes),
@@ -36,7 +34,7 @@ pub(crate) fn write(
     let whole = session.records_all();
     let verified = recording.verify();
     let mut rescue = Vec::new();
-    // Within the limits of a session there is always a form that can be read again.
+    // A session's limits ensure a readable form.
     let scenario = &recording.scenario;
     let text = scenario.to_file_json().unwrap_or_else(|| scenario.to_json());
     let texts = [
@@ -64,7 +62,7 @@ pub(crate) fn write(
     Ok(verified)
 }
 
-/// The share link of a recording, with the digests of its run; `None` where it does not fit in one.
+/// `None` if it does not fit in a link.
 pub(crate) fn link(scenario: &Scenario) -> Option<String> {
     let link = link::encode(scenario).ok()?;
     let experiment = Experiment::new(scenario).ok()?;
@@ -74,7 +72,7 @@ pub(crate) fn link(scenario: &Scenario) -> Option<String> {
     Some(link::with_part(link, "d", &proof.emit()))
 }
 
-/// A recording that its disk does not take is written where there may be room.
+/// Writes the recording elsewhere if its disk is full.
 fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
     let mut places = Vec::new();
     for (path, text) in texts {
@@ -86,11 +84,9 @@ fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
     Failure::Port(path.display().to_string(), format!("{error}; {also} {}", places.join(" ")))
 }
 
-/// Maximum number of names tried for a rescued file.
 const MAX_NAMES: u32 = 100;
 
-/// Writes a new file into a folder in which others may write, too. A name that exists is never opened, also not if it is a symbolic
-/// link that leads nowhere: another name is tried.
+/// Never opens an existing name, not even a dangling symbolic link: other users may write to this folder.
 fn rescue_in(folder: &Path, path: &Path, text: &str) -> Option<PathBuf> {
     let name = path.file_name()?.to_string_lossy().into_owned();
     for number in 0..MAX_NAMES {

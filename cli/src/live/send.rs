@@ -1,5 +1,5 @@
-//! `stepscope send`: a scenario's ticks to real controllers (LIVE H3). Over the framed protocol by the very conversation that a
-//! simulated run has; what is not confirmed by the controller is never said to be done.
+//! `stepscope send`: sends a scenario's ticks to real controllers (LIVE H3), with the same conversation as a
+//! simulated host. Reports a tick as done only if the controller has confirmed it.
 
 use super::{
     port::{Heard, Port, Rs485, Serial, Socket},
@@ -30,15 +30,13 @@ use stepscope_core::{
     },
 };
 
-/// Above this RTS cannot be dropped in time.
+/// At higher rates RTS drops too late.
 const MAX_RTS_BAUD: u32 = 9600;
-/// How long a write is given beyond the line's own time.
+/// Time for a write beyond the line's own time.
 const WRITE_WITHIN: Duration = Duration::from_secs(2);
 const WAIT: Duration = Duration::from_millis(10);
-/// All controllers.
 const ALL: u8 = 255;
 
-/// What `stepscope send` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
@@ -68,7 +66,6 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
-/// Sends the ticks and reports which are confirmed.
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
@@ -90,7 +87,7 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     }
     let raw = is_raw.then(|| raw::host(&experiment, arguments.lead)).transpose()?;
     wake_on_time();
-    // Until here a signal ends the command at once, also while it waits for a pipe.
+    // Until here a signal ends the command at once, even while it waits for a pipe.
     interrupt::watch()?;
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
@@ -150,7 +147,7 @@ impl Sender {
         self.clock.target(self.watch.nanos(), Instant::RESET)
     }
 
-    /// The whole conversation. An error is a port that is lost.
+    /// Fails if the port is lost.
     fn run(&mut self, wire: &mut Wire) -> Result<(), Failure> {
         let lost = |error: io::Error| Failure::LostPort(error.to_string());
         let mut buffer = [0; 4096];
@@ -162,7 +159,7 @@ impl Sender {
                     wire.write(&bytes, WRITE_WITHIN).map_err(lost)?;
                     let written = self.now();
                     let takes = line_time(bytes.len() as u64, self.clock_hz, self.baud);
-                    // Whether the system has sent it all when it has taken it all, it does not say.
+                    // The system does not report when the bytes have been sent, only that it has taken them.
                     self.host.sent(now.max(written) + Cycles(takes));
                 }
             }
@@ -185,7 +182,7 @@ impl Sender {
         Ok(())
     }
 
-    /// Ctrl-C: the first is STOP until it is acknowledged; the second one STOP to all, and the end.
+    /// The first Ctrl-C sends STOP until it is acknowledged; the second sends STOP to all and ends.
     fn obey(&mut self, wire: &mut Wire) -> Result<(), Failure> {
         let count = interrupt::count();
         if count > self.interrupts {

@@ -1,5 +1,5 @@
-//! `stepscope serve`: the controllers of a scenario behind a pseudo-terminal, a socket or a real port, or stand-alone ones whose
-//! buttons are lines on standard input (LIVE H2). What it does against the wall clock: `server.rs`.
+//! `stepscope serve`: a scenario's controllers behind a port, or stand-alone ones operated by lines on standard input
+//! (LIVE H2).
 
 use super::{
     keyboard::Keyboard,
@@ -22,7 +22,6 @@ use std::{
 };
 use stepscope_core::sim::session::{Pace, Session};
 
-/// What `stepscope serve` takes.
 #[derive(Args)]
 #[command(group(clap::ArgGroup::new("where").args(["pty", "tcp", "port"])))]
 pub(crate) struct Arguments {
@@ -80,7 +79,6 @@ fn pace(text: &str) -> Result<Pacing, String> {
     if text == "max" { Ok(Pacing::Max) } else { Ok(Pacing::Real(text.parse::<Pace>()?)) }
 }
 
-/// Serves until Ctrl-C, or with --once until the client disconnects.
 pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let beside = arguments.record.as_deref().map(beside);
@@ -99,7 +97,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
         (Some(record), Some(beside)) => Some((create(record)?, create(beside)?)),
         _ => None,
     };
-    // Before this a signal ends the command at once, also while it waits for a pipe.
+    // Until here a signal ends the command at once, even while it waits for a pipe.
     interrupt::watch()?;
     let port = open(arguments, &session)?;
     let Arguments { pace, lag, once, progress, .. } = *arguments;
@@ -130,7 +128,6 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens the port of the line and prints its address.
 fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failure> {
     if session.run().stand_alone().is_some() {
         return buttons(arguments);
@@ -162,7 +159,7 @@ fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failu
     }))
 }
 
-/// Of stand-alone controllers: nothing is on a line.
+/// Stand-alone controllers have no line.
 fn buttons(arguments: &Arguments) -> Result<Box<dyn Port>, Failure> {
     if arguments.pty.is_some() || arguments.tcp.is_some() || arguments.port.is_some() {
         let why = "a stand-alone controller has no line, and nobody could talk to it there; its buttons are lines on standard input: leave out --pty, --tcp and --port";

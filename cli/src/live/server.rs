@@ -1,11 +1,10 @@
-//! A session against the wall clock (LIVE H1, H2).
+//! Runs a session in real time (LIVE H1, H2).
 //!
 //! ```text
-//! round   the model runs to the clock's cycle, a millisecond at most ── replies that have left are written
-//!         ── bytes are read, and come after that cycle
+//! round   run the model to the clock's cycle, at most 1 ms -> write finished replies -> read bytes, which come after that cycle
 //! ```
 //!
-//! Of stand-alone controllers the bytes are lines on standard input, and nothing is written.
+//! For stand-alone controllers the bytes are lines on standard input, and nothing is written.
 
 use super::{
     panel::{self, Panel},
@@ -32,18 +31,17 @@ use stepscope_core::{
     },
 };
 
-/// Cycles of a round at most: as many records, at the very most.
+/// Limits the cycles, and so the records, per round.
 const MAX_ROUND: u64 = 1_000_000;
-/// How long is waited for bytes where nothing else is due.
+/// Maximum wait for bytes if nothing else is due.
 const IDLE_WAIT: Duration = Duration::from_millis(5);
-/// With `--pace max`: what the host may think before the model goes on without it.
+/// With `--pace max`: the host's time to respond before the model goes on.
 const THINKING: Duration = Duration::from_millis(10);
-/// Bytes of replies that wait for a host that does not read. Then it misses the oldest, as it would of a real line.
+/// Replies for a host that does not read; the oldest are lost, as on a real line.
 const MAX_WAITING: usize = 1 << 16;
-/// So many rounds' bytes are on the line ahead of the model, so that it wakes for a frame's end and not for each byte.
+/// Puts the bytes of several rounds on the line in advance, to wake once per frame rather than per byte.
 const ROUNDS_AHEAD: u64 = 10;
 
-/// How a session's time goes.
 #[derive(Clone, Copy)]
 pub(super) enum Pacing {
     Real(Pace),
@@ -53,38 +51,35 @@ pub(super) enum Pacing {
 /// What a session is asked to be.
 pub(super) struct Settings {
     pub(super) pacing: Pacing,
-    /// How late the model may be, in ms.
+    /// Maximum delay of the model, in ms.
     pub(super) lag: u64,
-    /// Whether it is recorded.
     pub(super) records: bool,
-    /// Whether it ends with the client.
     pub(super) once: bool,
-    /// Whether the status line is shown whatever standard error is.
     pub(super) progress: bool,
 }
 
 pub(super) struct Server {
     pub(super) session: Session,
     port: Box<dyn Port>,
-    /// Of stand-alone controllers.
+    /// For stand-alone controllers.
     panel: Option<Panel>,
     pacing: Pacing,
     pub(super) clock: SessionClock,
     watch: StopWatch,
     once: bool,
-    /// Bytes that the line has not taken. While there is no room nothing is read: the host has to wait.
+    /// Bytes not yet on the line. While it is full nothing is read and the host waits.
     input: Input,
-    /// The client sends no more; what it sent is still on its way.
+    /// The client has stopped sending; its last bytes are still buffered.
     is_leaving: bool,
-    /// Bytes that clients sent and that were dropped when they disconnected.
+    /// Bytes of disconnected clients that were dropped.
     dropped: u64,
-    /// Bytes of replies that the port has not taken.
+    /// Replies that the port has not taken.
     waiting: VecDeque<u8>,
     missed: u64,
     late: Lateness,
-    /// How long was to be waited after the last round.
+    /// The wait requested after the last round.
     waited: Duration,
-    /// How far the model was behind the clock at most, beyond that, since it was told.
+    /// Maximum delay beyond that wait, since the last report.
     behind: Duration,
     pub(super) times: SessionTimes,
     pub(super) line: StatusLine,
@@ -118,7 +113,6 @@ impl Server {
         }
     }
 
-    /// Round after round, until Ctrl-C, or until the client goes where that is the end.
     pub(super) fn run(&mut self) -> Result<(), Failure> {
         wake_on_time();
         let mut buffer = [0; 4096];
@@ -182,7 +176,7 @@ impl Server {
         Ok(())
     }
 
-    /// Runs to the clock's cycle, so that what was just read does not come before its time.
+    /// New bytes must not come before their time.
     fn catch_up(&mut self, silent_since: Duration) -> Result<(), Failure> {
         while matches!(self.pacing, Pacing::Real(_)) && self.round(silent_since).is_zero() {
             self.write_replies().map_err(lost)?;
@@ -190,7 +184,6 @@ impl Server {
         Ok(())
     }
 
-    /// What came, after the cycle that the model stands behind.
     fn take(&mut self, bytes: &[u8]) {
         self.times.chunk(self.watch.nanos(), self.session.now(), bytes.len());
         if let Some(panel) = &mut self.panel {
@@ -200,12 +193,10 @@ impl Server {
         self.input.push(bytes);
     }
 
-    /// How many bytes may be read.
     fn room(&self) -> usize {
         self.panel.as_ref().map_or_else(|| self.input.room(), Panel::room)
     }
 
-    /// Nobody is at the other end any more.
     fn gone(&mut self) {
         if let Some(panel) = &mut self.panel {
             return panel.end_line();
@@ -214,7 +205,7 @@ impl Server {
         self.drop_input();
     }
 
-    /// What is left of a client that has disconnected: nothing of it is for the next one.
+    /// The next client must not get the rest of the last one's bytes.
     fn drop_input(&mut self) {
         let count = self.input.clear();
         if count > 0 {
@@ -227,33 +218,33 @@ impl Server {
         self.is_leaving = false;
     }
 
-    /// Whether all that a client sent has been on the line, and was answered as far as it reads.
+    /// Whether a client's bytes have been processed and answered, as far as it reads.
     fn has_left(&self) -> bool {
         let replies = self.port.is_connected() && !self.waiting.is_empty();
         self.input.is_empty() && !self.session.is_busy() && !replies
     }
 
-    /// Whether a session that nobody says anything to any more has come to its end: a panel's when all is done that was typed.
+    /// Whether the session has ended: for a panel, when all input is processed.
     fn is_over(&self) -> bool {
         let is_last = || self.session.is_at_rest() || self.session.jogs_without_end();
         self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
-    /// The cycle to which it is worth going, and behind which no round goes: something is to be written or pressed then.
+    /// The next cycle with something to write or press; no round passes it.
     fn deadline(&self) -> Instant {
         let typed = self.panel.as_ref().and_then(|panel| panel.waits);
-        // Who waits for each byte is often told to wait its turn: a system with other work is later then.
+        // A process that waits for every byte is scheduled later on a busy system.
         let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
         typed.map_or(due, |typed| typed.min(due))
     }
 
-    /// Cycles of a round: a millisecond.
+    /// A millisecond.
     fn round_cycles(&self) -> u64 {
         let clock_hz = u64::from(self.session.experiment().config().clock_hz());
         (clock_hz / 1000).clamp(1, MAX_ROUND)
     }
 
-    /// Runs the model on, a round at most; how long may be waited for bytes then.
+    /// Returns how long to wait for bytes.
     fn round(&mut self, silent_since: Duration) -> Duration {
         let now = self.session.now();
         let step = self.round_cycles();
@@ -288,7 +279,6 @@ impl Server {
         self.waited
     }
 
-    /// Writes the replies that have left the model.
     fn write_replies(&mut self) -> io::Result<()> {
         let now_ns = self.watch.nanos();
         for reply in self.session.take_replies() {
@@ -320,7 +310,6 @@ impl Server {
         Ok(())
     }
 
-    /// What the session came to.
     pub(super) fn print_end(&mut self) -> io::Result<()> {
         let Self { session, .. } = self;
         let summary = Summary::new(session.experiment(), session.run(), session.digests());
@@ -352,7 +341,7 @@ impl Server {
     }
 }
 
-/// What the wall clock says, in ms after 1970.
+/// Milliseconds since 1970.
 fn unix_ms() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
@@ -362,7 +351,6 @@ fn lost(error: io::Error) -> Failure {
     Failure::LostPort(error.to_string())
 }
 
-/// How things stand, in a line.
 fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &Lateness) -> String {
     let config = session.experiment().config();
     let seconds = session.now().0 as f64 / f64::from(config.clock_hz().max(1));
@@ -392,7 +380,6 @@ fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &
     text + &not_real_time(clock)
 }
 
-/// Whether the clock was set back, in the status line.
 fn not_real_time(clock: &SessionClock) -> String {
     let stretches = clock.setbacks();
     if stretches.count == 0 {

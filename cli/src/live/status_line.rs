@@ -1,4 +1,4 @@
-//! A line on standard error that says how things stand, at most ten times a second.
+//! A status line on standard error, updated at most ten times per second.
 
 use crate::terminal;
 use std::{
@@ -8,7 +8,7 @@ use std::{
 
 const MIN_TIME: Duration = Duration::from_millis(100);
 
-/// The line; on a terminal each overwrites the one before, elsewhere it is shown where it is wanted.
+/// On a terminal it is overwritten; elsewhere it is shown only on request.
 pub(crate) struct StatusLine {
     shown: bool,
     terminal: bool,
@@ -22,14 +22,13 @@ impl StatusLine {
         Self { shown: wanted || terminal, terminal, last: None, wide: 0 }
     }
 
-    /// Says it, if it is time to.
     pub(crate) fn tell(&mut self, text: impl FnOnce() -> String) {
         if !self.shown || self.last.is_some_and(|last| last.elapsed() < MIN_TIME) {
             return;
         }
         self.last = Some(Instant::now());
         let text = text();
-        // Who has closed standard error does not want to know.
+        // If standard error is closed, the line is not needed.
         let _ = if self.terminal {
             let wide = self.wide.max(text.chars().count());
             self.wide = text.chars().count();
@@ -39,7 +38,7 @@ impl StatusLine {
         };
     }
 
-    /// Says something that stays.
+    /// Prints a line that stays.
     pub(crate) fn note(&mut self, text: &str) {
         let end = if self.terminal && self.wide > 0 { "\n" } else { "" };
         self.wide = 0;
@@ -48,7 +47,7 @@ impl StatusLine {
 }
 
 impl Drop for StatusLine {
-    /// What follows begins on a line of its own.
+    /// Start a new line for later output.
     fn drop(&mut self) {
         if self.terminal && self.wide > 0 {
             let _ = writeln!(terminal::err());

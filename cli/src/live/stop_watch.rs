@@ -1,8 +1,7 @@
-//! Monotonic time since a session began.
+//! Monotonic time since the start of a session.
 
 use std::time::{Duration, Instant};
 
-/// Time since it was made.
 #[derive(Clone, Copy)]
 pub(crate) struct StopWatch(Instant);
 
@@ -20,12 +19,11 @@ impl StopWatch {
     }
 }
 
-/// From now on a wait ends when its time is over, and not up to 50 us later, which the system may otherwise add to join
-/// wake-ups.
+/// Ends waits on time. By default the system may add up to 50 us to combine wake-ups.
 pub(crate) fn wake_on_time() {
     #[cfg(target_os = "linux")]
     {
-        // A system that does not have it wakes later.
+        // Systems without it wake later.
         let _ = rustix::thread::set_current_timer_slack(std::num::NonZeroU64::new(1));
     }
 }

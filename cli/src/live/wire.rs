@@ -1,14 +1,13 @@
-//! A port on a line that has to be turned, or on which one hears oneself (LIVE H3).
+//! A port on a half-duplex line: switches the transceiver and removes the echo (LIVE H3).
 
 use super::port::{Port, write_all};
 use std::{collections::VecDeque, io, time::Duration};
 
-/// A port, with what its wiring asks for.
 pub(super) struct Wire {
     pub(super) port: Box<dyn Port>,
     rts: bool,
     pub(super) echo: bool,
-    /// Own bytes that have not been heard again.
+    /// Sent bytes whose echo has not come.
     own: VecDeque<u8>,
     collisions: u64,
 }
@@ -18,18 +17,17 @@ impl Wire {
         Self { port, rts, echo, own: VecDeque::new(), collisions: 0 }
     }
 
-    /// Own bytes that came back as others.
+    /// Echoed bytes that differ.
     pub(super) const fn collisions(&self) -> u64 {
         self.collisions
     }
 
-    /// Writes all, with the transceiver turned.
     pub(super) fn write(&mut self, bytes: &[u8], within: Duration) -> io::Result<()> {
         if self.rts {
             self.port.set_rts(true)?;
         }
         if self.echo {
-            // What has not come back of the frame before will not.
+            // A missing echo of the last frame will not come any more.
             self.own.clear();
             self.own.extend(bytes);
         }
@@ -41,7 +39,7 @@ impl Wire {
         written
     }
 
-    /// What was heard beside the own bytes. Where these differ somebody else sends, too: that is a collision.
+    /// Removes the echo. A different byte is a collision: someone else is sending.
     pub(super) fn without_echo(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut others = Vec::new();
         for &byte in bytes {
@@ -60,7 +58,6 @@ mod tests {
     use super::*;
     use crate::live::port::Heard;
 
-    /// Notes what is done to it.
     struct Noted(std::rc::Rc<std::cell::RefCell<Vec<String>>>);
 
     impl Port for Noted {

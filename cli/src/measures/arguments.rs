@@ -1,10 +1,9 @@
-//! What `stepscope measures` takes on its command line.
+//! The arguments of `stepscope measures`.
 
 use crate::quantity::whole;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What `stepscope measures` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Where its source is no motion there is no

@@ -1,4 +1,4 @@
-//! The distortion that the table of measures has beside them.
+//! Distortion of periodic motions, for the table of measures.
 
 use stepscope_core::{
     inspect::motion::{
@@ -9,7 +9,6 @@ use stepscope_core::{
     scenario::Analysis,
 };
 
-/// Distortion of a motion that repeats: of the ideal curve and of the pulses.
 pub(super) struct Distortion {
     pub(super) ideal: Spectrum,
     pub(super) pulses: Spectrum,
@@ -19,7 +18,7 @@ impl Distortion {
     pub(super) fn of(plan: &AxisPlan, run: &Pulses<'_>, analysis: &Analysis) -> Option<Self> {
         let window = AnalysisWindow::of(plan).filter(|window| window.periodic)?;
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
-        // To the same order, which the number of samples may have cut.
+        // Use the same order, which the number of samples may have limited.
         let pulses = Spectrum::of_pulses(&window.pulses_of(plan, run), window, ideal.order);
         Some(Self {
             ideal: ideal.filtered_by(analysis.sensor_hz),
@@ -27,7 +26,6 @@ impl Distortion {
         })
     }
 
-    /// Name, and the ratios of the ideal curve and of the pulses.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, [Option<f64>; 2])> + '_ {
         type Of = fn(&Spectrum) -> Option<&Harmonics>;
         let of: [(_, Of); 4] = [

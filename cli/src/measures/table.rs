@@ -1,4 +1,4 @@
-//! Measures as a table: for the eye, and as CSV.
+//! Prints measures as text and CSV.
 //!
 //! ```text
 //! group       columns          rows: measure, unit, a figure under each column
@@ -10,19 +10,17 @@ use serde_json::json;
 use std::io::{self, Write};
 use stepscope_core::inspect::motion::measures::{CurveMetrics, Measures, PulseErrors};
 
-/// A figure of a group, with a value for each of its columns; `None` where there is none.
+/// A figure with a value per column of its group.
 struct Row {
     measure: String,
     unit: &'static str,
     values: Vec<Option<f64>>,
 }
 
-/// Rows with the same columns.
 struct Group {
     name: &'static str,
-    /// What it is, for the eye.
     title: String,
-    /// Name in CSV, and heading for the eye.
+    /// Name in CSV, and heading in text.
     columns: Vec<(&'static str, &'static str)>,
     rows: Vec<Row>,
 }
@@ -37,13 +35,10 @@ impl Group {
     }
 }
 
-/// A figure of a comparison, or of errors.
 type Figure<T> = fn(&T) -> Option<f64>;
 
-/// Of a group with one column.
 const ONE: &[(&str, &str)] = &[("", "")];
 
-/// Writes them for the eye: six digits, aligned.
 pub(super) fn text(
     axis: usize,
     found: &Measures,
@@ -65,7 +60,6 @@ pub(super) fn text(
     Ok(())
 }
 
-/// Writes them as CSV: one figure a row, all its digits, empty where there is none.
 pub(super) fn csv(found: &Measures, distortion: Option<&Distortion>, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "group,measure,of,value,unit")?;
     for Group { name, columns, rows, .. } in groups(found, distortion) {
@@ -79,7 +73,6 @@ pub(super) fn csv(found: &Measures, distortion: Option<&Distortion>, out: &mut i
     Ok(())
 }
 
-/// The rows of the CSV as a table.
 pub(super) fn tables(axis: usize, found: &Measures, distortion: Option<&Distortion>) -> Tables {
     let mut figures = Vec::new();
     for Group { name, columns, rows, .. } in groups(found, distortion) {
@@ -197,10 +190,9 @@ fn sine(found: &Measures) -> Option<Group> {
     Some(group)
 }
 
-/// Six digits; without a power of ten where that is readable.
 fn digits(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 {
-        // Without the sign of a zero.
+        // Prints -0 as 0.
         return format!("{}", value + 0.0);
     }
     let power: i32 =

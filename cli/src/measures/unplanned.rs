@@ -1,4 +1,4 @@
-//! Steps of which no plan is known, measured by themselves: of packets, line scripts, lists of segments.
+//! Measures steps without a plan: of packets, line scripts, segment lists.
 
 use super::arguments::{Arguments, Written};
 use crate::{failure::Failure, json::Tables, kept_run, terminal};
@@ -18,7 +18,7 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Runs the scenario and writes what its steps come to, and their distortion where they go to and fro evenly.
+/// Includes the distortion if the steps are periodic.
 pub(super) fn measures(
     arguments: &Arguments,
     scenario: &Scenario,
@@ -64,7 +64,6 @@ fn shown(value: &Value, none: &str) -> String {
     if value.is_null() { none.to_owned() } else { value.to_string() }
 }
 
-/// Every figure by its name.
 fn rows(figures: &StepFigures, spectrum: Option<&Spectrum>) -> io::Result<Map<String, Value>> {
     let Value::Object(mut rows) = serde_json::to_value(figures).map_err(io::Error::other)? else {
         return Ok(Map::new());

@@ -1,10 +1,9 @@
-//! What `stepscope torque` is asked for.
+//! The arguments of `stepscope torque`.
 
 use crate::{motors::Named, quantity::whole};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What `stepscope torque` takes.
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Of a source without a motion (segments,
@@ -29,7 +28,6 @@ pub(crate) struct Arguments {
     pub(super) json: bool,
 }
 
-/// What is written.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 pub(super) enum Written {
     /// Words and numbers.

@@ -1,4 +1,4 @@
-//! Torque that steps ask for without a plan: of packets, line scripts, lists of segments.
+//! Torque of steps without a plan: of packets, line scripts, segment lists.
 
 use super::{arguments::Arguments, driven::Driven};
 use crate::{failure::Failure, kept_run};
@@ -9,7 +9,7 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// The channels that are asked for and step, with the motors of the scenario's plant, or the one that is named: at least one.
+/// The selected channels with steps, with the plant's motors or the named one: at least one.
 pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<Driven>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);

@@ -1,4 +1,4 @@
-//! What `stepscope torque` says, as tables.
+//! The results of `stepscope torque` as tables.
 
 use super::driven::{Driven, MotionSource};
 use crate::json::Tables;
@@ -8,7 +8,6 @@ use stepscope_core::{
     motion::Curve,
 };
 
-/// A row an axis, or channel.
 pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     driven.iter().map(|Driven { axis, machine, asked, demand, agreement }| {
         let least = demand.least.as_ref();
@@ -33,7 +32,6 @@ pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     })
 }
 
-/// A row an interval with too little torque.
 pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     driven.iter().flat_map(|driven| {
         driven.demand.shortages.iter().map(|found| {
@@ -52,7 +50,6 @@ pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     })
 }
 
-/// All of it.
 pub(super) fn tables(driven: &[Driven]) -> Tables {
     let ramps = driven.iter().flat_map(|Driven { axis, machine, asked, .. }| {
         let moves = match asked {

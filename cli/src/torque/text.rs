@@ -1,4 +1,4 @@
-//! What `stepscope torque` says for the eye.
+//! The results of `stepscope torque` as text.
 
 use super::driven::{Driven, MotionSource};
 use std::io::{self, Write};
@@ -10,12 +10,11 @@ use stepscope_core::{
     motion::{Curve, PlannedMove},
 };
 
-/// Shortages that the screen shows of an axis.
+/// Maximum shortages on the screen, per axis.
 const MAX_SHOWN: usize = 20;
-/// The most time in s that a move may have (docs/scenario.md).
+/// Maximum time of a move, in s (docs/scenario.md).
 const MAX_DURATION_S: f64 = 86_400.0;
 
-/// Of one axis, or channel.
 pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     let Driven { axis, machine, asked, demand, agreement } = driven;
     match asked {

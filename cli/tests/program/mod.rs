@@ -1,11 +1,11 @@
-//! The command as a script calls it.
+//! Calls the command.
 
 use std::{
     io::Write,
     process::{Command, Stdio},
 };
 
-/// Exit code, standard output, standard error.
+/// Returns exit code, standard output, standard error.
 pub(crate) fn stepscope(arguments: &[&str], input: &str) -> (Option<i32>, String, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
         .args(arguments)
@@ -14,7 +14,7 @@ pub(crate) fn stepscope(arguments: &[&str], input: &str) -> (Option<i32>, String
         .stderr(Stdio::piped())
         .spawn()
         .expect("it starts");
-    // A command that does not read it may be gone already.
+    // The command may have ended without reading.
     let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
     let output = child.wait_with_output().expect("it ends");
     let text = |bytes| String::from_utf8(bytes).expect("it is text");

@@ -16,22 +16,22 @@ use crate::{changes::Changes, timebase::Timebase};
 use core::fmt;
 use stepscope_peripheral::trace::Step;
 
-/// Most channels that are read: a bit each of a [`Change`].
+/// Maximum number of channels that are read: a [`Change`] has one bit per channel.
 pub const MAX_CHANNELS: usize = 64;
 
-/// Which kind of file it is.
+/// The kinds of files that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
-    /// A value change dump (IEEE 1364), ours or another program's.
+    /// Value change dump (IEEE 1364).
     Vcd,
-    /// A session of sigrok or PulseView (`.sr`).
+    /// Session of sigrok or PulseView (`.sr`).
     SigrokSession,
-    /// sigrok's or PulseView's table: a row a sample.
+    /// sigrok's or PulseView's table, one row per sample.
     SigrokCsv,
-    /// A table of levels, one row per change, with its time: of DSView, WaveForms, or a program of one's own.
+    /// Table of levels with times, one row per change: DSView, WaveForms and others.
     LevelsCsv,
-    /// Saleae Logic 2's table of digital channels: one row per change, with its time.
+    /// Saleae Logic 2's table of digital channels, one row per change.
     SaleaeCsv,
     /// Saleae Logic 2's table of decoded bytes.
     SaleaeBytes,
@@ -39,19 +39,19 @@ pub enum Format {
     EdgesCsv,
     /// Stepscope's own trace: cycle and levels in hexadecimal.
     Trace,
-    /// Bytes in hexadecimal, with times or without.
+    /// Bytes in hexadecimal, with or without times.
     HexBytes,
-    /// A dump of bytes in hexadecimal, with offsets: of hexdump, xxd, od or a terminal.
+    /// Hexadecimal dump with offsets: hexdump, xxd, od or a terminal.
     HexDump,
-    /// A log of bytes in hexadecimal, with the times of a clock.
+    /// Log of bytes in hexadecimal, with times of day.
     SerialLog,
-    /// Annotations of sigrok's decoder of serial lines.
+    /// Annotations of sigrok's UART decoder.
     Annotations,
     /// Step commands of Klipper.
     Klipper,
     /// A table of times and positions.
     PositionsCsv,
-    /// No kind that can be read: the capture is empty, and the error says what can.
+    /// Not a readable kind: the capture is empty, and the error lists the kinds that can be read.
     Unknown,
 }
 
@@ -80,58 +80,57 @@ impl fmt::Display for Format {
 /// A channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// As the file has it; what it stands in comes before it, with points between (`top.motor.STEP`).
+    /// The name in the file, after its scopes and points (`top.motor.STEP`).
     pub name: String,
 }
 
-/// A byte of a line that was decoded already.
+/// A byte that another program has decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedByte {
-    /// When its start bit begins, in ticks of the file; in a file without times its place among the bytes.
+    /// Start of the start bit, in ticks of the file; without times the index of the byte.
     pub tick: u64,
     /// Its channel, an index into [`Capture::channels`].
     pub channel: u8,
     /// The byte.
     pub byte: u8,
-    /// Whether the file says that its stop bit was not high.
+    /// Whether the file reports a low stop bit.
     pub framing_error: bool,
 }
 
 /// A position at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedPosition {
-    /// When, in ticks of the file.
+    /// In ticks of the file.
     pub tick: u64,
     /// In steps.
     pub position: i64,
 }
 
-/// What a file has recorded: levels, or bytes, or positions; the other two are empty.
+/// The contents of a file: levels, bytes or positions; the other two are empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capture {
-    /// Which kind of file it is.
+    /// The kind of file.
     pub format: Format,
-    /// How long a tick is; `None` where the file does not tell, and whoever opens it has to say it.
+    /// Length of a tick; `None` if the file does not give it.
     pub timebase: Option<Timebase>,
     /// The channels, at most [`MAX_CHANNELS`].
     pub channels: Vec<Channel>,
-    /// What the levels were, in the order of time: ticks rise, and each row differs from the one before. The first stands
-    /// for all the time before the second.
+    /// Levels in order of time, each different from the one before. The first also holds before its time.
     pub changes: Changes,
-    /// Bytes, in the order of time.
+    /// Bytes in order of time.
     pub bytes: Vec<TimedByte>,
-    /// Positions, in the order of time.
+    /// Positions in order of time.
     pub positions: Vec<TimedPosition>,
-    /// The last tick that the file tells something of.
+    /// The last tick in the file.
     pub end: u64,
-    /// Channels of the file beyond [`MAX_CHANNELS`], which are not read.
+    /// Number of channels beyond [`MAX_CHANNELS`], which are not read.
     pub channels_left_out: u64,
-    /// What the file holds and was not read, a sentence each: analogue channels, levels that are neither high nor low.
+    /// What was not read, one sentence each.
     pub left_out: Vec<String>,
 }
 
 impl Capture {
-    /// Before anything of a file is read.
+    /// An empty capture.
     #[must_use]
     pub const fn new(format: Format) -> Self {
         Self {
@@ -147,15 +146,15 @@ impl Capture {
         }
     }
 
-    /// How much it holds: changes, bytes or positions.
+    /// Number of changes, bytes or positions.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.changes.len() + self.bytes.len() + self.positions.len()
     }
 
-    /// The steps that the positions stand for, in the cycles of their times: those of a row come evenly from the row before
-    /// to its own time, the last of them at it. Positions count from the first row's on. `None` if they are more than
-    /// `most`, or lead further than 2^31 steps away.
+    /// Steps for the positions, in cycles. The steps of a row are evenly spaced from the row before; the last is at
+    /// the row's time. Positions are relative to the first row. `None` if there are more than `most` steps or a
+    /// position does not fit into 32 bits.
     #[must_use]
     pub fn steps(&self, cycle: impl Fn(u64) -> u64, most: u64) -> Option<Vec<Step>> {
         let pairs = || self.positions.iter().zip(self.positions.iter().skip(1));
@@ -180,7 +179,7 @@ impl Capture {
         Some(steps)
     }
 
-    /// Whether it holds nothing.
+    /// Whether it is empty.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0

@@ -1,5 +1,4 @@
-//! Levels in the order of time, packed: a change takes the bytes of the time since the one before, two or three in most
-//! recordings, where it stood in 16.
+//! Levels in order of time, packed: most changes take two or three bytes instead of 16.
 //!
 //! ```text
 //! block   the first change, whole;  then of each:
@@ -21,91 +20,88 @@
 
 use std::{collections::TryReserveError, slice, vec};
 
-/// Changes that are inspected to tell what a channel is: its beginning shows it.
 pub(crate) const MAX_INSPECTED: usize = 1_000_000;
 
-/// The levels of all channels from a tick on, until the next change.
+/// The levels of all channels from a tick until the next change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Change {
-    /// When, in ticks of the file.
+    /// In ticks of the file.
     pub tick: u64,
-    /// Channel i in bit i. A channel that is not yet known, or neither high nor low, is 0.
+    /// Channel i in bit i; 0 if unknown, or neither high nor low.
     pub levels: u64,
 }
 
-/// Bytes of a block: so many that the C library asks the system for each, and gives it back.
+/// Large enough that the C library gets each block from the system and returns it.
 const BLOCK: usize = 1 << 17;
-/// Most bytes of a change: ten of its time, nine of what changes.
+/// Ten bytes of time, nine of changed bits.
 const MAX_ROW: usize = 19;
-/// Bits of the time in the first byte of a change, and in each further one.
+/// Bits of the time in the first byte, and in each later one.
 const FIRST_BITS: u32 = 6;
 const MORE_BITS: u32 = 7;
 /// Another byte of the time follows.
 const MORE: u8 = 0x80;
-/// What changes is another channel than the last time, and stands behind the time.
+/// Not the same bit as last time; it follows the time.
 const OTHER: u8 = 1;
-/// Not one channel changes, but those of the next eight bytes.
+/// Several bits change; a mask of eight bytes follows.
 const SEVERAL: u8 = 0x80;
 
-/// Changes in the order of time, each of other levels than the one before.
+/// Changes in order of time, each with different levels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
     blocks: Vec<Block>,
     len: usize,
     last: Option<Change>,
-    /// What changed last in the last block.
+    /// The bits that changed last in the last block.
     mask: u64,
 }
 
-/// Some of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Block {
     first: Change,
-    /// The others.
     rows: Vec<u8>,
 }
 
 impl Changes {
-    /// None.
+    /// No changes.
     #[must_use]
     pub const fn new() -> Self {
         Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
     }
 
-    /// How many.
+    /// Number of changes.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Whether it is empty.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The first.
+    /// The first change.
     #[must_use]
     pub fn first(&self) -> Option<Change> {
         self.blocks.first().map(|block| block.first)
     }
 
-    /// The last.
+    /// The last change.
     #[must_use]
     pub const fn last(&self) -> Option<Change> {
         self.last
     }
 
-    /// Bytes that they are packed in.
+    /// Memory of the changes, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         self.blocks.iter().map(|block| size_of::<Block>() + block.rows.len()).sum()
     }
 
-    /// Makes room for one more, so that [`Self::push`] needs no memory.
+    /// Reserves space for one change, so that [`Self::push`] does not allocate.
     ///
     /// # Errors
-    /// If there is no memory.
+    /// Out of memory.
     pub fn reserve(&mut self) -> Result<(), TryReserveError> {
         if self.blocks.len() == self.blocks.capacity() {
             self.blocks.try_reserve((self.blocks.len() / 2).max(16))?;
@@ -118,7 +114,7 @@ impl Changes {
         Ok(())
     }
 
-    /// Adds one, which is not before the last.
+    /// Adds a change, whose tick is at least the last one's.
     pub fn push(&mut self, change: Change) {
         let last = self.last.replace(change);
         self.len += 1;
@@ -151,18 +147,18 @@ impl Changes {
 
     fn begin(&mut self, first: Change) {
         self.mask = 0;
-        // The blocks after the first have as many rows again, most likely.
+        // The next block probably needs as many rows.
         let rows = Vec::new();
         self.blocks.push(Block { first, rows });
     }
 
-    /// All of them.
+    /// Iterates over all changes.
     #[must_use]
     pub fn iter(&self) -> Iter<'_> {
         Iter { blocks: self.blocks.iter(), row: Row::default(), rows: &[] }
     }
 
-    /// From the last one on that is at a time or before it; all of them where none is.
+    /// Iterates from the last change at or before `tick`; from the first if there is none.
     #[must_use]
     pub fn iter_from(&self, tick: u64) -> Iter<'_> {
         let block = self.blocks.partition_point(|block| block.first.tick <= tick).saturating_sub(1);
@@ -173,7 +169,7 @@ impl Changes {
         };
         loop {
             let mut next = from.clone();
-            // The one after the next one is still not after it.
+            // Skip changes while the one after the next is not later than `tick`.
             let is_before = next.next().is_some() && next.next().is_some_and(|after| after.tick <= tick);
             if !is_before {
                 return from;
@@ -183,7 +179,6 @@ impl Changes {
     }
 }
 
-/// The last change that was read of a block, and what changed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     tick: u64,
@@ -200,7 +195,6 @@ impl Row {
         Change { tick: self.tick, levels: self.levels }
     }
 
-    /// Reads the next one of a block; how many bytes it has.
     fn read(&mut self, rows: &[u8]) -> Option<usize> {
         let mut byte = *rows.first()?;
         let (mut at, is_other) = (1, byte & OTHER != 0);
@@ -229,12 +223,11 @@ impl Row {
     }
 }
 
-/// Changes, one after the other.
+/// Iterator over changes.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
     blocks: slice::Iter<'a, Block>,
     row: Row,
-    /// What is left of the block.
     rows: &'a [u8],
 }
 
@@ -253,13 +246,12 @@ impl Iterator for Iter<'_> {
     }
 }
 
-/// Changes, one after the other; the memory of each block is free after its last.
+/// Iterator over changes that frees the memory of each block after its last change.
 #[derive(Debug)]
 pub struct IntoIter {
     blocks: vec::IntoIter<Block>,
     row: Row,
     rows: Vec<u8>,
-    /// Bytes of the block that are read.
     at: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Which channel of a capture is which signal.
+//! Maps channels of a capture to signals (DESIGN A3).
 //!
 //! ```text
 //! STEP0=CH1,DIR0=CH2,EN=!nEN     a signal, a channel by its name or its number (#0, #1, …), ! where it is inverted
@@ -22,32 +22,24 @@ use crate::capture::{Capture, Channel};
 use core::fmt;
 use stepscope_peripheral::signal::{self, Levels, MAX_CHANNELS};
 
-/// Bits of the signals on the bus (DESIGN A3).
 pub(crate) const BUS_SIGNALS: u32 = 36;
-/// Motors of a map.
 const MOTORS: u32 = MAX_CHANNELS as u32;
-/// Names of channels that an error lists.
 const MAX_LISTED: usize = 20;
 
-/// A signal of one motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Input {
     Step,
-    /// STEP of a driver that steps on both edges.
     BothEdges,
     Cw,
     Ccw,
-    /// Phases of a quadrature encoder.
     A,
     B,
     Dir,
 }
 
 impl Input {
-    /// Those that are no signals of the bus, in the order of their bits.
     const MADE: [Self; 5] = [Self::BothEdges, Self::Cw, Self::Ccw, Self::A, Self::B];
 
-    /// The bit of this signal of a motor.
     pub(crate) const fn bit(self, motor: u32) -> u32 {
         motor
             + match self {
@@ -61,7 +53,6 @@ impl Input {
             }
     }
 
-    /// The signal of a bit, and its motor.
     pub(crate) fn of(bit: u32) -> Option<(Self, u32)> {
         let motor = |first: u32| bit - first;
         match bit {
@@ -87,7 +78,7 @@ impl Input {
         }
     }
 
-    /// The signal that this one is useless without.
+    /// The signal that this one needs.
     const fn partner(self) -> Option<Self> {
         match self {
             Self::Cw => Some(Self::Ccw),
@@ -99,7 +90,6 @@ impl Input {
     }
 }
 
-/// The name of a signal in a map.
 fn signal_name(bit: u32) -> String {
     match Input::of(bit) {
         Some((input, motor)) => format!("{}{motor}", input.name()),
@@ -107,12 +97,12 @@ fn signal_name(bit: u32) -> String {
     }
 }
 
-/// What the STEP pulses of a motor are made from.
+/// What a motor's STEP pulses are made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PulseSource {
     /// STEP itself.
     Step,
-    /// Both edges of STEP: a pulse for each.
+    /// Both edges of STEP.
     BothEdges,
     /// One pulse input per direction, which also gives DIR.
     CwCcw,
@@ -120,41 +110,40 @@ pub enum PulseSource {
     Quadrature,
 }
 
-/// What the edges of a motor's STEP look like.
+/// A motor's edges of STEP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeHint {
     /// The motor.
     pub motor: u8,
     /// Index of its channel.
     pub channel: usize,
-    /// Rising and falling edges are evenly spaced: a driver that steps on both edges makes a step of each.
+    /// Rising and falling edges are evenly spaced, as for a driver that steps on both edges.
     pub both_edges: bool,
     /// It idles high and its pulses are low.
     pub idles_high: bool,
-    /// Its edges; `None` where there are more changes than were inspected.
+    /// Number of edges; `None` if there are more changes than were inspected.
     pub edges: Option<u64>,
 }
 
-/// A signal and the channel that it was recorded on.
+/// A signal and its channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Bit of the signal (DESIGN A3): 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each, what pulses are
-    /// made from: DEDGE, CW, CCW, A and B.
+    /// Bit of the signal: 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each: DEDGE, CW, CCW, A
+    /// and B.
     pub bit: u32,
     /// Index of the channel.
     pub channel: usize,
-    /// Whether the channel has the other level, as an enable that is active low.
+    /// Whether the channel is active low.
     pub inverted: bool,
 }
 
 impl Entry {
-    /// The level of the signal, by those of all channels.
     pub(crate) const fn level(&self, channels: u64) -> bool {
         (channels >> self.channel & 1 == 1) != self.inverted
     }
 }
 
-/// Signals and their channels; each signal at most once, and each channel too, except that motors may share a DIR channel.
+/// Signals and their channels. Each is used once, except that motors may share a DIR channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelMap {
     entries: Vec<Entry>,
@@ -168,17 +157,17 @@ pub enum MapError {
     NoPair(String),
     /// No such signal.
     Signal(String),
-    /// No such channel, and those that there are.
+    /// No such channel; the second text lists the channels.
     Channel(String, String),
-    /// More than one channel has this name.
+    /// Several channels have this name.
     Ambiguous(String),
-    /// A signal that has a channel already.
+    /// The signal already has a channel.
     Twice(String),
-    /// A channel that is another signal already.
+    /// The channel already has a signal.
     Taken(String, String),
-    /// A signal that needs another one.
+    /// The signal needs another one.
     Partner(String, String),
-    /// Two signals that both make the steps, or the direction, of a motor.
+    /// Two signals both give a motor's steps or direction.
     Conflict(String, String),
 }
 
@@ -223,7 +212,7 @@ impl core::error::Error for MapError {}
 
 impl ChannelMap {
     pub(crate) fn of(mut entries: Vec<Entry>) -> Self {
-        // What makes steps first, then DIR, then the other signals of the bus.
+        // Sources of steps, then DIR, then the other signals.
         entries.sort_unstable_by_key(|entry| match Input::of(entry.bit) {
             Some((input, motor)) => (0, Some(input), motor),
             None => (1, None, entry.bit),
@@ -231,7 +220,7 @@ impl ChannelMap {
         Self { entries }
     }
 
-    /// Reads a map as [`Self::to_text`] writes it; blanks and the case of signals do not count.
+    /// Reads a map as [`Self::to_text`] writes it; ignores blanks and the case of signals.
     ///
     /// # Errors
     /// [`MapError`] with what is wrong with the first pair that cannot be used.
@@ -254,7 +243,7 @@ impl ChannelMap {
         Ok(Self::of(map.entries))
     }
 
-    /// The names of channels in a map's text, for a file of which not all can be read.
+    /// The channel names in a map's text, for files with too many channels.
     #[must_use]
     pub fn channel_names(text: &str) -> Vec<String> {
         let name = |pair: &str| {
@@ -264,7 +253,6 @@ impl ChannelMap {
         text.split(',').filter_map(name).collect()
     }
 
-    /// Each motor has one source of steps, whole, and one of its direction.
     fn check_motors(&self) -> Result<(), MapError> {
         for entry in &self.entries {
             let Some((input, motor)) = Input::of(entry.bit) else { continue };
@@ -285,7 +273,7 @@ impl ChannelMap {
         Ok(())
     }
 
-    /// The same map for drivers that step on both edges: DEDGE in place of each STEP.
+    /// The same map with DEDGE instead of STEP.
     #[must_use]
     pub fn with_both_edges(self) -> Self {
         let both = |entry: Entry| match Input::of(entry.bit) {
@@ -307,7 +295,7 @@ impl ChannelMap {
         }
     }
 
-    /// Whether single edges become pulses: steps on both edges, or an encoder.
+    /// Whether pulses are made from edges: DEDGE or an encoder.
     #[must_use]
     pub fn makes_pulses(&self) -> bool {
         let is_made = |motor| matches!(self.pulses(motor), PulseSource::BothEdges | PulseSource::Quadrature);
@@ -321,7 +309,6 @@ impl ChannelMap {
             || matches!(self.pulses(motor), PulseSource::CwCcw | PulseSource::Quadrature)
     }
 
-    /// The entry of a motor's signal.
     pub(crate) fn input(&self, input: Input, motor: u32) -> Option<Entry> {
         self.entries.iter().copied().find(|entry| entry.bit == input.bit(motor))
     }
@@ -342,7 +329,7 @@ impl ChannelMap {
         Ok(())
     }
 
-    /// The pairs: what makes steps, then DIR, then the other signals.
+    /// The entries: sources of steps, then DIR, then the other signals.
     #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries
@@ -354,14 +341,14 @@ impl ChannelMap {
         self.entries.iter().any(|entry| entry.bit == bit)
     }
 
-    /// Channels of the bus up to the last motor of the map; at least 1.
+    /// Channels of the bus up to the map's last motor; at least 1.
     #[must_use]
     pub fn bus_channels(&self) -> u8 {
         let motors = self.entries.iter().filter_map(|entry| Input::of(entry.bit));
         motors.map(|(_, motor)| motor as u8 + 1).max().unwrap_or(1)
     }
 
-    /// As [`Self::parse`] reads it.
+    /// The map as text, for [`Self::parse`].
     #[must_use]
     pub fn to_text(&self, capture: &Capture) -> String {
         let pair = |entry: &Entry| {
@@ -373,7 +360,7 @@ impl ChannelMap {
     }
 }
 
-/// A channel by its name, unless that is another's too or would not be read back; else by its place.
+/// A channel's name, or `#` and its index if the name is ambiguous or could not be read back.
 #[must_use]
 pub fn written(index: usize, channels: &[Channel]) -> String {
     let name = channels.get(index).map_or("", |channel| channel.name.as_str());
@@ -384,7 +371,7 @@ pub fn written(index: usize, channels: &[Channel]) -> String {
     }
 }
 
-/// The channel of a name: the whole name; or its last part; or its place after `#`.
+/// Matches the whole name, its last part, or the index after `#`.
 fn place(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
     let unknown = || {
         let names: Vec<&str> =

@@ -1,5 +1,5 @@
-//! What was recorded of a firmware or a host, as files have it: levels of channels, bytes of a line, or positions, each
-//! with its time in whole ticks of the file's own time base.
+//! Reads recordings of firmware or a host: levels of channels, bytes of a line, or positions, with times in whole
+//! ticks.
 //!
 //! ```text
 //! file -> read -> Capture: channels, ticks -> channel map -> records in clock cycles

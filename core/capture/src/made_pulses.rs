@@ -1,4 +1,4 @@
-//! STEP and DIR of motors that were recorded in another form: both edges of STEP, CW and CCW pulses, an encoder.
+//! Makes STEP and DIR from other recorded signals: both edges of STEP, CW and CCW pulses, or an encoder.
 //!
 //! ```text
 //! DEDGE  _____/-----------\______     CW    __/-\__/-\____________     A  __/-----\_____/--
@@ -12,43 +12,35 @@
 use crate::channel_map::{ChannelMap, Entry, Input, PulseSource};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// The motors of a map whose pulses are made.
 #[derive(Clone, Debug)]
 pub(crate) struct MadePulses {
     motors: Vec<Motor>,
-    /// Levels of the DIR signals.
     dirs: u64,
-    /// STEP, and DIR where that is made, of all of them.
     signals: u64,
-    /// Whether the levels of the inputs are known.
     begun: bool,
 }
 
-/// What a change does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Steps {
-    /// STEP signals that are to have a pulse.
+    /// STEP signals that get a pulse.
     pub(crate) pulses: u64,
-    /// Levels of STEP, where a pulse was recorded, and of DIR.
+    /// Levels of recorded STEP pulses and of DIR.
     pub(crate) levels: u64,
-    /// Steps whose direction nothing tells.
+    /// Steps whose direction is unknown.
     pub(crate) ambiguous: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Motor {
     source: PulseSource,
-    /// DEDGE, or CW and CCW, or A and B.
     one: Entry,
     other: Option<Entry>,
     step: u64,
     dir: u64,
-    /// The levels before.
     before: (bool, bool),
 }
 
 impl MadePulses {
-    /// Those of a map; `None` where every motor has STEP.
     pub(crate) fn new(map: &ChannelMap) -> Option<Self> {
         let motor = |motor: u8| {
             let source = map.pulses(motor);
@@ -74,12 +66,10 @@ impl MadePulses {
         (!motors.is_empty()).then_some(Self { motors, dirs, signals, begun: false })
     }
 
-    /// The signals that are made.
     pub(crate) const fn signals(&self) -> u64 {
         self.signals
     }
 
-    /// Takes the levels of all channels after a change.
     pub(crate) fn take(&mut self, channels: u64) -> Steps {
         let mut steps = Steps::default();
         for motor in &mut self.motors {
@@ -122,7 +112,7 @@ impl MadePulses {
     }
 }
 
-/// The quarter of an encoder's period: A rises first.
+/// The quarter of the encoder's period; A rises first.
 const fn phase((a, b): (bool, bool)) -> u8 {
     match (a, b) {
         (false, false) => 0,

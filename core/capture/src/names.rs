@@ -1,4 +1,4 @@
-//! What the name of a channel says: which signal it is, and of which motor.
+//! Derives signal and motor from a channel's name.
 //!
 //! ```text
 //! signal   STEP STP PUL PULSE PLS PU, DIR DIRECTION DR SIGN, CW, CCW, EN ENA ENABLE, RX RXD, TX TXD, DE
@@ -6,14 +6,13 @@
 //! other    step_count, LED, BUSY: neither
 //! ```
 
-/// Which signal a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Step,
     Dir,
     Cw,
     Ccw,
-    /// STEP only beside DIR: any clock is called so.
+    /// STEP only next to a DIR: many clocks have this name.
     Clock,
     A,
     B,
@@ -23,29 +22,24 @@ pub(crate) enum Kind {
     De,
 }
 
-/// What a name says of a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
     pub(crate) kind: Kind,
-    /// The name says that it is active low.
     pub(crate) inverted: bool,
     /// The negative line of a pair, as in `PUL-`.
     pub(crate) negative: bool,
-    /// A pulse input per direction that is called a pulse, too, as in `PUL/CW`.
+    /// Also called a pulse, as in `PUL/CW`.
     pub(crate) pulse: bool,
-    /// What tells its motor from others: a number, a letter, a word, or nothing.
+    /// Identifies the motor: a number, a letter, a word, or nothing.
     pub(crate) axis: String,
-    /// What it stands in.
     pub(crate) scope: String,
 }
 
-/// What a name says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Meaning {
     Signal(Named),
-    /// Something that is no signal of a motor or its line.
+    /// Not a signal of a motor or its line.
     Other,
-    /// Nothing that is known.
     Unknown,
 }
 
@@ -88,11 +82,9 @@ const WORDS: [(&str, Kind); 37] = [
     ("RICHTUNG", Kind::Dir),
     ("FREIGABE", Kind::En),
 ];
-/// Words of an enable that is active low.
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
-/// Words that only stand for a direction's pulses where the other direction has some, too.
+/// Pulses only if the opposite word is present, too.
 const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
-/// Phases of an encoder, in one word or after one of `ENCODER`.
 const PHASES: [(&str, Kind); 8] = [
     ("ENCA", Kind::A),
     ("PHA", Kind::A),
@@ -104,20 +96,20 @@ const PHASES: [(&str, Kind); 8] = [
     ("QB", Kind::B),
 ];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
-/// Words that say nothing of the motor; with a number they are one: `MOTOR1`.
+/// Do not identify a motor, except with a number: `MOTOR1`.
 const NOISE: [&str; 30] = [
     "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN",
     "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I", "ALL",
     "BOTH", "COMMON", "SHARED",
 ];
-/// Signals in names that are written as one word: `FLSTEP`, `FLDIR`.
+/// Names in one word: `FLSTEP`, `FLDIR`.
 const JOINED: [(&str, Kind); 3] = [("STEP", Kind::Step), ("DIRECTION", Kind::Dir), ("DIR", Kind::Dir)];
-/// What a number makes the name of a pin or a probe.
+/// Prefixes of pin or probe numbers.
 const PINS: [&str; 16] = [
     "D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG",
     "LOGIC",
 ];
-/// Words of what is no signal, whatever stands beside them.
+/// Never signals, whatever the other words are.
 const OTHERS: [&str; 62] = [
     "ACK",
     "ALARM",
@@ -182,11 +174,10 @@ const OTHERS: [&str; 62] = [
     "WIDTH",
     "PWM",
 ];
-/// Letters of axes, in the order of their channels.
 pub(crate) const AXES: &str = "XYZABCUVWE";
 
 impl Meaning {
-    /// What a name says; `indexed` where the number that it begins with only counts the channels of the file.
+    /// `indexed`: the leading number only counts the file's channels.
     pub(crate) fn of(name: &str, indexed: bool) -> Self {
         let name = without_index(name, indexed);
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
@@ -254,14 +245,14 @@ impl Meaning {
             .unwrap_or_default();
         let weak = kinds.iter().all(|(_, word)| UP_DOWN.contains(word));
         let pulse = has(Kind::Step) || has(Kind::Clock);
-        // UP and DOWN are pulses only where they are called so, or stand alone in the name.
+        // UP and DOWN are pulses only if no other word is in the name.
         if weak && !rest.iter().all(|word| is_noise(word) || is_axis(word)) {
             return Self::Unknown;
         }
         Self::Signal(Named { kind, inverted, negative, pulse, axis, scope: scope.to_owned() })
     }
 
-    /// The signal in a name of one word, without regard to the other names, and what is left of the name.
+    /// The signal in a name of one word, and the rest of the name.
     pub(crate) fn joined(name: &str) -> Option<Named> {
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
         let upper = last.to_ascii_uppercase();
@@ -271,13 +262,11 @@ impl Meaning {
         Some(Named { kind, inverted: false, negative: false, pulse: false, axis, scope })
     }
 
-    /// Whether a name, of any file, speaks for a signal of a motor or its line.
     pub(crate) fn is_telling(name: &str) -> bool {
         matches!(Self::of(name, false), Self::Signal(Named { kind, .. }) if kind != Kind::Clock)
     }
 }
 
-/// Whether the number that each name begins with only counts the channels.
 pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     let (mut seen, mut count) = (std::collections::BTreeSet::new(), 0);
     for name in names {
@@ -291,7 +280,6 @@ pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     count > 1
 }
 
-/// A name without what only counts channels: `2: STEP`, `D2: STEP`.
 fn without_index(name: &str, indexed: bool) -> &str {
     if let Some((index, rest)) = name.split_once(':') {
         let index = index.trim();
@@ -307,8 +295,8 @@ fn without_index(name: &str, indexed: bool) -> &str {
     if indexed && rest.contains(|c: char| c.is_ascii_alphabetic()) { rest } else { name }
 }
 
-/// The words of a name, in capitals: between marks, where small letters are followed by a capital, and, as far as it is no word
-/// that is known, where digits are followed by a letter.
+/// Splits a name at marks, before a capital after small letters, and before a letter after digits unless the word is
+/// known.
 fn words(name: &str) -> Vec<String> {
     let mut all = Vec::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {
@@ -342,7 +330,7 @@ fn letters(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Whether an axis is that of several motors that share a DIR, and of this one, too: `XY`.
+/// Whether `axes`, such as `XY`, includes `axis`: several motors share that DIR.
 pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
     axes.len() > 1
         && axes.chars().all(|letter| AXES.contains(letter))
@@ -350,20 +338,17 @@ pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
         && axes.contains(axis)
 }
 
-/// Words that two names have in common, but those of pins.
 pub(crate) fn shared_words(one: &str, other: &str) -> usize {
     let others = words(other);
     let is_pin = |word: &str| PINS.contains(&letters(word)) && digits(word).is_some();
     words(one).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
 }
 
-/// The number that a word ends with.
 fn digits(word: &str) -> Option<String> {
     let digits = word.get(letters(word).len()..)?;
     (!digits.is_empty()).then(|| digits.to_owned())
 }
 
-/// The signal of a word: STEP, STEP1, STEPX, XSTEP2; with what it says of the axis.
 fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
     let text = letters(given);
     let known = |text: &str| WORDS.iter().find(|(known, _)| *known == text).copied();
@@ -383,7 +368,7 @@ fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
     if let Some(axes) = several {
         return Some(("DIR", Kind::Dir, Some(axes.to_owned())));
     }
-    // Left and right are only axes of what a motor must have.
+    // L and R are axes only of signals that every motor has.
     let axis = |letter: &str| {
         letter.len() == 1
             && (AXES.contains(letter)
@@ -402,7 +387,6 @@ fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
     is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(given).unwrap_or_default()))))
 }
 
-/// Whether a word is an axis by itself: `X`, `2`, `E1`.
 fn is_axis(word: &str) -> bool {
     let text = letters(word);
     text.is_empty() || text.len() == 1 && AXES.contains(text)
@@ -412,14 +396,12 @@ fn is_noise(word: &str) -> bool {
     NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&letters(word))
 }
 
-/// The axes of a DIR that several motors share: `X`, `Y`.
 fn axes_of(words: &[&str]) -> Option<String> {
     let is_letter = |word: &&&str| word.len() == 1 && AXES.contains(**word);
     let axes: Vec<&str> = words.iter().filter(is_letter).copied().collect();
     (axes.len() > 1).then(|| axes.concat())
 }
 
-/// The axis of the words that are no signal.
 fn axis_of(words: &[&str]) -> Option<String> {
     if let Some(axis) = words.iter().find(|word| is_axis(word)) {
         return Some((*axis).to_owned());
@@ -433,7 +415,6 @@ fn axis_of(words: &[&str]) -> Option<String> {
     (!left.is_empty()).then(|| left.join("_"))
 }
 
-/// The axis that the name of a scope ends with: `axis2`, `motor_x`.
 fn axis_of_scope(scope: &str) -> Option<String> {
     let last = scope.rsplit('.').next().unwrap_or_default().to_ascii_uppercase();
     let last = last.rsplit(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Which signal each channel seems to be: first by its name, then, of those whose names say nothing, by what it does.
+//! Proposes a channel map: first from names, then from the levels of channels whose names are unknown.
 //!
 //! ```text
 //! name       STEP and DIR of one motor belong together (names.rs); one DIR without an axis is that of all motors without
@@ -27,7 +27,7 @@ use std::collections::BTreeSet;
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
 impl ChannelMap {
-    /// What names and behavior of the channels say; signals that nothing speaks for have no channel.
+    /// The map that names and levels suggest; signals without evidence have no channel.
     #[must_use]
     pub fn proposed(capture: &Capture) -> Self {
         propose(Draft::new(capture))
@@ -40,7 +40,7 @@ fn propose(mut draft: Draft<'_>) -> ChannelMap {
     draft.dirs_by_name();
     let named = draft.motors.len();
     draft.sort_motors();
-    // A bit rate may fit an encoder at constant speed.
+    // First: a bit rate may fit an encoder at constant speed.
     draft.encoders_by_behavior();
     draft.lines_by_behavior();
     draft.steps_by_behavior();
@@ -49,7 +49,6 @@ fn propose(mut draft: Draft<'_>) -> ChannelMap {
     entries(&draft, named)
 }
 
-/// The map: motors that are numbered in the file keep their numbers, the others are counted.
 fn entries(draft: &Draft<'_>, named: usize) -> ChannelMap {
     let number = |motor: &Motor| if motor.axis.is_empty() { Ok(0) } else { motor.axis.parse::<u32>() };
     let numbers: Vec<u32> = draft.motors.iter().take(named).filter_map(|motor| number(motor).ok()).collect();

@@ -1,7 +1,7 @@
-//! A capture on the bus: its levels as records of the 36 signals, in cycles of a clock.
+//! Converts a capture to records of the 36 signals, in clock cycles (DESIGN A9, B1).
 //!
-//! A time becomes the nearest cycle, halves up; by the file's own clock none is rounded. Where the clock is slower than the
-//! file, edges can meet in a cycle, and a pulse within one is lost: both are counted.
+//! Times are rounded to the nearest cycle, halves up. With a slow clock, edges may share a cycle and pulses may be
+//! lost; both are counted.
 //!
 //! ```
 //! use stepscope_capture::{ChannelMap, Recorded, read::{Limits, read}};
@@ -27,37 +27,36 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Pulses that are made are a part of a second wide at most: 2.5 us.
+/// Pulses that are made have at most this part of a second: 2.5 us.
 const WIDEST: u64 = 400_000;
-/// Last cycle that a run may have (DESIGN A9).
 const LAST_CYCLE: u64 = 9_000_000_000_000_000;
 
 /// A capture's signals in cycles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
-    /// Cycles a second.
+    /// Cycles per second.
     pub clock_hz: u32,
-    /// Channels of the bus that are looked at, from 0.
+    /// Number of channels of the bus, from 0.
     pub channels: u8,
-    /// The first at cycle 0, each later, and other, than the one before. Signals without a channel stand at their level of
-    /// reset, DIR at right.
+    /// Records from cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels, DIR
+    /// right.
     pub records: Vec<Record>,
-    /// The last cycle that is known.
+    /// The last known cycle.
     pub end: Instant,
-    /// What the clock does to the times.
+    /// Effects of rounding.
     pub rounding: Rounding,
 }
 
-/// What putting times into cycles has cost.
+/// Effects of rounding times to cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rounding {
-    /// Changes of the file whose time is no whole cycle.
+    /// Changes whose time is not a whole cycle.
     pub rounded: u64,
-    /// Records of the file that share a cycle with the one before.
+    /// Records that share a cycle with the one before.
     pub met: u64,
-    /// Single signals that changed there and back within a cycle, and steps that no pulse could be made for.
+    /// Signals that changed twice within a cycle, and steps without room for a pulse.
     pub lost: u64,
-    /// How often both inputs of an encoder changed at once, or CW and CCW were high together: no step is counted.
+    /// Simultaneous changes of both encoder inputs, or CW and CCW high together: no step is counted.
     pub ambiguous: u64,
 }
 
@@ -78,7 +77,7 @@ impl fmt::Display for Rounding {
     }
 }
 
-/// A time that is beyond the last cycle.
+/// A time after the last possible cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLate {
     /// In ticks of the file.
@@ -97,14 +96,12 @@ impl fmt::Display for TooLate {
 
 impl core::error::Error for TooLate {}
 
-/// The cycle of a time, if there is one.
 fn cycle(timebase: Timebase, tick: u64, clock_hz: u32) -> Result<u64, TooLate> {
     timebase.cycle(tick, clock_hz).filter(|cycle| *cycle <= LAST_CYCLE).ok_or(TooLate { tick })
 }
 
 impl Recorded {
-    /// The levels of a capture by a map, in cycles of `clock_hz`; a tick is as long as `timebase` says. Takes the capture's
-    /// memory over.
+    /// Converts a capture to cycles of `clock_hz`, with ticks of `timebase`. Frees the capture's memory on the way.
     ///
     /// # Errors
     /// [`TooLate`] if a time has no cycle.
@@ -119,10 +116,10 @@ impl Recorded {
             cycle(timebase, last.tick, clock_hz)?;
         }
         let signals = Signals::new(map);
-        // A pulse that is made has a fall without a change in the file.
+        // A pulse that is made has an additional fall.
         let count = capture.changes.len() * if map.makes_pulses() { 2 } else { 1 };
         let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
-        // At once, since a doubled vector may not fit beside the old one.
+        // Allocated once: a doubled vector may not fit next to the old one.
         let mut all: Vec<Record> = Vec::with_capacity(count);
         all.extend(records.by_ref());
         if all.is_empty() {
@@ -133,28 +130,26 @@ impl Recorded {
     }
 }
 
-/// Changes as records, one after the other: none of them is kept.
+/// Iterator that converts changes to records.
 #[derive(Clone, Debug)]
 pub struct Records<'m, I> {
     changes: I,
     signals: Signals<'m>,
     timebase: Timebase,
     clock_hz: u32,
-    /// Cycles of a tick, where they are a whole number: no division is needed then.
+    /// Cycles per tick if that is a whole number, which avoids a division.
     cycles: Option<u64>,
-    /// The latest, which a change of the same cycle may still alter.
     before: Option<Record>,
-    /// Levels of the last one that was given.
     last: Option<Levels>,
-    /// STEP signals whose pulses are made and high in `before`; and the end of those of the last one that was given.
+    /// STEP signals whose made pulses are high in `before`, and when the last ones end.
     high: u64,
     fall: Option<Record>,
-    /// What the clock does to the times, as far as they are read.
+    /// Effects of rounding so far.
     pub rounding: Rounding,
 }
 
 impl<'m> Records<'m, changes::Iter<'m>> {
-    /// Those of a capture, as [`Recorded::new`] has them.
+    /// Records of a capture, as in [`Recorded::new`].
     ///
     /// # Errors
     /// [`TooLate`] if a time has no cycle.
@@ -167,7 +162,7 @@ impl<'m> Records<'m, changes::Iter<'m>> {
         Self::from(capture, map, timebase, clock_hz, 0)
     }
 
-    /// Those from a tick on: first, at cycle 0, the levels that stand at that time.
+    /// Records from a tick on; the first, at cycle 0, has the levels at that time.
     ///
     /// # Errors
     /// [`TooLate`] if a time has no cycle.
@@ -185,7 +180,7 @@ impl<'m> Records<'m, changes::Iter<'m>> {
 }
 
 impl<'m> Records<'m, changes::Iter<'m>> {
-    /// Those of a capture with its ticks as cycles: nothing is rounded.
+    /// Records with ticks as cycles, without rounding.
     #[must_use]
     pub fn in_ticks(capture: &'m Capture, map: &'m ChannelMap) -> Self {
         Self::new(capture.changes.iter_from(0), Signals::new(map), Timebase::SECOND, 1)
@@ -199,9 +194,8 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         Self { changes, signals, timebase, clock_hz, cycles, before, last, high, fall, rounding }
     }
 
-    /// The one before, if this change is of another cycle and the levels are others.
     fn take(&mut self, Change { tick, levels }: Change) -> Option<Record> {
-        // The first is that of cycle 0, whenever the file begins.
+        // The first levels become cycle 0.
         let at = match self.before {
             Some(_) => match self.cycles {
                 Some(cycles) => tick.checked_mul(cycles),
@@ -219,7 +213,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
             let Steps { pulses, levels, ambiguous } = made.take(levels);
             self.rounding.ambiguous += u64::from(ambiguous);
             let since = self.before.map_or(u64::MAX, |before| at - before.cycle.0);
-            // A pulse ends a cycle later at the earliest, so it holds up a step that comes before.
+            // A pulse lasts at least one cycle, so an earlier step waits for it.
             let held = if since < 2 { self.high & pulses } else { 0 };
             self.rounding.lost += u64::from(held.count_ones());
             high = pulses & !held | if since == 0 { self.high } else { 0 };
@@ -237,8 +231,8 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         self.show(shown, falling, at - shown.cycle.0)
     }
 
-    /// Gives a record, if its levels are others than those before, and then the end of the pulses that are made: half way to
-    /// the next record, at most [`WIDEST`].
+    /// Returns a record if its levels are new, then the end of made pulses: halfway to the next record, at most
+    /// [`WIDEST`].
     fn show(&mut self, shown: Record, falling: u64, room: u64) -> Option<Record> {
         let is_new = self.last.replace(shown.levels) != Some(shown.levels);
         if falling != 0 && room > 1 {
@@ -271,13 +265,10 @@ impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
     }
 }
 
-/// A map as masks.
 #[derive(Clone, Debug)]
 struct Signals<'m> {
     entries: &'m [Entry],
-    /// Levels of the signals that have no channel.
     rest: u64,
-    /// Motors without STEP and DIR of their own.
     made: Option<MadePulses>,
 }
 
@@ -288,7 +279,7 @@ impl<'m> Signals<'m> {
         let bus = map.entries().iter().filter(|entry| entry.bit < BUS_SIGNALS);
         let mapped =
             bus.fold(made.as_ref().map_or(0, MadePulses::signals), |mask, entry| mask | 1 << entry.bit);
-        // Of channels that are not in use DIR is low, as on any bus.
+        // DIR of unused channels is low.
         let used = (1_u64 << map.bus_channels()) - 1;
         let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
         Self { entries: map.entries(), rest, made }
@@ -327,7 +318,6 @@ mod tests {
 
     #[test]
     fn changes_become_records_and_what_is_on_no_signal_is_left_out() {
-        // A fourth channel changes, too.
         let (records, rounding, end) =
             recorded(&[(5, 0b110), (20, 0b1110), (30, 0b1010), (40, 0b1011), (42, 0b1010)], 2_000_000);
         let en = Levels::EN;
@@ -352,7 +342,7 @@ mod tests {
         assert_eq!(cycles, [0, 5, 7]);
         assert_eq!(rounding, Rounding { rounded: 4, met: 2, lost: 1, ambiguous: 0 });
         assert!(rounding.to_string().contains("1 pulses within one are lost"), "{rounding}");
-        // A channel that is no signal changes in the same cycle, first.
+        // A channel that is no signal changes first, in the same cycle.
         let (records, rounding, _) = recorded(&[(0, 0), (20, 1), (21, 0b1001), (22, 0b1000)], 100_000);
         assert_eq!(records.iter().map(|(cycle, _)| *cycle).collect::<Vec<_>>(), [0]);
         assert_eq!((rounding.met, rounding.lost), (1, 1));
@@ -369,7 +359,6 @@ mod tests {
         assert_eq!(none.records.len(), 1);
     }
 
-    /// Records of STEP0 and DIR0 by a map, at 1 MHz: cycle, STEP, DIR.
     fn made(map: &str, changes: &[(u64, u64)]) -> (Vec<(u64, u64, u64)>, Rounding) {
         let capture = capture(changes);
         let map = ChannelMap::parse(map, &capture).expect("a map");

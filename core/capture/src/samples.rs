@@ -1,5 +1,4 @@
-//! Two recordings to look at, each with the scenario that it was to follow; `recordings/README.md` says how they were made
-//! and what one sees in them.
+//! Two sample recordings, each with its scenario; `recordings/README.md` describes them.
 //!
 //! ```
 //! use stepscope_capture::{read::{Limits, read}, samples::SAMPLES};
@@ -10,20 +9,20 @@
 //! }
 //! ```
 
-/// A recording, and what it was to follow.
+/// A recording and its scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Its word on the command line and in the page.
+    /// Name on the command line and in the page.
     pub id: &'static str,
     /// The file's name.
     pub file: &'static str,
-    /// The file.
+    /// The contents of the file.
     pub bytes: &'static [u8],
     /// The scenario, as JSON.
     pub scenario: &'static str,
 }
 
-/// A firmware that walks a step table by a timer's interrupt; a host that sends a packet too late.
+/// A firmware with a step table and a timer interrupt; a host that sends a packet too late.
 pub const SAMPLES: [Sample; 2] = [
     Sample {
         id: "recorded-step-table",
@@ -39,7 +38,7 @@ pub const SAMPLES: [Sample; 2] = [
     },
 ];
 
-/// The sample of a word.
+/// The sample with this name.
 #[must_use]
 pub fn sample(id: &str) -> Option<&'static Sample> {
     SAMPLES.iter().find(|sample| sample.id == id)

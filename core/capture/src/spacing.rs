@@ -1,4 +1,4 @@
-//! What the edges of STEP say about its driver: whether it may step on both edges, and whether its pulses are low.
+//! Analyzes the edges of STEP: whether the driver may step on both edges, and whether pulses are low.
 
 use crate::{
     capture::Capture,
@@ -6,13 +6,11 @@ use crate::{
     channel_map::{ChannelMap, EdgeHint, Entry, Input},
 };
 
-/// Fewest intervals between edges that say something.
 const MIN_INTERVALS: u64 = 14;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     last: Option<u64>,
-    /// The two intervals before, the later one first.
     before: [u64; 2],
     intervals: u64,
     even: u64,
@@ -31,7 +29,7 @@ impl Edges {
         if self.intervals > 2 {
             let sum = first.saturating_add(interval);
             let off = sum.abs_diff(middle.saturating_mul(2));
-            // An eighth of the interval, or a sample where the interval has many.
+            // Within an eighth of the interval, or within a sample if the interval has many.
             self.even += u64::from(off.saturating_mul(8) <= sum || off <= 2 && sum >= 16);
         }
         self.before = [interval, middle];
@@ -43,7 +41,7 @@ impl Edges {
 }
 
 impl ChannelMap {
-    /// What the edges of each STEP say, where they say something.
+    /// Hints for the motors whose edges are conclusive.
     #[must_use]
     pub fn edge_hints(&self, capture: &Capture) -> Vec<EdgeHint> {
         let step = |entry: &Entry| match Input::of(entry.bit) {
@@ -80,7 +78,6 @@ mod tests {
     use super::*;
     use crate::capture::{Change, Channel, Format};
 
-    /// Whether STEP seems to step on both edges, and whether it idles high, by the times between its edges.
     fn hint(first: u64, intervals: &[u64]) -> (bool, bool) {
         let mut at = 0;
         let edges = intervals.iter().zip(1..).map(|(interval, index)| {
@@ -107,7 +104,6 @@ mod tests {
             (0, &[100; 10], (false, false)),
             (0, &fixed_width, (false, false)),
             (0, &[60, 40].repeat(20), (false, false)),
-            // Within a sample of each other.
             (0, &[8, 9].repeat(20), (true, false)),
             (0, &[90, 10].repeat(20), (false, false)),
             (1, &[90, 10].repeat(20), (false, true)),

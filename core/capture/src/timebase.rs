@@ -1,4 +1,4 @@
-//! A file's time base: how long one of its ticks is, exactly, and in which clock cycle a tick falls.
+//! A file's exact time base, and the conversion of ticks to clock cycles.
 //!
 //! ```
 //! use stepscope_capture::timebase::Timebase;
@@ -9,7 +9,7 @@
 //! assert!(!base.is_exact(16_000_000) && base.is_exact(48_000_000));
 //! ```
 
-/// How long a tick is: `numerator / denominator` seconds, in lowest terms.
+/// Length of a tick: `numerator / denominator` seconds, in lowest terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timebase {
     numerator: u64,
@@ -17,10 +17,10 @@ pub struct Timebase {
 }
 
 impl Timebase {
-    /// Ticks of a second.
+    /// Ticks of one second.
     pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
 
-    /// Ticks of `numerator / denominator` seconds; `None` where one of them is 0.
+    /// Ticks of `numerator / denominator` seconds; `None` if one is 0.
     #[must_use]
     pub const fn new(numerator: u64, denominator: u64) -> Option<Self> {
         if numerator == 0 || denominator == 0 {
@@ -33,26 +33,25 @@ impl Timebase {
         Some(Self { numerator: numerator / a, denominator: denominator / a })
     }
 
-    /// A tick in s.
+    /// Length of a tick in s.
     #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
-    /// Numerator and denominator of a tick in s.
+    /// Numerator and denominator.
     #[must_use]
     pub const fn parts(self) -> (u64, u64) {
         (self.numerator, self.denominator)
     }
 
-    /// The clock with one cycle a tick, in Hz; `None` where that is no whole number.
+    /// The clock in Hz with one cycle per tick; `None` if it is not whole.
     #[must_use]
     pub fn clock_hz(self) -> Option<u32> {
         if self.numerator == 1 { u32::try_from(self.denominator).ok() } else { None }
     }
 
-    /// The cycle of a tick by a clock of `clock_hz`: rounded to the nearest, halves up, as DESIGN B1 rounds times; `None`
-    /// where it does not fit.
+    /// The cycle of a tick at `clock_hz`, rounded to the nearest, halves up (DESIGN B1); `None` if it does not fit.
     #[must_use]
     pub fn cycle(self, tick: u64, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
@@ -60,7 +59,7 @@ impl Timebase {
         u64::try_from((whole.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
     }
 
-    /// Whether a tick falls on a cycle of that clock.
+    /// Whether this tick falls on a cycle.
     #[must_use]
     pub fn is_whole(self, tick: u64, clock_hz: u32) -> bool {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
@@ -68,7 +67,7 @@ impl Timebase {
         whole.is_some_and(|whole| whole.is_multiple_of(u128::from(self.denominator)))
     }
 
-    /// Cycles of a tick by that clock, where they are a whole number.
+    /// Cycles per tick if that is whole.
     #[must_use]
     pub fn cycles(self, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
@@ -76,7 +75,7 @@ impl Timebase {
         u64::try_from(exact).ok()
     }
 
-    /// Whether every tick falls on a cycle of that clock, so that nothing is rounded.
+    /// Whether every tick falls on a cycle.
     #[must_use]
     pub fn is_exact(self, clock_hz: u32) -> bool {
         (u128::from(self.numerator) * u128::from(clock_hz)).is_multiple_of(u128::from(self.denominator))

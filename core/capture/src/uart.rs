@@ -1,4 +1,4 @@
-//! Bytes of a recorded serial line: its bit rate from its edges, its bytes, and whether a channel is a serial line at all.
+//! Decodes a recorded serial line: bit rate from its edges, then its bytes.
 //!
 //! Bits are sampled at fractional bit times from each start edge, so four samples per bit are enough. Below
 //! [`COARSE_BIT`] samples per bit the position of the start edge itself is fitted to all edges of the word.
@@ -36,13 +36,12 @@ pub use rate::{Estimate, NoRate, estimate, looks_like_a_line};
 use core::{fmt, str::FromStr};
 use std::collections::VecDeque;
 
-/// Samples per bit below which the start edge's own rounding matters.
+/// Below this number of samples per bit the start edge's rounding matters.
 pub const COARSE_BIT: f64 = 16.0;
-/// Edges of one word that are considered; more are noise.
+/// More edges per word are noise.
 const MAX_EDGES: usize = 64;
-/// How far a start edge may be off, in samples: its rounding, and one sample of jitter.
+/// In samples: rounding, plus one sample of jitter.
 const START_OFF: f64 = 1.5;
-/// Steps in which that is searched, in samples.
 const START_STEP: f64 = 0.25;
 
 /// Parity of a word.
@@ -51,9 +50,9 @@ pub enum Parity {
     /// No parity bit.
     #[default]
     None,
-    /// An even number of ones, the parity bit included.
+    /// Even number of ones, parity bit included.
     Even,
-    /// An odd number.
+    /// Odd number of ones.
     Odd,
 }
 
@@ -72,13 +71,13 @@ impl Default for Format {
 }
 
 impl Format {
-    /// `data` bits (7 or 8), a parity and `stop` bits (1 or 2); `None` where there is no such format.
+    /// 7 or 8 data bits, a parity and 1 or 2 stop bits; `None` for other formats.
     #[must_use]
     pub fn new(data: u8, parity: Parity, stop: u8) -> Option<Self> {
         ((7..=8).contains(&data) && (1..=2).contains(&stop)).then_some(Self { data, parity, stop })
     }
 
-    /// Bits of a word from its start bit to its last stop bit.
+    /// Bits per word, from the start bit to the last stop bit.
     #[must_use]
     pub fn bits(self) -> u8 {
         self.first_stop() + self.stop
@@ -88,7 +87,7 @@ impl Format {
         1 + self.data + u8::from(self.parity != Parity::None)
     }
 
-    /// The byte of a word's levels, bit 0 being the start bit, and what is wrong with it.
+    /// Bit 0 of `levels` is the start bit.
     fn word(self, levels: u16) -> (u8, Option<Fault>) {
         let byte = (levels >> 1 & ((1 << self.data) - 1)) as u8;
         let stops = (1_u16 << self.stop) - 1;
@@ -136,53 +135,49 @@ impl FromStr for Format {
     }
 }
 
-/// A change of a line's level.
+/// A level change of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// When, in any unit: samples, ticks or cycles.
+    /// In any unit: samples, ticks or cycles.
     pub at: u64,
-    /// The level from then on.
+    /// The new level.
     pub high: bool,
 }
 
-/// What is wrong with a word.
+/// An error in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A stop bit was low.
+    /// A low stop bit.
     Framing,
-    /// Its parity bit does not fit.
+    /// A wrong parity bit.
     Parity,
 }
 
-/// A word of a line.
+/// A decoded word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Its start edge.
+    /// Time of its start edge.
     pub start: u64,
     /// Its data.
     pub byte: u8,
-    /// What is wrong with it.
+    /// Its error, if any.
     pub fault: Option<Fault>,
 }
 
-/// A word as its edges fit the bit time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fitted {
-    /// Levels of its bits, bit 0 being the start bit.
     levels: u16,
-    /// Edges that belong to it.
     edges: usize,
-    /// Sum of the squares of how far its edges are from whole bits, in bits.
+    /// In bits.
     squares: f64,
-    /// Edges that meet another one in a bit.
     met: usize,
-    /// Sums for the least squares line through its edges: see [`rate`].
+    /// Sums of the least squares line; see [`rate`].
     sxx: f64,
     sxy: f64,
 }
 
-/// Decodes a line that is high when idle. Its edges alternate, and rise in time; a bit lasts `bit`. A word that ends the
-/// recording with its line low counts as one with a framing error.
+/// Decodes a line that is high when idle, with alternating edges in order of time; a bit lasts `bit`. A word that
+/// ends with the recording and a low line has a framing error.
 pub fn decode(edges: impl IntoIterator<Item = Edge>, bit: f64, format: Format, mut take: impl FnMut(Word)) {
     each_word(edges, bit, format, &mut |start, fitted: &Fitted, _| {
         let (byte, fault) = format.word(fitted.levels);
@@ -192,8 +187,8 @@ pub fn decode(edges: impl IntoIterator<Item = Edge>, bit: f64, format: Format, m
     });
 }
 
-/// Calls for each word, and for each pulse that is too short for a start bit, whose bit 0 is then high: its start edge, how it
-/// fits, and whether edges come after it.
+/// Also calls for pulses too short for a start bit, whose bit 0 is then high. Passes the start edge, the fit, and
+/// whether more edges follow.
 fn each_word(
     edges: impl IntoIterator<Item = Edge>,
     bit: f64,
@@ -225,12 +220,10 @@ fn each_word(
     }
 }
 
-/// The nearest whole number of a number that is not negative.
 fn rounded(number: f64) -> i64 {
     (number + 0.5).max(0.0) as i64
 }
 
-/// Fits a word to its edges, the first of which is the start edge, at 0.
 fn fit(times: &[f64], bit: f64, format: Format) -> Fitted {
     let mut best = fit_from(times, bit, format, 0.0);
     if bit >= COARSE_BIT {
@@ -250,7 +243,6 @@ fn fit(times: &[f64], bit: f64, format: Format) -> Fitted {
     best.0
 }
 
-/// The same where the start is `off` later than its edge, and what that costs.
 fn fit_from(times: &[f64], bit: f64, format: Format, off: f64) -> (Fitted, f64) {
     let bits = i64::from(format.bits());
     let mut fitted = Fitted { edges: 1, ..Fitted::default() };
@@ -270,7 +262,6 @@ fn fit_from(times: &[f64], bit: f64, format: Format, off: f64) -> (Fitted, f64) 
         }
         fitted.edges += 1;
         last = whole;
-        // From this bit on the level is another one.
         levels ^= u16::MAX << whole;
         let x = whole as f64;
         (n, sum_x, sum_y) = (n + 1.0, sum_x + x, sum_y + at);
@@ -279,7 +270,7 @@ fn fit_from(times: &[f64], bit: f64, format: Format, off: f64) -> (Fitted, f64) 
     fitted.levels = levels;
     fitted.sxx = sum_xx - sum_x * sum_x / n;
     fitted.sxy = sum_xy - sum_x * sum_y / n;
-    // Of two that fit about as well the one with a stop bit.
+    // Of two similar fits, prefer the one with a stop bit.
     let framing = format.word(levels).1 == Some(Fault::Framing);
     (fitted, cost + if framing { 0.1 } else { 0.0 })
 }

@@ -1,8 +1,6 @@
-//! Judges a scenario: the rules of DESIGN A4, A7 and A9 that join several fields. What one field may be by itself stands
-//! in its row of the schema, and is judged by that (`schema::judge`).
+//! Checks the rules that join several fields (DESIGN A4, A7, A9); `schema::judge` checks single fields.
 //!
-//! Motions are judged where they are planned (`motion`), because only the plan knows what they ask
-//! for; `sim::Experiment` gathers the problems of both.
+//! Motions are checked where they are planned (`motion`); `sim::Experiment` collects the problems of both.
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
@@ -21,38 +19,38 @@ use stepscope_peripheral::{
     wire::{ForcedLevel, schedule::line_time},
 };
 
-/// Most bytes of a line script, and most packets of a packet list.
+/// Maximum bytes of a line script, and maximum packets of a packet list.
 const MAX_BYTES: usize = 4 << 20;
 
-/// A scenario whose numbers hold, but for its motions.
+/// A valid scenario; its motions are not checked yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedScenario {
     /// The controllers on the line, the scenario's own first.
     pub configs: Vec<Config>,
-    /// What the additional ones do.
+    /// The commands of the additional controllers.
     pub additional: Vec<Controller>,
     /// The host's bit rate.
     pub baud: u32,
-    /// How the host of a framed line behaves.
+    /// The host of a framed line.
     pub host: Host,
     /// Random faults of the line.
     pub noise: Noise,
-    /// Levels forced on the line; where two overlap the later one wins.
+    /// Levels forced on the line; of two that overlap, the later wins.
     pub forced: Vec<ForcedLevel>,
-    /// What the host sends; its motions are not judged yet.
+    /// What the host sends; motions are not checked yet.
     pub source: Source,
-    /// What the segment engine runs, where the source is segments.
+    /// The segments, if they are the source.
     pub segments: Option<CheckedSegments>,
-    /// The stand-alone controllers, where the source is such.
+    /// The stand-alone controllers, if they are the source.
     pub stand_alone: Option<stepscope_controller::CheckedSetup>,
-    /// Length of the run, if it is given.
+    /// Length of the run, if given.
     pub run: Option<Cycles>,
-    /// What the edges drive.
+    /// The plants, if any.
     pub plants: Option<crate::plant::Plants>,
 }
 
 impl CheckedScenario {
-    /// Whether the host sends frame after frame, each when the one before is answered.
+    /// Whether the host waits for a reply before it sends the next frame.
     #[must_use]
     pub fn waits_for_replies(&self) -> bool {
         let framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
@@ -61,7 +59,7 @@ impl CheckedScenario {
 }
 
 impl Scenario {
-    /// Judges everything but the motions.
+    /// Checks everything but motions.
     ///
     /// # Errors
     /// Every problem, each with its path.
@@ -78,7 +76,7 @@ impl Scenario {
         let configure = if runs_alone { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
         let config = config.map_err(|broken| tell(broken, ToString::to_string, &mut validator)).ok();
-        // Without a rate of its own the receiver has the host's, which is judged above.
+        // By default the receiver has the host's rate, which is checked above.
         if self.line.receiver_baud.is_some() && !runs_alone {
             validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
         }
@@ -125,7 +123,7 @@ impl Scenario {
         validator.end(()).map(|()| CheckedScenario {
             configs,
             additional: self.controllers.clone(),
-            // Where nothing is sent it has not been judged.
+            // If nothing is sent, it has not been checked.
             baud: self.line.baud.max(1),
             host: self.line.host.clone(),
             noise: self.line.noise.clone(),
@@ -157,9 +155,8 @@ impl Scenario {
         forced
     }
 
-    /// The additional controllers' configurations.
     fn additional(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
-        // Who writes the line himself may also ask what several of one address do.
+        // A line script may address several controllers at once, for tests of such lines.
         let scripted = matches!(self.source, Source::Line(_));
         let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
         if !self.controllers.is_empty() && nameless && !scripted {
@@ -179,7 +176,7 @@ impl Scenario {
                 Ok(config) => configs.push(config),
                 Err(broken) => {
                     let path = |field: &Field| match field {
-                        // These are the whole line's, and judged for the first controller too.
+                        // These belong to the whole line and are reported for the first controller.
                         Field::ClockHz | Field::Line("baud") => field.to_string(),
                         Field::Line(own) => format!("controllers[{index}].{own}"),
                         Field::Bus(_) => format!("controllers[{index}].{field}"),
@@ -211,7 +208,6 @@ impl Scenario {
         configs
     }
 
-    /// What an additional controller is to do.
     fn orders(&self, controller: &Controller, here: &mut Validator) {
         let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
         here.length("axes", controller.axes.len(), 0..=most, "axes");
@@ -227,7 +223,6 @@ impl Scenario {
         here.at("packets", |here| judge_packets(&controller.packets, len, here));
     }
 
-    /// A host that hears replies needs a rate that it can hear itself.
     fn host(&self, validator: &mut Validator) {
         let hears_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
         if hears_replies && self.line.receiver_baud.is_some() {
@@ -262,7 +257,7 @@ impl Scenario {
     }
 }
 
-/// Rules that a configuration breaks, each at the path of its field; a range that its own row has told is told once.
+/// A range that the field's own row has reported is not reported again.
 fn tell(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
     for ConfigProblem { field, error } in broken {
         let path = path(&field);
@@ -272,7 +267,7 @@ fn tell(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: 
     }
 }
 
-/// The same where another configuration may have broken the rule already.
+/// Skips problems that another configuration has, too.
 fn tell_once(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
     for ConfigProblem { field, error } in broken {
         let path = path(&field);
@@ -282,7 +277,7 @@ fn tell_once(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, valida
     }
 }
 
-/// Controllers that are paced together need ticks of one length and packets of one length.
+/// Controllers with common ticks need equal tick and packet lengths.
 fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
     let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
     if tick_cycles != first_cycles {
@@ -294,7 +289,6 @@ fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
     }
 }
 
-/// Packets are of `len` bytes.
 fn judge_packets(packets: &[Hex], len: usize, here: &mut Validator) {
     for (index, Hex(bytes)) in packets.iter().enumerate() {
         here.at_entry(index, |here| here.length("", bytes.len(), len..=len, "bytes"));

@@ -1,5 +1,4 @@
-//! The scenario's types as JSON: the canonical form that a link carries, fixed in order, with what equals its default
-//! left out; and the whole form, every field written.
+//! Writes scenario types as JSON: canonical (for links), whole, or short.
 
 use crate::schema::{Parts, ToParts};
 use alloc::{
@@ -8,11 +7,10 @@ use alloc::{
 };
 use serde_json::{Map, Value};
 
-/// A value with a canonical JSON: fixed order, defaults left out.
-///
-/// Reading it back gives an equal value, and equal values have the same canonical form.
+/// A value with a canonical JSON: fixed order, defaults omitted. Equal values have equal canonical JSON, and reading
+/// it returns an equal value.
 pub trait Compact: ToParts {
-    /// The canonical form.
+    /// The canonical JSON.
     fn compact(&self) -> Value
     where
         Self: Sized,
@@ -26,17 +24,14 @@ impl<T: ToParts> Compact for T {}
 /// Which fields are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fields {
-    /// Those that differ from their defaults.
     Differing,
-    /// Every one.
     All,
 }
 
-/// A value as JSON.
 pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
     match parts {
         Parts::Whole(value) => value,
-        // -0.0 equals 0.0, so it is written like it.
+        // -0.0 equals 0.0 and is written the same.
         Parts::Number(number) => Value::from(number + 0.0),
         Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), which)).collect(),
         Parts::Fields(group, values) => {
@@ -56,9 +51,8 @@ pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
     }
 }
 
-/// Writes a value with all its fields in the order of their declaration, as
-/// `serde_json::to_string_pretty` does; `indent` is the depth of the line that it begins in. A text that gets longer than `most`
-/// bytes is left where it is.
+/// Writes all fields like `serde_json::to_string_pretty`, starting at depth `indent`. Stops when the text exceeds
+/// `most` bytes.
 pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, most: usize) {
     if out.len() > most {
         return;
@@ -106,11 +100,11 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, 
     out.push(brackets);
 }
 
-/// The name of the field that says which names the others have: it is written wherever a text stands by itself.
+/// Gives the version of all names, so it is always written.
 const VERSION: &str = "version";
 
-/// Writes a value without the fields that are at their defaults, and without indentation: the entries of a list one per line,
-/// numbers side by side. Half as long as the whole form or less. A text that gets longer than `most` bytes is left where it is.
+/// Writes without defaults and indentation: one list entry per line, numbers in a row. Stops when the text exceeds
+/// `most` bytes.
 pub(super) fn write_short(out: &mut String, value: &dyn ToParts, most: usize) {
     if out.len() > most {
         return;
@@ -179,8 +173,8 @@ impl<T: ToParts> ToParts for Vec<T> {
     }
 }
 
-/// The names of all kinds of a choice, as JSON writes them.
+/// The names of a choice's kinds in JSON.
 pub trait Kinds {
-    /// In the order of their declaration.
+    /// Names in declaration order.
     const KINDS: &'static [&'static str];
 }

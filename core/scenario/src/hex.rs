@@ -5,8 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 use base16ct::{lower, mixed};
 use serde_json::Value;
 
-/// Bytes that JSON writes as hexadecimal digits. Capital letters and spaces are read, small ones
-/// without spaces are written.
+/// Bytes that JSON writes as hexadecimal digits. Reads capitals and spaces; writes small letters without spaces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hex(pub Vec<u8>);
 
@@ -30,14 +29,12 @@ impl Read for Hex {
 }
 
 impl Hex {
-    /// The bytes of a text, or what is wrong with it.
     pub(crate) fn of_text(text: &str) -> Result<Self, String> {
         let digits: String = text.chars().filter(|c| !c.is_ascii_whitespace()).collect();
         mixed::decode_vec(&digits).map(Self).map_err(|_| wrong_in(&digits))
     }
 }
 
-/// What is wrong with digits that are no bytes, and what is allowed.
 fn wrong_in(digits: &str) -> String {
     let wrong = digits.chars().enumerate().find(|(_, c)| !c.is_ascii_hexdigit());
     let what = match wrong {

@@ -1,8 +1,7 @@
-//! A text that is known to be JSON, looked at where it stands: a value is the piece of the text that it is written as.
+//! Reads JSON values as slices of the text.
 //!
-//! Nothing is kept of what was passed over, so reading takes no memory beside the text and what is read from it, and every
-//! name is seen, those that are given twice as well. The price is time: what lies under a value is passed over once for
-//! each level that it lies below, and a scenario has nine.
+//! This needs no memory besides the text and shows duplicate names. Each level of nesting is scanned again, but a
+//! scenario has only nine.
 
 use alloc::{borrow::Cow, borrow::ToOwned, vec::Vec};
 use core::fmt;
@@ -12,7 +11,7 @@ use serde::{
 };
 use serde_json::{Deserializer, value::RawValue};
 
-/// Whole numbers up to this one are exact also where they are written with a point or a power of ten.
+/// Up to here, whole numbers are exact even with a point or an exponent.
 const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// A value in a JSON text.
@@ -20,15 +19,10 @@ const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 pub struct Json<'t>(&'t RawValue);
 
 impl<'t> Json<'t> {
-    /// The value that a whole text is.
-    ///
-    /// # Errors
-    /// If it is not JSON, where and why.
     pub(crate) fn parse(text: &'t str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text).map(Self)
     }
 
-    /// As it is written.
     pub(crate) fn written(self) -> &'t str {
         self.0.get()
     }
@@ -49,18 +43,18 @@ impl<'t> Json<'t> {
         self.begins_with('[')
     }
 
-    /// The text, if it is one: not if half of a surrogate pair stands in it.
+    /// `None` for half of a surrogate pair.
     pub(crate) fn text(self) -> Option<Cow<'t, str>> {
         let text = self.begins_with('"').then(|| serde_json::from_str::<Text<'_>>(self.written()));
         text?.ok().map(|Text(text)| text)
     }
 
-    /// The number, if it is one that is not beyond all numbers.
+    /// `None` for infinity.
     pub(crate) fn number(self) -> Option<f64> {
         serde_json::from_str(self.written()).ok()
     }
 
-    /// The whole number, if it is one: whether it is below zero, and its size. `16000000.0` and `16e6` are whole, too.
+    /// Sign and magnitude of a whole number, `16000000.0` and `16e6` included.
     pub(crate) fn whole(self) -> Option<(bool, u64)> {
         let written = self.written();
         let size = written.strip_prefix('-').unwrap_or(written);
@@ -73,24 +67,23 @@ impl<'t> Json<'t> {
         (number.abs() <= MAX_EXACT && size as f64 == number.abs()).then_some((number < 0.0, size))
     }
 
-    /// Each name of a map and its value, in their order; false if it is no map, or a name in it is no text.
+    /// False if it is no map or a name is no text.
     pub(crate) fn members(self, each: &mut dyn FnMut(&str, Json<'t>)) -> bool {
         Deserializer::from_str(self.written()).deserialize_map(Members(each)).is_ok()
     }
 
-    /// Each entry of a list, in their order; false if it is no list.
+    /// False if it is no list.
     pub(crate) fn entries(self, each: &mut dyn FnMut(Json<'t>)) -> bool {
         self.is_list() && Deserializer::from_str(self.written()).deserialize_seq(Entries(each)).is_ok()
     }
 
-    /// The entries of a list.
     pub(crate) fn list(self) -> Option<Vec<Json<'t>>> {
         let mut list = Vec::new();
         self.entries(&mut |entry| list.push(entry)).then_some(list)
     }
 }
 
-/// A text that is a piece of the whole one, or was written with escapes.
+/// Borrowed, or owned if it was written with escapes.
 struct Text<'t>(Cow<'t, str>);
 
 impl<'t> Deserialize<'t> for Text<'t> {
@@ -166,7 +159,7 @@ mod tests {
             ("-0", Some((false, 0))),
             ("18446744073709551615", Some((false, u64::MAX))),
             ("9007199254740992.0", Some((false, 1 << 53))),
-            // Not exact any more: who means it writes it without a point.
+            // No longer exact with a point.
             ("9007199254740994.0", None),
             ("18446744073709551616", None),
             ("1.5", None),

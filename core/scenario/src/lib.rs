@@ -1,15 +1,14 @@
-//! What a link, a file and the page's fields hold: one experiment.
+//! The scenario format: one experiment, as a file, a link or the page's form has it.
 //!
-//! Every field has a default, so `{}` is a scenario. Units stand in the names. Choices are written
-//! as one key that names the choice, with its own settings inside:
+//! Every field has a default, so `{}` is a scenario. Units are in the names. A choice is a map with one key, the name
+//! of the choice, with its settings inside:
 //!
 //! ```json
 //! { "source": { "motion": { "axes": [ { "moves": [
 //!     { "cosine": { "distance": { "steps": 6400 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }
 //! ```
 //!
-//! A scenario as read is only text with types; [`Scenario::check`] makes a [`CheckedScenario`] of it or
-//! returns every problem at once, each with its path. What comes after never meets a bad number.
+//! [`Scenario::check`] returns a [`CheckedScenario`], or every problem with its path.
 //!
 //! ```
 //! use stepscope_scenario::Scenario;
@@ -91,5 +90,5 @@ pub use schema::{
 pub use schema::{Parts, ToParts};
 pub use table::{BadTable, MAX_TABLE_BYTES};
 
-/// The scenario version that this crate writes, and the newest that it reads.
+/// The newest scenario version, which is written.
 pub const VERSION: u32 = 2;

@@ -1,10 +1,10 @@
-//! Bounds of a scenario that more than one rule names.
+//! Limits that several rules use.
 
-/// First cycle that no run reaches: a JavaScript number is exact up to 2^53, and this is below.
+/// First cycle after every run; below 2^53, so that JavaScript numbers are exact.
 pub const END_OF_TIME: u64 = 9_000_000_000_000_000;
 
-/// Most controllers on a line, the scenario's own first.
+/// Maximum controllers on a line, the scenario's own included.
 pub const MAX_CONTROLLERS: usize = 32;
 
-/// Longest text of a scenario that a program should read, in bytes: a million segments with all their fields fit.
+/// Maximum bytes of a scenario's text; a million segments with all fields fit.
 pub const MAX_TEXT_BYTES: usize = 64 << 20;

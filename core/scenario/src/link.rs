@@ -1,12 +1,11 @@
-//! A scenario as the text of a link (PAGE "Share link").
+//! Encodes and decodes share links (PAGE "Share link").
 //!
-//! `c=<version>.<codec>.<base64url payload>.<crc>`: the payload is the canonical JSON, as it is
-//! (codec `j`) or as raw deflate (codec `z`), whichever is shorter; the check is the CRC-32 (as in
-//! zip, ISO-HDLC) of all that stands before its dot, in 8 hexadecimal digits. The same scenario
-//! always gives the same link.
+//! `c=<version>.<codec>.<base64url payload>.<crc>`: the payload is the canonical JSON, plain (codec `j`) or deflated
+//! (codec `z`), whichever is shorter. The CRC-32 (ISO-HDLC, as in zip) covers everything before its dot. Equal
+//! scenarios have equal links.
 //!
-//! A link comes from a stranger. It is judged in this order: length, version, alphabet and check,
-//! size after inflating, types and names, then ranges and cost, which the caller judges.
+//! Links are untrusted. Checks in order: length, version, alphabet and CRC, inflated size, types and names. The
+//! caller checks ranges and cost.
 //!
 //! ```
 //! use stepscope_scenario::{Scenario, link};
@@ -25,16 +24,16 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use miniz_oxide::{deflate::compress_to_vec, inflate::decompress_to_vec_with_limit};
 use percent_encoding::percent_decode_str;
 
-/// Longest fragment that is read, in bytes.
+/// Maximum bytes of a fragment.
 pub const MAX_FRAGMENT_BYTES: usize = 16 << 10;
-/// Longest canonical JSON that is read, in bytes.
+/// Maximum bytes of the canonical JSON.
 pub const MAX_JSON_BYTES: usize = 64 << 10;
-/// miniz_oxide's strongest level; part of what makes a scenario's link always the same.
+/// miniz_oxide's strongest level. Fixed, so that a scenario's link never changes.
 const DEFLATE_LEVEL: u8 = 10;
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
-/// Problems of a stranger's scenario that one message names.
+/// Maximum problems in one message.
 const MAX_TOLD: usize = 8;
-/// What a chat program or a sentence may have put behind a link.
+/// Punctuation that a chat program or a sentence may add to a link.
 const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"', '\''];
 
 /// Why a link does not open.
@@ -43,28 +42,28 @@ const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"
 pub enum LinkError {
     /// Longer than any link.
     TooLong {
-        /// Bytes of the fragment, or of the JSON of a scenario that is to become a link.
+        /// Bytes of the fragment, or of the scenario's JSON.
         given: usize,
-        /// Most allowed.
+        /// Maximum bytes.
         most: usize,
     },
-    /// No `c=` in it.
+    /// It has no `c=`.
     NoScenario,
-    /// Made with a newer version.
+    /// Made by a newer version.
     Newer {
         /// The link's version.
         given: u64,
-        /// The newest that is read here.
+        /// The newest readable version.
         newest: u32,
     },
-    /// The check fails: cut short or changed on the way.
+    /// Wrong CRC: truncated or changed.
     Damaged,
-    /// The payload is not what its codec says, or inflates to too much.
+    /// The payload does not fit its codec, or inflates to too much.
     Payload {
-        /// Most bytes that it may inflate to.
+        /// Maximum inflated bytes.
         most: usize,
     },
-    /// The scenario in it cannot be read.
+    /// The scenario cannot be read.
     Scenario(Vec<Problem>),
 }
 
@@ -107,7 +106,7 @@ impl fmt::Display for LinkError {
 
 impl core::error::Error for LinkError {}
 
-/// The link text of a scenario, without the `#`.
+/// Encodes a scenario as a link, without the `#`.
 ///
 /// # Errors
 /// [`LinkError::TooLong`] if the scenario's JSON or the link is longer than [`decode`] reads.
@@ -115,7 +114,7 @@ pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
     pack(&scenario.to_compact_json())
 }
 
-/// The link text of a scenario's compact JSON ([`Scenario::to_compact_json`]).
+/// Encodes a scenario's compact JSON ([`Scenario::to_compact_json`]) as a link.
 ///
 /// # Errors
 /// As [`encode`].
@@ -134,7 +133,7 @@ pub fn pack(json: &str) -> Result<String, LinkError> {
     Ok(link)
 }
 
-/// A link with another part, `&name=text`, behind it; without it where it would be too long to be read.
+/// Appends `&name=text`, unless the link would become too long to read.
 #[must_use]
 pub fn with_part(link: String, name: &str, text: &str) -> String {
     if text.is_empty() || link.len() + name.len() + text.len() + 2 > MAX_FRAGMENT_BYTES {
@@ -143,8 +142,8 @@ pub fn with_part(link: String, name: &str, text: &str) -> String {
     link + "&" + name + "=" + text
 }
 
-/// The scenario of a link's fragment, with or without its `#`; other parts (`&v=`, `&d=`) are left
-/// alone. Its ranges and its cost are still to be judged.
+/// Decodes a link's fragment, with or without `#`; ignores other parts (`&v=`, `&d=`). Ranges and cost are not
+/// checked.
 ///
 /// # Errors
 /// The first that [`LinkError`] lists.
@@ -153,16 +152,16 @@ pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
     Scenario::from_json_of(&json, version).map_err(LinkError::Scenario)
 }
 
-/// What a link holds, before it is read as a scenario.
+/// The contents of a link before they are read as a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packed {
-    /// The scenario's JSON, as the link's writer had it.
+    /// The scenario's JSON as written.
     pub json: String,
-    /// The link's version, which is that of its names ([`Scenario::from_json_of`]).
+    /// The link's version, for [`Scenario::from_json_of`].
     pub version: u64,
 }
 
-/// The text that a link's fragment holds.
+/// Decodes the JSON in a link's fragment.
 ///
 /// # Errors
 /// As [`decode`], but those of reading the scenario.
@@ -174,7 +173,7 @@ pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     let (version, rest) = text.split_once('.').unwrap_or((&text, ""));
     let version: u64 = version.parse().map_err(|_| LinkError::Damaged)?;
     if version == 0 {
-        // Versions count from 1: nobody wrote this.
+        // Versions count from 1.
         return Err(LinkError::Damaged);
     }
     if version > u64::from(VERSION) {
@@ -197,9 +196,8 @@ pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     Ok(Packed { json, version })
 }
 
-/// Part `name` of a fragment, without what a chat program put behind it. Some programs
-/// percent-encode a link when it is copied, also its `&`, some break it into lines (`%0A`); what is wrong with
-/// another part does not matter.
+/// Returns part `name` of a fragment without trailing punctuation. Accepts percent-encoded links, `&` included, and
+/// line breaks (`%0A`); errors in other parts do not matter.
 #[must_use]
 pub fn part(fragment: &str, name: &str) -> Option<String> {
     fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
@@ -212,7 +210,7 @@ pub fn part(fragment: &str, name: &str) -> Option<String> {
     )
 }
 
-/// What a mail program puts into a link that it wraps; no part of a link has any.
+/// Mail programs wrap links; a link itself has no blanks.
 fn is_blank(letter: char) -> bool {
     letter.is_ascii_whitespace()
 }
@@ -272,7 +270,6 @@ mod tests {
             format!("{link}%26v=1"),
             format!("  #{link}  "),
             encoded,
-            // Wrapped by a mail program.
             format!("{}%0D%0A{}", &link[..76], &link[76..]),
             format!("{}\n{}\n", &link[..76], &link[76..]),
         ] {

@@ -1,7 +1,5 @@
-//! The plants of a scenario, one behind the bus of each controller (F9), as `stepscope_plant` takes them.
-//!
-//! Each problem is told at the field of the scenario that a plant's number came from: of an axis' motor, of an entry of
-//! `plant.motors`, or of the plant itself.
+//! Builds the plants of a scenario, one per controller (F9), and reports problems at the field that a number came
+//! from.
 
 use crate::{Cause, PlantSettings, Scenario, Source, Validator, ValueError};
 use alloc::{
@@ -21,15 +19,15 @@ use stepscope_plant::{Plant, Refusal, Refused, limits, parameters};
 /// The plants of a checked scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plants {
-    /// One a controller, in the order of the scenario.
+    /// One per controller, in the scenario's order.
     pub setups: Vec<parameters::Setup>,
     /// Whether a boot measures the settling time (F7).
     pub self_test: bool,
-    /// How long a run without a length of its own goes on after its last step.
+    /// Time after the last step of a run without a given length.
     pub tail: Cycles,
 }
 
-/// A motor and where it stands: the path of its own numbers, and that of its mechanics'.
+/// A motor with the paths of its own numbers and of its mechanics'.
 struct Placed<'a> {
     motor: Option<&'a Motor>,
     full_step_deg: f64,
@@ -39,8 +37,7 @@ struct Placed<'a> {
 }
 
 impl Scenario {
-    /// The plants behind the buses of these controllers, where the scenario has one. Every problem goes to `validator`;
-    /// what joins several numbers is judged where nothing else is wrong.
+    /// Adds all problems to `validator`. Rules that join fields are checked only if the fields are valid.
     pub(crate) fn plants(&self, configs: &[Config], validator: &mut Validator) -> Option<Plants> {
         self.judge_motors(validator);
         let settings = self.plant.as_ref()?;
@@ -64,7 +61,7 @@ impl Scenario {
         Some(Plants { setups, self_test: settings.self_test, tail })
     }
 
-    /// F7: a boot has room for a step there and back on each channel.
+    /// A boot needs time for a step and its return per channel (F7).
     fn judge_self_test(&self, configs: &[Config], validator: &mut Validator) {
         for (index, config) in configs.iter().enumerate() {
             if self.source.runs_alone() {
@@ -85,7 +82,7 @@ impl Scenario {
         }
     }
 
-    /// Judges the numbers of motors that only a plant asks for, and all of those that no axis has.
+    /// Checks numbers that only a plant uses, and motors without an axis.
     fn judge_motors(&self, validator: &mut Validator) {
         if let Source::Motion(motion) = &self.source {
             judge_axes(&motion.axes, "source.motion.axes", validator);
@@ -102,7 +99,6 @@ impl Scenario {
         }
     }
 
-    /// The motor of each channel of a controller.
     fn motors<'a>(&'a self, settings: &'a PlantSettings, controller: usize, channels: u8) -> Vec<Placed<'a>> {
         let (axes, axes_path): (&[Axis], _) = match (&self.source, controller.checked_sub(1)) {
             (Source::Motion(motion), None) => (&motion.axes, "source.motion.axes".to_string()),
@@ -146,7 +142,7 @@ impl Scenario {
     }
 }
 
-/// Name, full step and microsteps of mechanics that have them.
+/// Name, full step and microsteps, if these mechanics have them.
 fn mechanics(mechanics: &Mechanics) -> Option<(&'static str, f64, u16)> {
     match mechanics {
         Mechanics::Rotary(m) => Some(("rotary", m.full_step_deg, m.microsteps)),
@@ -164,7 +160,6 @@ fn judge_axes(axes: &[Axis], path: &str, validator: &mut Validator) {
     }
 }
 
-/// The numbers that motion does not judge.
 fn judge_motor(motor: &Motor, here: &mut Validator) {
     let most = *limits::TORQUE_MN_M.end();
     here.range("friction_mn_m", motor.friction_mn_m, limits::TORQUE_MN_M, "mN*m");
@@ -190,7 +185,7 @@ fn judge_motor(motor: &Motor, here: &mut Validator) {
     here.range("drive.diode_v", diode_v, limits::DIODE_V, "V");
 }
 
-/// All motors of a plant hang on one supply.
+/// All motors of a plant share one supply.
 fn one_supply(placed: &[Placed<'_>], validator: &mut Validator) {
     let supply = |placed: &Placed<'_>| placed.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
     let Some(first) = placed.first().map(supply) else { return };
@@ -202,7 +197,6 @@ fn one_supply(placed: &[Placed<'_>], validator: &mut Validator) {
     }
 }
 
-/// What the plant is made of.
 fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[Placed<'_>]) -> parameters::Setup {
     let default = Motor::default();
     let supply_v =
@@ -284,7 +278,6 @@ fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::MotorModel {
     }
 }
 
-/// Tells a refusal at its field.
 fn tell(refused: Refused, placed: &[Placed<'_>], validator: &mut Validator) {
     let of_motor = refused.channel.and_then(|channel| placed.get(channel));
     let path = match (refused.refusal, of_motor) {

@@ -1,4 +1,4 @@
-//! A profile given as points (DESIGN B6): as a scenario holds it, and as a table is read.
+//! Points of a profile (DESIGN B6), in a scenario or in a table.
 //!
 //! ```json
 //! { "points": { "unit": "mm", "interpolation": "smooth", "points": [[0, 0], [0.25, 12.5], [0.5, 0]] } }
@@ -36,11 +36,10 @@ impl ToParts for Point {
     }
 }
 
-/// The points of a table: two columns, time in s and position, with or without a head.
+/// Reads the points of a table with two columns: time in s and position.
 ///
-/// With a head the columns `time_s` and `position` are taken where there are such, else the first
-/// two. Commas, semicolons or tabs stand between the columns, whichever the first row has; beside
-/// semicolons and tabs a number may have a decimal comma.
+/// A head is optional; with one, `time_s` and `position` are used if present, else the first two columns. The first
+/// row decides between comma, semicolon and tab; with the latter two, decimal commas are allowed.
 ///
 /// # Errors
 /// [`BadTable`] with the first line that cannot be used. Whether the times rise is judged with the
@@ -51,7 +50,7 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
     let number = |text: &str| {
         let text = text.trim().trim_start_matches('+');
         let text = if separator == b',' { text.to_owned() } else { text.replace(',', ".") };
-        // JSON's reader of numbers is here anyway; the standard library's brings tables of its own.
+        // serde_json's number reader is linked anyway; the standard library's would add tables.
         serde_json::from_str::<f64>(&text).ok()
     };
     let mut rows = Rows::new(table, separator)?;

@@ -1,4 +1,4 @@
-//! The documents' own experiments, as JSON files that tests, native tools and the page share.
+//! Presets: experiments from the papers, shared by tests, command and page.
 //!
 //! ```
 //! use stepscope_scenario::presets::PRESETS;
@@ -9,19 +9,19 @@
 
 use crate::Scenario;
 
-/// One preset.
+/// A preset.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
-    /// Its name in files and on the command line.
+    /// Name in files and on the command line.
     pub id: &'static str,
     /// The document that it comes from.
     pub document: &'static str,
-    /// The scenario's JSON.
+    /// The scenario as JSON.
     pub json: &'static str,
 }
 
 impl Preset {
-    /// The scenario. The files are tested, so it is never the default in place of one.
+    /// Reads the scenario; tests check that every file is valid.
     #[must_use]
     pub fn scenario(&self) -> Scenario {
         Scenario::from_json(self.json).unwrap_or_default()

@@ -1,5 +1,4 @@
-//! What can be wrong with a scenario: every problem with its path, what was given, what is
-//! allowed, and what to change.
+//! Problems of a scenario: path, given value, allowed values, remedy.
 
 use alloc::{
     string::{String, ToString},
@@ -11,19 +10,19 @@ use stepscope_peripheral::config::{ConfigError, ConfigProblem};
 
 pub use stepscope_motion::problem::ValueError;
 
-/// One problem of a scenario, at the path of the field that has to change.
+/// A problem at the path of the field that has to change.
 pub type Problem = motion::Problem<Cause>;
 
-/// The collector of a scenario's problems.
+/// Collects a scenario's problems.
 pub type Validator = motion::Validator<Cause>;
 
-/// Problems of a plan, as a scenario's.
+/// Converts a plan's problems.
 #[must_use]
 pub fn of_motion(problems: Vec<motion::Problem>) -> Vec<Problem> {
     problems.into_iter().map(motion::Problem::widen).collect()
 }
 
-/// Problems of a configuration, at the paths that its fields have in a scenario.
+/// Converts a configuration's problems to the paths of a scenario.
 #[must_use]
 pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
     problems
@@ -32,11 +31,11 @@ pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
         .collect()
 }
 
-/// What is wrong, with the numbers.
+/// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// A value by itself.
+    /// A single value.
     Value(ValueError),
     /// A motion that cannot be planned.
     Motion(motion::Cause),
@@ -44,43 +43,43 @@ pub enum Cause {
     Config(ConfigError),
     /// Not JSON.
     Syntax {
-        /// Where the reader stopped, from 1.
+        /// Line, from 1.
         line: usize,
-        /// Column in that line, from 1.
+        /// Column, from 1.
         column: usize,
-        /// What it met.
+        /// What was found.
         detail: String,
     },
-    /// JSON of another type or name than the field's.
+    /// A wrong type or name.
     Type {
-        /// What was met and what was expected.
+        /// What was found and expected.
         detail: String,
     },
     /// Written by a newer Stepscope.
     NewerVersion {
         /// The scenario's version.
         given: u64,
-        /// The newest that is read here.
+        /// The newest readable version.
         newest: u32,
     },
-    /// A send begins before the one before it has ended (A9).
+    /// A send overlaps the one before (A9).
     Overlap {
         /// Its start.
         start: u64,
-        /// First cycle after the send before it.
+        /// First free cycle.
         free_from: u64,
     },
-    /// A line that cannot carry a packet a tick (A9).
+    /// The line cannot carry one packet per tick (A9).
     LineTooSlow {
-        /// Cycles that one tick's packet takes.
+        /// Cycles per packet.
         packet_cycles: u64,
-        /// Cycles of a tick.
+        /// Cycles per tick.
         tick_cycles: u64,
         /// The line's rate.
         baud: u32,
-        /// The least rate that does.
+        /// The minimum rate.
         needed_baud: u64,
-        /// The highest rate that the receiver can hear with this clock.
+        /// The receiver's maximum rate at this clock.
         max_baud: u64,
     },
     /// Two controllers of one address.
@@ -88,39 +87,39 @@ pub enum Cause {
         /// The address.
         address: u8,
     },
-    /// Controllers of one raw line whose packets have different lengths: each consumes those for
-    /// others by its own (A5).
+    /// Packet lengths differ on a raw line, where each controller also skips the others' packets by its own length
+    /// (A5).
     OtherPackets {
-        /// This one's channels.
+        /// This controller's channels.
         channels: u8,
-        /// The first one's.
+        /// The first controller's channels.
         first_channels: u8,
     },
-    /// Controllers that are paced together and have ticks of different lengths (A9).
+    /// Controllers with common ticks have different tick lengths (A9).
     OtherTick {
-        /// This one's tick in cycles.
+        /// This controller's cycles per tick.
         tick_cycles: u64,
-        /// The first one's.
+        /// The first controller's cycles per tick.
         first_cycles: u64,
     },
-    /// A stand-alone controller that is refused (CONTROLLER.md).
+    /// A refused stand-alone controller (CONTROLLER.md).
     StandAlone(stepscope_controller::Refusal),
-    /// A program without an end (CONTROLLER.md G5).
+    /// An endless program (CONTROLLER.md G5).
     Work(stepscope_controller::Work),
-    /// A plant that cannot be made of these numbers (F3, F5).
+    /// A plant with impossible numbers (F3, F5).
     Plant(stepscope_plant::Refused),
-    /// Motors of one plant on different supplies (F9).
+    /// Motors of one plant have different supplies (F9).
     OtherSupply {
         /// This motor's supply in V.
         supply_v: f64,
-        /// The first motor's.
+        /// The first motor's supply in V.
         first_v: f64,
     },
-    /// A boot that is too short for a self-test (F7).
+    /// A boot is too short for its self-test (F7).
     SelfTest {
         /// Its cycles.
         given: u64,
-        /// Those of the self-test, and one.
+        /// The minimum cycles.
         needed: u64,
     },
 }
@@ -153,8 +152,7 @@ impl From<ConfigError> for Cause {
 }
 
 impl Cause {
-    /// Whether it follows from several fields together, so that it means nothing while one of them
-    /// cannot be read.
+    /// Whether it involves several fields and so means nothing if one of them cannot be read.
     #[must_use]
     pub const fn joins_fields(&self) -> bool {
         match self {

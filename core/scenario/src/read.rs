@@ -1,4 +1,4 @@
-//! Reads a scenario from JSON text, of any version, and writes it.
+//! Reads scenarios of any version from JSON text, and writes them.
 
 use crate::{
     Cause, Compact, Json, MAX_TEXT_BYTES, Problem, Read, Scenario, ToParts, VERSION, compact,
@@ -10,20 +10,20 @@ use alloc::{
 };
 use stepscope_motion::problem::MAX_PROBLEMS;
 
-/// Longest text of a scenario with every field written, in bytes: a longer one is for programs.
+/// Maximum bytes of a text with every field written; longer ones omit defaults.
 const MAX_WHOLE_BYTES: usize = 4 << 20;
 
 impl Scenario {
-    /// Reads a scenario from JSON text of any version up to [`VERSION`].
+    /// Reads a scenario of any version up to [`VERSION`].
     ///
     /// # Errors
-    /// Every field of the wrong type or name, or given twice, with its path; ranges are judged by
+    /// Every field with a wrong type or name, or given twice. [`Scenario::check`] checks ranges.
     /// [`Scenario::check`].
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
         strictly(read(text, None))
     }
 
-    /// Reads a scenario whose version stands elsewhere, as in a link.
+    /// Reads a scenario whose version is known from elsewhere, such as a link.
     ///
     /// # Errors
     /// As [`Self::from_json`].
@@ -31,20 +31,20 @@ impl Scenario {
         strictly(read(text, Some(version)))
     }
 
-    /// Reads what can be read and lists the rest: fields that cannot be read have their defaults.
+    /// Reads as much as possible; unreadable fields get their defaults.
     #[must_use]
     pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
         read(text, None)
     }
 
-    /// The whole scenario as JSON, every field written.
+    /// All fields as JSON.
     #[must_use]
     pub fn to_json(&self) -> String {
         to_json(self)
     }
 
-    /// The scenario as a file that can be read again: every field written where that is short, else without defaults and
-    /// indentation. `None` if it has more than [`MAX_TEXT_BYTES`] even so.
+    /// All fields as JSON if that is short enough, else without defaults and indentation; `None` if that exceeds
+    /// [`MAX_TEXT_BYTES`], too.
     #[must_use]
     pub fn to_file_json(&self) -> Option<String> {
         self.within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
@@ -60,7 +60,7 @@ impl Scenario {
         (text.len() <= most).then_some(text)
     }
 
-    /// The same without what is at its default, in fixed order: as a link has it.
+    /// Canonical JSON, as in a link.
     #[must_use]
     pub fn to_compact_json(&self) -> String {
         self.compact().to_string()
@@ -71,7 +71,7 @@ fn strictly((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, 
     if problems.is_empty() { Ok(scenario) } else { Err(problems) }
 }
 
-/// Reads a part of a scenario, such as an axis or a move, with this version's names.
+/// Reads a part of a scenario, such as an axis or a move, with the names of the current version.
 ///
 /// # Errors
 /// Every field of the wrong type or name, with its path in the part.
@@ -81,7 +81,7 @@ pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
     if problems.is_empty() { Ok(part) } else { Err(problems) }
 }
 
-/// A part of a scenario as JSON, every field written.
+/// Writes a part of a scenario as JSON, every field included.
 #[must_use]
 pub fn to_json(part: &dyn ToParts) -> String {
     let mut text = String::new();
@@ -90,7 +90,7 @@ pub fn to_json(part: &dyn ToParts) -> String {
 }
 
 fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
-    // Some editors put a byte order mark before the text.
+    // Some editors write a byte order mark.
     Json::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         let detail = alloc::string::ToString::to_string(&error);
@@ -99,7 +99,7 @@ fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
     })
 }
 
-/// Which version's names a scenario has; `None` where that cannot be read. Without a version it may have any version's.
+/// `None` if it cannot be read. Without a version, names of any version are accepted.
 fn version(value: Json<'_>) -> Option<u64> {
     let mut given = None;
     if value.is_map() {
@@ -116,8 +116,7 @@ fn version(value: Json<'_>) -> Option<u64> {
     }
 }
 
-/// What can be read, and what is wrong with the rest; of too much of that nothing is read. A version that is `known` counts
-/// before that of the text.
+/// A `known` version overrides the text's. Reads nothing if there are too many problems.
 fn read(text: &str, known: Option<u64>) -> (Scenario, Vec<Problem>) {
     let value = match parse(text) {
         Ok(value) => value,
@@ -136,7 +135,6 @@ fn read(text: &str, known: Option<u64>) -> (Scenario, Vec<Problem>) {
     if given == Some(1) {
         scenario.version = VERSION;
     } else if let Some(known) = known {
-        // It is at most VERSION.
         scenario.version = known as u32;
     }
     let read = if problems.len() < MAX_PROBLEMS { scenario } else { Scenario::default() };
@@ -248,7 +246,7 @@ mod tests {
         assert_eq!(scenario.title, "kept");
         assert_eq!(problems.len(), 1);
         assert!(format!("{}", problems[0]).starts_with("clock_hz: "));
-        // A list in a map's place leaves nothing behind, though serde could read it by its order.
+        // serde would read the list as fields in order.
         let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","bus":[7]}"#);
         assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("kept", 1, 1));
         assert_eq!(Scenario::from_json_lenient("[2]").0, Scenario::default());

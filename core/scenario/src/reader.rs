@@ -1,8 +1,7 @@
-//! JSON into the scenario's types: one walk that lists every field of the wrong type or name.
+//! Reads JSON into the scenario's types in one pass and reports every field with a wrong type or name.
 //!
-//! Each type says by [`Read`] what it takes; the walk itself is code of its own and not of every type, so
-//! that the page carries it once. What cannot be read keeps its default. It is stricter than serde, which
-//! takes a map's fields from a list, by their order: a scenario has names.
+//! The walk is not generic, so that the page contains it once. Unreadable values keep their defaults. Unlike serde,
+//! it does not accept a list for a map.
 
 use crate::{
     Cause, Json, Problem, Validator,
@@ -17,34 +16,32 @@ use alloc::{
 };
 use core::{fmt::Display, mem::size_of};
 
-/// Most memory of a list, in bytes, beside what its entries hold: a short text must not become a great deal of them. Every
-/// list that a scenario may have is shorter.
+/// Limits memory: a short text could contain very many empty entries. All valid lists are smaller.
 const MAX_LIST_BYTES: usize = 256 << 20;
 
-/// A part of a scenario that JSON can say.
+/// A type that can be read from JSON.
 pub trait Read {
-    /// Takes a value. False where it is of another kind altogether, which `reader` has noted: then nothing
-    /// was taken. A map is taken also where some of its fields are not.
+    /// Reads a value. Returns false, noted in `reader`, if it has the wrong type and nothing was read; a map with
+    /// unreadable fields returns true.
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool;
 
-    /// What a value is read into where nothing stands yet, such as an entry of a list.
+    /// The initial value of a list's entry.
     fn blank() -> Self
     where
         Self: Sized;
 }
 
-/// What is wrong with what was read so far, and the way to the value that is being read.
+/// Path, problems and rules while reading.
 #[derive(Default)]
 pub struct Reader {
     validator: Validator,
-    /// The row of the field that is being read: what is allowed in it.
+    /// The row of the current field.
     row: Option<&'static Field>,
-    /// Whether names of version 1 are read, too.
+    /// Whether names of version 1 are accepted.
     old_names: bool,
 }
 
-/// Reads a value into `target`, with `old_names` also by the names of version 1; gives every problem, each with its path, at
-/// most [`stepscope_motion::problem::MAX_PROBLEMS`].
+/// Returns all problems, at most [`stepscope_motion::problem::MAX_PROBLEMS`].
 pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, old_names: bool) -> Vec<Problem> {
     let mut reader = Reader { old_names, ..Reader::default() };
     target.read(value, &mut reader);
@@ -56,19 +53,19 @@ impl Reader {
         self.validator.add("", Cause::Type { detail });
     }
 
-    /// Notes that a value is of another kind, and what would do. Always false.
+    /// Reports a wrong type; always returns false.
     pub(super) fn refuse(&mut self, value: Json<'_>, wanted: &str) -> bool {
         self.note(format!("{}; give {wanted}", describe(value)));
         false
     }
 
-    /// Notes what is wrong with a value of the right kind. Always false.
+    /// Reports a wrong value; always returns false.
     pub(super) fn wrong(&mut self, detail: String) -> bool {
         self.note(detail);
         false
     }
 
-    /// Notes that something is no number, or no whole one of its type: the field's own range is told, if it has one.
+    /// Reports the field's own range, if it has one.
     fn refuse_number(
         &mut self,
         value: Json<'_>,
@@ -88,7 +85,7 @@ impl Reader {
         self.refuse(value, &format!("{kind}{range}"))
     }
 
-    /// Notes that something is no text or list: how long one may be is told, where the field says so.
+    /// Reports the allowed length, if the field has one.
     fn refuse_length(&mut self, value: Json<'_>, kind: &str) -> bool {
         let length = match self.row.map(|row| row.limit) {
             Some(Limit::Length(least, most, of)) => format!(" of {least} to {most} {of}"),
@@ -97,7 +94,6 @@ impl Reader {
         self.refuse(value, &format!("{kind}{length}"))
     }
 
-    /// Reads what stands one step further in, under a name, where `row` says what is allowed.
     pub(super) fn below(
         &mut self,
         row: Option<&'static Field>,
@@ -112,7 +108,6 @@ impl Reader {
         taken
     }
 
-    /// Reads an entry of a list.
     pub(super) fn entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn Read) -> bool {
         let (outside, outer) = (self.validator.enter_entry(index), self.row.take());
         let taken = target.read(value, self);
@@ -121,7 +116,7 @@ impl Reader {
         taken
     }
 
-    /// Walks over the names of a map; false, and noted, where it is none.
+    /// False, and reported, if it is no map.
     fn map<'v>(
         &mut self,
         value: Json<'v>,
@@ -138,8 +133,7 @@ impl Reader {
         true
     }
 
-    /// Reads a map of names and values; those that are not given stay as they are, of those that are given twice the first
-    /// counts. `fields` are those of `group`, in its order.
+    /// Missing fields keep their values; of duplicates the first counts. `fields` are those of `group`, in order.
     pub(super) fn fields(
         &mut self,
         value: Json<'_>,
@@ -147,7 +141,7 @@ impl Reader {
         fields: &mut [(&'static str, &mut dyn Read)],
     ) -> bool {
         let mut given: Vec<&'static str> = Vec::new();
-        // Where an old name and its new one stand, the new one counts, wherever it stands.
+        // A new name wins over the old one wherever it is in the text.
         let mut older: Vec<(&'static str, &'static str, Json<'_>)> = Vec::new();
         let is_map = self.map(value, "a map of names and values", &mut |reader, name, value| {
             if let Some((field, target)) = fields.iter_mut().find(|(field, _)| *field == name) {
@@ -170,7 +164,6 @@ impl Reader {
         is_map
     }
 
-    /// Reads a field that may have been `given` before, as it was `called`: in the text, and by its row.
     fn field(
         &mut self,
         group: &'static Group,
@@ -194,7 +187,6 @@ impl Reader {
         self.validator.add(name, Cause::Type { detail });
     }
 
-    /// The old name of one of the fields, and its new one.
     fn renamed(
         &self,
         name: &str,
@@ -204,7 +196,7 @@ impl Reader {
         names.find(|(old, new)| *old == name && fields.iter().any(|(field, _)| field == new)).copied()
     }
 
-    /// The name of a choice, which is one of the kinds of `group`, and its value: the only ones of a map.
+    /// A choice is a map with exactly one key.
     pub(super) fn choice<'v>(
         &mut self,
         value: Json<'v>,
@@ -236,7 +228,6 @@ impl Reader {
         None
     }
 
-    /// Reads one of some words, and gives its place among them.
     pub(super) fn word(&mut self, value: Json<'_>, words: &[&str]) -> Option<usize> {
         let text = value.text();
         let named = |text: &str| words.iter().position(|word| *word == text);
@@ -251,7 +242,6 @@ impl Reader {
     }
 }
 
-/// A value as it is told to people.
 fn describe(value: Json<'_>) -> String {
     const LONGEST: usize = 40;
     let short = |text: &str| match text.char_indices().nth(LONGEST) {
@@ -298,7 +288,6 @@ macro_rules! whole {
         }
     )*};
 }
-// What a number below zero of a size is.
 whole!(u8: |_| None, u16: |_| None, u32: |_| None, u64: |_| None, i64: |size| 0_i64.checked_sub_unsigned(size));
 
 impl Read for f64 {
@@ -377,7 +366,7 @@ impl<T: Read> Read for Vec<T> {
         let mut index = 0_usize;
         value.entries(&mut |entry| {
             if index < most {
-                // An entry that is not taken stays blank, so that the others keep their places.
+                // An unreadable entry stays blank, so that the others keep their indexes.
                 let mut target = T::blank();
                 reader.entry(index, entry, &mut target);
                 self.push(target);

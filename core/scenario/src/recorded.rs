@@ -1,9 +1,8 @@
-//! Packets that were recorded, as a table, made into a line script that sends them again.
+//! Converts a table of recorded packets to a line script that sends them again.
 //!
-//! The table is one that a run exports: `bytes`, and `start_cycle` or `start_s`, are among its columns, in
-//! any order; others are left alone. Rows whose `kind` is `reply` or `collision` came from a controller and are not
-//! sent; nor are replies of other controllers that older tables, those without `meaning`, call frames. A packet's bytes go
-//! back to back from its start bit on; pauses within it are not in the table.
+//! Uses the columns `bytes` and `start_cycle` or `start_s` in any order. Skips rows whose `kind` is `reply` or
+//! `collision`, and replies of other controllers in older tables without `meaning`. The bytes of a packet are sent
+//! without pauses.
 
 use crate::{
     Hex, LineScript, ScriptedSend,
@@ -13,7 +12,7 @@ use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 use stepscope_peripheral::wire::frame::{ACK, Deframed, Deframer};
 
 impl LineScript {
-    /// The bytes of a recorded table, each packet at its time; times in s become cycles of `clock_hz`.
+    /// Reads the packets of a table; times in s become cycles of `clock_hz`.
     ///
     /// # Errors
     /// [`BadTable`] with the first line that cannot be used. Whether the packets follow one another
@@ -29,7 +28,7 @@ impl LineScript {
         let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
         let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
         let kind = place("kind");
-        // A table with meanings calls every reply a reply; the outcome is asked in those without.
+        // Tables with meanings mark all replies; older ones need the outcome.
         let outcome = place("outcome").filter(|_| place("meaning").is_none());
         let mut sends = Vec::new();
         while let Some((at, row)) = rows.next() {
@@ -64,10 +63,9 @@ impl LineScript {
     }
 }
 
-/// The outcome of what was for, or from, another controller.
 const OTHER_ADDRESS: &str = "another address";
 
-/// Whether bytes are a frame that a controller sends (DESIGN A6).
+/// Whether these bytes are a controller's frame (DESIGN A6).
 fn is_reply(bytes: &[u8]) -> bool {
     let mut deframer = Deframer::default();
     bytes
@@ -75,9 +73,8 @@ fn is_reply(bytes: &[u8]) -> bool {
         .any(|&byte| matches!(deframer.byte(byte), Some(Deframed::Frame(frame)) if frame.kind & ACK != 0))
 }
 
-/// The cycle at a time in s.
 fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
-    // JSON's reader of numbers is here anyway; the standard library's brings tables of its own.
+    // serde_json's number reader is linked anyway; the standard library's would add tables.
     let cycle = libm::round(serde_json::from_str::<f64>(seconds).ok()? * f64::from(clock_hz));
     (1.0..9e15).contains(&cycle).then_some(cycle as u64)
 }

@@ -1,4 +1,4 @@
-//! Segment lists judged by DESIGN A8's rules and made what the engine runs, and back.
+//! Checks segment lists (DESIGN A8) and converts them for the segment engine, and back.
 
 use crate::{Cause, ChannelSegments, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator};
 use alloc::vec::Vec;
@@ -10,14 +10,11 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Most segments of all channels together.
+/// Maximum segments of all channels together.
 const MAX_SEGMENTS: usize = 1_000_000;
 
 impl SegmentLists {
-    /// Judges the lists by A8's rules and makes them what the engine runs.
-    ///
-    /// # Errors
-    /// Every problem, at the path of its segment.
+    /// Checks and converts the lists.
     pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
         let mut validator = Validator::within("source.segments.channels");
         let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
@@ -30,7 +27,7 @@ impl SegmentLists {
             Ok(lists) => validator.end(lists),
             Err(refused) => {
                 for Refused { channel, segment, refusal } in refused {
-                    // A list's start is judged by itself, the number of lists above.
+                    // Starts and the number of lists are checked elsewhere.
                     if let Some(segment) = segment {
                         validator.at_entry(channel, |list| {
                             list.at("segments", |segments| {
@@ -61,7 +58,6 @@ impl ChannelSegments {
 }
 
 impl From<&CheckedSegments> for SegmentLists {
-    /// The lists as a scenario writes them.
     fn from(checked: &CheckedSegments) -> Self {
         let segment = |each: &segment::Segment| match *each {
             segment::Segment::Steps { count, interval, add, right } => {
@@ -77,7 +73,6 @@ impl From<&CheckedSegments> for SegmentLists {
     }
 }
 
-/// A refusal in the words of a scenario.
 fn cause(refusal: Refusal, pulse: PulseTimes) -> Cause {
     Cause::Motion(match refusal {
         Refusal::Interval { step, interval } => motion::Cause::SegmentInterval { step, interval, pulse },
@@ -138,7 +133,6 @@ mod tests {
 
     #[test]
     fn only_the_pulse_and_the_channels_of_the_bus_matter() {
-        // Ticks of no room, a line too fast for the clock: neither is there.
         let rows = [
             (
                 r#""bus":{"pulse_width_cycles":1000000000,"dir_setup_cycles":1000000000,"dir_hold_cycles":1000000000}"#,
@@ -164,7 +158,7 @@ mod tests {
         let scenario = Scenario::from_json(json).expect("reads");
         assert_eq!(scenario.compact().to_string(), json);
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
-        // A segment that cannot be read leaves the others in their places.
+        // An unreadable segment must not shift the others.
         let json = r#"{"source":{"segments":{"channels":[{"segments":[5,{"steps":{"count":-1}},{"step":{}},{"steps":{"count":7}}]}]}}}"#;
         let (scenario, problems) = Scenario::from_json_lenient(json);
         let mut paths: Vec<_> = problems.iter().map(|problem| problem.path.as_str()).collect();

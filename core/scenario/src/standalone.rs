@@ -1,4 +1,5 @@
-//! Stand-alone controllers as `stepscope_controller` takes them, and its refusals at the paths of the scenario.
+//! Converts stand-alone controllers for `stepscope_controller`, and its refusals to paths of the scenario
+//! (CONTROLLER.md).
 
 use crate::{
     Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError, of_motion,
@@ -17,11 +18,10 @@ use stepscope_controller::{
 use stepscope_motion::plan_move;
 use stepscope_peripheral::{segment::PulseTimes, signal::MAX_CHANNELS, units::Instant};
 
-/// Most steps of all profiles of a scenario that come from motions.
+/// Maximum steps of a scenario's profiles from motions.
 const MAX_PROFILE_STEPS: u64 = 4_000_000;
 
 impl Scenario {
-    /// The controllers, judged by CONTROLLER.md. Every problem goes to `validator`.
     pub(crate) fn stand_alone(
         &self,
         controllers: &[StandAlone],
@@ -43,7 +43,7 @@ impl Scenario {
             Ok(checked) => read.then_some(checked),
             Err(refused) => {
                 for one in refused {
-                    // The bus is judged as every source's.
+                    // The bus is checked elsewhere.
                     let Some(controller) = one.controller else { continue };
                     validator.at_entry(controller, |here| {
                         if !here.has(&one.path) {
@@ -65,7 +65,7 @@ impl StandAlone {
             let mut plan = |(index, group): (usize, &ProgramGroup)| {
                 groups.at_entry(index, |here| group.plain(clock_hz, steps_left, here))
             };
-            // More than these are refused by their number.
+            // The number of groups is checked elsewhere.
             self.groups.iter().take(*limits::GROUPS.end() as usize + 1).enumerate().map(&mut plan).collect()
         });
         let inputs = here.at("inputs", |inputs| {
@@ -120,7 +120,7 @@ impl ProgramGroup {
                 until: group.until.as_ref().map(Until::plain),
             }),
             Self::MoveTo(group) => Group::MoveTo(parameters::MoveTo {
-                // Its range was judged by its row.
+                // Its row checks the range.
                 length: group.length.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
                 speed_hz: group.speed_hz,
                 level: group.level,
@@ -171,7 +171,7 @@ impl ProfileGroup {
     }
 }
 
-/// Times between the steps of a motion, which goes one way, and whether that is to the right.
+/// The times between the steps of a motion in one direction, and whether that is right.
 fn intervals(
     motion: &stepscope_motion::moves::Move,
     clock_hz: u32,
@@ -250,7 +250,6 @@ impl VirtualAxis {
 }
 
 impl Switch {
-    /// As what comes into a controller.
     const fn signal(self) -> Signal {
         match self {
             Self::LimitMin => Signal::LimitMin,
@@ -261,7 +260,7 @@ impl Switch {
 }
 
 impl Sensor {
-    /// As what comes into a controller.
+    /// The controller's input signal.
     #[must_use]
     pub const fn signal(self) -> Signal {
         match self {
@@ -280,7 +279,7 @@ impl PanelInput {
     fn plain(&self, here: &mut Validator) -> Input {
         let change = match (self.input, self.push_steps) {
             (Some(signal), None) => Change::Level(signal, self.level != 0),
-            // Its range was judged by its row.
+            // Its row checks the range.
             (None, Some(steps)) => Change::Push(steps.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
             (given, _) => {
                 let detail = match given {

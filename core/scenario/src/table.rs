@@ -1,5 +1,4 @@
-//! Tables of comma-separated values as they are read: rows, each with its place, and messages that
-//! name the line.
+//! Reads tables of separated values, with line numbers for messages.
 
 use alloc::{
     format,
@@ -10,15 +9,15 @@ use alloc::{
 use core::fmt;
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
-/// Most bytes of a table that is read.
+/// Maximum bytes of a table.
 pub const MAX_TABLE_BYTES: usize = 32 << 20;
 
 /// Why a table cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadTable {
-    /// Line of the text, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// What is wrong there.
+    /// What is wrong.
     pub what: String,
 }
 
@@ -30,12 +29,10 @@ impl fmt::Display for BadTable {
 
 impl core::error::Error for BadTable {}
 
-/// The beginning of a text that a message quotes.
 pub(super) fn short(text: &str) -> String {
     text.chars().take(20).chain((text.chars().count() > 20).then_some('…')).collect()
 }
 
-/// The rows of a table, each with the place where it begins.
 pub(super) struct Rows<'a> {
     text: &'a str,
     pub(super) at: usize,
@@ -43,10 +40,6 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Of a text whose fields have `separator` between them.
-    ///
-    /// # Errors
-    /// If it has more than [`MAX_TABLE_BYTES`].
     pub(super) fn new(text: &'a str, separator: u8) -> Result<Self, BadTable> {
         let bytes = text.len();
         if bytes > MAX_TABLE_BYTES {
@@ -57,16 +50,14 @@ impl<'a> Rows<'a> {
         Ok(Self { text: text.trim_start_matches('\u{feff}'), at: 0, reader })
     }
 
-    /// What is wrong with the row that begins at `at`.
     pub(super) fn bad(&self, at: usize, what: String) -> BadTable {
-        // Line ends before a row belong to the one before it.
+        // Skip line ends, so that the number is the row's own.
         let rest = self.text.get(at..).unwrap_or_default();
         let begin = at + rest.len() - rest.trim_start_matches(['\r', '\n']).len();
         let before = self.text.get(..begin).unwrap_or_default();
         BadTable { line: 1 + before.matches('\n').count(), what }
     }
 
-    /// The next row and where it begins.
     pub(super) fn next(&mut self) -> Option<(usize, Vec<String>)> {
         let begin = self.at;
         let (mut out, mut ends) = (vec![0; 256], vec![0; 16]);
@@ -79,7 +70,7 @@ impl<'a> Rows<'a> {
             );
             (self.at, written, fields) = (self.at + read, written + wrote, fields + ended);
             match result {
-                // Once more without input: that is how the reader learns of the end.
+                // The reader reports the end at a call without input.
                 ReadRecordResult::InputEmpty => {}
                 ReadRecordResult::OutputFull => out.resize(out.len() * 2, 0),
                 ReadRecordResult::OutputEndsFull => ends.resize(ends.len() * 2, 0),

@@ -1,10 +1,8 @@
-//! From one version of the format to the next. A name that was published is never removed: every file and link that was ever
-//! written still opens.
+//! Names of earlier format versions. A published name is never removed: every old file and link still opens.
 //!
-//! Version 1 had other names for some fields and words; their meaning is the same. So the reader knows them where it meets
-//! them: an old name is read in every map that has a field of the new one, and nowhere else.
+//! Version 1 has other names with the same meaning. An old name is accepted only in maps that have the new field.
 
-/// Old and new names of fields.
+/// Old and new field names.
 pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("driver", "driver_timing"),
     ("pulses", "pulse_phasing"),
@@ -24,7 +22,6 @@ mod tests {
     const AXES: &str =
         r#"[{"moves":[{"staircase":{"short_move":"SHORT"}},{"dwell":{}}]},{"moves":[{"staircase":{}}]}]"#;
 
-    /// Every renamed field and word, in every place where it may stand: as given in version 1 and in version 2.
     const RENAMED: [(&str, &str); 8] = [
         (r#"{"driver":{"preset":"a4988"}}"#, r#"{"driver_timing":{"preset":"a4988"}}"#),
         (

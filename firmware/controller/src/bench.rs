@@ -1,7 +1,5 @@
-//! A chip without hardware, for tests: presses at their ticks, pins whose edges are recorded, an EEPROM that takes its
-//! time and keeps its bytes, an axis with a switch, and interrupts that come as late as one likes.
-//!
-//! No time passes but in [`Bench::sleep`]. With interrupts in time its edges are those of the simulation, tick by cycle.
+//! A simulated chip for tests: button presses, recorded pins, an EEPROM with write times, a limit switch, and late
+//! interrupts. Time passes only in [`Bench::sleep`]. With timely interrupts its edges equal the simulation's.
 //!
 //! ```
 //! use stepscope_controller::{chip::Chip, parameters::Setup};
@@ -32,11 +30,11 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// What of a byte that was cut late is still erased (G7).
+/// The erased bits of a byte whose write was cut late (G7).
 const CUT_LATE: u8 = 0x0f;
 const ERASED: u8 = 0xff;
 
-/// A byte that is being written.
+/// A byte being written.
 #[derive(Clone, Copy, Debug)]
 struct Byte {
     address: usize,
@@ -44,30 +42,30 @@ struct Byte {
     begun: u64,
 }
 
-/// The chip; `S` takes the edges of its pins.
+/// The chip; `S` receives the edges of its pins.
 #[derive(Clone, Debug)]
 pub struct Bench<S> {
     now: u64,
     levels: RawLevels,
-    /// Presses in the order of their ticks, the last first.
+    /// In reverse order of their ticks.
     presses: Vec<Input>,
     pins: Option<Levels>,
-    /// The edges.
+    /// Receives the edges.
     pub sink: S,
-    /// What was shown, and when.
+    /// Panel records.
     pub shown: Vec<PanelRecord>,
     memory: Vec<u8>,
     writing: Option<Byte>,
-    /// How long a byte takes, in ticks.
+    /// Ticks to write a byte.
     pub byte_write_ticks: u64,
-    /// Place of the axis in steps.
+    /// Position of the axis in steps.
     pub place: i64,
-    /// The home switch is closed from here to there.
+    /// Range of positions in which the home switch is closed.
     pub home_switch: Option<(i64, i64)>,
 }
 
 impl<S: Sink> Bench<S> {
-    /// A new chip with the memory that comes from the factory, and levels that its inputs take at their ticks.
+    /// A new chip with factory memory and these presses.
     pub fn new(checked: &CheckedSetup, presses: impl IntoIterator<Item = Input>, sink: S) -> Self {
         let mut presses: Vec<Input> = presses.into_iter().collect();
         presses.sort_by_key(|input| core::cmp::Reverse(input.cycle));
@@ -87,7 +85,7 @@ impl<S: Sink> Bench<S> {
         }
     }
 
-    /// Sleeps until tick `wake` or until an input changes, and is `late` then; breaks off where neither is to come.
+    /// Sleeps until tick `wake` or an input change, and then `late` ticks more. Breaks if neither will come.
     pub fn sleep(&mut self, wake: Option<Instant>, late: u64) -> ControlFlow<()> {
         let press = self.presses.last().map(|input| input.cycle);
         let switch = (self.levels != self.with_switch()).then_some(Instant(self.now + 1));
@@ -100,7 +98,7 @@ impl<S: Sink> Bench<S> {
         }
     }
 
-    /// The supply is gone in this tick: a byte that is being written is cut, all pins fall in the next one.
+    /// Cuts the power in this tick: a byte being written is cut, and all pins fall in the next tick.
     pub fn power_off(&mut self) {
         self.settle();
         if let Some(Byte { address, byte, begun }) = self.writing.take()
@@ -114,14 +112,12 @@ impl<S: Sink> Bench<S> {
         self.write_pins(Levels(Levels::RX | Levels::TX));
     }
 
-    /// Levels of the inputs as the axis has them.
     fn with_switch(&self) -> RawLevels {
         self.home_switch.map_or(self.levels, |(from, to)| {
             self.levels.with(Signal::HomeSwitch, (from..=to).contains(&self.place))
         })
     }
 
-    /// A byte that has had its time is there.
     fn settle(&mut self) {
         let done = self.writing.take_if(|writing| writing.begun + self.byte_write_ticks <= self.now);
         if let Some(Byte { address, byte, .. }) = done

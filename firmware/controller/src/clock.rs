@@ -1,12 +1,5 @@
-//! A timer of few bits, counted on: a tick of it is a cycle of the machine.
-//!
-//! ```text
-//! counter  0 … 0xff_ffff 0 … 0xff_ffff 0 …     24 bits of SysTick, counted up (its register counts down)
-//! tick     0 … 0xff_ffff 0x100_0000 …          never back, never around
-//! ```
-//!
-//! It has to be read at least once while the counter goes round, so whoever sleeps longer wakes between:
-//! [`Clock::nap`].
+//! Extends a timer of few bits to 64; one tick is one cycle of the machine. Read it at least once per turn of the
+//! counter; [`Clock::nap`] limits sleeps accordingly.
 //!
 //! ```
 //! use stepscope_controller_firmware::clock::Clock;
@@ -19,7 +12,7 @@
 
 use stepscope_peripheral::units::{Cycles, Instant};
 
-/// Counts a timer on.
+/// Extends a timer.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     mask: u32,
@@ -27,21 +20,21 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Of a timer of 1 to 32 bits that begins near 0.
+    /// A timer of 1 to 32 bits that starts near 0.
     #[must_use]
     pub const fn new(bits: u32) -> Self {
         let mask = if bits >= u32::BITS { u32::MAX } else { (1 << bits) - 1 };
         Self { mask, tick: 0 }
     }
 
-    /// The tick, where the timer's counter, counted up, is this. It has gone round at most once since the call before.
+    /// The tick for this counter value (counted up), at most one turn after the last call.
     pub fn tick(&mut self, counter: u32) -> Instant {
         let passed = counter.wrapping_sub(self.tick as u32) & self.mask;
         self.tick += u64::from(passed);
         Instant(self.tick)
     }
 
-    /// For how long it may be slept until `wake`, and half a round of the counter at most.
+    /// The time to sleep until `wake`, at most half a turn of the counter.
     #[must_use]
     pub fn nap(&self, wake: Option<Instant>) -> Cycles {
         let most = u64::from(self.mask / 2);

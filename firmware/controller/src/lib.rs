@@ -1,4 +1,4 @@
-//! The program of a chip with a stand-alone controller on it (CONTROLLER.md), and what it is put together from.
+//! A program for a chip with a stand-alone controller (CONTROLLER.md), and its parts.
 #![doc = ""]
 #![doc = include_str!("../README.md")]
 #![no_std]
@@ -13,9 +13,8 @@ use core::ops::ControlFlow;
 use stepscope_controller::{CheckedSetup, NotRunnable, Runner, chip::Chip};
 use stepscope_peripheral::units::Instant;
 
-/// The program, from power-up on. `sleep` waits until the tick that it is given, or until an input changes, which may be as
-/// well too early; on a chip it also refreshes the display from [`Runner::face`]. It goes on until `sleep` breaks off: on a
-/// chip never.
+/// Runs from power-up until `sleep` breaks, which on a chip is never. `sleep` waits until the given tick or an input
+/// change, and may return early; on a chip it also refreshes the display from [`Runner::face`].
 ///
 /// # Errors
 /// See [`Runner::power_up`].

@@ -1,8 +1,6 @@
-//! Which bit of a port is which signal, and at which level.
-//!
-//! A button pulls its pin low; the emergency stop and the limits are contacts that open, so that a wire that breaks stops
-//! the machine; so does what watches the supply: it pulls its pin low when the power falls. EN of most drivers is low
-//! while they are on.
+//! Maps port bits to signals. A button pulls its pin low. Emergency stop and limits are contacts that open, so that a
+//! broken wire stops the machine; so does the supply monitor, which pulls its pin low when the voltage falls. The
+//! driver's EN is active low.
 //!
 //! ```
 //! use stepscope_controller::input::Signal;
@@ -21,27 +19,27 @@ use stepscope_peripheral::signal::Levels;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     signal: Signal,
-    /// Of the input port, 0 to 31.
+    /// Bit of the input port, 0 to 31.
     bit: u8,
-    /// Level of the pin at which the signal is 1.
+    /// Level of the pin for signal 1.
     active: bool,
 }
 
 impl Contact {
-    /// Closed, the pin low, while the signal is 1.
+    /// Closed (pin low) while the signal is 1.
     #[must_use]
     pub const fn closes(signal: Signal, bit: u8) -> Self {
         Self { signal, bit, active: false }
     }
 
-    /// Open, the pin high, while the signal is 1.
+    /// Open (pin high) while the signal is 1.
     #[must_use]
     pub const fn opens(signal: Signal, bit: u8) -> Self {
         Self { signal, bit, active: true }
     }
 }
 
-/// Levels of the signals that have a contact; the others have none.
+/// Levels of the signals with a contact.
 #[must_use]
 pub fn levels(contacts: &[Contact], port: u32) -> RawLevels {
     contacts.iter().fold(RawLevels::default(), |levels, contact| {
@@ -50,14 +48,14 @@ pub fn levels(contacts: &[Contact], port: u32) -> RawLevels {
     })
 }
 
-/// Bit of the output port that is STEP.
+/// STEP in the output port.
 pub const STEP: u32 = 1 << 0;
-/// Bit of the output port that is DIR.
+/// DIR in the output port.
 pub const DIR: u32 = 1 << 1;
-/// Bit of the output port that is the driver's enable input, low while it is on.
+/// The driver's enable input, active low, in the output port.
 pub const NOT_EN: u32 = 1 << 2;
 
-/// What the output port has to be.
+/// The output port's value.
 #[must_use]
 pub const fn port(levels: Levels) -> u32 {
     let step = if levels.step() & 1 != 0 { STEP } else { 0 };
@@ -73,7 +71,7 @@ mod tests {
     fn each_output_has_its_bit() {
         let rows = [(Levels::EN, 0), (0, NOT_EN), (Levels::EN | 1, STEP), (Levels::EN | 1 << 16, DIR)];
         for (levels, expected) in rows {
-            // Channels that are not there have no pin.
+            // Unused channels have no pin.
             assert_eq!(port(Levels(levels | 1 << 5 | 1 << 20 | Levels::RX)), expected);
         }
     }

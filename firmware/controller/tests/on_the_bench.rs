@@ -1,5 +1,5 @@
-//! The machine on a chip without hardware gives the simulation's edges and panel; late interrupts make edges late and
-//! nothing else; and what the EEPROM says after any power cut is true.
+//! The program on the simulated chip: the simulation's edges and panel; late interrupts only delay edges; a correct
+//! memory after any power cut.
 #![allow(clippy::expect_used, reason = "what is refused fails the test")]
 
 use core::ops::ControlFlow;
@@ -20,7 +20,6 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// A golden case: its scenario, digest and status.
 macro_rules! case {
     ($scenario:expr, $folder:expr) => {
         (
@@ -53,7 +52,7 @@ fn cases() -> [Case; 8] {
     ]
 }
 
-/// The controller of a scenario without axis and script, and the script: the chip's own are real.
+/// Splits a scenario without axis and script from its script: the chip has its own.
 fn split(json: &str) -> (CheckedSetup, Vec<Input>) {
     let experiment = Experiment::from_json(json).expect("it has no problems");
     let mut setup = experiment.stand_alone().expect("it has controllers").setup();
@@ -70,12 +69,12 @@ fn level(cycle: u64, signal: Signal, level: bool) -> Input {
     Input { cycle: Instant(cycle), change: Change::Level(signal, level) }
 }
 
-/// Start is pressed at tick 3 200 000 for 0.1 s, after the self-test.
+/// Press start at tick 3 200 000 for 0.1 s, after the self-test.
 fn start() -> [Input; 2] {
     [level(3_200_000, Signal::Start, true), level(4_800_000, Signal::Start, false)]
 }
 
-/// Numbers below a limit, the same in each run (xorshift64).
+/// Repeatable random numbers (xorshift64).
 struct Dice(u64);
 
 impl Dice {
@@ -114,7 +113,7 @@ fn a_chip_that_dies_and_starts_anew_has_the_same_edges() {
     )
     .expect("it runs");
     chip.power_off();
-    // It wakes in the cycle after the power is there again, as a machine without power does.
+    // It wakes in the cycle after power returns, like a machine without power.
     while chip.now() <= back {
         let _ = chip.sleep(Some(Instant(back.0 + 1)), 0);
         chip.inputs();
@@ -129,7 +128,7 @@ fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
     let (checked, inputs) = split(PROGRAM.0);
     let mut in_time = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
     run(&mut in_time, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
-    // From less than a pulse to more than the time between two steps.
+    // From less than a pulse to more than a step interval.
     for most in [30, 500, 20_000] {
         let mut dice = Dice(most);
         let mut chip = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
@@ -144,7 +143,7 @@ fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
         let lateness = runner.lateness();
         assert!(lateness.worst.0 <= most && lateness.total >= lateness.worst && lateness.total.0 > 0);
 
-        // Of the machine's own time each edge has the same as ever, from the press on, whenever that was heard.
+        // In the machine's own time all edges after the press stay the same, however late it is.
         let cycle = |index: usize| (chip.sink[index].cycle.0 - totals[index]).cast_signed();
         let press = cycle(1) - in_time.sink[1].cycle.0.cast_signed();
         for (index, (edge, expected)) in chip.sink.iter().zip(&in_time.sink).enumerate().skip(1) {
@@ -163,7 +162,7 @@ fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
     let (mut known, mut lost) = (0, 0);
     for policy in [Policy::PowerLoss, Policy::WriteAhead] {
         for round in 0..400 {
-            // A byte takes 1000 ticks by the data sheet; here also twice as many.
+            // A byte takes 1000 ticks by the data sheet; test twice that, too.
             let memory =
                 Memory { policy, byte_write_cycles: 1000, hold_up_cycles: 18_000, ..Memory::default() };
             let long = Move { length: 5, speed_hz: 1000, delay_ms: 3, ..Move::default() };
@@ -176,7 +175,7 @@ fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
                 loops: 2,
                 ..Parameters::default()
             });
-            // Start at tick 30 000; the program ends about 2.4 million later. The cut is announced or not.
+            // Start at tick 30 000; the program ends about 2.4 million later. The cut may be announced.
             let (cut, is_announced) = (20_000 + dice.below(4_000_000), round % 2 == 0);
             let mut inputs = vec![level(30_000, Signal::Start, true), level(40_000, Signal::Start, false)];
             if is_announced {
@@ -217,7 +216,7 @@ fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
         chip.byte_write_ticks = 50_000;
         run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
         let first = chip.sink.iter().find(|edge| edge.levels.step() != 0).map(|edge| edge.cycle.0);
-        // With `power_loss` the record is written in the self-test, and the press falls into that.
+        // With `power_loss` the record is written in the self-test, during the press.
         let expected = (policy == Policy::WriteAhead).then_some(10_000 + 16 * 50_000);
         assert_eq!(first.is_some(), expected.is_some(), "{policy:?}");
         assert!(first >= expected, "{first:?}");

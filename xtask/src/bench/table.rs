@@ -107,7 +107,7 @@ pub(super) fn tables(blocks: &[Block], estimate: impl Fn(&str) -> Result<Estimat
     Ok(format!("native code\n{}\nbrowser\n{}", align(&native), align(&browser)))
 }
 
-/// Slower than this part of before is told.
+/// A lower ratio is marked as slower.
 const MIN_OF_BEFORE: f64 = 0.95;
 
 pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {

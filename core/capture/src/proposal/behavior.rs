@@ -1,33 +1,29 @@
-//! What each channel does: how often it changes, how wide its pulses are, and whether it is a serial line.
+//! Measures each channel: number of changes, pulse widths, and whether it is a serial line.
 
 use crate::{
     capture::Change,
     uart::{self, Edge},
 };
 
-/// Edges by which a line is known.
+/// Edges that are inspected to detect a serial line.
 const LINE_EDGES: usize = 600;
-/// Pulses that a channel has to have, so that it is taken for STEP.
+/// Minimum number of pulses of STEP.
 pub(super) const MIN_STEPS: u64 = 4;
 
-/// What a channel does.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Behavior {
     pub(super) first: bool,
     pub(super) last: bool,
     pub(super) rises: u64,
     pub(super) falls: u64,
-    /// Ticks that it was high between its first and last change, and low.
     pub(super) high: u64,
     pub(super) low: u64,
-    /// Longest time at a level between two changes, and the shortest.
     pub(super) longest_high: u64,
     pub(super) longest_low: u64,
     pub(super) shortest_high: u64,
     pub(super) shortest_low: u64,
-    /// When it changed last.
     pub(super) since: Option<u64>,
-    /// Whether it is a serial line, and inverted.
+    /// Whether it is a serial line; if so, whether it is inverted.
     pub(super) line: Option<bool>,
 }
 
@@ -36,17 +32,15 @@ impl Behavior {
         self.rises + self.falls
     }
 
-    /// Whether its pulses are low.
     pub(super) const fn idles_high(&self) -> bool {
         self.first && self.high > self.low
     }
 
-    /// The widest of its pulses.
     pub(super) const fn longest_pulse(&self) -> u64 {
         if self.idles_high() { self.longest_low } else { self.longest_high }
     }
 
-    /// Pulses of one width, low at rest, as no line has them.
+    /// Equal pulses, low when idle, which no serial line has.
     pub(super) const fn is_pulses(&self) -> bool {
         !self.first
             && !self.last
@@ -55,7 +49,6 @@ impl Behavior {
     }
 }
 
-/// What each channel does.
 pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
     let never = u64::MAX;
     let none = Behavior { shortest_high: never, shortest_low: never, ..Behavior::default() };
@@ -89,7 +82,6 @@ pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
     all
 }
 
-/// Calls for each time between two changes of one channel: how long, and its level.
 fn each_pulse(changes: &[Change], all: &mut [Behavior], pulse: &mut dyn FnMut(&mut Behavior, u64, bool)) {
     for pair in changes.windows(2) {
         let [before, now] = pair else { continue };

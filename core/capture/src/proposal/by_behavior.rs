@@ -1,4 +1,4 @@
-//! What the channels do whose names say nothing: encoders, serial lines and STEP.
+//! Finds encoders, serial lines and STEP among channels whose names are unknown.
 
 use super::{
     behavior::MIN_STEPS,
@@ -12,11 +12,9 @@ use crate::{
 };
 use stepscope_peripheral::signal::Levels;
 
-/// Edges that an encoder has to have.
 const MIN_ENCODER_EDGES: usize = 16;
-/// Edges by which an encoder is known.
 const MAX_ENCODER_EDGES: usize = 4096;
-/// Pulses of another motor are at most so many times as wide as those of the first.
+/// Maximum ratio of the pulse widths of two motors.
 const MAX_WIDTH_RATIO: u64 = 4;
 
 const LINES: [u32; 2] = [Levels::RX.trailing_zeros(), Levels::TX.trailing_zeros()];
@@ -76,7 +74,7 @@ impl Draft<'_> {
                 continue;
             }
             let source = Source::Step(channel);
-            // A DIR that is named may be that of the only motor.
+            // A named DIR may belong to the only motor.
             match self.motors.iter_mut().find(|motor| motor.source == Source::None) {
                 Some(motor) => motor.source = source,
                 None => self.motors.push(Motor::new("", "", source)),
@@ -84,7 +82,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Whether STEP is active low: where its name says so, or says nothing, and it idles high.
+    /// STEP is active low if its name says so, or if it idles high and the name says nothing.
     pub(super) fn polarity(&mut self) {
         let low = |motor: &Motor| {
             let channel = motor.step()?;
@@ -101,9 +99,9 @@ impl Draft<'_> {
     }
 }
 
-/// Whether the edges of two channels alternate, as evenly as those of an encoder do.
+/// Whether the edges of two channels alternate evenly, as an encoder's do.
 fn alternate(one: &[u64], other: &[u64]) -> bool {
-    // As far as both are given.
+    // Only the time for which both are known.
     let end = one.last().min(other.last()).copied().unwrap_or(0);
     let until = |edges: &&u64| **edges <= end;
     let first = one.iter().take_while(until).map(|at| (*at, false));

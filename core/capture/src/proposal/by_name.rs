@@ -1,4 +1,4 @@
-//! What the names of the channels say: STEP and DIR of one motor belong together.
+//! Pairs STEP and DIR by their names.
 
 use super::{
     draft::Draft,
@@ -72,7 +72,7 @@ impl Draft<'_> {
         }
     }
 
-    /// A motor of this STEP, unless it is that of a motor which is known: in another scope, or the other line of a pair.
+    /// Skips a STEP of a known motor: in another scope, or the other line of a pair.
     fn add_step(&mut self, channel: usize, named: &Named) {
         let is_same = |motor: &Motor| {
             motor.axis == named.axis && motor.step().is_some_and(|step| self.is_copy(step, channel))
@@ -84,7 +84,7 @@ impl Draft<'_> {
         }
     }
 
-    /// Each DIR goes to the motor of its name; one without an axis to all that have none.
+    /// A DIR without an axis goes to all motors without one.
     pub(super) fn dirs_by_name(&mut self) {
         let mut dirs = self.named(Kind::Dir);
         dirs.extend(
@@ -96,7 +96,7 @@ impl Draft<'_> {
         let lacking: Vec<(usize, &Motor)> =
             self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()).collect();
         for (at, motor) in lacking.iter().copied() {
-            // As many DIR as STEP of one name: the first goes with the first.
+            // Equal numbers of STEP and DIR with one name are paired in order.
             let is_like = |axis: &str| axis == motor.axis;
             let steps: Vec<usize> =
                 lacking.iter().filter(|(_, other)| is_like(&other.axis)).map(|(at, _)| *at).collect();
@@ -132,7 +132,7 @@ impl Draft<'_> {
         let sole_common = nobodys.next().filter(|_| nobodys.next().is_none());
         let common = left.iter().find(|(_, named)| named.axis.is_empty()).or(sole_common);
         let common = common.map(|(channel, _)| *channel);
-        // One motor and one DIR belong together, unless both say that they are of another axis.
+        // A single motor and a single DIR are paired, unless their axes differ.
         let sole = match (self.motors.as_slice(), left.as_slice()) {
             ([motor], [(channel, _)]) if motor.axis.is_empty() => Some(*channel),
             _ => None,
@@ -149,7 +149,7 @@ impl Draft<'_> {
             motor.dir = of_stem(&motor.axis).or(common).or(sole);
             taken.extend(motor.dir);
         }
-        // What is left are motors of their own, whose STEP is not known.
+        // The rest are motors whose STEP is unknown.
         for (channel, named) in left {
             if !taken.contains(&channel) && self.motors.iter().all(|motor| motor.axis != named.axis) {
                 let mut motor = Motor::new(&named.axis, &named.scope, Source::None);

@@ -1,4 +1,4 @@
-//! Which channel is DIR of which motor, by what it does.
+//! Assigns DIR channels to motors by their levels.
 
 use super::{
     behavior::MIN_STEPS,
@@ -8,17 +8,15 @@ use super::{
 use crate::names::shared_words;
 use std::collections::BTreeSet;
 
-/// How well a channel fits as DIR of a motor: the best first.
+/// How well a channel fits as a motor's DIR; the best is first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Fit {
-    /// It changes next to the pulses of another motor.
     is_others: bool,
     one_level: bool,
     while_high: bool,
-    /// Its place among such channels is not that of the motor's STEP among those of all motors.
+    /// Its order among DIR candidates differs from the order of the motors' STEP.
     is_out_of_order: bool,
     distance: usize,
-    /// It changes as close to the pulses of another motor.
     is_shared: bool,
 }
 
@@ -48,7 +46,7 @@ impl Draft<'_> {
                 }
                 let own = near.get(place).copied().unwrap_or(u64::MAX);
                 let others = || near.iter().zip(&steps).enumerate().filter(|(other, _)| *other != place);
-                // Names decide before behavior: X-Foo and X-Bar are of one motor.
+                // Names count before levels: X-Foo and X-Bar belong to one motor.
                 let shared = |step: usize| shared_words(name(step), name(*channel));
                 let by_name = steps.iter().map(|(_, step, _)| shared(*step));
                 let (most, least) = (by_name.clone().max(), by_name.min());
@@ -73,7 +71,7 @@ impl Draft<'_> {
                 }
             }
         }
-        // As many as there are motors: the first goes with the first, whether DIR comes before STEP or after it.
+        // As many candidates as motors are paired in order, whether DIR comes before or after STEP.
         let fitting = pairs.iter().filter(|(fit, ..)| !fit.one_level).map(|(_, channel, _)| *channel);
         let fitting: BTreeSet<usize> = fitting.collect();
         let is_one_each = fitting.len() == steps.len();
@@ -102,7 +100,6 @@ impl Draft<'_> {
         }
     }
 
-    /// Whether STEP is active at each level of a channel now and then.
     fn steps_at_both_levels(&self, channel: usize, step: usize) -> bool {
         let mut levels = [false; 2];
         for (before, now) in self.changes.iter().zip(self.changes.iter().skip(1)) {
@@ -115,7 +112,6 @@ impl Draft<'_> {
         levels == [true; 2]
     }
 
-    /// Whether a channel only changes while STEP is idle.
     fn changes_between_pulses(&self, channel: usize, step: usize) -> bool {
         let idle = u64::from(self.behavior(step).idles_high());
         let mut pairs = self.changes.iter().zip(self.changes.iter().skip(1));

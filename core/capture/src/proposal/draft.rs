@@ -1,4 +1,4 @@
-//! A map that is being put together, and what its channels are called and do.
+//! A map under construction, with the names and measurements of its channels.
 
 use super::{
     behavior::{Behavior, behaviors},
@@ -11,14 +11,12 @@ use crate::{
     names::{Kind, Meaning, Named, are_indexed},
 };
 
-/// A map that is being put together.
 pub(super) struct Draft<'a> {
     pub(super) capture: &'a Capture,
     pub(super) meanings: Vec<Meaning>,
     pub(super) changes: Vec<Change>,
     pub(super) behavior: Vec<Behavior>,
     pub(super) motors: Vec<Motor>,
-    /// Signals that are no motor's.
     pub(super) others: Vec<Entry>,
 }
 
@@ -38,7 +36,7 @@ impl<'a> Draft<'a> {
         self.behavior.get(channel).copied().unwrap_or_default()
     }
 
-    /// Channels whose names say a kind, with their names; the positive line of a pair first.
+    /// The positive line of a pair comes first.
     pub(super) fn named(&self, kind: Kind) -> Vec<(usize, Named)> {
         let mut found: Vec<(usize, Named)> = Vec::new();
         for (channel, meaning) in self.meanings.iter().enumerate() {
@@ -52,14 +50,13 @@ impl<'a> Draft<'a> {
         found
     }
 
-    /// Whether two channels have the same levels throughout, or opposite ones.
+    /// Whether two channels always have equal or always opposite levels.
     pub(super) fn is_copy(&self, one: usize, other: usize) -> bool {
         let differ = |change: &Change| (change.levels >> one ^ change.levels >> other) & 1 == 1;
         let first = self.changes.first().is_some_and(differ);
         self.changes.iter().all(|change| differ(change) == first)
     }
 
-    /// Channels that no name says anything of, and that change.
     pub(super) fn free(&self) -> Vec<usize> {
         let is_free = |channel: &usize| {
             self.behavior(*channel).changes() > 0
@@ -67,7 +64,7 @@ impl<'a> Draft<'a> {
                 && self.others.iter().all(|entry| entry.channel != *channel)
                 && !matches!(self.meanings.get(*channel), Some(Meaning::Other))
         };
-        // The lines of a name that stands for another signal already, as a second EN, are none of these, either.
+        // A duplicate of a named signal, such as a second EN, is not free either.
         let is_unnamed = |channel: &usize| match self.meanings.get(*channel) {
             Some(Meaning::Signal(named)) => match named.kind {
                 Kind::Rx | Kind::Tx => self.behavior(*channel).is_pulses(),
@@ -83,12 +80,10 @@ impl<'a> Draft<'a> {
         self.behavior(channel).line.is_some()
     }
 
-    /// Channels that may be of a motor: none of them is a line.
     pub(super) fn free_of_lines(&self) -> Vec<usize> {
         self.free().into_iter().filter(|channel| !self.is_line(*channel)).collect()
     }
 
-    /// When a channel changes.
     pub(super) fn edges(&self, channel: usize) -> Vec<u64> {
         let pairs = self.changes.iter().zip(self.changes.iter().skip(1));
         let changed = pairs.filter(|(before, now)| (before.levels ^ now.levels) >> channel & 1 == 1);
@@ -96,7 +91,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Names of one word, `FLSTEP` and `FLDIR`, mean something where STEP and DIR have the same rest.
+/// `FLSTEP` and `FLDIR` are a motor's signals if the rest of both names is equal.
 fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
     let joined: Vec<Option<Named>> = names
         .zip(meanings.iter())
@@ -111,7 +106,7 @@ fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
     }
 }
 
-/// Numbers of pins are not those of motors: as many STEP as DIR, and no number twice. They are paired in order.
+/// Pin numbers do not identify motors. If STEP and DIR are equally many and no number repeats, pair them in order.
 fn number_pins(meanings: &mut [Meaning]) {
     let numbers = |kind: Kind| -> Vec<&str> {
         let signals = meanings.iter().filter_map(|meaning| match meaning {

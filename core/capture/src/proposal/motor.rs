@@ -1,6 +1,5 @@
-//! A motor that is being put together.
+//! A motor under construction.
 
-/// Where the steps of a motor come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     None,
@@ -8,14 +7,12 @@ pub(super) enum Source {
     CwCcw(usize, usize),
     Encoder(usize, usize),
 }
-/// A motor that is being put together.
 #[derive(Clone, Debug)]
 pub(super) struct Motor {
     pub(super) axis: String,
     pub(super) scope: String,
     pub(super) source: Source,
     pub(super) dir: Option<usize>,
-    /// STEP is low where it is active.
     pub(super) inverted: bool,
 }
 
@@ -40,13 +37,11 @@ impl Motor {
             }
     }
 
-    /// Whether it steps, and nothing tells its direction.
     pub(super) const fn lacks_dir(&self) -> bool {
         matches!(self.source, Source::Step(_)) && self.dir.is_none()
     }
 }
 
-/// An axis without its number.
 pub(super) fn stem(axis: &str) -> &str {
     axis.trim_end_matches(|c: char| c.is_ascii_digit())
 }

@@ -22,7 +22,6 @@ fn names_say_what_a_channel_is() {
         (&["E0_STEP", "X_STEP"], "STEP0=X_STEP,STEP1=E0_STEP"),
         (&["D0", "D1"], ""),
         (&["BUSY", "RX"], "RX=RX"),
-        // An axis before, behind, in brackets, as a word, in the scope, and one DIR.
         (&["STEP (Y axis)", "DIR (Y axis)"], "STEP0=STEP (Y axis),DIR0=DIR (Y axis)"),
         (&["STEP (Y axis)", "DIR"], "STEP0=STEP (Y axis),DIR0=DIR"),
         (
@@ -64,14 +63,13 @@ fn names_say_what_a_channel_is() {
         (&["Step Pulse", "Direction"], "STEP0=Step Pulse,DIR0=Direction"),
         (&["PUL/CW", "DIR/CCW"], "STEP0=PUL/CW,DIR0=DIR/CCW"),
         (&["nSTEP", "DIR"], "STEP0=!nSTEP,DIR0=DIR"),
-        // A motor without DIR takes none of another's, but one that is of no motor.
+        // A motor without DIR gets no other motor's DIR, but one without an axis.
         (&["X_STEP", "Y_STEP", "Y_DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR1=Y_DIR"),
         (&["X_STEP", "Y_DIR"], "STEP0=X_STEP,DIR1=Y_DIR"),
         (&["X_STEP", "Y_STEP", "DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR,DIR1=DIR"),
         (&["X_STEP", "Y_STEP", "Y_DIR", "DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR,DIR1=Y_DIR"),
         (&["X1_STEP", "X2_STEP", "X_DIR"], "STEP0=X1_STEP,STEP1=X2_STEP,DIR0=X_DIR,DIR1=X_DIR"),
         (&["motion.STEP", "ctrl.DIR"], "STEP0=motion.STEP,DIR0=ctrl.DIR"),
-        // The same signal in two scopes.
         (&["tb.STEP", "tb.DIR", "tb.dut.STEP", "tb.dut.DIR"], "STEP0=tb.STEP,DIR0=tb.DIR"),
         (&["CW", "CCW"], "CW0=CW,CCW0=CCW"),
         (&["X CW+", "X CCW+", "EN"], "CW0=X CW+,CCW0=X CCW+,EN=EN"),
@@ -85,7 +83,6 @@ fn names_say_what_a_channel_is() {
             "STEP0=X_STEP,A1=SPINDLE_ENC_A,B1=SPINDLE_ENC_B,DIR0=X_DIR",
         ),
         (&["step_count[0]", "step_count[1]", "microstep", "step_led", "next_step"], ""),
-        // Left and right, pins, one word, German.
         (&["LSTEP", "LDIR", "RSTEP", "RDIR"], "STEP0=LSTEP,STEP1=RSTEP,DIR0=LDIR,DIR1=RDIR"),
         (&["STEPL", "STEPR", "DIRR", "DIRL"], "STEP0=STEPL,STEP1=STEPR,DIR0=DIRL,DIR1=DIRR"),
         (&["FLSTEP", "FRSTEP", "FLDIR", "FRDIR"], "STEP0=FLSTEP,STEP1=FRSTEP,DIR0=FLDIR,DIR1=FRDIR"),
@@ -100,7 +97,6 @@ fn names_say_what_a_channel_is() {
             "STEP0=X-Takt,STEP1=Y-Takt,DIR0=X-Richtung,DIR1=Y-Richtung",
         ),
         (&["DIRECTION_CHANGED", "STEPS_LEFT", "STEP", "DIR"], "STEP0=STEP,DIR0=DIR"),
-        // One DIR for several motors, by its name.
         (&["STEP", "STEP2", "DIR"], "STEP0=STEP,STEP2=STEP2,DIR0=DIR,DIR2=DIR"),
         (&["X_STEP", "Y_STEP", "DIR_BOTH"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR_BOTH,DIR1=DIR_BOTH"),
         (&["STEP0", "STEP1", "COMMON_DIR"], "STEP0=STEP0,STEP1=STEP1,DIR0=COMMON_DIR,DIR1=COMMON_DIR"),
@@ -112,7 +108,6 @@ fn names_say_what_a_channel_is() {
             &["X_STEP", "Y_STEP", "Z_STEP", "DIR X/Y", "Z_DIR"],
             "STEP0=X_STEP,STEP1=Y_STEP,STEP2=Z_STEP,DIR0=DIR X/Y,DIR1=DIR X/Y,DIR2=Z_DIR",
         ),
-        // Numbers of pins.
         (
             &["pin3_step", "pin4_dir", "pin5_step", "pin6_dir"],
             "STEP0=pin3_step,STEP1=pin5_step,DIR0=pin4_dir,DIR1=pin6_dir",
@@ -142,7 +137,6 @@ fn levels(high: u64, edges: &[&[u64]]) -> Vec<(u64, u64)> {
     rows
 }
 
-/// Edges of so many pulses.
 fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
     (0..count).flat_map(|k| [from + k * interval, from + k * interval + width]).collect()
 }
@@ -150,7 +144,7 @@ fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
 #[test]
 fn a_dir_is_found_by_when_it_changes() {
     let step = pulses(100, 40, 100, 10);
-    // Right after a rise; a lamp that blinks without regard to it is further off; one that is no DIR by its name.
+    // A lamp that blinks independently is further away; BUSY is not a DIR by its name.
     let late = [2101, 3101];
     for (names, high, edges, expected) in [
         (&["D0", "D1"][..], 0b10, &[&step[..], &late][..], "STEP0=D0,DIR0=D1"),
@@ -161,7 +155,6 @@ fn a_dir_is_found_by_when_it_changes() {
         (&["D0", "D1", "D2"], 0, &[&step, &[50, 4200], &[2050]], "STEP0=D0,DIR0=D2"),
         (&["RX", "D1"], 0, &[&step, &late], "STEP0=RX,DIR0=D1"),
         (&["D0", "DIR"], 0, &[&step, &late], "STEP0=D0,DIR0=DIR"),
-        // A DIR that turns every two steps of a square wave, and a busier channel that is no DIR.
         (&["D0", "D1"], 0, &[&pulses(100, 60, 20, 10), &pulses(95, 15, 80, 40)], "STEP0=D0,DIR0=D1"),
         (&["D0", "D1"], 0, &[&step, &pulses(130, 39, 100, 7)], "STEP0=D0,STEP1=D1"),
     ] {
@@ -177,19 +170,17 @@ fn each_motor_gets_the_dir_that_changes_next_to_its_pulses() {
     assert_eq!(found, "STEP0=D0,STEP1=D2,STEP2=D4,DIR0=D1,DIR1=D3,DIR2=D5");
     let found = proposed(&["D0", "D1", "D2", "D3", "D4", "D5"], &levels(0, &[&x, &y, &z, &dz, &dx, &dy]));
     assert_eq!(found, "STEP0=D0,STEP1=D1,STEP2=D2,DIR0=D4,DIR1=D5,DIR2=D3");
-    // Changes in the middle of an interval are nobody's: each motor has the DIR next to its STEP.
+    // A change in the middle of an interval belongs to no motor.
     let (x, y) = (pulses(1000, 18, 500, 5), pulses(1137, 16, 571, 5));
     let found = proposed(&["D0", "D1", "D2", "D3"], &levels(0, &[&x, &[6750], &y, &[4849]]));
     assert_eq!(found, "STEP0=D0,STEP1=D2,DIR0=D1,DIR1=D3");
     let found = proposed(&["D0", "D1", "D2", "D3"], &levels(0, &[&[6750], &x, &[4849], &y]));
     assert_eq!(found, "STEP0=D1,STEP1=D3,DIR0=D0,DIR1=D2");
-    // Names decide before behavior.
     let names = ["X-Foo", "Y-Foo", "Y-Bar", "X-Bar"];
     let (near_x, near_y) = ([2095], [137 + 117 * 20 - 5]);
     let (x, y) = (pulses(100, 60, 100, 10), pulses(137, 50, 117, 10));
     let found = proposed(&names, &levels(0, &[&x, &y, &near_x, &near_y]));
     assert_eq!(found, "STEP0=X-Foo,STEP1=Y-Foo,DIR0=X-Bar,DIR1=Y-Bar");
-    // Both turn where the one channel changes.
     let (x, y) = (pulses(100, 40, 100, 10), pulses(140, 40, 100, 10));
     let found = proposed(&["X_STEP", "Y_STEP", "D2"], &levels(0, &[&x, &y, &[2130, 3120]]));
     assert_eq!(found, "STEP0=X_STEP,STEP1=Y_STEP,DIR0=D2,DIR1=D2");
@@ -214,7 +205,7 @@ fn edges_that_alternate_are_an_encoder() {
     let a: Vec<u64> = (0..40).map(|k| 100 + 40 * k + k % 3).collect();
     let b: Vec<u64> = (0..40).map(|k| 120 + 40 * k + k % 5).collect();
     assert_eq!(proposed(&["D0", "D1"], &levels(0, &[&a, &b])), "A0=D0,B0=D1");
-    // At constant speed, with turns, a bit rate fits each channel.
+    // At constant speed a bit rate fits each channel.
     let (mut a, mut b, mut at) = (Vec::new(), Vec::new(), 1000);
     for edges in [41, 33, 27, 60, 39] {
         for _ in 0..edges {
@@ -235,7 +226,7 @@ fn edges_that_alternate_are_an_encoder() {
 
 #[test]
 fn where_names_say_nothing_what_the_channels_do_is_looked_at() {
-    // D0 turns seldom, D1 pulses, D2 is a line of 104 ticks a bit, D3 does nothing.
+    // D0 is DIR, D1 STEP, D2 a line of 104 ticks per bit.
     let mut edges = vec![(0, 0b100)];
     for step in 0..40_u64 {
         let dir = u64::from(step >= 20);
@@ -259,13 +250,10 @@ fn where_names_say_nothing_what_the_channels_do_is_looked_at() {
     edges.push((at, 0b101));
     edges.dedup_by_key(|(_, levels)| *levels);
     assert_eq!(proposed(&["D0", "D1", "D2", "D3"], &edges), "STEP0=D1,DIR0=D0,RX=D2");
-    // A name that speaks rules over behaviour.
     assert_eq!(proposed(&["A", "B", "TX", "C"], &edges), "STEP0=B,DIR0=A,TX=TX");
     assert_eq!(proposed(&["STEP", "B"], &[(0, 0), (5, 2), (6, 0)]), "STEP0=STEP");
-    // A lamp is no motor.
     let pulses = |count: u64| (0..2 * count).map(|at| (10 * at, at % 2)).collect::<Vec<_>>();
     assert_eq!(proposed(&["A", "B"], &pulses(3)), "");
     assert_eq!(proposed(&["A", "B"], &pulses(5)), "STEP0=A");
-    // A single pulse is no step.
     assert_eq!(proposed(&["RX", "BUSY"], &[(0, 1), (5, 3), (6, 1)]), "RX=RX");
 }

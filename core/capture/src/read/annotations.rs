@@ -1,4 +1,4 @@
-//! Annotations of sigrok's decoder of serial lines: what `sigrok-cli -A uart` prints, and PulseView's export.
+//! Reads annotations of sigrok's UART decoder: the output of `sigrok-cli -A uart`, and PulseView's export.
 //!
 //! ```text
 //! uart-1: 41          208-2291 uart-1: rx-data: 41          123-456 UART: RX data: 41          123-456,UART,TX data,41
@@ -19,33 +19,26 @@ use std::collections::BTreeMap;
 
 const NO_BYTES: &str = "the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)";
 
-/// Annotations that are being read.
 pub(super) struct Annotations {
     recorder: Recorder,
-    /// Whether the lines have samples; not known before the first.
+    /// Whether the lines have samples; unknown before the first.
     timed: Option<bool>,
-    /// What came last on each channel.
     lines: BTreeMap<u8, Line>,
-    /// Whether a byte has no start bit before it.
     is_data: bool,
-    /// Whether no annotation names RX or TX.
     is_unnamed: bool,
-    /// The digits of each byte, since only all of them tell its base.
+    /// Only all values together show the base.
     values: Vec<Value>,
     digits: Digits,
-    /// Whether there are bytes as letters.
     is_text: bool,
-    /// Whether start bits are annotated, and so are the bits of data.
     has_bits: bool,
     others: Names,
 }
 
-/// Up to 8 digits of a byte: three with 4 bits each, or eight of 1 bit, and how many they are.
+/// Up to 8 digits of a byte: three of 4 bits or eight of 1 bit, and their number.
 #[derive(Clone, Copy)]
 struct Value(u16);
 
 impl Value {
-    /// `None` where the text cannot be a byte of any base.
     fn of(text: &[u8]) -> Option<Self> {
         let bits = match text.len() {
             1..=3 => 4,
@@ -76,19 +69,15 @@ impl Value {
     }
 }
 
-/// What came last on a channel: RX and TX may overlap.
+/// The latest of a channel; RX and TX may overlap.
 #[derive(Clone, Copy, Default)]
 struct Line {
-    /// First sample of the start bit that has no byte yet.
     start: Option<u64>,
-    /// Index and tick of the last byte.
     last: Option<(usize, u64)>,
 }
 
-/// A line of annotations.
 struct Annotation {
     samples: Option<(u64, u64)>,
-    /// The decoder, the row or class, and the text.
     decoder: String,
     class: String,
     text: String,
@@ -113,7 +102,7 @@ impl Annotation {
         is_uart.then(|| Self { samples, decoder: decoder.into(), class: class.into(), text: text.into() })
     }
 
-    /// Whether it may be a byte. Where bits are annotated and no class is given, 0 and 1 are those.
+    /// With annotated bits and no class, 0 and 1 are bits, not bytes.
     fn may_be_data(&self, has_bits: bool) -> bool {
         match self.class.to_lowercase().as_str() {
             "" => !has_bits || !matches!(self.text.as_str(), "0" | "1"),
@@ -122,7 +111,7 @@ impl Annotation {
     }
 }
 
-/// `123-456` at the beginning of a line, and what follows it.
+/// Splits `123-456` off the beginning of a line.
 fn samples(line: &str) -> Option<((u64, u64), &str)> {
     let end = line.find(|letter: char| !letter.is_ascii_digit() && letter != '-')?;
     let (range, rest) = line.split_at(end);
@@ -131,7 +120,6 @@ fn samples(line: &str) -> Option<((u64, u64), &str)> {
     (samples.0 <= samples.1).then(|| (samples, rest.trim_start_matches([' ', ',', ';', ':'])))
 }
 
-/// Whether a line is an annotation of a serial line.
 pub(super) fn is_annotation(line: &[u8]) -> bool {
     Annotation::parse(line).is_some()
 }
@@ -166,7 +154,6 @@ impl Annotations {
         channel.ok_or_else(|| format!("more than {MAX_CHANNELS} decoders; export those of one line"))
     }
 
-    /// The base of all values.
     fn base(&mut self) -> Result<Base, String> {
         if let Some(base) = self.recorder.base {
             return Ok(base);
@@ -197,12 +184,12 @@ impl Annotations {
                 one.name(),
                 other.name()
             )),
-            // Up to the first that does not fit.
+            // Read up to the first value that does not fit.
             Guess::Unknown => Ok(Base::Hexadecimal),
         }
     }
 
-    /// Gives each byte its value. The first that has none in the base of all ends the bytes.
+    /// Ends the bytes at the first value that does not fit the base.
     fn set_bytes(&mut self) -> Result<(), String> {
         if self.values.is_empty() {
             return Ok(());

@@ -1,8 +1,8 @@
-//! Bases that bytes are written in, and which of them the digits of a file's values tell.
+//! Bases of written bytes, and how to find a file's base.
 
 use core::str::FromStr;
 
-/// The base of numbers.
+/// The base of written bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
     /// Digits 0 and 1.
@@ -48,7 +48,7 @@ impl Base {
         }
     }
 
-    /// A byte of this base; `None` where the digits are none, or stand for more than 255.
+    /// `None` if the digits do not fit or the value is above 255.
     pub(super) fn byte(self, digits: &[u8]) -> Option<u8> {
         if digits.is_empty() || digits.len() > 8 {
             return None;
@@ -60,28 +60,22 @@ impl Base {
     }
 }
 
-/// What a file's values tell of their base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Guess {
     Sure(Base),
-    /// The values fit both.
     Unclear(Base, Base),
-    /// The values fit none, or there are none.
     Unknown,
 }
 
-/// The digits of a file's values. sigrok pads all bases with zeros to one length, but not the decimal one.
+/// sigrok pads all bases but the decimal one with zeros to equal lengths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Digits {
-    /// Bit n: there are values of n digits.
     lengths: u16,
     any: Bases,
-    /// Whether a value has zeros before it.
     is_padded: bool,
     has_prefix: bool,
 }
 
-/// The bases that all values so far fit.
 #[derive(Clone, Copy, Debug)]
 struct Bases {
     binary: bool,
@@ -112,7 +106,6 @@ impl Digits {
         self.any.hexadecimal &= Base::Hexadecimal.byte(digits).is_some();
     }
 
-    /// Whether each value has two hexadecimal digits, and there are values.
     pub(super) const fn are_pairs(&self) -> bool {
         self.lengths == 0b100 && self.any.hexadecimal
     }

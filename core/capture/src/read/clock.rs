@@ -1,4 +1,4 @@
-//! Times of a clock, with or without a date, as logs have them.
+//! Reads times of day, with or without a date.
 //!
 //! ```text
 //! 2026-11-26T12:00:00.123456+01:00     2026/11/26 12:00:00,123     26.11.2026 12:00:00.123     12:00:00.123
@@ -6,33 +6,26 @@
 
 use super::decimal::{Decimal, power_of_ten, whole};
 
-/// Most digits of a fraction of a second.
 const MAX_FRACTION: usize = 12;
 
-/// A time at the beginning of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
-    /// Seconds since 1970, or since midnight if there is no date.
+    /// Seconds since 1970, or since midnight without a date.
     pub(super) seconds: Decimal,
     pub(super) dated: Dated,
-    /// Bytes of the text that belong to it.
     pub(super) length: usize,
     pub(super) has_seconds: bool,
 }
 
-/// What a time says about its day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dated {
-    /// Nothing.
     No,
-    /// The date.
     Yes,
-    /// A date that does not say which number is the day and which the month, as `05/06/2026`.
+    /// Day and month cannot be told apart, as in `05/06/2026`.
     Unclear([u64; 3]),
 }
 
 impl Stamp {
-    /// Reads the time that a text begins with.
     pub(super) fn parse(text: &[u8]) -> Option<Self> {
         let Some((days, dated, date)) = date(text) else {
             let (seconds, length) = clock(text)?;
@@ -55,21 +48,19 @@ impl Stamp {
         Some(Self { seconds: Decimal { mantissa, ..of_day }, dated, length, has_seconds })
     }
 
-    /// Reads `12:34`, which may be two bytes as well.
+    /// `12:34` may also be two bytes.
     pub(super) fn without_seconds(text: &[u8]) -> Option<Self> {
         let (seconds, length) = minutes(text)?;
         Some(Self { seconds, dated: Dated::No, length, has_seconds: false })
     }
 }
 
-/// A number of one to four digits that a text begins with, and how many they are.
 fn number(text: &[u8]) -> Option<(u64, usize)> {
     let length = text.iter().take(5).take_while(|byte| byte.is_ascii_digit()).count();
     let value = text.get(..length).and_then(whole)?;
     (length <= 4).then_some((value, length))
 }
 
-/// Days from 1970 to the date that a text begins with, and its length.
 fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
     let (first, one) = number(text)?;
     let mark = *text.get(one).filter(|mark| b"-/.".contains(mark))?;
@@ -83,7 +74,7 @@ fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
     if one > 2 || two > 2 || three != 4 {
         return None;
     }
-    // With points the day comes first, as does a number that is no month.
+    // With points, or if the number is not a month, the day comes first.
     if mark == b'.' || first > 12 {
         return Some((days(third, second, first)?, Dated::Yes, length));
     }
@@ -93,18 +84,16 @@ fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
     Some((days(third, second, first)?, Dated::Unclear([first, second, third]), length))
 }
 
-/// Days from 1970 to a date.
 fn days(year: u64, month: u64, day: u64) -> Option<i128> {
     if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
     }
-    // Days from the first of March of year 0, whose last day of the year is the leap day.
+    // Counting from March 1 of year 0 puts the leap day at the end of the year.
     let (years, months) = if month > 2 { (year, month - 3) } else { (year.checked_sub(1)?, month + 9) };
     let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1;
     Some(i128::from(days) - 719_468)
 }
 
-/// Seconds since midnight of `12:34:56.789`, and its length.
 fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
     let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
     let part = |from: usize| {
@@ -137,7 +126,6 @@ fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
     Some((Decimal { mantissa, places }, length + 1 + count))
 }
 
-/// Seconds since midnight of `12:34`, and its length.
 fn minutes(text: &[u8]) -> Option<(Decimal, usize)> {
     let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
     text.get(one).filter(|mark| **mark == b':')?;
@@ -151,7 +139,6 @@ fn minutes(text: &[u8]) -> Option<(Decimal, usize)> {
     (hour <= 23 && two == 2 && minute <= 59 && is_end).then_some((Decimal { mantissa, places: 0 }, one + 3))
 }
 
-/// Seconds of `Z`, `+01:00` or `-0130`, and its length.
 fn zone(text: &[u8]) -> Option<(i64, usize)> {
     let sign = match text.first()? {
         b'Z' | b'z' => return Some((0, 1)),

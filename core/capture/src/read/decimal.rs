@@ -1,4 +1,4 @@
-//! Decimal numbers, exactly: a whole number and how many of its digits stand behind the point.
+//! Exact decimal numbers: an integer and the number of its decimal places.
 //!
 //! ```text
 //! 0.00125   125 and 5 places        1e-05   1 and 5 places        -2.5E3   -2500 and 0 places
@@ -15,15 +15,15 @@
 pub struct Decimal {
     /// The digits as a whole number, with their sign.
     pub mantissa: i128,
-    /// How many of the digits are behind the point.
+    /// Number of decimal places.
     pub places: u32,
 }
 
-/// Most digits of a number, its leading zeros not counted: more do not fit.
+/// Without leading zeros; more do not fit.
 const MAX_DIGITS: u32 = 30;
 
 impl Decimal {
-    /// Reads a number with an optional sign, point and exponent; `None` where it is none, or does not fit.
+    /// Reads a number with optional sign, point and exponent; `None` if it is not one or does not fit.
     #[must_use]
     pub fn parse(text: &[u8]) -> Option<Self> {
         let (negative, text) = match text {
@@ -31,7 +31,7 @@ impl Decimal {
             [b'+', rest @ ..] => (false, rest),
             _ => (false, text),
         };
-        // 18 digits fit into 64 bits, which is all that most files need.
+        // 18 digits fit into 64 bits, which is faster and enough for most files.
         let (mut mantissa, mut wide) = (0_u64, None::<u128>);
         let (mut digits, mut places, mut point) = (0_u32, 0_u32, false);
         let mut any = false;
@@ -66,7 +66,6 @@ impl Decimal {
         if any { number.shifted(exponent) } else { None }
     }
 
-    /// The number times ten to the power of `exponent`.
     pub(super) fn shifted(self, exponent: i32) -> Option<Self> {
         let places = i64::from(self.places) - i64::from(exponent);
         if let Ok(places) = u32::try_from(places) {
@@ -76,7 +75,7 @@ impl Decimal {
         Some(Self { mantissa, places: 0 })
     }
 
-    /// The number with at least `places` places, and more only where it needs them; `None` where it does not fit.
+    /// The same number with at least `places` places; `None` if it does not fit.
     #[must_use]
     pub fn with_places(self, places: u32) -> Option<Self> {
         if self.places <= places {
@@ -91,14 +90,13 @@ impl Decimal {
         Some(number)
     }
 
-    /// This number minus another, exactly; `None` where that does not fit.
     pub(super) fn minus(self, other: Self) -> Option<Self> {
         let places = self.places.max(other.places);
         let mantissa = |number: Self| number.mantissa.checked_mul(power_of_ten(places - number.places)?);
         Some(Self { mantissa: mantissa(self)?.checked_sub(mantissa(other)?)?, places })
     }
 
-    /// The number with exactly `places` places, rounded to the nearest, halves up; `None` where it does not fit.
+    /// Rounded to exactly `places` places, halves up; `None` if it does not fit.
     pub(super) fn rounded(self, places: u32) -> Option<Self> {
         let number = self.with_places(places)?;
         let Some(unit) = power_of_ten(number.places - places) else {
@@ -108,13 +106,11 @@ impl Decimal {
         Some(Self { mantissa, places })
     }
 
-    /// The number where it is whole.
     pub(super) fn whole(self) -> Option<i128> {
         self.with_places(0).filter(|number| number.places == 0).map(|number| number.mantissa)
     }
 }
 
-/// A power of ten that fits.
 pub(super) const fn power_of_ten(power: u32) -> Option<i128> {
     10_i128.checked_pow(power)
 }
@@ -128,7 +124,6 @@ fn exponent(text: &[u8]) -> Option<i32> {
     Some(if text.starts_with(b"-") { -value } else { value })
 }
 
-/// A whole number from 0 to 2^64 - 1.
 pub(super) fn whole(text: &[u8]) -> Option<u64> {
     if text.is_empty() {
         return None;

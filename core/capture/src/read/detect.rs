@@ -1,5 +1,5 @@
-//! Which kind of file it is, by its first bytes: by what only one kind begins with, then by the names of a table's columns,
-//! and last by whether all of the first lines can be read as one kind.
+//! Detects the kind of a file from its first bytes: by signatures, then by a table's column names, then by trying to
+//! read the first lines.
 
 use super::{
     annotations,
@@ -19,22 +19,19 @@ use crate::{
     names::{Kind, Meaning},
 };
 
-/// What can be read.
 pub(super) const UNKNOWN: &str = "no kind of file that can be read here; give a value change dump (.vcd), a session or \
     a table of sigrok or PulseView (.sr, .csv), a table of levels (Saleae Logic, DSView, WaveForms, Kingst, your own), a \
     table of Saleae Logic's decoded bytes, annotations of sigrok's UART decoder, a trace or a table of edges of Stepscope, \
     bytes in hexadecimal, a hex dump (hexdump -C, xxd, od), a serial log with times, step commands of Klipper, or a table \
     of times and positions";
 
-/// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Found {
     pub(super) format: Format,
-    /// Whether all times in the first rows of a table are whole numbers: without a unit they are no seconds then.
+    /// Without a unit, whole numbers are not seconds.
     pub(super) whole_times: bool,
-    /// How a table of times and bytes is split.
     pub(super) table: Option<hex_table::Table>,
-    /// Columns of a table of levels that are none, by their bits: a count beside STEP and DIR.
+    /// Columns that are not levels, by bit: a count next to STEP and DIR.
     pub(super) others: u64,
 }
 
@@ -44,12 +41,10 @@ impl Found {
     }
 }
 
-/// Bytes from which on a file may go on after its head, which may have lost a mark of three bytes.
+/// Shorter heads are the whole file; three bytes may have been a byte order mark.
 const FULL: usize = (1 << 16) - 3;
-/// Lines that are looked at.
 const MAX_LINES: usize = 200;
 
-/// The kind of the file that begins with `head`; `base` is that of its bytes, where whoever reads gives it.
 pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
     if head.trim_ascii().is_empty() {
         return Err("the file is empty; record or export again".into());
@@ -60,7 +55,7 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
     if let Some(what) = binary(head) {
         return Err(what.into());
     }
-    // The last line, or the last word of a line that is as long as this, may be cut off.
+    // The end of the head may cut off the last line or word.
     let cut = head
         .iter()
         .rposition(|byte| *byte == b'\n')
@@ -101,17 +96,14 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
     })
 }
 
-/// What is to be done with voltages.
 const SCOPE: &str = "a table of an oscilloscope's voltages; export digital channels, or write a table such as time_us,STEP,DIR \
     with 0 below the threshold of the input and 1 above it";
 
-/// Whether a line is of the head of an oscilloscope's table, which gives the units of its columns.
 fn is_of_scope(line: &[u8]) -> bool {
     let mut names = fields(line, separator(line));
     names.any(|name| [&b"volt"[..], b"volts", b"ampere"].contains(&&name.to_ascii_lowercase()[..]))
 }
 
-/// What is to be done with files that are no text.
 fn binary(head: &[u8]) -> Option<&'static str> {
     if head.starts_with(b"\x1f\x8b") {
         return Some("the file is compressed (gzip); uncompress it: gunzip");
@@ -122,7 +114,7 @@ fn binary(head: &[u8]) -> Option<&'static str> {
     if head.starts_with(b"<SALEAE>") {
         return Some("a binary export of Saleae Logic; export as CSV");
     }
-    // A header block of 329 bytes, or all of it packed by gzip.
+    // A header block of 329 bytes, or the whole file packed by gzip.
     if head.starts_with(b"\0\0\0\0\0\0\0\x01\x49") || head.first() == Some(&0xfe) {
         return Some(
             "a waveform of GTKWave (FST); make a value change dump of it: fst2vcd -f file.fst -o file.vcd",
@@ -131,8 +123,7 @@ fn binary(head: &[u8]) -> Option<&'static str> {
     head.contains(&0).then_some(UNKNOWN)
 }
 
-/// The kind of a table by the names of its columns, and by its first rows where a name may stand for either: an encoder
-/// has lines and a position.
+/// Uses the first rows if a name is ambiguous: an encoder has both lines and a position.
 fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Found>, String> {
     let mut columns = Fields::new();
     let separator = separator(line);
@@ -152,7 +143,6 @@ fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Fou
     Ok(by_names(&names, separator, rows))
 }
 
-/// A table of levels or positions, by the names of its columns.
 fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
     let Layout { time, unit, .. } = Layout::of(names)?;
     names.get(1)?;
@@ -161,7 +151,7 @@ fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
             .filter_map(|row| fields(row, separator).nth(time).map(without_quotes))
             .filter(|time| !time.is_empty())
     };
-    // sigrok counts samples so where it does not know the rate; the numbers are all 0.
+    // sigrok writes this if it does not know the rate; all numbers are then 0.
     if names.first().is_some_and(|name| name == "samples") && times().all(|time| time == b"0") {
         return Some(Found::of(Format::SigrokCsv));
     }
@@ -192,7 +182,7 @@ fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
     .map(|found| Found { others: others.unwrap_or(0), ..found })
 }
 
-/// In a table with levels of STEP and DIR, the columns that are no levels, such as a count, by their bits.
+/// With levels of STEP and DIR, other columns such as a count are skipped.
 fn others_than_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) -> bool) -> Option<u64> {
     let meanings: Vec<Meaning> = names.iter().map(|name| Meaning::of(name, false)).collect();
     let has = |kind: Kind| {
@@ -220,7 +210,6 @@ fn without_quotes(field: &[u8]) -> &[u8] {
     field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
 }
 
-/// The kind of a file without a head, by its first lines.
 fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     if lines.iter().all(|line| is_sample(line)) {
         return Some(Found::of(Format::SigrokCsv));
@@ -246,12 +235,12 @@ fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     if hex::is_line(first) {
         return Some(Found::of(Format::HexBytes));
     }
-    // Labels of sigrok without comments: names, and then samples.
+    // Labels of sigrok without comments: names, then samples.
     let (_, rows) = lines.split_first()?;
     (!rows.is_empty() && rows.iter().all(|line| is_sample(line))).then_some(Found::of(Format::SigrokCsv))
 }
 
-/// The kind of rows that begin with a number that rises: levels, positions or bytes. `Some(None)` if they may be either.
+/// Rows that begin with a rising number: levels, positions or bytes. `Some(None)` if ambiguous.
 #[allow(clippy::option_option, reason = "rows of numbers that may be either are of no other kind")]
 fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
     let separator = separator(lines.first()?);
@@ -275,7 +264,7 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
     if rows.len() > 1 && rest().all(|field| matches!(*field, b"0" | b"1")) {
         return found(Format::LevelsCsv);
     }
-    // Two bytes on each line are no time and position.
+    // Lines of two bytes look like times and positions.
     let bytes = lines.iter().all(|line| hex::is_line(line)) && !lines.iter().any(|line| line.contains(&b'.'));
     if columns == 2 && !bytes && rest().all(|field| number(field).is_some()) {
         return found(Format::PositionsCsv);
@@ -283,7 +272,6 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
     None
 }
 
-/// A row of levels only, each one digit: `0,1,1`.
 fn is_sample(line: &[u8]) -> bool {
     let mut digits = line.iter().step_by(2);
     let mut marks = line.iter().skip(1).step_by(2);
@@ -293,7 +281,7 @@ fn is_sample(line: &[u8]) -> bool {
         && marks.all(|mark| Some(mark) == first && b",;\t|: ".contains(mark))
 }
 
-/// Cycles that rise and levels, without zeros before them, and of which one has more than two digits, as no byte has.
+/// Rising cycles and levels without leading zeros, at least one with more than two digits, which no byte has.
 fn is_trace(lines: &[&[u8]]) -> bool {
     let records: Vec<(u64, u64)> = lines.iter().map_while(|line| stepscope::record(line)).collect();
     let plain =

@@ -1,4 +1,4 @@
-//! Dumps of a file in hexadecimal: `hexdump -C`, `xxd`, `od -t x1`, and the rows of a terminal.
+//! Reads hexadecimal dumps: `hexdump -C`, `xxd`, `od -t x1`, and a terminal's.
 //!
 //! ```text
 //! 00000000  44 45 41 44  |DEAD|      00000000: 55aa 0102  U...      0000000 44 45      0000: 62 65      be
@@ -14,24 +14,18 @@ use super::{
 };
 use crate::capture::{Capture, TimedByte};
 
-/// What offsets may be written in.
 const BASES: [u64; 3] = [16, 8, 10];
-/// Fewest digits of an offset without `0x`.
 const MIN_DIGITS: usize = 4;
-/// Rows of a terminal that begin at multiples of these may be cut short.
+/// A terminal may cut off rows that begin at multiples of these.
 const WIDTHS: [u64; 3] = [8, 16, 32];
 
-/// A dump that is being read.
 pub(super) struct HexDump {
     recorder: Recorder,
-    /// Where the next row begins, for each base that fits all offsets so far.
+    /// The next offset, for each base that fits so far.
     next: [Option<u64>; 3],
-    /// The offset of the row before, as it is written.
     before: String,
-    /// The bytes of the row before, and the most that a row had.
     row: Vec<u8>,
     width: u64,
-    /// A `*` was read.
     repeats: bool,
     is_over: bool,
     any: bool,
@@ -56,7 +50,6 @@ impl HexDump {
         }
     }
 
-    /// Checks where a row begins, by the bytes before it, and repeats the row before as often as `*` requires.
     fn begin(&mut self, offset: &Offset<'_>) -> Result<(), String> {
         let values = BASES.map(|base| offset.value(base));
         if !core::mem::replace(&mut self.any, true) {
@@ -80,7 +73,7 @@ impl HexDump {
             }
         }
         if counts.is_empty() {
-            // A terminal shows each block of bytes from a new row on.
+            // A terminal starts a new row for each block of bytes.
             let start = |base: usize| values.get(base).copied().flatten().filter(|_| offset.colon);
             let begins = |width: &u64| {
                 let before = Offset::of(self.before.as_bytes()).and_then(|offset| offset.value(16));
@@ -140,7 +133,6 @@ fn push(recorder: &mut Recorder, byte: u8) -> Result<(), String> {
     recorder.byte(TimedByte { tick, channel: 0, byte, framing_error: false })
 }
 
-/// The offset that a row begins with.
 struct Offset<'l> {
     digits: &'l [u8],
     colon: bool,
@@ -171,7 +163,7 @@ impl<'l> Offset<'l> {
         })
     }
 
-    /// Whether a program writes offsets so: of `od` they have seven digits, and are octal by default.
+    /// `od` writes seven digits, octal by default.
     fn may_be(&self, base: u64) -> bool {
         match base {
             16 => true,
@@ -181,13 +173,12 @@ impl<'l> Offset<'l> {
     }
 }
 
-/// Whether lines are a dump: its first row begins with an offset, and the next one fits it.
 pub(super) fn is_dump(lines: &[&[u8]]) -> bool {
     let Some(first) = lines.first().and_then(|line| Offset::of(line)) else { return false };
     let mut bytes = Vec::new();
     let is_row = row::parse(first.rest, &mut bytes).is_ok() && !bytes.is_empty();
     let is_zero = first.digits.iter().all(|digit| *digit == b'0');
-    // Words that are no bytes are of a dump, too, if it begins at 0: its reader reports them.
+    // A dump from offset 0 with words that are no bytes is still a dump: its reader reports them.
     let words = first.rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let is_words = words.count() > 1;
     if is_zero && first.digits.len() > MIN_DIGITS && (is_row || is_words) || first.colon && is_row {
@@ -239,7 +230,7 @@ impl Reader for HexDump {
             .map_err(|what| if !offset.colon && !self.any_row() { words() } else { what })?;
         let Shape { group, is_proven, .. } = shape;
         self.is_proven |= is_proven;
-        // xxd writes pairs in order; longer groups may be turned round (xxd -e).
+        // xxd writes pairs in order; longer groups may be reversed (xxd -e).
         if !offset.colon && group > 1 || group > 2 && !self.is_proven {
             return Err(words());
         }
@@ -277,7 +268,6 @@ impl Reader for HexDump {
 }
 
 impl HexDump {
-    /// Whether a row was read.
     const fn any_row(&self) -> bool {
         !self.row.is_empty()
     }

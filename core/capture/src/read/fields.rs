@@ -1,16 +1,14 @@
-//! A line of a table as its fields: quotation marks as in RFC 4180, blanks around a field taken off.
+//! Splits a table's line into fields, quoted as in RFC 4180, and trims them.
 
 use super::{decimal::Decimal, recorder::quoted};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
-/// Most fields of a line.
 const MAX_FIELDS: usize = 1024;
-/// What stands between the fields of tables; the first of them that a line holds is its own.
+/// The first of these in a line is its separator.
 const SEPARATORS: [u8; 4] = *b",;\t|";
 
-/// The fields of the line that was split last.
 pub(super) struct Fields {
-    /// The reader for a separator: building it takes longer than a line.
+    /// Reused: building it takes longer than splitting a line.
     reader: Option<(u8, Box<Reader>)>,
     text: Vec<u8>,
     ends: Vec<usize>,
@@ -22,7 +20,6 @@ impl Fields {
         Self { reader: None, text: Vec::new(), ends: Vec::new(), count: 0 }
     }
 
-    /// Splits a line.
     pub(super) fn split(&mut self, line: &[u8], separator: u8) -> Result<(), String> {
         self.count = 0;
         if separator == b' ' {
@@ -56,7 +53,6 @@ impl Fields {
         }
     }
 
-    /// Splits a line at its blanks.
     fn split_blanks(&mut self, line: &[u8]) -> Result<(), String> {
         self.text.clear();
         self.ends.clear();
@@ -72,7 +68,7 @@ impl Fields {
         self.count
     }
 
-    /// A field; nothing where the line has no such field.
+    /// Empty if there is no such field.
     pub(super) fn get(&self, at: usize) -> &[u8] {
         if at >= self.count {
             return &[];
@@ -86,25 +82,22 @@ impl Fields {
         (0..self.count).map(|at| self.get(at))
     }
 
-    /// The fields as names.
     pub(super) fn names(&self) -> Vec<String> {
         self.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect()
     }
 }
 
-/// What separates the fields of a line; blanks if nothing else does.
 pub(super) fn separator(line: &[u8]) -> u8 {
     let found = SEPARATORS.into_iter().find(|separator| line.contains(separator));
     found.unwrap_or(if line.trim_ascii().contains(&b' ') { b' ' } else { b',' })
 }
 
-/// The fields of a line without quotation marks; of blanks any number separates two.
+/// Does not handle quotation marks; blanks separate in any number.
 pub(super) fn fields(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> {
     let is_field = move |field: &&[u8]| separator != b' ' || !field.is_empty();
     line.split(move |byte| *byte == separator).map(<[u8]>::trim_ascii).filter(is_field)
 }
 
-/// What is wrong with a field that should be a level.
 pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
     let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
     format!(

@@ -1,4 +1,4 @@
-//! Bytes of a line in hexadecimal, as terminals, serial sniffers and logs write them, with times or without.
+//! Reads bytes in hexadecimal from terminals, serial sniffers and logs, with or without times.
 //!
 //! ```text
 //! 55 AA 0x01,02      # a comment         0.00125: 55 AA 01         t_us,bytes
@@ -21,26 +21,22 @@ use super::{
 };
 use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
 
-/// Bytes that are being read.
 pub(super) struct HexText {
     recorder: Recorder,
     times: Times,
-    /// Of a table: how its rows are split.
     table: Option<Table>,
     base: Base,
-    /// Whether the lines have times; not known before the first.
+    /// Whether the lines have times; unknown before the first.
     timed: Option<bool>,
     any: bool,
-    /// Whether times have no seconds.
     has_minutes: bool,
-    /// Numbers of bytes in brackets that are not those of their lines.
+    /// Byte counts in brackets that do not match their lines.
     wrong_lengths: u64,
     bytes: Vec<u8>,
-    /// A line with a time and no bytes: those of the lines after it.
+    /// A line with a time and no bytes applies to the lines after it.
     block: Option<Block>,
 }
 
-/// What a line with a time and no bytes gives to the lines after it.
 #[derive(Clone)]
 struct Block {
     tick: u64,
@@ -48,7 +44,6 @@ struct Block {
 }
 
 impl HexText {
-    /// `table` is what the lines are if they are a table.
     pub(super) fn new(recorder: Recorder, table: Option<Table>) -> Self {
         let base = recorder.base.or(table.map(|table| table.base)).unwrap_or(Base::Hexadecimal);
         Self {
@@ -79,7 +74,6 @@ impl HexText {
         Ok(())
     }
 
-    /// Reads the bytes of a line, which their number may come before.
     fn parse(&mut self, text: &[u8], is_log: bool) -> Result<(), String> {
         let Some(length) = Length::of(text) else { return self.digits(text, is_log) };
         self.digits(length.rest, is_log)?;
@@ -111,10 +105,9 @@ impl HexText {
         Ok(())
     }
 
-    /// Takes a line that begins with neither a number and a unit nor a clock.
     fn plain(&mut self, line: &[u8]) -> Result<(), String> {
         self.bytes.clear();
-        // Without times the bytes of two directions have no common order.
+        // Without times the two directions have no common order.
         if direction(word(line).0).is_some() || trailing_direction(line).is_some() {
             return Err(format!(
                 "{} has a direction and no time; give each line a time, or the bytes of one direction only",
@@ -210,7 +203,6 @@ impl Reader for HexText {
     }
 }
 
-/// Whether a line begins with a time of a clock, or one in brackets.
 pub(super) fn is_log(line: &[u8]) -> bool {
     let found = Start::of(line, None);
     found.is_ok_and(|start| {
@@ -218,7 +210,6 @@ pub(super) fn is_log(line: &[u8]) -> bool {
     })
 }
 
-/// Whether a line can be read.
 pub(super) fn is_line(line: &[u8]) -> bool {
     let mut bytes = Vec::new();
     match Start::of(line, None) {
@@ -231,12 +222,12 @@ pub(super) fn is_line(line: &[u8]) -> bool {
     }
 }
 
-/// Bytes of a line, which their text or a comment may follow: `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`.
-/// A log's have two digits each: a single one may be a number of bytes.
+/// Accepts `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`. In a log a byte has two digits: a single one may be
+/// a count.
 fn parse_bytes(text: &[u8], bytes: &mut Vec<u8>, is_log: bool) -> Result<(), String> {
     let text = text.trim_ascii();
     match row::parse(text, bytes) {
-        // A number of many digits beside others is no byte where commas separate them.
+        // With commas, a number of many digits among others is not a byte.
         Ok(shape) if shape.group == 1 || shape.has_text || !text.contains(&b',') && !text.contains(&b';') => {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! Tables of times and bytes: `t_us,bytes`, `time_us,dir,data`, or rows `12.5,55 AA` without a head.
+//! Reads tables of times and bytes: `t_us,bytes`, `time_us,dir,data`, or rows `12.5,55 AA` without a head.
 
 use super::{
     base::{Base, Digits, Guess},
@@ -9,7 +9,6 @@ use super::{
 };
 use crate::names::Meaning;
 
-/// How rows of a table are split, and what their bytes are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Table {
     pub(super) separator: u8,
@@ -20,7 +19,6 @@ pub(super) struct Table {
     pub(super) is_unclear: bool,
 }
 
-/// Where the direction of a row is, next to its bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     None,
@@ -28,18 +26,14 @@ pub(super) enum Direction {
     After,
 }
 
-/// What the name of a column says of the base of its bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Column {
     Hexadecimal,
     Decimal,
-    /// Bytes: mostly hexadecimal.
     Bytes,
-    /// Nothing: its values decide.
     Any,
 }
 
-/// A table by its head, without what only its rows tell.
 struct Head {
     separator: u8,
     unit: TimeUnit,
@@ -76,7 +70,7 @@ impl Head {
         Some(Self { separator, unit, direction, column, name: name.clone() })
     }
 
-    /// Whether the column may hold bytes: its name is that of no signal and no position, and its values have two digits.
+    /// Its name is neither a signal nor a position, and its values have two digits.
     fn may_be_bytes(&self, digits: &Digits) -> bool {
         let is_value = ["value", "val"].contains(&self.name.to_lowercase().as_str());
         let is_known = self.column != Column::Any || is_value;
@@ -101,8 +95,7 @@ impl Head {
     }
 }
 
-/// The table whose head is a line, by its first rows and, where whoever reads gives it, its base; `None` if it is no such
-/// head.
+/// Uses the first rows and the requested base; `None` if the line is no such head.
 pub(super) fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Table>, String> {
     let Some(head) = Head::parse(line) else { return Ok(None) };
     let mut table = Table {
@@ -127,7 +120,6 @@ pub(super) fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result
     Ok(Some(table))
 }
 
-/// Whether a line is the head of a table of bytes, for a table that has one.
 pub(super) fn is_head(line: &[u8]) -> bool {
     Head::parse(line).is_some()
 }
@@ -136,7 +128,6 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split(|byte| b" ,;\t".contains(byte)).filter(|word| !word.is_empty())
 }
 
-/// A field of a row, and the rest.
 fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let end = line.iter().position(|byte| *byte == separator).unwrap_or(line.len());
@@ -145,7 +136,6 @@ fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
 }
 
 impl Table {
-    /// Time, direction and bytes of a row.
     pub(super) fn split<'l>(&self, line: &'l [u8]) -> (&'l [u8], &'l [u8], &'l [u8]) {
         let (time, rest) = cut(line, self.separator);
         match self.direction {
@@ -165,11 +155,11 @@ impl Table {
     }
 }
 
-/// The table that lines without a head are: a number that rises, and bytes of two digits. Its times have no unit.
+/// A rising number and bytes of two digits. Without a head the times have no unit.
 pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
     let separator = separator(lines.first()?);
     let (mut before, mut is_number, mut is_whole) = (None::<Decimal>, false, true);
-    // Two columns that are no bytes of one row, as bytes may be where blanks separate them.
+    // Blanks may also separate the bytes of one row.
     let mut are_pairs = separator != b' ';
     let mut digits = Digits::new();
     for line in lines {
@@ -203,8 +193,7 @@ pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
     })
 }
 
-/// Whether a table's bytes are surely no other numbers: one has a letter, `0x` or a zero before it, or there are several in
-/// a row.
+/// Evidence for hexadecimal: a letter, `0x`, a leading zero, or several bytes in a row.
 pub(super) fn is_hexadecimal(lines: &[&[u8]], table: Table) -> bool {
     !table.is_unclear || lines.iter().any(|line| cut(line, table.separator).1.len() > 2)
 }

@@ -1,4 +1,4 @@
-//! Step commands of Klipper, as `parsedump.py` and `klippy.log` have them: the steps of each stepper.
+//! Reads Klipper's step commands from `parsedump.py` and `klippy.log`.
 //!
 //! ```text
 //! reset_step_clock oid=3 clock=16000          the clock that intervals count from, 32 bits
@@ -16,39 +16,32 @@ use super::{
 };
 use crate::{capture::Capture, timebase::Timebase};
 
-/// Most steppers: channels of the bus.
 const MAX_STEPPERS: usize = 16;
-/// Ticks of a pulse where there is room: 2 µs at 16 MHz. The commands do not give it.
+/// 2 µs at 16 MHz; the commands do not give the width.
 const PULSE: u64 = 32;
 
-/// Commands that are being read.
 pub(super) struct StepCommands {
     recorder: Recorder,
-    /// By their numbers.
     steppers: Vec<Stepper>,
-    /// Numbers of steppers beyond the last channel.
     beyond: Names,
     beyond_oids: Vec<u64>,
     steps: u64,
-    /// The latest clock of any stepper, 64 bits: what 32 bits are taken from.
+    /// The latest clock of any stepper in 64 bits, to extend 32-bit clocks.
     clock: Option<i128>,
-    /// Whether a command has set a clock.
     is_reset: bool,
-    /// The frequencies that the file gives: one is the clock's.
+    /// The clock frequency is known if the file gives exactly one.
     frequency: Option<u64>,
     is_unclear: bool,
 }
 
-/// The commands of a stepper.
 struct Stepper {
     oid: u64,
     moves: Vec<Move>,
-    /// The clock of its latest step; none before its clock is set.
     clock: Option<i128>,
     dir: bool,
 }
 
-/// A `queue_step`: its first step is `interval` ticks after `from`.
+/// A `queue_step` whose first step is `interval` ticks after `from`.
 #[derive(Clone, Copy)]
 struct Move {
     from: i64,
@@ -59,7 +52,6 @@ struct Move {
 }
 
 impl Move {
-    /// Ticks from its beginning to a step, from 1.
     const fn offset(self, step: u64) -> i128 {
         let (step, interval, add) = (step as i128, self.interval as i128, self.add as i128);
         step * interval + add * (step * (step - 1) / 2)
@@ -70,7 +62,6 @@ impl Move {
     }
 }
 
-/// Whether a text has step commands.
 pub(super) fn is_klipper(text: &[u8]) -> bool {
     let has = |word: &[u8]| text.windows(word.len()).any(|found| found == word);
     has(b"queue_step oid=") || has(b"reset_step_clock oid=") || has(b"set_next_step_dir oid=")
@@ -91,7 +82,6 @@ impl StepCommands {
         }
     }
 
-    /// The stepper of a number; `None` if there are too many.
     fn stepper(&mut self, oid: u64) -> Option<&mut Stepper> {
         let at = self.steppers.partition_point(|stepper| stepper.oid < oid);
         if self.steppers.get(at).is_none_or(|stepper| stepper.oid != oid) {
@@ -124,7 +114,7 @@ impl StepCommands {
                 let low = values.get(b"clock", name)?;
                 let low = u32::try_from(low)
                     .map_err(|_| format!("clock={low} is not a clock; it has 32 bits: 0 to {}", u32::MAX))?;
-                // The nearest to what is known of the 64 bits.
+                // The 64-bit clock nearest to the latest one.
                 let clock = match self.clock {
                     Some(before) => before + i128::from(low.wrapping_sub(before as u32) as i32),
                     None => i128::from(low),
@@ -183,7 +173,7 @@ impl StepCommands {
         if count == 0 {
             return Ok(());
         }
-        // Intervals rise or fall evenly: the shortest is the first or the last.
+        // The intervals change evenly, so the shortest is the first or the last.
         let last = i128::from(interval) + i128::from(add) * i128::from(count - 1);
         let shortest = last.min(interval.into());
         if shortest < 2 {
@@ -205,7 +195,6 @@ impl StepCommands {
         Ok(())
     }
 
-    /// The steps of all steppers as levels, in the order of time.
     fn levels(&mut self) -> Result<(), String> {
         let mut queues = Vec::new();
         for (motor, stepper) in self.steppers.iter().enumerate() {
@@ -216,7 +205,7 @@ impl StepCommands {
         }
         let firsts = queues.iter().filter_map(|queue| queue.next.as_ref().map(|next| next.tick));
         let Some(first) = firsts.min() else { return Ok(()) };
-        // Without a clock the beginning is as long before the first step as its interval.
+        // Without a clock the recording starts one interval before the first step.
         let start = self
             .steppers
             .iter()
@@ -239,24 +228,19 @@ impl StepCommands {
     }
 }
 
-/// A change of a stepper's levels.
 struct Edge {
     tick: i128,
     mask: u64,
     levels: u64,
 }
 
-/// The changes of a stepper, one after the other.
 struct Queue<'m> {
     bit: u32,
     moves: core::slice::Iter<'m, Move>,
     current: Option<Move>,
-    /// The step that comes next of the current move, from 1.
     step: u64,
-    /// The step before, and the direction that was set last.
     before: Option<i128>,
     dir: bool,
-    /// What comes of the next step, DIR, rise, fall, and which of them is next.
     phase: Phase,
     next: Option<Edge>,
 }
@@ -279,12 +263,10 @@ impl<'m> Queue<'m> {
         queue
     }
 
-    /// The levels before the first step: DIR as that step has it.
     fn first_levels(&self) -> u64 {
         u64::from(self.dir) << (self.bit + 1)
     }
 
-    /// The tick of the step that comes next, after `step` of `current`.
     fn following(&self) -> Option<i128> {
         let current = self.current?;
         if self.step < u64::from(current.count) {
@@ -293,7 +275,6 @@ impl<'m> Queue<'m> {
         self.moves.clone().next().map(|next| next.step(1))
     }
 
-    /// Finds the next change.
     fn advance(&mut self) {
         self.next = None;
         loop {
@@ -335,12 +316,10 @@ impl<'m> Queue<'m> {
     }
 }
 
-/// A pulse's length between steps that are so far apart.
 fn half(ticks: i128) -> i128 {
     (ticks / 2).clamp(1, i128::from(PULSE))
 }
 
-/// The values of a command: `oid=3 interval=1000`.
 struct Values {
     list: Vec<(Vec<u8>, i64)>,
 }
@@ -390,7 +369,7 @@ impl Reader for StepCommands {
                 }
                 words.next();
             }
-            // A name alone is of a sentence.
+            // A name alone is part of a sentence.
             if values.list.is_empty() && words.peek().is_none_or(|word| !word.contains(&b'=')) {
                 continue;
             }

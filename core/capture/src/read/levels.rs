@@ -1,5 +1,5 @@
-//! Tables of levels, one row per change: exports of Saleae Logic 2, DSView, WaveForms and KingstVIS, Stepscope's table of
-//! edges, and tables that a program of one's own has written.
+//! Reads tables of levels, one row per change: exports of Saleae Logic 2, DSView, WaveForms and KingstVIS,
+//! Stepscope's table of edges, and others.
 //!
 //! ```text
 //! Time [s],Channel 0,Channel 1        ; Sample rate: 250 MHz        cycle,time_s,STEP0,DIR0,EN,RX,TX,DE
@@ -18,25 +18,21 @@ use super::{
 };
 use crate::{capture::Capture, timebase::Timebase};
 
-/// A table of levels that is being read.
 pub(super) struct LevelsTable {
     recorder: Recorder,
-    /// Whether the first times are whole numbers, which without a unit are no seconds.
+    /// Without a unit, whole numbers are not seconds.
     whole_times: bool,
-    /// Columns that are no channels, by their bits.
     others: u64,
     head: Head,
     columns: Option<Columns>,
-    /// Levels of channels that have no bit, or no data (`X`).
     unknown: u64,
     quoted: Fields,
 }
 
-/// What comments before the table say.
 #[derive(Default)]
 struct Head {
     rate: Option<Decimal>,
-    /// Whether a program has written it that puts the decimal comma of its locale between fields with commas.
+    /// The program writes decimal commas between fields that commas separate.
     decimal_commas: bool,
 }
 
@@ -44,16 +40,12 @@ struct Columns {
     separator: u8,
     times: Times,
     list: Vec<Column>,
-    /// Whether the next row may give the units of the columns.
     first_row: bool,
 }
 
-/// What a column is.
 enum Column {
     Time,
-    /// Another column of times, or of sample numbers.
     Other,
-    /// A channel, whose name errors give.
     Level(Option<u8>, String),
 }
 
@@ -63,12 +55,12 @@ impl LevelsTable {
         Self { recorder, whole_times, others, head, columns: None, unknown: 0, quoted: Fields::new() }
     }
 
-    /// The columns by the names in the first row. A row of numbers is none: then the first column is the time.
+    /// A first row of numbers is not a head; the first column is then the time.
     fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
         self.quoted.split(line, separator)?;
         let mut names = column_names(&self.quoted, separator);
-        // A separator at the end of each row is no column.
+        // A separator at the end of a row adds no column.
         if names.len() > 2 && names.last().is_some_and(String::is_empty) {
             names.pop();
         }
@@ -124,7 +116,6 @@ impl LevelsTable {
         Ok(has_head)
     }
 
-    /// Takes a comment before the table.
     fn comment(&mut self, line: &[u8]) {
         let text = String::from_utf8_lossy(line);
         let lower = text.to_lowercase();
@@ -138,7 +129,7 @@ impl LevelsTable {
         }
     }
 
-    /// Takes a row of units behind the head: `(ms),(V)`. Whether it is one.
+    /// Whether a row after the head gives units, as `(ms),(V)`.
     fn units(columns: &mut Columns, line: &[u8]) -> bool {
         let is_unit = |field: &[u8]| matches!(field, [b'(' | b'[', .., b')' | b']'] | []);
         let all: Vec<&[u8]> = fields(line, columns.separator).collect();
@@ -155,23 +146,20 @@ impl LevelsTable {
     }
 }
 
-/// Which columns of a table are times.
 pub(super) struct Layout {
     pub(super) time: usize,
     pub(super) unit: TimeUnit,
-    /// Further columns of times, or of sample numbers.
     others: Vec<usize>,
 }
 
 impl Layout {
-    /// By the names of the columns; `None` if none is a time.
     pub(super) fn of(names: &[String]) -> Option<Self> {
         let named = |name: &String| TimeUnit::named(name);
         let units: Vec<Option<(TimeUnit, bool)>> = names.iter().map(named).collect();
         let of = |wanted: &dyn Fn(&(TimeUnit, bool)) -> bool| {
             units.iter().position(|unit| unit.as_ref().is_some_and(wanted))
         };
-        // Cycles come first in our own tables, and are exact; a time is better than the number of a sample.
+        // Our own tables have exact cycles first; in others a time is better than a sample number.
         let is_cycles = names.first().is_some_and(|name| name.trim().to_lowercase().starts_with("cycle"));
         let time = if is_cycles {
             Some(0)
@@ -186,7 +174,7 @@ impl Layout {
     }
 }
 
-/// The names of columns; between blanks a unit in brackets belongs to the name before it.
+/// Between blanks, a unit in brackets belongs to the name before it.
 pub(super) fn column_names(fields: &Fields, separator: u8) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in fields.names() {
@@ -201,7 +189,6 @@ pub(super) fn column_names(fields: &Fields, separator: u8) -> Vec<String> {
     names
 }
 
-/// Whether a line before a table is a comment.
 pub(super) fn is_comment(line: &[u8]) -> bool {
     matches!(line, [b';' | b'#' | b'%', ..] | [b'/', b'/', ..])
 }
@@ -265,13 +252,12 @@ impl Reader for LevelsTable {
     }
 }
 
-/// How long a sample lasts.
 fn period(rate: Decimal) -> Option<Timebase> {
     let unit = super::decimal::power_of_ten(rate.places).and_then(|unit| u64::try_from(unit).ok());
     Timebase::new(unit?, u64::try_from(rate.mantissa).ok()?)
 }
 
-/// The time of a row whose first field a decimal comma has split, and what comes after it.
+/// Joins a time that a decimal comma has split.
 fn decimal_comma<'l>(line: &'l [u8], columns: &Columns, count: usize) -> Option<(&'l [u8], &'l [u8])> {
     let split = columns.separator == b',' && count == columns.list.len() + 1;
     if !split || !matches!(columns.list.first(), Some(Column::Time)) {
@@ -286,7 +272,6 @@ fn decimal_comma<'l>(line: &'l [u8], columns: &Columns, count: usize) -> Option<
     (is_number(sign) && is_number(digits)).then_some((line.get(..comma + 1 + end)?, after.get(end + 1..)?))
 }
 
-/// The time and the levels of a row.
 fn row<'l>(
     all: impl Iterator<Item = &'l [u8]>,
     count: usize,

@@ -1,4 +1,4 @@
-//! What a line of a log begins with: its time, its direction or port, and the number of its bytes.
+//! Reads the beginning of a log's line: time, direction or port, and byte count.
 
 use super::{
     clock::Stamp,
@@ -9,30 +9,23 @@ use super::{
     times::TimeUnit,
 };
 
-/// The channel of bytes without a direction.
 pub(super) const BYTES: &str = "bytes";
-/// Longest name of a port, in bytes.
 const MAX_PORT: usize = 60;
 
-/// What a line begins with.
 pub(super) struct Start<'l> {
     pub(super) time: Time<'l>,
-    /// The direction, or the port: the name of the channel.
     pub(super) port: String,
     pub(super) rest: &'l [u8],
 }
 
 #[derive(Clone, Copy)]
 pub(super) enum Time<'l> {
-    /// In s.
     Number(Decimal),
-    /// In the unit of a table.
     Ticks(&'l [u8]),
     Clock(Stamp),
 }
 
 impl<'l> Start<'l> {
-    /// The time, the direction and the rest; `None` if the line begins with none.
     pub(super) fn of(line: &'l [u8], table: Option<Table>) -> Result<Option<Self>, String> {
         if let Some(table) = table {
             let (time, port, rest) = table.split(line);
@@ -60,7 +53,6 @@ impl<'l> Start<'l> {
     }
 }
 
-/// A word, and the rest.
 pub(super) fn word(text: &[u8]) -> (&[u8], &[u8]) {
     let text = text.trim_ascii_start();
     let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',' || *byte == b';';
@@ -68,7 +60,6 @@ pub(super) fn word(text: &[u8]) -> (&[u8], &[u8]) {
     (text.get(..end).unwrap_or_default(), text.get(end..).unwrap_or_default())
 }
 
-/// The time that a text begins with, in brackets or not, and the rest after its mark.
 fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     let text = text.trim_ascii();
     let open = text.first().copied().filter(|mark| b"[(<".contains(mark));
@@ -85,7 +76,7 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
         if let Some(stamp) = stamp.filter(|stamp| stamp.length == inner.len()) {
             return Some((Time::Clock(stamp), after_mark(rest)));
         }
-        // grabserial adds the time since the line before.
+        // grabserial also prints the time since the previous line.
         let (number, unit) = with_unit(word(inner).0);
         if !number.contains(&b'.') && unit.is_none() {
             return None;
@@ -106,14 +97,14 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     if let Some(colon) = text.iter().position(|byte| *byte == b':') {
         let (before, rest) = text.split_at(colon);
         let (number, unit) = with_unit(before.trim_ascii());
-        // Bytes may have colons between them, too.
+        // Colons may also separate bytes.
         let is_time =
             unit.is_some() || number.contains(&b'.') || rest.get(1).is_none_or(u8::is_ascii_whitespace);
         if let Some(time) = seconds(number, unit.unwrap_or(TimeUnit::Seconds(0))).filter(|_| is_time) {
             return Some((Time::Number(time), rest.get(1..)?));
         }
     }
-    // Without a colon it is the unit that makes a time of a number.
+    // Without a colon, only a unit makes a number a time.
     let (before, rest) = word(text);
     if let (number, Some(unit)) = with_unit(before)
         && let Some(time) = seconds(number, unit)
@@ -126,12 +117,12 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     {
         return Some((Time::Number(time), after));
     }
-    // So does a direction after a number with a point.
+    // Or a decimal number before a direction.
     let time = seconds(before, TimeUnit::Seconds(0)).filter(|_| before.contains(&b'.'));
     time.filter(|_| direction(next).is_some()).map(|time| (Time::Number(time), rest))
 }
 
-/// Whether `12:00` was a time and not two bytes: what follows are words without colons.
+/// Whether `12:00` is a time: the words after it have no colons.
 fn are_no_seconds(rest: &[u8]) -> bool {
     let rest = rest.strip_prefix(b":").unwrap_or(rest);
     let text = without_comment(rest);
@@ -139,7 +130,7 @@ fn are_no_seconds(rest: &[u8]) -> bool {
         || text.contains(&b':') && direction(word(rest).0).is_some()
 }
 
-/// The direction at the end of a line, `55 AA <-`, and what is before it. A text that fits the bytes is none.
+/// Splits off a direction at the end, `55 AA <-`, unless the text shows the bytes.
 pub(super) fn trailing_direction(rest: &[u8]) -> Option<(&'static str, &[u8])> {
     let text = without_comment(rest);
     let at = text.iter().rposition(u8::is_ascii_whitespace)?;
@@ -149,9 +140,8 @@ pub(super) fn trailing_direction(rest: &[u8]) -> Option<(&'static str, &[u8])> {
     (!has_text).then_some((found, before))
 }
 
-/// A number of bytes before them: `(04) 41 42 43 44`, `[4 bytes] 41 …`, `04: 41 …`.
+/// A byte count: `(04) 41 42 43 44`, `[4 bytes] 41 …`, `04: 41 …`.
 pub(super) struct Length<'l> {
-    /// As it is written.
     pub(super) text: &'l [u8],
     pub(super) rest: &'l [u8],
     values: [Option<u64>; 2],
@@ -181,7 +171,7 @@ impl<'l> Length<'l> {
         let is_number = (1..=5).contains(&number.len()) && number.iter().all(u8::is_ascii_digit);
         let is_unit = [&b""[..], b"b", b"byte", b"bytes"].contains(&unit.trim_ascii());
         let is_apart = close.is_some() || after.first().is_some_and(u8::is_ascii_whitespace);
-        // Bytes may each be in brackets, or have colons between them.
+        // Each byte may be in brackets or before a colon.
         let next = without_comment(after);
         let has_bytes = !next.is_empty()
             && if close.is_some() { next.first() != rest.first() } else { !next.contains(&b':') };
@@ -193,7 +183,7 @@ impl<'l> Length<'l> {
         })
     }
 
-    /// Whether it is the number of so many bytes, in decimal or hexadecimal.
+    /// Accepts decimal or hexadecimal counts.
     pub(super) fn is_of(&self, bytes: usize) -> bool {
         self.values.contains(&Some(bytes as u64))
     }
@@ -204,7 +194,6 @@ fn after_equals(rest: &[u8]) -> &[u8] {
     rest.strip_prefix(b"=").or_else(|| rest.strip_prefix(b":")).unwrap_or(rest).trim_ascii()
 }
 
-/// The rest after the mark that ends a time.
 fn after_mark(rest: &[u8]) -> &[u8] {
     let rest = rest.trim_ascii_start();
     match rest {
@@ -213,7 +202,7 @@ fn after_mark(rest: &[u8]) -> &[u8] {
     }
 }
 
-/// What is wrong with a line that has a colon, and neither a time before it nor bytes around it.
+/// For a line with a colon that is neither part of a time nor between bytes.
 fn not_a_time(line: &[u8]) -> Option<String> {
     let colon = line.iter().position(|byte| *byte == b':')?;
     let before = line.get(..colon)?.trim_ascii();
@@ -230,7 +219,6 @@ fn not_a_time(line: &[u8]) -> Option<String> {
     })
 }
 
-/// The channel that a line is of, and its bytes.
 fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
     let (mut name, mut rest) = (None, rest);
     loop {
@@ -240,7 +228,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         }
         let bare = bare(first);
         if bare.is_empty() && direction(first).is_none() {
-            // A mark alone, or none at all.
+            // A mark alone, or none.
             rest = after.get(usize::from(first.is_empty())..).unwrap_or_default();
             continue;
         }
@@ -253,7 +241,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         }
         rest = after;
     }
-    // A line that only names what comes next, as jpnevulator's.
+    // jpnevulator names the port on a line of its own.
     let mut bytes = Vec::new();
     let label = rest.trim_ascii();
     let is_label = !label.is_empty() && !label.contains(&b' ') && row::parse(label, &mut bytes).is_err();
@@ -267,7 +255,6 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((name.unwrap_or_else(|| BYTES.to_owned()), rest))
 }
 
-/// A word without the marks around it.
 fn bare(word: &[u8]) -> &[u8] {
     let is_mark = |byte: &u8| b":-[]()|".contains(byte);
     let start = word.iter().position(|byte| !is_mark(byte)).unwrap_or(word.len());
@@ -275,7 +262,6 @@ fn bare(word: &[u8]) -> &[u8] {
     word.get(start..end).unwrap_or_default()
 }
 
-/// RX or TX by the words and arrows of logs.
 pub(super) fn direction(word: &[u8]) -> Option<&'static str> {
     let lower = word.to_ascii_lowercase();
     if let b"<" | b"<<" | b"<<<" | b"<-" | b"<--" | b"<---" | b"<=" | b"<==" | b"<:" = &lower[..] {
@@ -295,13 +281,12 @@ pub(super) fn direction(word: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Whether a word is the name of a serial port.
 fn is_port(word: &[u8]) -> bool {
     let number = |rest: &[u8]| !rest.is_empty() && rest.iter().all(u8::is_ascii_digit);
     let is_name = word.starts_with(b"/dev/")
         || word.starts_with(b"tty")
         || word.strip_prefix(b"COM").or_else(|| word.strip_prefix(b"com")).is_some_and(number);
-    // The lines after it each copy the name.
+    // Every later line copies the name, so its length is limited.
     is_name && word.len() <= MAX_PORT
 }
 
@@ -310,14 +295,12 @@ fn port_name(name: &[u8]) -> String {
     if name.is_empty() { BYTES.to_owned() } else { name }
 }
 
-/// The line up to `#` or `//`.
 pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     let sharp = line.iter().position(|byte| *byte == b'#').unwrap_or(line.len());
     let slashes = line.windows(2).position(|pair| pair == b"//").unwrap_or(line.len());
     line.get(..sharp.min(slashes)).unwrap_or(line).trim_ascii()
 }
 
-/// A number and the unit after it.
 fn with_unit(text: &[u8]) -> (&[u8], Option<TimeUnit>) {
     let end = text.iter().rposition(|byte| byte.is_ascii_digit() || *byte == b'.').map_or(0, |last| last + 1);
     let (number, unit) = text.split_at(end);

@@ -1,16 +1,16 @@
-//! Reading: which kind of file it is, and what it holds.
+//! Detects the kind of a file and reads it.
 //!
 //! ```text
 //! file -> Source: lines or words of a bounded buffer -> the kind's own reader -> Recorder -> Capture
 //! ```
 //!
-//! A file is read once, from front to back (a session of sigrok by its directory, which stands at the end), and nothing
-//! of it is kept but what it tells: a file of any size needs the memory of its changes and less than 4 MB.
+//! A file is read once, front to back (a sigrok session by its directory at the end). Needs memory for the changes
+//! plus less than 4 MB.
 //!
 //! ```
 //! use stepscope_capture::read::{Limits, ReadError, read};
 //!
-//! // What is not all has what could be read, and why; whoever watches may end it.
+//! // An incomplete reading has an error; `watch` may cancel it.
 //! let bytes = "55 AA\n01 xx\n";
 //! let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
 //! assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
@@ -56,8 +56,8 @@ use std::io::{BufRead, Seek};
 pub use base::Base;
 pub use reading::{Limits, ReadError, Reading, Wanted};
 
-/// Reads a file of any of the kinds. `watch` hears now and then how many bytes of it have been read, and ends the reading
-/// by `false`.
+/// Reads a file of any kind. `watch` gets the number of bytes read at intervals; it stops the reading by returning
+/// `false`.
 ///
 /// ```
 /// use stepscope_capture::{capture::Format, read::{Limits, read}};
@@ -71,8 +71,8 @@ pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(
     read_wanted(input, limits, &Wanted::default(), watch)
 }
 
-/// Reads a file as [`read`] does, with what the file leaves open: which of more than
-/// [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS) channels are read, and the base of its bytes.
+/// Reads a file like [`read`]; `wanted` selects among more than [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS)
+/// channels and sets the base of bytes.
 ///
 /// ```
 /// use stepscope_capture::read::{Limits, Wanted, read_wanted};
@@ -125,7 +125,7 @@ fn by_line<R: BufRead>(mut source: Source<'_, R>, mut reader: impl Reader) -> Re
     ended(reader, error, source.line())
 }
 
-/// What is missing at the end counts only where nothing went wrong before.
+/// Reports a missing end only if there was no earlier error.
 fn ended(reader: impl Reader, error: Option<ReadError>, line: u64) -> Reading {
     let (capture, missing) = reader.finish();
     let error = error.or_else(|| missing.err().map(|what| ReadError { line, what }));

@@ -1,4 +1,4 @@
-//! Which kinds a file is nearest to that is of none, and what each of them needs.
+//! Names the nearest kinds for an unknown file, with what each is missing.
 
 use super::{
     clock::Stamp,
@@ -10,10 +10,8 @@ use super::{
     row,
 };
 
-/// Kinds that a message names.
 const NAMED: usize = 3;
 
-/// The three nearest kinds, each with what is missing.
 pub(super) fn nearest(lines: &[&[u8]]) -> String {
     let kinds: [(usize, String); 7] = [
         (share(lines, is_levels), levels(lines)),
@@ -45,7 +43,7 @@ pub(super) fn nearest(lines: &[&[u8]]) -> String {
     format!("it may be {}", named.join("; or "))
 }
 
-/// Lines of a kind, of a hundred.
+/// In percent.
 fn share(lines: &[&[u8]], is: impl Fn(&[u8]) -> bool) -> usize {
     100 * lines.iter().filter(|line| is(line)).count() / lines.len().max(1)
 }
@@ -54,7 +52,6 @@ fn split(line: &[u8]) -> Vec<&[u8]> {
     fields(line, separator(line)).collect()
 }
 
-/// A row with a level, and no more than one field that is none.
 fn is_levels(line: &[u8]) -> bool {
     let all = split(line);
     let levels = all.iter().filter(|field| matches!(**field, b"0" | b"1")).count();
@@ -83,7 +80,6 @@ fn is_timed_byte(line: &[u8]) -> bool {
         && all.iter().skip(1).all(is_byte)
 }
 
-/// A table of levels, and what its head lacks.
 fn levels(lines: &[&[u8]]) -> String {
     let first = lines.first().copied().unwrap_or_default();
     let names: Vec<String> =
@@ -97,7 +93,6 @@ fn levels(lines: &[&[u8]]) -> String {
     format!("a table of levels, if {missing}")
 }
 
-/// The first line that is no row of bytes, and why.
 fn not_bytes(lines: &[&[u8]]) -> String {
     let wrong = lines.iter().find(|line| !hex::is_line(line)).copied().unwrap_or_default();
     let word = wrong.split(|byte| byte.is_ascii_whitespace() || *byte == b',').find(|word| {

@@ -1,4 +1,4 @@
-//! Tables of times and positions, as a firmware prints its own count of steps.
+//! Reads tables of times and positions, as firmware prints its step count.
 //!
 //! ```text
 //! time_s,position        Time [ms];Position [steps]        0.000 0
@@ -15,14 +15,13 @@ use super::{
 };
 use crate::capture::{Capture, TimedPosition};
 
-/// Positions that are being read.
 pub(super) struct Positions {
     recorder: Recorder,
-    /// Whether the first times are whole numbers, which without a unit are no seconds.
+    /// Without a unit, whole numbers are not seconds.
     whole_times: bool,
     fields: Fields,
     times: Times,
-    /// What separates the fields, and which of them are the time and the position; nothing before the first line.
+    /// Separator, columns of time and position; `None` before the first line.
     columns: Option<(u8, usize, usize)>,
 }
 
@@ -32,7 +31,6 @@ impl Positions {
         Self { recorder, whole_times, fields: Fields::new(), times, columns: None }
     }
 
-    /// The columns by the first line, and whether that is a head.
     fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
         self.fields.split(line, separator)?;
@@ -67,7 +65,6 @@ impl Positions {
     }
 }
 
-/// The column of positions beside the one of times.
 pub(super) fn position_column(names: &[String], time: usize) -> Option<usize> {
     let of =
         |is: &dyn Fn(&str) -> bool| names.iter().enumerate().position(|(at, name)| at != time && is(name));
@@ -106,7 +103,7 @@ impl Reader for Positions {
     }
 }
 
-/// The unit of a column of positions that are not in steps: `position_mm`, `x [mm]`, `angle (deg)`.
+/// The unit if it is not steps: `position_mm`, `x [mm]`, `angle (deg)`.
 fn unit_of(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     let last =
@@ -124,7 +121,6 @@ fn unit_of(name: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether a column of this name holds positions.
 pub(super) fn is_position(name: &str) -> bool {
     let name = name.trim().to_lowercase();
     let known =

@@ -1,13 +1,14 @@
-//! What is given to a reading, and what comes of it.
+//! Options and result of reading a file.
 
 use super::base::Base;
 use crate::capture::Capture;
 use core::fmt;
 
-/// How much is read of a file.
+/// Limits of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Most changes, bytes or positions: of bytes and positions 16 bytes each, of changes mostly two to four.
+    /// Maximum number of changes, bytes or positions: a byte or position takes 16 bytes, a change usually two to
+    /// four.
     pub most: usize,
 }
 
@@ -17,29 +18,28 @@ impl Default for Limits {
     }
 }
 
-/// What whoever reads a file decides.
+/// Choices that a file leaves open.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Channels that are read before all others: whole names, or their last parts.
+    /// Channels to read first: full names or their last parts.
     pub channels: Vec<String>,
-    /// The base of decoded bytes; without it their digits or the head of their column tell it.
+    /// Base of decoded bytes; `None` detects it.
     pub base: Option<Base>,
 }
 
-/// Where a file goes wrong, and how.
+/// An error and its line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
-    /// Line of a text, from 1; 0 where the file has no lines.
+    /// Line of the text, from 1; 0 if the file has no lines.
     pub line: u64,
     /// What was found, what is allowed, what to change.
     pub what: String,
 }
 
 impl ReadError {
-    /// What `what` is when `watch` has ended the reading.
+    /// The text of `what` if `watch` has stopped the reading.
     pub const CANCELLED: &str = "cancelled";
 
-    /// Of the file as a whole.
     pub(super) const fn whole(what: String) -> Self {
         Self { line: 0, what }
     }
@@ -56,20 +56,19 @@ impl fmt::Display for ReadError {
 
 impl core::error::Error for ReadError {}
 
-/// What came of reading: all up to the end, or up to where it went wrong.
+/// Everything that was read up to the end or the first error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// What could be read.
     pub capture: Capture,
-    /// Why that is not all.
+    /// The first error.
     pub error: Option<ReadError>,
 }
 
-/// A reader of a text: takes its lines (or words) one by one.
 pub(super) trait Reader {
-    /// Takes the next line or word; its text says what is wrong with it.
+    /// An error describes what is wrong with this line or word.
     fn take(&mut self, text: &[u8]) -> Result<(), String>;
 
-    /// The file is over: what was read, and what is missing at its end.
+    /// The capture, and an error if its end is missing.
     fn finish(self) -> (Capture, Result<(), String>);
 }

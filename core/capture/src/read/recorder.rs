@@ -1,4 +1,4 @@
-//! What every reader writes into: rows of levels in the order of time, without those that change nothing.
+//! The sink of all readers: collects rows in order of time and drops those without a change.
 
 use super::base::Base;
 use core::mem;
@@ -8,28 +8,19 @@ use crate::{
     names::{Kind, Meaning},
 };
 
-/// Most sentences of [`Capture::left_out`].
 const MAX_LEFT_OUT: usize = 20;
-/// Longest name of a channel, in bytes.
 const MAX_NAME: usize = 400;
-/// Names that a note lists.
 const MAX_TOLD: usize = 6;
 
-/// A capture that is being read.
 pub(super) struct Recorder {
-    /// What is read so far, without the row that others of the same tick may still change.
     pub(super) capture: Capture,
     most: usize,
-    /// The latest row of levels.
     latest: Option<Change>,
-    /// Bits that have changed at the time of the latest row, and the pulses of each channel that it has lost.
+    /// Bits that changed at the latest row's time, and the number of lost pulses per channel.
     changed: u64,
     lost: [u64; MAX_CHANNELS],
-    /// Channels for which there is no bit.
     beyond: Names,
-    /// Names of channels that are read before all others.
     pub(super) wanted: Vec<String>,
-    /// The base of decoded bytes, where whoever reads gives it.
     pub(super) base: Option<Base>,
 }
 
@@ -47,12 +38,11 @@ impl Recorder {
         }
     }
 
-    /// How many changes, bytes or positions are read at most.
     pub(super) const fn most(&self) -> usize {
         self.most
     }
 
-    /// Another channel, and its bit; `None` where all bits are taken, which a note reports.
+    /// `None` if all bits are used, which is reported as a note.
     pub(super) fn channel(&mut self, name: &str) -> Option<u8> {
         let bit = self.capture.channels.len();
         if bit >= MAX_CHANNELS {
@@ -63,23 +53,20 @@ impl Recorder {
         u8::try_from(bit).ok()
     }
 
-    /// The channel of this name, which is added if there is none; `None` where all bits are taken.
     pub(super) fn channel_named(&mut self, name: &str) -> Option<u8> {
         let known = self.capture.channels.iter().position(|channel| channel.name == cut(name));
         known.map_or_else(|| self.channel(name), |bit| u8::try_from(bit).ok())
     }
 
-    /// A channel has no bit.
     pub(super) fn beyond(&mut self, name: &str) {
         self.beyond.add(name);
     }
 
-    /// As many more channels have no bit.
     pub(super) const fn more_beyond(&mut self, count: u64) {
         self.beyond.count = self.beyond.count.saturating_add(count);
     }
 
-    /// The levels from `tick` on, which is not before the tick of the row before.
+    /// `tick` is at least the previous row's.
     pub(super) fn levels(&mut self, tick: u64, levels: u64) -> Result<(), String> {
         self.capture.end = tick;
         match &mut self.latest {
@@ -102,8 +89,7 @@ impl Recorder {
         }
     }
 
-    /// Bits that change: one that has changed at this time already was a pulse, which is lost. The first levels of a file are
-    /// no changes.
+    /// A bit that changes twice at one time was a pulse, which is lost. A file's first levels are not changes.
     pub(super) fn edges(&mut self, changed: u64) {
         let mut pulses = self.changed & changed;
         self.changed ^= if self.latest.is_some() { changed } else { 0 };
@@ -115,12 +101,11 @@ impl Recorder {
         }
     }
 
-    /// What comes is of another time.
     pub(super) const fn next_time(&mut self) {
         self.changed = 0;
     }
 
-    /// Says which pulses begin and end at one time, where they may count: simulators write many others.
+    /// Reports lost pulses of channels that may matter; simulators write many others.
     fn leave_out_lost(&mut self) {
         let is_dump = self.capture.format == Format::Vcd;
         let counts = |name: &str| match Meaning::of(name, false) {
@@ -132,7 +117,7 @@ impl Recorder {
             Meaning::Unknown => !is_dump,
             Meaning::Other => false,
         };
-        // With a map, the channels that it names count, whatever their names mean.
+        // With a map, its channels matter whatever their names are.
         let is_wanted = |index: usize, name: &str| {
             let last = name.rsplit('.').next().unwrap_or(name);
             let number = format!("#{index}");
@@ -168,7 +153,7 @@ impl Recorder {
         sentences.into_iter().for_each(|sentence| self.leave_out(sentence));
     }
 
-    /// Nothing more comes for the tick of the latest row. Room for it was made when it came.
+    /// Space for it was reserved before.
     fn settle(&mut self) {
         if let Some(latest) = self.latest.take()
             && self.capture.changes.last().is_none_or(|before| before.levels != latest.levels)
@@ -177,7 +162,6 @@ impl Recorder {
         }
     }
 
-    /// A byte, not before the one before.
     pub(super) fn byte(&mut self, byte: TimedByte) -> Result<(), String> {
         room(&mut self.capture.bytes, self.most, "bytes")?;
         self.capture.end = byte.tick;
@@ -185,15 +169,13 @@ impl Recorder {
         Ok(())
     }
 
-    /// Puts the bytes of several lines, each in order, into one order of time.
     pub(super) fn sort_bytes(&mut self) {
         let bytes = &mut self.capture.bytes;
-        // Not stable: that takes memory of its own.
+        // A stable sort would allocate memory.
         bytes.sort_unstable_by_key(|byte| (byte.tick, byte.channel));
         self.capture.end = bytes.last().map_or(self.capture.end, |byte| byte.tick);
     }
 
-    /// A position, not before the one before.
     pub(super) fn position(&mut self, position: TimedPosition) -> Result<(), String> {
         room(&mut self.capture.positions, self.most, "positions")?;
         self.capture.end = position.tick;
@@ -201,8 +183,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Puts `map(tick)` in the place of every tick; `None` where one of them does not fit, and nothing is changed.
-    /// `map` must rise.
+    /// Replaces every tick by `map(tick)`, which must rise; `None` and no change if one does not fit.
     pub(super) fn retime(&mut self, map: impl Fn(u64) -> Option<u64>) -> Option<()> {
         map(self.capture.end)?;
         let set = |tick: &mut u64| *tick = map(*tick).unwrap_or(*tick);
@@ -216,7 +197,7 @@ impl Recorder {
         Some(())
     }
 
-    /// Makes ticks longer by a factor, rounded to the nearest; `None` where two changes would meet, and nothing is changed.
+    /// Scales ticks by a factor and rounds; `None` and no change if two changes would coincide.
     pub(super) fn coarsen(&mut self, factor: u64) -> Option<()> {
         let map = |tick: u64| tick / factor + u64::from(tick % factor >= factor.div_ceil(2));
         let mut before = None;
@@ -229,14 +210,12 @@ impl Recorder {
         self.retime(|tick| Some(map(tick)))
     }
 
-    /// Notes what of the file was not read.
     pub(super) fn leave_out(&mut self, sentence: String) {
         if self.capture.left_out.len() < MAX_LEFT_OUT {
             self.capture.left_out.push(sentence);
         }
     }
 
-    /// Notes how many levels were neither high nor low.
     pub(super) fn leave_out_unknown(&mut self, count: u64, which: &str) {
         if count > 0 {
             let levels = if count == 1 { "level is" } else { "levels are" };
@@ -247,7 +226,6 @@ impl Recorder {
         }
     }
 
-    /// What was read.
     pub(super) fn finish(mut self) -> Capture {
         self.settle();
         self.leave_out_lost();
@@ -265,11 +243,10 @@ impl Recorder {
     }
 }
 
-/// Makes room for one more, where one more is allowed.
 fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
     fits(rows.len(), most, what)?;
     if rows.len() == rows.capacity() {
-        // By half, since a doubled vector may not fit beside the old one.
+        // Growing by half: a doubled vector may not fit next to the old one.
         let more = (rows.len() / 2).max(1024);
         let count = rows.len();
         rows.try_reserve_exact(more).map_err(|_| no_memory(count, what))?;
@@ -277,7 +254,6 @@ fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// One more is allowed.
 fn fits(count: usize, most: usize, what: &str) -> Result<(), String> {
     if count < most {
         return Ok(());
@@ -289,7 +265,7 @@ fn no_memory(count: usize, what: &str) -> String {
     format!("no memory for more than {} {what}; record a shorter time", grouped(count as u64))
 }
 
-/// Names of what is left out: the first few, and how many there are.
+/// The first few omitted names, and the number of the others.
 pub(super) struct Names {
     first: Vec<String>,
     count: u64,
@@ -311,7 +287,6 @@ impl Names {
         self.count == 0
     }
 
-    /// The names, and how many more there are.
     pub(super) fn told(&self) -> String {
         let more = self.count - self.first.len() as u64;
         let names = self.first.join(", ");
@@ -319,7 +294,7 @@ impl Names {
     }
 }
 
-/// A number with a gap before each three digits: `100 000 000`.
+/// `100 000 000`, with thin gaps.
 pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -332,7 +307,7 @@ pub(super) fn grouped(number: u64) -> String {
     text
 }
 
-/// Text of a file, for a message: short, and in quotation marks.
+/// Text of a file for a message: shortened and quoted.
 pub(super) fn quoted(text: &[u8]) -> String {
     let text = String::from_utf8_lossy(text.get(..160).unwrap_or(text));
     let mut shown: String =

@@ -1,4 +1,4 @@
-//! A row of bytes in hexadecimal, which the same bytes as text may follow.
+//! Reads a row of hexadecimal bytes, which may be followed by the same bytes as text.
 //!
 //! ```text
 //! 44 45 41 44 42 45 45 46  43 41 46 45  |DEADBEEFCAFE|        55aa 0102 8361  U....a        44 45 >DE<
@@ -8,21 +8,17 @@
 
 use super::recorder::quoted;
 
-/// Longest row in which a text without marks is looked for, in bytes: every gap between bytes is tried.
+/// Maximum row in which a text without marks is searched, in bytes: every gap is tried.
 const MAX_TEXT_ROW: usize = 4096;
 
-/// How a row is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// Bytes that are written together without a blank.
     pub(super) group: usize,
-    /// Whether a text proves the order of bytes within groups.
+    /// Whether the text proves the order of bytes within groups.
     pub(super) is_proven: bool,
-    /// Whether a text follows the bytes.
     pub(super) has_text: bool,
 }
 
-/// Appends the bytes of a row.
 pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
     let row = row.trim_ascii();
     let start = bytes.len();
@@ -39,7 +35,7 @@ pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
     bytes.truncate(start);
     let has_gap = row.windows(2).any(|pair| pair == b"  ");
     match tokens(row, bytes) {
-        // After pairs a wide gap is where the text begins.
+        // After pairs, the text begins at a wide gap.
         Ok(group) if group > 1 && has_gap => {
             bytes.truncate(start);
             Err(format!("the text of {} does not fit its bytes; is their order changed?", quoted(row)))
@@ -52,14 +48,11 @@ pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
     }
 }
 
-/// What may be a row's text.
 struct Text<'r> {
     text: &'r [u8],
-    /// Whether it is between marks, so that no blank before it belongs to it.
     is_marked: bool,
 }
 
-/// Where the bytes of a row may end, and the text after them.
 fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
     let marked = |open: u8, close: u8, least: usize| {
         let body = row.strip_suffix(&[close])?;
@@ -80,7 +73,7 @@ fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
 }
 
 impl Text<'_> {
-    /// Its letters for so many bytes: only blanks come before them. Blanks at its end may be missing.
+    /// Blanks at its end may be missing.
     fn letters(&self, bytes: &[u8]) -> Option<Vec<char>> {
         let all: Vec<char> = String::from_utf8_lossy(self.text).chars().collect();
         let last_blanks = bytes.iter().rev().take_while(|byte| **byte == b' ').count();
@@ -101,7 +94,7 @@ impl Text<'_> {
         self.letters(bytes).is_some()
     }
 
-    /// Whether the bytes of a group would not fit the other way round.
+    /// Whether the reversed bytes of a group would not fit.
     fn proves(&self, bytes: &[u8], group: usize) -> bool {
         let Some(letters) = self.letters(bytes).filter(|_| group > 1) else { return false };
         bytes.chunks(group).zip(letters.chunks(group)).any(|(bytes, letters)| {
@@ -111,17 +104,16 @@ impl Text<'_> {
     }
 }
 
-/// Whether a byte is shown as this letter.
 fn is_letter(letter: char, byte: u8) -> bool {
     match byte {
         0x21..=0x7e => letter == char::from(byte),
         b' ' => matches!(letter, ' ' | '.' | '_'),
-        // What is no letter has a point mostly; with a character set of its own it may be any other.
+        // Most programs print a point; with another character set it may be any character.
         _ => !letter.is_ascii_alphanumeric(),
     }
 }
 
-/// Bytes between blanks, commas or lines: `55 AA`, `0x55,0xAA`, `44-45`, `55aa 0102`; how many are written together.
+/// Reads `55 AA`, `0x55,0xAA`, `44-45`, `55aa 0102`; returns the number of bytes per group.
 fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
     let words = text.split(|byte| byte.is_ascii_whitespace() || matches!(byte, b',' | b';' | b'-'));
     let (mut group, mut is_over) = (0, false);
@@ -137,7 +129,7 @@ fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
         {
             return Err(not_a_byte(word));
         }
-        // All are of one length but the last, which may be shorter.
+        // All groups have one length; the last may be shorter.
         let count = digits.len().div_ceil(2);
         if is_over || group != 0 && count > group {
             return Err(format!(
@@ -153,13 +145,11 @@ fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
     Ok(group)
 }
 
-/// Appends the bytes of hexadecimal digits, two each; the last may have one.
 pub(super) fn push_digits(digits: &[u8], bytes: &mut Vec<u8>) {
     let digit = |digit: &u8| char::from(*digit).to_digit(16).unwrap_or(0) as u8;
     bytes.extend(digits.chunks(2).map(|pair| pair.iter().fold(0, |value, next| value << 4 | digit(next))));
 }
 
-/// What is wrong with a word that should be a byte.
 pub(super) fn not_a_byte(word: &[u8]) -> String {
     format!(
         "{} is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",

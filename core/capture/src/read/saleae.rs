@@ -1,4 +1,4 @@
-//! Saleae Logic's tables of decoded bytes: Logic 2's table of data, and the export of one analyser.
+//! Reads Saleae Logic's tables of decoded bytes: Logic 2's data table, and the export of one analyzer.
 //!
 //! ```text
 //! name,type,start_time,duration,data                      Time [s],Value,Parity Error,Framing Error
@@ -15,20 +15,16 @@ use super::{
 };
 use crate::capture::{Capture, TimedByte};
 
-/// The name of an analyser that has none.
 const UNNAMED: &str = "serial";
 
-/// Decoded bytes that are being read.
 pub(super) struct DecodedBytes {
     recorder: Recorder,
     columns: Option<(u8, Columns)>,
     fields: Fields,
     times: Times,
-    /// What the rows are that are no bytes.
     others: Names,
 }
 
-/// Where what a row tells stands in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Columns {
     name: Option<usize>,
@@ -40,7 +36,6 @@ struct Columns {
 }
 
 impl Columns {
-    /// The columns of a head; `None` where it is none of such a table.
     fn find(names: &[String]) -> Option<Self> {
         let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
         let at = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
@@ -49,7 +44,7 @@ impl Columns {
         let value = at(&["data", "value", "decoded protocol result"])?;
         let error = at(&["framing error", "error", "framing_error"]);
         let (name, kind) = (at(&["name", "analyzer name"]), at(&["type", "frame type"]));
-        // `t,data` without anything else is a table of hexadecimal bytes.
+        // `t,data` alone is a table of hexadecimal bytes.
         if error.is_none() && name.is_none() {
             return None;
         }
@@ -58,7 +53,6 @@ impl Columns {
     }
 }
 
-/// Whether these are the columns of a table of decoded bytes.
 pub(super) fn is_head(names: &[String]) -> bool {
     Columns::find(names).is_some()
 }
@@ -79,7 +73,6 @@ impl DecodedBytes {
         Ok(())
     }
 
-    /// The channel of an analyser; `None` where there are too many of them.
     fn channel(&mut self, name: &str) -> Option<u8> {
         let known = self.recorder.capture.channels.iter().position(|channel| channel.name == name);
         known.and_then(|at| u8::try_from(at).ok()).or_else(|| self.recorder.channel(name))

@@ -1,19 +1,14 @@
-//! Which channels are read of a file that has more than there is room for: requested ones, then those with recognized names,
-//! then the others, each in the order of the file.
+//! Selects channels of a file that has too many: requested ones first, then those with recognized names, then the
+//! others in order.
 
 use super::recorder::Recorder;
 use crate::{capture::MAX_CHANNELS, names::Meaning};
 
-/// The priority of a channel, the highest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
-    /// Requested by its full name.
     Named,
-    /// Requested by the last part of its name.
     Meant,
-    /// Its name is that of a motor's signal or a serial line.
     Telling,
-    /// Such a name of a bit of a vector.
     TellingBit,
     Other,
 }
@@ -31,7 +26,6 @@ impl Rank {
     }
 }
 
-/// A channel that may be read.
 struct Candidate<T> {
     rank: Rank,
     order: u64,
@@ -39,7 +33,6 @@ struct Candidate<T> {
     what: T,
 }
 
-/// The channels with the highest priority of those offered; no more are kept.
 pub(super) struct Selection<T> {
     best: Vec<Candidate<T>>,
     offered: u64,
@@ -50,7 +43,6 @@ impl<T> Selection<T> {
         Self { best: Vec::new(), offered: 0 }
     }
 
-    /// Offers a channel, and what is to be known of it.
     pub(super) fn offer(&mut self, name: String, what: T, recorder: &mut Recorder) {
         let rank = Rank::of(&name, &recorder.wanted);
         let order = self.offered;
@@ -67,7 +59,6 @@ impl<T> Selection<T> {
         }
     }
 
-    /// Gives each selected channel its bit, in the order of the file.
     pub(super) fn finish(&mut self, recorder: &mut Recorder, mut each: impl FnMut(T, u8)) {
         self.best.sort_unstable_by_key(|candidate| candidate.order);
         for Candidate { name, what, .. } in self.best.drain(..) {
@@ -78,7 +69,6 @@ impl<T> Selection<T> {
     }
 }
 
-/// The bits of the channels of a table; `None` where one is left out.
 pub(super) fn select<'a>(names: impl Iterator<Item = &'a str>, recorder: &mut Recorder) -> Vec<Option<u8>> {
     let mut selection = Selection::new();
     let mut count = 0;

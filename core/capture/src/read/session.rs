@@ -1,4 +1,4 @@
-//! Sessions of sigrok and PulseView (`.sr`): a zip with the names of the channels and the samples in pieces.
+//! Reads sessions of sigrok and PulseView (`.sr`): a zip with metadata and samples in pieces.
 //!
 //! ```text
 //! version      2
@@ -23,39 +23,32 @@ use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
 use samples::SampleStream;
 use std::io::{BufRead, Read, Seek};
 
-/// Longest metadata, in bytes: 64 channels have less than 10 kB.
+/// 64 channels need less than 10 kB.
 const MAX_METADATA: u64 = 1 << 20;
-/// Most files in the zip: pieces of samples have 4 MB each.
+/// A piece of samples usually has 4 MB.
 const MAX_FILES: usize = 65_536;
-/// Most bytes that all pieces of samples may unpack to: 3 h of 8 channels at 24 MHz.
+/// 3 h of 8 channels at 24 MHz.
 const MAX_UNPACKED: u64 = 1 << 38;
-/// Bytes before the name of a file in a zip.
 const LOCAL_HEADER: u64 = 30;
-/// Bytes that are unpacked at once.
 const BUFFER: usize = 1 << 16;
 
-/// A file of the zip.
 struct Packed {
     at: ZipArchiveEntryWayfinder,
     method: CompressionMethod,
 }
 
-/// What a session's zip holds.
 #[derive(Default)]
 struct Directory {
     metadata: Option<Packed>,
     has_version: bool,
-    /// Samples by the names of their files.
     pieces: Vec<(String, Packed)>,
-    /// Whether it is a capture of Saleae Logic 2.
+    /// The capture is Saleae Logic 2's.
     saleae: bool,
-    /// The folder that holds the metadata, if it is not at the top.
     folder: Option<String>,
-    /// Where each file begins, and where the next one may begin at the earliest.
+    /// First byte of each file, and the earliest byte of the next.
     ranges: Vec<(u64, u64)>,
 }
 
-/// Reads a session.
 pub(super) fn read<R: BufRead + Seek>(source: Source<'_, R>, mut recorder: Recorder) -> Reading {
     let (input, watch) = source.into_parts();
     let error = whole(input, watch, &mut recorder).err().map(ReadError::whole);
@@ -127,7 +120,6 @@ fn names(list: &[String]) -> Names {
     names
 }
 
-/// Looks for the files of a session.
 fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, String> {
     let mut directory = Directory::default();
     let mut buffer = vec![0; rawzip::MAX_CENTRAL_DIRECTORY_RECORD_SIZE];
@@ -167,7 +159,7 @@ fn two(name: &str) -> String {
     format!("the zip has two files named “{name}”; save the session again")
 }
 
-/// Refuses files that share bytes: each byte of a zip is unpacked once at most.
+/// Overlapping files could unpack to any size.
 fn apart(mut ranges: Vec<(u64, u64)>) -> Result<(), String> {
     ranges.sort_unstable();
     if ranges.windows(2).any(|pair| matches!(pair, [(_, end), (start, _)] if start < end)) {
@@ -178,7 +170,7 @@ fn apart(mut ranges: Vec<(u64, u64)>) -> Result<(), String> {
     Ok(())
 }
 
-/// The pieces of `capturefile`, by their numbers: `logic-1-1`, `logic-1-2`, …, or `logic-1` alone.
+/// `logic-1-1`, `logic-1-2`, …, or `logic-1` alone.
 fn in_order(pieces: Vec<(String, Packed)>, capturefile: &str) -> Result<Vec<(String, Packed)>, String> {
     let number = |name: &str| match name.strip_prefix(capturefile)? {
         "" => Some(0),
@@ -201,7 +193,7 @@ fn in_order(pieces: Vec<(String, Packed)>, capturefile: &str) -> Result<Vec<(Str
     Ok(numbered.into_iter().map(|(_, name, packed)| (name, packed)).collect())
 }
 
-/// Unpacks a file of the zip, and looks at its end whether its bytes are the ones that were packed.
+/// Checks the CRC at the end of the file.
 fn open<'a, R: rawzip::ReaderAt>(
     archive: &'a ZipArchive<R>,
     packed: &Packed,

@@ -1,34 +1,32 @@
-//! A file as lines or words of a bounded buffer, with the number of the line.
+//! Splits a file into lines or words with a bounded buffer.
 
 use super::reading::ReadError;
 use std::io::{BufRead, ErrorKind};
 
-/// Longest line or word, in bytes: a row of 64 channels has less than 1000, but bytes in hexadecimal may all stand in one.
+/// A row of 64 channels has less than 1000 bytes, but all bytes of a hexadecimal file may be on one line.
 pub(super) const MAX_LINE: usize = 1 << 20;
-/// Bytes that are read at once. The first of them tell the kind of file.
+/// Also the size of the head from which the kind is detected.
 const PIECE: usize = 1 << 16;
-/// Bytes between two calls of `watch`: 10 ms at 26 MB/s.
+/// 10 ms at 26 MB/s.
 pub(super) const WATCH_EVERY: u64 = 1 << 18;
 
 /// A file that is being read.
 ///
-/// Invariant: `start..` of the buffer is what is read and not taken yet, at most [`MAX_LINE`] + [`PIECE`] bytes.
+/// Invariant: `start..` of the buffer has not been taken yet; at most [`MAX_LINE`] + [`PIECE`] bytes.
 pub(super) struct Source<'w, R> {
     input: R,
     watch: &'w mut dyn FnMut(u64) -> bool,
     buffer: Vec<u8>,
     start: usize,
-    /// Bytes that have been read.
     read: u64,
-    /// Bytes that `watch` has heard of.
     heard: u64,
     line: u64,
-    /// Why reading has failed, told when what was read before is taken.
+    /// Reported when all bytes before it are taken.
     failed: Option<String>,
 }
 
 impl<'w, R: BufRead> Source<'w, R> {
-    /// Reads the first piece of a file, without the mark that may stand before UTF-8.
+    /// Skips a byte order mark.
     pub(super) fn open(input: R, watch: &'w mut dyn FnMut(u64) -> bool) -> Result<Self, String> {
         let mut source =
             Self { input, watch, buffer: Vec::new(), start: 0, read: 0, heard: 0, line: 0, failed: None };
@@ -39,22 +37,19 @@ impl<'w, R: BufRead> Source<'w, R> {
         Ok(source)
     }
 
-    /// The first bytes of the file, as long as nothing is taken.
     pub(super) fn head(&self) -> &[u8] {
         self.buffer.get(self.start..).unwrap_or_default()
     }
 
-    /// The line that was taken last.
     pub(super) const fn line(&self) -> u64 {
         self.line
     }
 
-    /// The file itself, and who watches it.
     pub(super) fn into_parts(self) -> (R, &'w mut dyn FnMut(u64) -> bool) {
         (self.input, self.watch)
     }
 
-    /// Keeps the last `left` bytes, which have no end yet, and reads on; whether there was more.
+    /// Keeps the last `left` bytes and reads on; false at the end of the file.
     fn more(&mut self, left: usize) -> Result<bool, String> {
         let start = self.buffer.len() - left;
         bounded(self.buffer.get(start..).unwrap_or_default())?;
@@ -62,7 +57,6 @@ impl<'w, R: BufRead> Source<'w, R> {
         self.fill()
     }
 
-    /// Gives each line, without its end, to `each`.
     pub(super) fn lines(&mut self, mut each: impl FnMut(&[u8]) -> Result<(), String>) -> Option<ReadError> {
         loop {
             let mut rest = self.buffer.get(self.start..).unwrap_or_default();
@@ -89,7 +83,6 @@ impl<'w, R: BufRead> Source<'w, R> {
         each(without_return(last)).err().map(|what| ReadError { line: self.line, what })
     }
 
-    /// Gives each word, that is, what stands between blanks and ends of lines, to `each`.
     pub(super) fn words(&mut self, mut each: impl FnMut(&[u8]) -> Result<(), String>) -> Option<ReadError> {
         self.line = 1;
         loop {
@@ -120,12 +113,12 @@ impl<'w, R: BufRead> Source<'w, R> {
         each(last).err().map(|what| ReadError { line: self.line, what })
     }
 
-    /// An end from outside belongs to no line.
+    /// A stop by `watch` belongs to no line.
     fn error(&self, what: String, line: u64) -> ReadError {
         ReadError { line: if what == ReadError::CANCELLED { 0 } else { line }, what }
     }
 
-    /// Reads the next piece behind what is not taken yet. False at the end of the file.
+    /// False at the end of the file.
     fn fill(&mut self) -> Result<bool, String> {
         if let Some(what) = self.failed.take() {
             return Err(what);

@@ -1,4 +1,4 @@
-//! Stepscope's own trace: a record a line, the cycle and the levels of all signals in hexadecimal.
+//! Reads Stepscope's own trace: per line a cycle and the levels of all signals, in hexadecimal.
 //!
 //! ```text
 //! 0 700000000
@@ -14,7 +14,6 @@ use super::{
 use crate::capture::Capture;
 use stepscope_peripheral::signal;
 
-/// A trace that is being read.
 pub(super) struct TraceText {
     recorder: Recorder,
     signals: u32,
@@ -60,7 +59,6 @@ impl Reader for TraceText {
     }
 }
 
-/// Cycle and levels of a record.
 pub(super) fn record(line: &[u8]) -> Option<(u64, u64)> {
     let gap = line.iter().position(|byte| *byte == b' ')?;
     let (cycle, levels) = line.split_at(gap);

@@ -1,4 +1,4 @@
-//! Times that are written as decimals, as whole ticks: the time base follows the longest of them.
+//! Converts decimal times to whole ticks. The longest time so far sets the time base.
 //!
 //! ```text
 //! 0.001      places 3, tick 1           the time base is 1 ms
@@ -16,26 +16,23 @@ use super::{
 use crate::timebase::Timebase;
 use core::{cmp::Ordering, ops::Range};
 
-/// Most places behind the point: ticks of 1 as.
+/// Ticks of 1 as.
 const MAX_PLACES: u32 = 18;
-/// Most places that are taken over from the first time even where they are zeros.
+/// Trailing zeros of the first time count up to this number.
 const MAX_FIRST_PLACES: u32 = 12;
-/// Places that each time base keeps, however long the recording is: ns.
+/// ns, however long the recording is.
 const MIN_PLACES: u32 = 9;
-/// A first time in this range, in s, is one since 1970, or of a clock that has run for years: it becomes tick 0.
+/// In this range (s) the first time is one since 1970, or of a clock that has run for years: it becomes tick 0.
 const EPOCH_S: Range<i128> = 100_000_000..100_000_000_000;
 
-/// In what a table's times are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TimeUnit {
-    /// `10^-places` seconds: 0 for s, 3 for ms.
     Seconds(u32),
-    /// Whole cycles of a clock that the file does not tell.
+    /// The file does not give the clock rate.
     Cycles,
 }
 
 impl TimeUnit {
-    /// A unit as it is written: `s`, `ms`, `µs`, `cycles`.
     pub(super) fn parse(text: &str) -> Option<Self> {
         Some(match text.to_lowercase().as_str() {
             "s" | "sec" | "secs" | "second" | "seconds" => Self::Seconds(0),
@@ -48,18 +45,15 @@ impl TimeUnit {
         })
     }
 
-    /// The unit of a table's column of times by its name: `Time [s]`, `t_ms`, `micros`, `cycle`, `Sample`; `None` if it is
-    /// no such name.
     pub(super) fn of_column(name: &str) -> Option<Self> {
         Self::named(name).map(|(unit, _)| unit)
     }
 
-    /// Whether the name of a column gives the unit of its times.
     pub(super) fn is_said(name: Option<&String>) -> bool {
         name.and_then(|name| Self::named(name)).is_some_and(|(_, said)| said)
     }
 
-    /// The unit, and whether the name says it: `Time` alone does not, and is taken as s.
+    /// The unit, and whether the name gives it: `Time` alone means s by default.
     pub(super) fn named(name: &str) -> Option<(Self, bool)> {
         let lower = name.trim().to_lowercase();
         let words: Vec<&str> = lower.split(|letter: char| !letter.is_alphanumeric()).collect();
@@ -89,31 +83,23 @@ impl TimeUnit {
     }
 }
 
-/// Words of which a column of times is named.
 const TIME_WORDS: [&str; 7] = ["t", "time", "timestamp", "ts", "start", "elapsed", "uptime"];
 
-/// The unit of `timeUs`, `tMs`.
 fn camel(name: &str) -> Option<TimeUnit> {
     let unit = name.find(|letter: char| letter.is_uppercase()).filter(|at| *at > 0)?;
     let (time, unit) = name.split_at(unit);
     TIME_WORDS.contains(&time).then(|| TimeUnit::parse(unit)).flatten()
 }
 
-/// The ticks of a file's times.
 pub(super) struct Times {
     unit: TimeUnit,
-    /// Places of the time base; `None` before the first time.
     places: Option<u32>,
-    /// The time of tick 0, in s.
     origin: Decimal,
-    /// Whether times have more places than fit.
     is_rounded: bool,
-    /// The first time, where it is not tick 0 by itself.
     shifted_by: Option<String>,
-    /// Of times without a date: whole days before the latest, and its time of day.
+    /// For times without a date: whole days so far, and the latest time of day.
     days: i128,
     latest: Option<Decimal>,
-    /// The date of all times that do not say which number is the day.
     unclear: Option<[u64; 3]>,
 }
 
@@ -133,7 +119,6 @@ impl Times {
         }
     }
 
-    /// The tick of a time in the column's unit, not before the last tick that `recorder` has.
     pub(super) fn tick(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
         let time = match (number(text), self.unit) {
             (Some(time), TimeUnit::Seconds(0)) => time,
@@ -149,7 +134,6 @@ impl Times {
         self.tick_of(time, text, recorder)
     }
 
-    /// The tick of a time in s.
     pub(super) fn tick_of(
         &mut self,
         time: Decimal,
@@ -181,13 +165,12 @@ impl Times {
         })
     }
 
-    /// The first time becomes tick 0.
     fn begin_at(&mut self, first: Decimal, text: &[u8]) {
         self.shifted_by = Some(quoted(text));
         self.origin = first;
     }
 
-    /// The tick of a time since tick 0. The time base becomes as fine as the time needs, or as fits.
+    /// Refines the time base as far as this time needs, or as fits.
     fn fitted(&mut self, since: Decimal, recorder: &mut Recorder) -> Option<u64> {
         let base = self.places?;
         let needed = since.with_places(base).map_or(since.places.max(base), |since| since.places);
@@ -211,7 +194,6 @@ impl Times {
         None
     }
 
-    /// The tick of a time of a clock, the first of which is tick 0.
     fn clock(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
         let stamp = Stamp::parse(text)
             .filter(|stamp| self.unit == TimeUnit::Seconds(0) && stamp.length == text.len())
@@ -221,7 +203,7 @@ impl Times {
         self.stamp(stamp, text, recorder)
     }
 
-    /// The tick of a time of a clock. Without dates a time that falls by more than half a day is of the next day.
+    /// Without dates, a time that falls by more than half a day belongs to the next day.
     pub(super) fn stamp(
         &mut self,
         stamp: Stamp,
@@ -257,7 +239,6 @@ impl Times {
         self.tick_of(time, text, recorder)
     }
 
-    /// Tells the recorder the time base, and where tick 0 is.
     pub(super) fn finish(self, recorder: &mut Recorder) {
         if let (TimeUnit::Seconds(_), Some(places)) = (self.unit, self.places) {
             let denominator = power_of_ten(places).and_then(|power| u64::try_from(power).ok());
@@ -281,7 +262,6 @@ impl Times {
     }
 }
 
-/// A number, which may have a decimal comma.
 fn number(text: &[u8]) -> Option<Decimal> {
     Decimal::parse(text).or_else(|| {
         let comma = text.iter().position(|byte| *byte == b',')?;

@@ -1,4 +1,4 @@
-//! Value change dumps (IEEE 1364-2005, 18.2) of any simulator or analyser.
+//! Reads value change dumps (IEEE 1364-2005, 18.2).
 //!
 //! ```text
 //! $timescale 1 us $end
@@ -22,41 +22,31 @@ use crate::capture::Capture;
 use header::{Header, Keyword};
 use variables::{Value, Variables};
 
-/// A dump that is being read.
 pub(super) struct Vcd {
     recorder: Recorder,
     header: Header,
     variables: Variables,
     expected: Expected,
-    /// Whether the definitions are over.
     body: bool,
-    /// The time of what comes, and the levels up to here.
     now: u64,
     levels: u64,
-    /// Whether something is known of this time.
     touched: bool,
-    /// Between `$dumpoff` and its end: x for everything, which says nothing of the lines.
+    /// Between `$dumpoff` and its end all values are x, whatever the lines do.
     off: bool,
     offs: u64,
     unknown: u64,
 }
 
-/// Longest value of a string, in bytes.
 const MAX_TEXT: usize = 1 << 16;
 
-/// What the next word is.
 enum Expected {
-    /// The first keyword; what a program says of itself may stand before it.
+    /// The first keyword; some programs print text before it.
     Start,
     Any,
-    /// Words of a command, up to `$end`.
     Command(Keyword),
-    /// The variable of this value of one bit, or of the value in [`Variables::value`].
     Scalar(Value),
     Vector,
-    /// The variable of a real.
     Other,
-    /// The rest of a string of so many bytes so far, or its variable.
     Text(usize),
 }
 
@@ -77,7 +67,6 @@ impl Vcd {
         }
     }
 
-    /// The definitions are over: what is read of them is selected.
     fn begin(&mut self) {
         if !self.body {
             self.body = true;
@@ -85,7 +74,6 @@ impl Vcd {
         }
     }
 
-    /// A word of which nothing is expected.
     fn any(&mut self, word: &[u8]) -> Result<(), String> {
         let (&kind, rest) = word.split_first().unwrap_or((&b' ', &[]));
         if kind == b'$' {
@@ -146,9 +134,8 @@ impl Vcd {
         Ok(())
     }
 
-    /// A word of a command.
     fn argument(&mut self, keyword: Keyword, word: &[u8]) -> Result<(), String> {
-        // Some write `$comment like this$end`.
+        // Some programs write `$comment like this$end`.
         let (argument, last) = match word.strip_suffix(b"$end") {
             Some(argument) => (argument, true),
             None => (word, false),
@@ -193,7 +180,7 @@ impl Vcd {
                 self.now
             ));
         }
-        // Values without a time are those of the first.
+        // Values before the first time belong to it.
         if time > self.now {
             if self.touched {
                 self.recorder.levels(self.now, self.levels)?;
@@ -204,7 +191,6 @@ impl Vcd {
         Ok(())
     }
 
-    /// A word of a string, or the code that ends it.
     fn text(&mut self, length: usize, word: &[u8]) -> Result<(), String> {
         let length = length + word.len();
         if length > MAX_TEXT {

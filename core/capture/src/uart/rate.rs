@@ -1,36 +1,34 @@
-//! The bit rate of a line: of all bit times that its shortest pulse allows, the one that most words and edges fit.
+//! Estimates a line's bit rate: the bit time that fits most words and edges.
 
 use super::{Edge, Fault, Format, each_word};
 use std::collections::BTreeSet;
 
-/// Rates that lines have.
 const USUAL: [u32; 26] = [
     300, 1200, 2400, 4800, 9600, 14_400, 19_200, 28_800, 31_250, 38_400, 57_600, 74_880, 76_800, 115_200,
     128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000, 2_000_000,
     3_000_000,
 ];
-/// One of them that is five times a far more usual one, and only taken where no other one fits.
+/// Five times a far more usual rate, so it is used only if no other fits.
 const RARE: u32 = 576_000;
-/// Those that few lines have, which come last in a list of several that fit.
+/// Rare rates come last in an ambiguous result.
 const SELDOM: [u32; 8] = [14_400, 28_800, 31_250, 74_880, 76_800, 128_000, 256_000, RARE];
-/// How far a measured rate may be from a usual one: oscillators are that far off.
+/// Maximum deviation of a measured rate from a usual one: oscillators' tolerance.
 const NEAR: f64 = 0.02;
-/// Least samples per bit.
+/// Minimum samples per bit.
 const MIN_BIT: f64 = 2.5;
-/// Edges that all bit times are tried on, and those that the best of them are measured on.
+/// Edges on which all bit times are tried, and on which the best are measured.
 const TRIED_EDGES: usize = 300;
 const MEASURED_EDGES: usize = 4000;
-/// From one bit time that is tried to the next.
+/// Ratio of consecutive trial bit times.
 const STEP: f64 = 1.0 + 1.0 / 128.0;
-/// Bit times that are measured.
 const MAX_MEASURED: usize = 16;
-/// Share of words that may have faults at a rate that fits.
+/// Maximum share of faulty words.
 const MAX_FAULTS: f64 = 0.2;
-/// Different bytes by which a rate that is not usual is known.
+/// Minimum number of different bytes to accept an unusual rate.
 const MIN_VALUES: usize = 3;
-/// What happens once in so many times is no chance.
+/// An event with a chance of one in this number is not a coincidence.
 const NO_CHANCE: u64 = 64;
-/// Pulses, words and share of faults of a channel that is taken for a line by what it does.
+/// Minimum pulses and words, and maximum share of faults, of a channel detected as a line.
 const LINE_PULSES: usize = 12;
 const LINE_WORDS: u32 = 3;
 const LINE_FAULTS: f64 = 0.05;
@@ -38,42 +36,41 @@ const LINE_FAULTS: f64 = 0.05;
 /// A rate that fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// How long a bit is, in the unit of the edges.
+    /// Length of a bit, in the unit of the edges.
     pub bit: f64,
-    /// The same as measured, where `bit` is that of a usual rate.
+    /// Measured length of a bit, before it was rounded to a usual rate.
     pub measured: f64,
-    /// The usual rate that it is, in bits per second.
+    /// Usual rate in bit/s.
     pub usual: Option<u32>,
 }
 
-/// Why there is none.
+/// Why no rate was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoRate {
     /// The line does not change.
     NoEdges,
-    /// Several usual rates fit, with other bytes each: words are few, or much the same. The nearest and most usual is first.
+    /// Several usual rates fit with different bytes; the nearest and most usual is first.
     Ambiguous(Vec<u32>),
     /// No rate fits.
     None,
-    /// None fits, but with another format one does.
+    /// Another format fits.
     Format(Format),
-    /// None fits, but one does with the line inverted.
+    /// The inverted line fits.
     Inverted,
 }
 
-/// How well a bit time fits.
 #[derive(Clone, Copy, Debug, Default)]
 struct Quality {
     bit: f64,
     words: u32,
     faults: u32,
-    /// Faults and pulses too short for a bit, by words.
+    /// Faults and too short pulses, per word.
     share: f64,
-    /// Mean square of how far edges are from whole bits, in bits.
+    /// Mean square distance of edges from whole bits, in bits.
     squares: f64,
-    /// Of the least squares line: the bit time.
+    /// The bit time of the least squares line.
     fitted: Option<f64>,
-    /// A bit for each length of low pulses, in bits.
+    /// One bit per length of low pulses, in bits.
     lows: u32,
 }
 
@@ -84,7 +81,7 @@ impl Quality {
         let (mut sxx, mut sxy) = (0.0, 0.0);
         each_word(edges.iter().copied(), bit, format, &mut |_, word, more| {
             let fault = format.word(word.levels).1;
-            // The last word may be cut off.
+            // The recording may cut off the last word.
             if word.levels & 1 != 0 || fault == Some(Fault::Framing) && !more {
                 odd += u32::from(more);
                 return;
@@ -103,7 +100,6 @@ impl Quality {
         found
     }
 
-    /// The bit time that the edges themselves have, and how well it fits.
     fn refined(self, edges: &[Edge], format: Format) -> Self {
         let mut best = self;
         for _ in 0..4 {
@@ -122,18 +118,17 @@ impl Quality {
     }
 
     fn fits(&self) -> bool {
-        // What sampling and slow edges explain.
+        // The error of sampling and slow edges.
         let most = 0.02 + 0.25 / (self.bit * self.bit);
         self.words > 0 && self.share <= MAX_FAULTS && self.squares <= most
     }
 
-    /// Whether it has no more faults than another, and edges that are off by no more than sampling explains.
+    /// No more faults than `best`, and edges off by no more than sampling explains.
     fn fits_as_well_as(&self, best: &Self) -> bool {
         self.share <= best.share + 0.001 && self.squares <= 2.0 * best.squares + 0.2 / (self.bit * self.bit)
     }
 }
 
-/// The lengths of a word's low pulses as bits of a mask.
 fn low_lengths(levels: u16, format: Format) -> u32 {
     let (mut mask, mut length) = (0, 0);
     for bit in 0..format.bits() {
@@ -147,7 +142,7 @@ fn low_lengths(levels: u16, format: Format) -> u32 {
     mask
 }
 
-/// The rate of a line that is high when idle, in a unit of which `hz` are a second, where that is known.
+/// Estimates the rate of a line that is high when idle. `hz` converts the unit of edges to seconds, if known.
 ///
 /// # Errors
 /// [`NoRate`], with what would help where something does.
@@ -169,7 +164,7 @@ pub fn estimate(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estim
     Err(NoRate::None)
 }
 
-/// Whether a line that begins low fits better inverted. Back-to-back text fits nearly as well in the other polarity.
+/// Back-to-back text fits nearly as well with inverted polarity.
 fn is_inverted(edges: &[Edge], format: Format, bit: f64) -> bool {
     if !edges.first().is_some_and(|first| first.high) {
         return false;
@@ -209,17 +204,14 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
     Ok(Estimate { bit, measured, usual })
 }
 
-/// Words that a line has at a bit time.
 #[derive(PartialEq)]
 struct Words(Vec<(u8, Option<Fault>)>);
 
 impl Words {
-    /// How many different bytes there are.
     fn values(&self) -> usize {
         self.0.iter().map(|(byte, _)| *byte).collect::<BTreeSet<u8>>().len()
     }
 
-    /// Whether it is text, of more than one character.
     fn is_text(&self) -> bool {
         let is_text = |(byte, fault): &(u8, Option<Fault>)| {
             fault.is_none() && matches!(byte, b' '..=b'~' | b'\r' | b'\n' | b'\t')
@@ -234,8 +226,8 @@ fn words(edges: &[Edge], bit: f64, format: Format) -> Words {
     Words(words)
 }
 
-/// The usual rates that fit about as well as the bit time that fits best, with other bytes each. Few different bytes may
-/// fit several, and a bit time that is not usual by chance, so that all usual rates are tried.
+/// Usual rates that fit about as well as the best bit time, with different bytes. Few different bytes may fit
+/// several, so all usual rates are tried.
 fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec<(Quality, u32)> {
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let fit = |rate: &u32| {
@@ -256,7 +248,7 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
     };
     let mut found: Vec<(Quality, u32)> = USUAL.iter().filter_map(fit).collect();
     found.dedup_by(|next, before| words(edges, next.0.bit, format) == words(edges, before.0.bit, format));
-    // The lowest one may be right in spite of pauses.
+    // The lowest may be right despite pauses.
     if let Some((lowest, rate)) = found.first().copied() {
         let is_likely = |(own, other): &(Quality, u32)| {
             *other == rate || *other != RARE && !is_too_fast(tried, own.bit, lowest.bit / own.bit, format)
@@ -271,8 +263,8 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
     found
 }
 
-/// Whether a rate is some times too high: the edges of all words lie at every second bit, or every third and so on, and so
-/// many of them that this is no chance; or most words have a short pause after them, as those have that begin amid another.
+/// Whether the rate is a multiple of the right one: edges fall only on every second or third bit more often than by
+/// chance, or most words are followed by a short pause.
 fn is_too_fast(edges: &[Edge], bit: f64, times: f64, format: Format) -> bool {
     let mut different = BTreeSet::new();
     // From six times on nearly each low bit of the lower rate is a word.
@@ -301,7 +293,6 @@ fn is_too_fast(edges: &[Edge], bit: f64, times: f64, format: Format) -> bool {
     pauses > others || (2..=4).any(is_multiple)
 }
 
-/// The usual rate next to a bit time, as near as oscillators, or the samples of its words, explain.
 fn usual(hz: f64, found: &Quality) -> Option<u32> {
     let off = |usual: &u32| distance(hz, found.bit, *usual);
     // A word measures its bit time to a sample in nine bits; many words do so better by the root of their number.
@@ -310,12 +301,10 @@ fn usual(hz: f64, found: &Quality) -> Option<u32> {
     USUAL.into_iter().filter(|usual| is_near(off(usual))).min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// How far a bit time is from a rate, as a part of it.
 fn distance(hz: f64, bit: f64, rate: u32) -> f64 {
     (hz / bit / f64::from(rate) - 1.0).abs()
 }
 
-/// Rates that fit: the nearest first, in percent, and of those that are as near the more usual ones.
 fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
     let mut rates: Vec<(u32, bool, u32)> = fitting
         .iter()
@@ -327,7 +316,6 @@ fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
     rates.into_iter().map(|(.., rate)| rate).collect()
 }
 
-/// The bit time that fits best, where one fits.
 fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let pulses = tried.iter().zip(tried.iter().skip(1));

@@ -1,4 +1,4 @@
-//! The schema as the page takes it: plain JSON, each group once.
+//! The schema as JSON, for the page:
 //!
 //! ```text
 //! { root: "Scenario", documents: { id: { short, title } },

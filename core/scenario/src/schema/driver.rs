@@ -1,5 +1,5 @@
-//! The driver that the pulses are checked against: a model by name, or rules of one's own. The models' figures stand in
-//! `inspect::trace::drivers`, the check in `inspect::trace::timing`. A driver changes nothing in a run.
+//! Limits of the driver for the timing check: a known model or custom rules. They do not affect a run.
+//! `inspect::trace::drivers` has the models' figures, `inspect::trace::timing` the check.
 
 use crate::schema::{
     SHEETS, label,
@@ -7,7 +7,6 @@ use crate::schema::{
 };
 use core::ops::RangeInclusive;
 
-/// Times that a rule may ask for, in ns: up to one second.
 const NS: RangeInclusive<u64> = 0..=1_000_000_000;
 
 choices! {

@@ -1,4 +1,4 @@
-//! The experiment itself, and what is looked at in it.
+//! The experiment itself, and its analysis.
 
 use crate::schema::PlantSettings;
 use crate::{

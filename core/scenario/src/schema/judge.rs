@@ -1,5 +1,5 @@
-//! Judges each number and each length by itself, as its row says. What joins several fields is judged in `check`, what
-//! another crate owns by that crate.
+//! Checks single numbers and lengths by their rows. `check` checks rules between fields; other crates check their own
+//! types.
 
 use crate::{
     Parts, ToParts, Validator, ValueError,
@@ -7,7 +7,6 @@ use crate::{
 };
 use serde_json::Value;
 
-/// Judges a part of a scenario and all that is in it.
 pub(crate) fn judge(part: &dyn ToParts, validator: &mut Validator) {
     match part.parts() {
         Parts::Fields(Group { is_external: true, .. }, _) => {}
@@ -68,7 +67,7 @@ fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
     }
 }
 
-/// Whether anything in a value of this type is judged by itself; a list of what is not need not be walked.
+/// Lists of types without limits need no walk.
 fn holds_limits(ty: &Type) -> bool {
     match ty {
         Type::Group(group) => {

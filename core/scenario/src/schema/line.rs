@@ -1,4 +1,4 @@
-//! The serial line, its host, and what goes wrong on it (DESIGN A4 to A6, A9).
+//! The serial line, its host and its faults (DESIGN A4 to A6, A9).
 
 use crate::{
     END_OF_TIME,
@@ -14,9 +14,7 @@ use stepscope_peripheral::{
     protocol::MAX_TICKS,
 };
 
-/// Most glitches on a line.
 const MAX_GLITCHES: usize = 10_000;
-/// Parts of all, in millionths.
 const PPM: RangeInclusive<u64> = 0..=1_000_000;
 
 settings! {

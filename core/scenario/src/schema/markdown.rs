@@ -1,4 +1,4 @@
-//! docs/scenario.md, as it follows from the schema: a section a group, a row a field.
+//! Writes docs/scenario.md: one section per group, one row per field.
 
 use crate::{
     Parts, Scenario, ToParts, VERSION,
@@ -26,7 +26,7 @@ pub fn markdown() -> String {
     out
 }
 
-/// A group and all groups in it, each where it is first met; with the path to it and its name in the form.
+/// Writes a group, then its groups at their first occurrence.
 fn section(
     out: &mut String,
     group: &'static Group,
@@ -65,7 +65,6 @@ fn section(
     }
 }
 
-/// The groups that a field holds.
 fn inside(out: &mut String, ty: &Type, (path, label): (&str, &str), done: &mut Vec<&'static Group>) {
     match ty {
         Type::Group(group) => section(out, group, (path, label), done),
@@ -107,7 +106,7 @@ fn row(out: &mut String, field: &Field, default: &dyn ToParts) {
     );
 }
 
-/// The default as a table has it: what has a section of its own is not written out.
+/// Groups with their own section are left out.
 fn default_of(ty: &Type, default: &dyn ToParts) -> String {
     match (ty, default.parts()) {
         (Type::Group(group), Parts::Kind(name, value)) if is_quantity(group) => {
@@ -130,7 +129,6 @@ fn default_of(ty: &Type, default: &dyn ToParts) -> String {
     }
 }
 
-/// A value on one line.
 fn plain(value: &dyn ToParts) -> String {
     match value.parts() {
         Parts::Number(number) => number.to_string(),
@@ -143,7 +141,7 @@ fn plain(value: &dyn ToParts) -> String {
     }
 }
 
-/// Which values a field may have by itself, in words; empty where all of its type that one expects.
+/// Empty if every value of the type is allowed.
 pub(crate) fn range_of(field: &Field) -> String {
     match field.limit {
         Limit::Whole(least, most) => format!("{} to {}", power(least as f64), power(most as f64)),
@@ -162,7 +160,6 @@ pub(crate) fn range_of(field: &Field) -> String {
     }
 }
 
-/// A bound of a whole number's type.
 fn binary(bound: i128) -> String {
     match bound {
         0..=255 => bound.to_string(),
@@ -171,7 +168,6 @@ fn binary(bound: i128) -> String {
     }
 }
 
-/// A bound that may be below 0: great powers of two as such.
 fn signed(bound: i64) -> String {
     let size = bound.unsigned_abs();
     if size > 1 << 20 && size.is_power_of_two() {
@@ -180,7 +176,7 @@ fn signed(bound: i64) -> String {
     power(bound as f64)
 }
 
-/// A number as people write it: great and small ones by a power of ten, or one less than that, or of two.
+/// Large and small numbers as a power of ten, one less than that, or a power of two.
 fn power(number: f64) -> String {
     let magnitude = libm::fabs(number);
     if magnitude == 0.0 || (1e-3..1e6).contains(&magnitude) {
@@ -198,7 +194,6 @@ fn power(number: f64) -> String {
         .unwrap_or_else(|| number.to_string())
 }
 
-/// Paragraphs as they stand in the doc comment, without its blanks.
 fn prose(out: &mut String, doc: &str) {
     for line in doc.lines() {
         let _ = writeln!(out, "{}", line.strip_prefix(' ').unwrap_or(line));
@@ -206,12 +201,10 @@ fn prose(out: &mut String, doc: &str) {
     out.push('\n');
 }
 
-/// Some words of a table's cell.
 fn line(doc: &str) -> String {
     doc.trim().replace('|', "\\|")
 }
 
-/// Whether it is a number with its unit.
 fn is_quantity(group: &Group) -> bool {
     group.is_choice && group.fields.iter().all(|kind| matches!(kind.ty, Type::Number))
 }
@@ -223,7 +216,6 @@ fn quantity_of(ty: &Type) -> Option<&'static Group> {
     }
 }
 
-/// Numbers with their units, at the end.
 fn quantities(out: &mut String, groups: &[&'static Group]) {
     out.push_str("## Numbers with a unit\n\nA map of one key, the unit: `{ \"mm\": 250 }`.\n\n");
     out.push_str("| | units | |\n| --- | --- | --- |\n");

@@ -1,5 +1,4 @@
-//! What one step of an axis is, and the units of its ways, speeds, accelerations and jerks, which motion owns (DESIGN
-//! B1).
+//! Step lengths and units of positions, speeds, accelerations and jerks (DESIGN B1); motion owns the types.
 
 use crate::schema::{
     Field, SONOBE, ZHANG, label,

@@ -1,5 +1,4 @@
-//! The scenario's schema: every field stands once, in a row of the file of its area, and all that is known of it follows
-//! from there.
+//! The schema: each field has one row, from which the following is derived.
 //!
 //! ```text
 //! /// Slots in a tick, M: the most steps a channel can make in one tick.      rustdoc, docs/scenario.md, the form's hint

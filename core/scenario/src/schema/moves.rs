@@ -1,4 +1,4 @@
-//! An axis and its moves, which motion owns (DESIGN Part B): a row a kind, and the rows of what each kind asks.
+//! An axis and its moves (DESIGN Part B); motion owns the types.
 
 use crate::schema::{
     Field, OWN, SINE, SONG, SONOBE, ZHANG, label,

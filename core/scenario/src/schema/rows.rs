@@ -1,7 +1,6 @@
-//! The macros that declare rows. What they make is thin: names and places; reading, writing and judging are code of
-//! their own that each type shares.
+//! The macros that declare rows. They expand to names and places only; the shared code is not generic.
 
-/// Declares a struct of the scenario: a row a field, with its default.
+/// A struct of the scenario with rows and defaults.
 macro_rules! settings {
     ($(#[doc = $doc:literal])* pub struct $name:ident {
         $($(#[doc = $field_doc:literal])* pub $field:ident: $ty:ty = $default:expr => $row:expr,)*
@@ -24,7 +23,7 @@ macro_rules! settings {
     };
 }
 
-/// Names the fields of a struct that another crate owns; it has its defaults from there.
+/// Rows for another crate's struct.
 macro_rules! fields {
     ($($(#[doc = $doc:literal])* $name:ident {
         $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
@@ -35,7 +34,7 @@ macro_rules! fields {
     )*};
 }
 
-/// A struct's rows, its reader and its writer.
+/// Rows, reader and writer of a struct.
 macro_rules! rows {
     ($foreign:literal; $(#[doc = $doc:literal])* $name:ident {
         $($(#[doc = $field_doc:literal])* $field:ident: $ty:ty => $row:expr,)*
@@ -63,7 +62,7 @@ macro_rules! rows {
         impl $crate::schema::ToParts for $name {
             fn parts(&self) -> $crate::schema::Parts<'_> {
                 let default = Self::default();
-                // A struct without fields compares nothing.
+                // Unused for a struct without fields.
                 let _ = &default;
                 // A field without a row does not compile.
                 let Self { $($field,)* } = self;
@@ -92,7 +91,7 @@ macro_rules! rows {
     };
 }
 
-/// Declares an enum of the scenario: one of several kinds, a row each.
+/// An enum of the scenario with a row per kind.
 macro_rules! choices {
     ($(#[doc = $doc:literal])* pub enum $name:ident {
         $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
@@ -109,7 +108,7 @@ macro_rules! choices {
     };
 }
 
-/// Names the kinds of an enum; JSON has a map of one key.
+/// Rows for another crate's enum; JSON has a map with one key.
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $name:ident {
         $($(#[doc = $kind_doc:literal])* $variant:ident($ty:ty) = $key:literal => $row:expr,)*
@@ -163,7 +162,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// The last kind: the one that asks least.
+            /// The kind with the fewest fields.
             fn blank() -> Self {
                 $crate::schema::rows::last!($($variant($ty)),*)
             }
@@ -171,7 +170,6 @@ macro_rules! kinds {
     )*};
 }
 
-/// The last of a choice's kinds, blank.
 macro_rules! last {
     ($variant:ident($ty:ty)) => {
         Self::$variant(<$ty as $crate::Read>::blank())
@@ -181,7 +179,7 @@ macro_rules! last {
     };
 }
 
-/// Names the variants of an enum by words, each with the form's name for it.
+/// Words for an enum's variants, with labels for the form.
 macro_rules! words {
     ($($ty:ty { $($(#[doc = $doc:literal])* $variant:ident = $word:literal, $label:literal;)* })*) => {$(
         impl $crate::schema::Typed for $ty {
@@ -219,7 +217,7 @@ macro_rules! words {
 
 use crate::schema::{Group, Type, Typed};
 
-/// A field's name without the mark of a name that is Rust's own word.
+/// Removes `r#`.
 pub(crate) const fn plain(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', rest @ ..] => match core::str::from_utf8(rest) {
@@ -230,7 +228,6 @@ pub(crate) const fn plain(name: &'static str) -> &'static str {
     }
 }
 
-/// No fields: what is no group.
 const NONE: &Group = &Group {
     name: "",
     doc: "",
@@ -240,7 +237,6 @@ const NONE: &Group = &Group {
     blank: || alloc::boxed::Box::new(0_u8),
 };
 
-/// The rows of a struct.
 pub(crate) const fn group<T: Typed>() -> &'static Group {
     match T::TYPE {
         Type::Group(group) => group,

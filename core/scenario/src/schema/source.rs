@@ -1,4 +1,4 @@
-//! What the host sends, or what the peripheral runs by itself (DESIGN Part B, A8, A9).
+//! What the host sends, or the peripheral runs (DESIGN Part B, A8, A9).
 
 use crate::{
     END_OF_TIME, Hex, SegmentLists,

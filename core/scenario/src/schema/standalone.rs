@@ -1,4 +1,4 @@
-//! Controllers that run a program by themselves, from buttons (CONTROLLER.md, "The format").
+//! Stand-alone controllers (CONTROLLER.md, "The format").
 
 use crate::schema::{
     Field, OWN, SONG, ZHANG, label,
@@ -13,17 +13,14 @@ use stepscope_controller::{
 };
 use stepscope_motion::moves::Move;
 
-/// The owner's range as a row has it.
 const fn whole(range: &RangeInclusive<i128>) -> RangeInclusive<u64> {
     *range.start() as u64..=*range.end() as u64
 }
 
-/// The same of numbers that may be below 0.
 const fn signed(range: &RangeInclusive<i128>) -> RangeInclusive<i64> {
     *range.start() as i64..=*range.end() as i64
 }
 
-/// The same of how many of something there may be.
 const fn length(range: &RangeInclusive<i128>) -> RangeInclusive<usize> {
     *range.start() as usize..=*range.end() as usize
 }

@@ -1,69 +1,67 @@
-//! What a schema is made of: rows of fields with all that is said of them, and the parts of a value that has rows.
+//! The types of the schema.
 
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::ops::RangeInclusive;
 use serde_json::Value;
 use stepscope_motion::moves::Point;
 
-/// What a value of a scenario is made of: all that writing it needs to know, so that writing is code of its
-/// own and not of every type.
+/// The parts of a value, so that writing need not be generic.
 pub enum Parts<'a> {
-    /// A value in one piece.
+    /// A single value.
     Whole(Value),
-    /// A number that may be -0.0.
+    /// A number, possibly -0.0.
     Number(f64),
     /// A list.
     List(Vec<&'a dyn ToParts>),
-    /// The values of a group's fields, in its order, and whether each differs from its default.
+    /// The fields of a group in order, and whether each differs from its default.
     Fields(&'static Group, Vec<(&'a dyn ToParts, bool)>),
-    /// A kind by its name, and what is in it.
+    /// A kind's name and value.
     Kind(&'static str, &'a dyn ToParts),
 }
 
-/// A value of a scenario, which can be taken apart.
+/// A value that can be split into parts.
 pub trait ToParts {
     /// What it is made of.
     fn parts(&self) -> Parts<'_>;
 }
 
-/// A field of a group, or a kind of a choice, and all that is said of it.
+/// A field of a group, or a kind of a choice.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// Its name in JSON.
+    /// Name in JSON.
     pub name: &'static str,
-    /// What it is, as text of the documentation: with the blank before each line.
+    /// Documentation, with the blank before each line.
     pub doc: &'static str,
-    /// What JSON holds.
+    /// Type in JSON.
     pub ty: Type,
-    /// Its name in the form.
+    /// Label in the form.
     pub label: &'static str,
-    /// Unit in which it counts, as people write it; empty for a plain number.
+    /// Unit; empty for a plain number.
     pub unit: &'static str,
-    /// Which values are allowed.
+    /// Allowed values.
     pub limit: Limit,
-    /// What it means if nothing (null) is given.
+    /// Meaning of null.
     pub empty: &'static str,
-    /// What the help's card is headed with; empty where there is none.
+    /// Title of the help's card; empty without a card.
     pub term: &'static str,
-    /// What the help's card says.
+    /// Text of the help's card.
     pub explained: &'static str,
     /// The document that it comes from.
     pub document: Option<&'static Document>,
-    /// When it matters; without it always.
+    /// When it matters; `None` for always.
     pub when: Option<When>,
-    /// Whether it is written only where it differs from its default: a field that not every program knows, as the page, which
-    /// has no plant.
+    /// Written only if it differs from the default: not every program has this field.
     pub only_if_set: bool,
 }
 
-/// What JSON holds for a field.
+/// A field's type in JSON.
 #[derive(Clone, Copy, Debug)]
 pub enum Type {
     /// A whole number.
     Whole {
-        /// Least of its type.
+        /// Minimum of the type.
         least: i64,
-        /// Greatest of its type.
+        /// Maximum of the type.
         most: u64,
     },
     /// A number.
@@ -78,20 +76,20 @@ pub enum Type {
     Point,
     /// One of some words.
     Word(&'static [Word]),
-    /// A map of fields, or of the one key that names a choice.
+    /// A map of fields, or of the key that names a choice.
     Group(&'static Group),
-    /// Nothing (null), or another type.
+    /// Null or another type.
     Optional(&'static Type),
     /// A list.
     List(&'static Type),
 }
 
-/// One of the words of a choice without anything inside.
+/// A word of a choice without settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Word {
-    /// As JSON writes it.
+    /// Name in JSON.
     pub name: &'static str,
-    /// As the form writes it.
+    /// Label in the form.
     pub label: &'static str,
     /// What it means.
     pub doc: &'static str,
@@ -102,39 +100,39 @@ pub struct Word {
 pub struct Group {
     /// Name of the type.
     pub name: &'static str,
-    /// What it is, line by line; Markdown.
+    /// Documentation in Markdown.
     pub doc: &'static str,
-    /// Its fields or kinds in their order.
+    /// Fields or kinds in order.
     pub fields: &'static [Field],
-    /// Whether JSON holds one of them, and not all.
+    /// Whether it is a choice of one.
     pub is_choice: bool,
-    /// Whether another crate owns the type, and judges its numbers.
+    /// Whether another crate owns and checks the type.
     pub is_external: bool,
-    /// One with all defaults.
+    /// A value with all defaults.
     pub blank: fn() -> Box<dyn ToParts>,
 }
 
-/// Which values a field may have by itself.
+/// The allowed values of a single field.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {
-    /// All of its type.
+    /// Every value of the type.
     Type,
     /// Whole numbers of a range.
     Whole(u64, u64),
-    /// Whole numbers of a range that may be below 0.
+    /// A range that may be negative.
     Signed(i64, i64),
     /// Numbers of a range.
     Number(f64, f64),
-    /// So many of what is counted: characters of a text, entries of a list.
+    /// A number of characters or entries, and what is counted.
     Length(usize, usize, &'static str),
-    /// A range that follows from other fields, in words; a rule judges it.
+    /// A range that depends on other fields, described in words.
     Follows(&'static str),
 }
 
-/// A field matters only while another one has a value.
+/// A field that matters only while another has a value.
 #[derive(Clone, Copy, Debug)]
 pub struct When {
-    /// The other one: its path, or its name beside the field.
+    /// The other field: its path, or its name in the same group.
     pub field: &'static str,
     /// Whether `field` is a whole path.
     pub is_path: bool,
@@ -142,10 +140,10 @@ pub struct When {
     pub is: &'static str,
 }
 
-/// Where an experiment or a term comes from.
+/// The source of an experiment or a term.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Document {
-    /// Short name for machines.
+    /// Short name for programs.
     pub id: &'static str,
     /// Short name for people.
     pub short: &'static str,
@@ -189,16 +187,15 @@ pub const SHEETS: &Document = &Document {
     short: "drivers' data sheets",
     title: "Data sheets of the drivers: Allegro A4988 (4988-DS), Texas Instruments DRV8825 (SLVSA73), Trinamic TMC2209 (rev. 1.09) and their like",
 };
-/// What no document has.
+/// This project.
 pub const OWN: &Document = &Document {
     id: "own",
     short: "Stepscope's own",
     title: "Stepscope's own: the framed protocol, the line model and the bit-exact link, described in docs/ of the source",
 };
-/// All of them.
+/// All sources.
 pub const DOCUMENTS: [&Document; 7] = [PATENT, SONOBE, SONG, SINE, ZHANG, SHEETS, OWN];
 
-/// Begins a row, with the field's name in the form.
 pub(crate) const fn label(label: &'static str) -> Field {
     Field {
         name: "",
@@ -217,32 +214,26 @@ pub(crate) const fn label(label: &'static str) -> Field {
 }
 
 impl Field {
-    /// In which unit it counts.
     pub(crate) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// A whole number of a range.
     pub(crate) const fn whole(self, range: RangeInclusive<u64>) -> Self {
         Self { limit: Limit::Whole(*range.start(), *range.end()), ..self }
     }
 
-    /// A whole number of a range that may be below 0.
     pub(crate) const fn signed(self, range: RangeInclusive<i64>) -> Self {
         Self { limit: Limit::Signed(*range.start(), *range.end()), ..self }
     }
 
-    /// A number of a range.
     pub(crate) const fn number(self, range: RangeInclusive<f64>) -> Self {
         Self { limit: Limit::Number(*range.start(), *range.end()), ..self }
     }
 
-    /// How many `of` something it has.
     pub(crate) const fn length(self, range: RangeInclusive<usize>, of: &'static str) -> Self {
         Self { limit: Limit::Length(*range.start(), *range.end(), of), ..self }
     }
 
-    /// Its range in words, where it follows from other fields.
     pub(crate) const fn follows(self, range: &'static str) -> Self {
         Self { limit: Limit::Follows(range), ..self }
     }
@@ -252,32 +243,27 @@ impl Field {
         Self { only_if_set: true, ..self }
     }
 
-    /// What nothing (null) means.
     pub(crate) const fn empty(self, empty: &'static str) -> Self {
         Self { empty, ..self }
     }
 
-    /// The help's card: its head and its text, which a build without the feature `explanations` leaves out.
     pub(crate) const fn term(self, term: &'static str, explained: &'static str) -> Self {
         if cfg!(feature = "explanations") { Self { term, explained, ..self } } else { self }
     }
 
-    /// Which document it comes from.
     pub(crate) const fn from(self, document: &'static Document) -> Self {
         Self { document: Some(document), ..self }
     }
 
-    /// It matters only while the field beside it has this value.
     pub(crate) const fn when(self, field: &'static str, is: &'static str) -> Self {
         Self { when: Some(When { field, is_path: false, is }), ..self }
     }
 
-    /// It matters only while the field at this path has this value.
     pub(crate) const fn when_at(self, field: &'static str, is: &'static str) -> Self {
         Self { when: Some(When { field, is_path: true, is }), ..self }
     }
 
-    /// What it is, in one line.
+    /// The documentation in one line.
     #[must_use]
     pub fn text(&self) -> &'static str {
         self.doc.trim()

@@ -1,4 +1,4 @@
-//! The description of a session: an INI file of sections and `key=value`.
+//! Reads a session's description: an INI file.
 
 use crate::{
     read::{
@@ -9,24 +9,20 @@ use crate::{
 };
 use std::collections::BTreeSet;
 
-/// Most names that are kept, of either kind.
 const MAX_NAMES: usize = 1000;
 
-/// What is said of the first device.
 pub(super) struct Metadata {
     pub(super) devices: u32,
     rate: Option<Decimal>,
     pub(super) capturefile: String,
-    /// Bytes of a sample.
     pub(super) unitsize: usize,
-    /// Bit of a sample, and name of its channel, by their bits.
+    /// Bit of a sample, and the channel's name.
     pub(super) probes: Vec<(usize, String)>,
     pub(super) analogue: Vec<String>,
 }
 
 impl Metadata {
-    /// # Errors
-    /// A value that is given twice: readers differ in which one they take.
+    /// Errors on a repeated value: readers differ in which one they use.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut given = BTreeSet::new();
         let mut metadata = Self {
@@ -60,7 +56,7 @@ impl Metadata {
         Ok(metadata)
     }
 
-    /// Takes a value; whether its key must be given once. Names of channels are compared by their bits.
+    /// Returns whether the key must be unique.
     fn set(&mut self, key: &str, value: &str) -> bool {
         let number = |digits: &str| whole(digits.as_bytes()).and_then(|number| usize::try_from(number).ok());
         let numbered = |prefix| key.strip_prefix(prefix).and_then(number);
@@ -82,7 +78,6 @@ impl Metadata {
         true
     }
 
-    /// How long a sample is.
     pub(super) fn timebase(&self) -> Option<Timebase> {
         let rate = self.rate?;
         Timebase::new(power_of_ten(rate.places)?.try_into().ok()?, rate.mantissa.try_into().ok()?)

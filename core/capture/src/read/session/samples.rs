@@ -1,4 +1,4 @@
-//! Samples as they come out of the zip, in pieces of any size: those that differ from the one before become rows.
+//! Finds changes in unpacked samples.
 
 use super::metadata::Metadata;
 use crate::read::{
@@ -8,26 +8,21 @@ use crate::read::{
     source::WATCH_EVERY,
 };
 
-/// Most bytes of a sample: sigrok has no device with more than 512 channels.
+/// sigrok has no device with more than 512 channels.
 const MAX_UNIT: usize = 64;
-/// Samples that may be unpacked for each change that may be read: what does nothing is bounded, too.
+/// Samples per allowed change, which also bounds the time for samples without changes.
 const MAX_IDLE: u64 = 10_000;
 
-/// A stream of samples.
 pub(super) struct SampleStream<'a> {
     recorder: &'a mut Recorder,
     watch: &'a mut dyn FnMut(u64) -> bool,
     unit: usize,
-    /// Bit of a sample, and its channel.
     bits: Vec<(usize, u8)>,
-    /// The latest sample; empty before the first.
     last: Vec<u8>,
-    /// A sample that has come in part.
     partial: Vec<u8>,
-    /// Samples so far.
     samples: u64,
     max_samples: u64,
-    /// Bytes of the file that are unpacked, and what came out of them since `watch` was told.
+    /// Packed bytes, and unpacked bytes since the last call of `watch`.
     packed: u64,
     untold: u64,
 }
@@ -60,7 +55,6 @@ impl<'a> SampleStream<'a> {
         Ok(Self { recorder, watch, unit, bits, last, partial, samples: 0, max_samples, packed: 0, untold: 0 })
     }
 
-    /// Takes the next bytes.
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<(), String> {
         let mut rest = bytes;
         if !self.partial.is_empty() {
@@ -79,7 +73,6 @@ impl<'a> SampleStream<'a> {
         self.tell(bytes.len() as u64)
     }
 
-    /// Takes whole samples.
     fn run(&mut self, samples: &[u8]) -> Result<(), String> {
         let unit = self.unit;
         let mut rest = samples;
@@ -114,12 +107,10 @@ impl<'a> SampleStream<'a> {
         self.bits.iter().fold(0, |levels, (bit, channel)| levels | u64::from(high(*bit)) << channel)
     }
 
-    /// A piece of `packed` bytes is over.
     pub(super) const fn unpacked(&mut self, packed: u64) {
         self.packed += packed;
     }
 
-    /// Says now and then how far it is.
     fn tell(&mut self, bytes: u64) -> Result<(), String> {
         self.untold += bytes;
         if self.untold < WATCH_EVERY {
@@ -129,7 +120,6 @@ impl<'a> SampleStream<'a> {
         if (self.watch)(self.packed) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
     }
 
-    /// All pieces are over.
     pub(super) fn finish(self) -> Result<(), String> {
         if self.samples == 0 {
             return Err("the session has no samples; record again".into());

@@ -1,4 +1,4 @@
-//! What stands before the samples: comments, what sigrok-cli says beside them, and a row of labels.
+//! Reads the lines before the samples: comments, output of sigrok-cli, and labels.
 
 use crate::{
     read::{
@@ -9,17 +9,13 @@ use crate::{
     timebase::Timebase,
 };
 
-/// What was said before the first row.
 pub(in crate::read) struct Head {
-    /// Names of the channels, by the comment.
     names: Vec<String>,
     rate: Option<Decimal>,
-    /// The row of labels: units of the columns, or names.
     labels: Vec<String>,
     separator: Option<u8>,
 }
 
-/// What a column is.
 pub(super) enum Kind {
     Time,
     Trigger,
@@ -27,16 +23,18 @@ pub(super) enum Kind {
     Analogue(String),
 }
 
-/// Which sample a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RowClock {
-    /// The next.
     Count,
-    /// Its time in units of 1/`units` s, by this many of them for a sample.
-    Period { period: u64, units: u64 },
-    /// The last that is not after its time: for times that are cut off one by one.
-    Nearest { units: u64 },
-    /// Its time itself.
+    /// The time in units of 1/`units` s, of which a sample has `period`.
+    Period {
+        period: u64,
+        units: u64,
+    },
+    /// The last sample that is not later than the time: for times that are truncated one by one.
+    Nearest {
+        units: u64,
+    },
     Time,
 }
 
@@ -45,7 +43,7 @@ impl Head {
         Self { names: Vec::new(), rate: None, labels: Vec::new(), separator: None }
     }
 
-    /// Takes a line; false where it is a row of samples.
+    /// Returns false for a row of samples.
     pub(super) fn take(&mut self, line: &[u8]) -> Result<bool, String> {
         let text = String::from_utf8_lossy(line);
         if is_comment(line) {
@@ -76,13 +74,11 @@ impl Head {
         Ok(true)
     }
 
-    /// What separates the fields of the rows.
     pub(super) fn separator(&self, row: &[u8]) -> u8 {
         let own = row.iter().find(|byte| b",;\t|: ".contains(byte)).copied();
         self.separator.filter(|separator| row.contains(separator)).or(own).unwrap_or(b',')
     }
 
-    /// What the columns are, by the labels, and by the first row where labels do not tell.
     pub(super) fn columns(&self, row: &Fields) -> Vec<Kind> {
         let label = |at: usize| self.labels.get(at).map(String::as_str);
         let units = self.labels.iter().any(|label| label == "logic");
@@ -113,14 +109,13 @@ impl Head {
         (0..count).map(kind).collect()
     }
 
-    /// How a column of times tells the sample.
     pub(super) fn clock(&self) -> RowClock {
-        // sigrok writes this where it did not know the rate in time; its times are then all 0.
+        // sigrok writes this if it did not know the rate; all times are then 0.
         if self.labels.first().is_some_and(|label| label == "samples") {
             return RowClock::Count;
         }
         if let Some(rate_hz) = self.rate_hz() {
-            // sigrok's unit is the first of s, ms, us, ns and ps in which a sample lasts at least 1.
+            // sigrok uses the first of these units in which a sample lasts at least 1.
             let units = [0, 3, 6, 9, 12].map(|places| 10_u64.pow(places));
             if let Some(units) = units.into_iter().find(|units| *units >= rate_hz) {
                 return RowClock::Period { period: units / rate_hz, units };
@@ -132,12 +127,10 @@ impl Head {
         }
     }
 
-    /// The sample rate where it is a whole number of Hz.
     pub(super) fn rate_hz(&self) -> Option<u64> {
         self.rate.and_then(Decimal::whole).and_then(|rate| u64::try_from(rate).ok())
     }
 
-    /// How long a tick is.
     pub(super) fn timebase(&self, clock: RowClock) -> Option<Timebase> {
         let unit = |places: u32| u64::try_from(power_of_ten(places)?).ok();
         if clock == RowClock::Time {
@@ -166,8 +159,7 @@ pub(in crate::read) fn parse_rate(text: &str) -> Option<Decimal> {
     Decimal::parse(number.trim().as_bytes())?.shifted(exponent).filter(|rate| rate.mantissa > 0)
 }
 
-/// Whether a line says something beside the table: comments, and what sigrok-cli itself prints into the same file, the
-/// sample rate (`META samplerate: 1000000`) and analogue values (`A0: -10.00 V DC`).
+/// Comments, and output of sigrok-cli in the same file: `META samplerate: 1000000`, `A0: -10.00 V DC`.
 pub(in crate::read) fn is_comment(line: &[u8]) -> bool {
     if line.first().is_none_or(u8::is_ascii_digit) {
         return false;
@@ -178,7 +170,6 @@ pub(in crate::read) fn is_comment(line: &[u8]) -> bool {
         || is_analogue_value(line)
 }
 
-/// A name, a colon, and a number with its unit.
 fn is_analogue_value(line: &[u8]) -> bool {
     let mut words = line.split(|byte| *byte == b' ');
     words.next().is_some_and(|name| name.ends_with(b":") && name.len() > 1)
@@ -186,7 +177,6 @@ fn is_analogue_value(line: &[u8]) -> bool {
         && words.next().is_some()
 }
 
-/// Whether a line is a row of samples: its first field is a number.
 fn is_row(line: &[u8]) -> bool {
     let end = line.iter().position(|byte| b",;\t|: ".contains(byte)).unwrap_or(line.len());
     line.get(..end).is_some_and(|first| whole(first).is_some() || Decimal::parse(first).is_some())

@@ -1,4 +1,4 @@
-//! The definitions of a dump: time scale, scopes, variables.
+//! Reads a dump's definitions: time scale, scopes, variables.
 //!
 //! ```text
 //! $timescale 100 ps $end     $scope module top $end     $var wire 8 " speed [7:0] $end     $upscope $end
@@ -17,14 +17,10 @@ use crate::{
 use core::fmt;
 use std::collections::BTreeSet;
 
-/// Most scopes in scopes.
 const MAX_DEPTH: usize = 200;
-/// Most variables of strings.
 const MAX_STRINGS: usize = 10_000;
-/// Longest command that is read, in bytes.
 const MAX_COMMAND: usize = 4096;
 
-/// A command of the definitions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Keyword {
     Timescale,
@@ -32,7 +28,6 @@ pub(super) enum Keyword {
     Upscope,
     Var,
     EndDefinitions,
-    /// Comments, dates, and what programs have added.
     Skipped,
 }
 
@@ -62,18 +57,13 @@ impl fmt::Display for Keyword {
     }
 }
 
-/// The definitions so far.
 pub(super) struct Header {
-    /// The words of the command that is being read, a blank behind each.
     command: Vec<u8>,
-    /// The names of the scopes that are open, a point behind each, and the length before each of them.
     path: String,
     scopes: Vec<usize>,
-    /// Variables that are no lines.
     others: Names,
-    /// The channels that may be read: code of the variable, and bit of its value.
     selection: Selection<(Box<[u8]>, u32)>,
-    /// The codes of strings, whose values may have blanks.
+    /// Values of strings may contain blanks.
     strings: BTreeSet<Box<[u8]>>,
 }
 
@@ -108,7 +98,6 @@ impl Header {
         self.command.split(|byte| *byte == b' ').filter(|word| !word.is_empty())
     }
 
-    /// `1 us`, `100ps`.
     pub(super) fn timescale(&self) -> Result<Timebase, String> {
         let text: Vec<u8> = self.words().flatten().copied().collect();
         let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
@@ -132,7 +121,6 @@ impl Header {
         })
     }
 
-    /// `module top`.
     pub(super) fn enter(&mut self) -> Result<(), String> {
         if self.scopes.len() >= MAX_DEPTH {
             return Err(format!("more than {MAX_DEPTH} scopes in scopes"));
@@ -150,7 +138,6 @@ impl Header {
         self.path.truncate(self.scopes.pop().unwrap_or(0));
     }
 
-    /// `wire 8 " speed [7:0]`: a channel for each bit.
     pub(super) fn variable(&mut self, recorder: &mut Recorder) -> Result<(), String> {
         let text = || quoted(&self.command);
         let mut words = self.words();
@@ -177,7 +164,7 @@ impl Header {
             return Ok(());
         }
         let (base, first, step) = bits(&name, size);
-        // Of a vector of any size no more bits than there is room for, and those that are asked for.
+        // For a wide vector, only as many bits as can be read, and the requested ones.
         let all = size.min(MAX_CHANNELS as u32);
         let last = base.rsplit('.').next().unwrap_or_default();
         let asked = |wanted: &String| {
@@ -197,23 +184,20 @@ impl Header {
         Ok(())
     }
 
-    /// Selects the channels of the variables so far.
     pub(super) fn select(&mut self, variables: &mut Variables, recorder: &mut Recorder) {
         self.selection.finish(recorder, |(code, bit), channel| variables.add(&code, bit, channel));
     }
 
-    /// Whether a word may end the value of a string: its code, or any word if none was declared.
+    /// The string's code; any word if no string was declared.
     pub(super) fn ends_string(&self, word: &[u8]) -> bool {
         self.strings.is_empty() || self.strings.contains(word)
     }
 
-    /// The variables that are no lines.
     pub(super) fn into_others(self) -> Names {
         self.others
     }
 }
 
-/// Whether variables of this type stand for lines.
 fn is_line(kind: &[u8]) -> bool {
     !matches!(
         kind,
@@ -233,7 +217,7 @@ fn is_line(kind: &[u8]) -> bool {
     )
 }
 
-/// The name of a vector without its range, the index of its lowest bit, and what the next has more.
+/// The name of a vector without its range, its lowest index, and the increment.
 fn bits(name: &str, size: u32) -> (&str, i64, i64) {
     let range = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
     if let Some((base, range)) = range

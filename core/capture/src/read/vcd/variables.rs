@@ -1,11 +1,10 @@
-//! The variables of a dump by their codes, and what a value does to their channels.
+//! Finds a dump's variables by code and applies values to their channels.
 
 use std::collections::BTreeMap;
 
-/// Codes of one and two characters, of the 94 that are allowed: a table holds them.
+/// Codes of one or two of the 94 allowed characters have a lookup table.
 const SHORT_CODES: usize = 94 * 95;
 
-/// A value of one bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Value {
     Low,
@@ -25,23 +24,18 @@ impl Value {
     }
 }
 
-/// The channels of a code: those of all variables that have it.
 #[derive(Default)]
 pub(super) struct Variable {
-    /// Bit of the value, and channel.
     bits: Vec<(u32, u8)>,
-    /// Channels of the lowest bit.
     pub(super) first_bit: u64,
     pub(super) all_bits: u64,
 }
 
-/// The variables that have channels, at most [`crate::capture::MAX_CHANNELS`].
 pub(super) struct Variables {
     list: Vec<Variable>,
-    /// Index of the variable and 1; 0 where there is none.
+    /// Index + 1; 0 for none.
     short: Vec<u8>,
     long: BTreeMap<Box<[u8]>, u8>,
-    /// A vector's value, before its code comes.
     value: Vec<Value>,
 }
 
@@ -50,7 +44,6 @@ impl Variables {
         Self { list: Vec::new(), short: vec![0; SHORT_CODES], long: BTreeMap::new(), value: Vec::new() }
     }
 
-    /// A bit of the variable of this code has a channel.
     pub(super) fn add(&mut self, code: &[u8], bit: u32, channel: u8) {
         let next = u8::try_from(self.list.len() + 1).unwrap_or(0);
         let entry = match short(code).and_then(|at| self.short.get_mut(at)) {
@@ -78,7 +71,7 @@ impl Variables {
         self.list.get(usize::from(entry).wrapping_sub(1))
     }
 
-    /// Keeps a vector's value, the highest bit first; a letter that is none is the error.
+    /// The highest bit comes first; the error is an invalid letter.
     pub(super) fn set_value(&mut self, letters: &[u8]) -> Result<(), char> {
         self.value.clear();
         for &letter in letters.iter().rev() {
@@ -87,10 +80,10 @@ impl Variables {
         Ok(())
     }
 
-    /// What the value does to the variable of this code: levels, the channels that have them, how many bits are unknown.
+    /// Levels, mask of channels, number of unknown bits.
     pub(super) fn vector(&self, code: &[u8]) -> Option<(u64, u64, u64)> {
         let variable = self.find(code)?;
-        // A value that is too short goes on with zeros, or with its highest bit where that is x or z.
+        // A short value is extended by zeros, or by its highest bit if that is x or z.
         let beyond = match self.value.last() {
             Some(Value::Unknown) | None => Value::Unknown,
             _ => Value::Low,
@@ -107,7 +100,6 @@ impl Variables {
     }
 }
 
-/// The place of a short code in the table.
 fn short(code: &[u8]) -> Option<usize> {
     let digit = |byte: u8| byte.checked_sub(b'!').filter(|digit| *digit < 94).map(usize::from);
     match *code {
