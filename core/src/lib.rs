@@ -89,7 +89,10 @@
     feature = "scenario",
     doc = "| [`scenario`] | the scenario format: files, links, the form | `scenario` |"
 )]
-#![cfg_attr(feature = "std", doc = "| [`capture`] | recordings of logic analyzers and logs, in cycles | `std` |")]
+#![cfg_attr(
+    feature = "std",
+    doc = "| [`capture`] | recordings of logic analyzers and logs, in cycles | `std` |"
+)]
 #![cfg_attr(feature = "sim", doc = "| [`sim`] | validates, plans and runs scenarios | `sim` |")]
 #![cfg_attr(
     feature = "inspect",
