@@ -9,7 +9,7 @@ use std::{
 use stepscope_core::{
     inspect::{
         export::vcd::TooCoarse,
-        trace::{recorded_run::TooLong, run_fingerprint::RunFingerprintError},
+        trace::{run_fingerprint::RunFingerprintError, stored_run::TooLong},
     },
     scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError},
 };

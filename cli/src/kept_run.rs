@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use std::path::Path;
 use stepscope_core::inspect::trace::stored_run::Recording;
-use stepscope_core::{inspect::trace::recorded_run::record_run, sim::Experiment};
+use stepscope_core::{inspect::trace::stored_run::record_run, sim::Experiment};
 
 /// The recording of the scenario's first controller.
 ///

@@ -26,6 +26,7 @@ use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
+/// The result of validating a scenario.
 #[derive(Clone, Debug, Serialize)]
 pub struct Validation {
     pub problems: Vec<ProblemText>,

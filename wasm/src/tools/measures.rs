@@ -11,7 +11,7 @@ use stepscope_core::{
             measures::{Measures, within_bounds},
         },
         recording::figures::StepFigures,
-        trace::recorded_run::record_run,
+        trace::stored_run::record_run,
     },
     peripheral::trace::{steps, steps_in},
     sim::axes_of,

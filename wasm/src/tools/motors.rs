@@ -17,7 +17,7 @@ use stepscope_core::{
             outcome::settling_with,
             report::PlantReport,
         },
-        trace::recorded_run::{RECORDS_PER_CHECK, check_records},
+        trace::stored_run::{RECORDS_PER_CHECK, check_records},
     },
     peripheral::units::Instant,
     plant::{

@@ -7,7 +7,7 @@ use crate::{
 use serde::Serialize;
 use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
-    inspect::trace::{diff::TraceDiff, recorded_run::record_run},
+    inspect::trace::{diff::TraceDiff, stored_run::record_run},
     peripheral::signal,
 };
 use wasm_bindgen::prelude::*;

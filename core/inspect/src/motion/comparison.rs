@@ -178,6 +178,7 @@ impl Request {
     }
 }
 
+/// A kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
     Cosine(CosineMethod),

@@ -61,6 +61,7 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
     Ok(())
 }
 
+/// All measures of one axis of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
     pub length_s: f64,

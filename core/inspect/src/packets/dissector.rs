@@ -61,6 +61,7 @@ pub struct Meaning {
     pub check: Check,
 }
 
+/// What is needed to read the bytes of a line.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
     pub protocol: Protocol,

@@ -19,10 +19,8 @@ use stepscope_peripheral::{
     wire::packet::Tick,
 };
 
-/// How a row came to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowOutcome {
-    /// A whole packet.
     Packet(PacketOutcome),
     /// Cut short by a gap (fault SHORT_PACKET).
     Short,
@@ -30,20 +28,17 @@ pub enum RowOutcome {
     Framing,
     /// Bytes that were ignored after a framing error.
     Ignored,
-    /// A frame, or what was none.
+    /// A frame, or bytes that are none.
     Frame(FrameOutcome),
-    /// What the controller answered to the frame before.
     Reply(Reply),
-    /// What was recorded of the controller's own line, and is no reply that is known.
+    /// Recorded on the controller's own line, but no known reply.
     Recorded,
-    /// The controller drove the line while another did.
+    /// Two senders at once.
     Collision,
-    /// The run ended within it.
     Open,
 }
 
 impl fmt::Display for RowOutcome {
-    /// What became of the packet, as the page and the command's tables say it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Packet(PacketOutcome::Queued) => "queued",
@@ -64,136 +59,112 @@ impl fmt::Display for RowOutcome {
     }
 }
 
-/// One row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct LoggedPacket {
-    /// Where the start bit of its first byte was seen.
+    /// Start bit of its first byte.
     pub start: Instant,
-    /// Where it was complete or given up.
+    /// Complete or aborted.
     pub end: Instant,
     pub outcome: RowOutcome,
-    /// First cycle of its tick, of a frame's its first tick, if that has begun.
+    /// First cycle of its first tick.
     pub tick_start: Option<Instant>,
-    /// First cycle after its last tick so far that has ended.
+    /// First cycle after its last tick that has ended.
     pub tick_end: Option<Instant>,
-    /// Where its bytes stand among those of all rows.
     bytes_start: usize,
     bytes_end: usize,
-    /// The latest end of all rows to here, once the log is finished: a long row may end after later ones.
+    /// The latest end of all rows up to this one; a long row may end after later ones.
     latest: Instant,
 }
 
-/// A reply that was recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedReply<'a> {
-    /// Where its first start bit falls.
+    /// First start bit.
     pub start: Instant,
-    /// First cycle after its last byte.
     pub end: Instant,
-    /// Its bytes.
     pub bytes: &'a [u8],
-    /// What they say, if that is known.
     pub reply: Option<Reply>,
 }
 
-/// A tick that has begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct LoggedTick {
     pub start: Instant,
-    /// What it commands, one byte per channel.
     pub commands: Tick,
-    /// The row that brought it; `None` for one that firmware pushed.
+    /// `None` for a tick that firmware pushed.
     pub row: Option<usize>,
 }
 
-/// All packets of a run.
+/// The packets of a run.
 #[derive(Clone, Debug, Default)]
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,
     bytes: Vec<u8>,
-    /// Where the start bit of each byte was seen; of a reply's bytes, where its first one falls.
+    /// Start bit per byte; the bytes of a reply share the first.
     seen: Vec<Instant>,
-    /// Where the start bits of bytes with a framing error were seen.
+    /// Start bits of bytes with a framing error.
     broken: Vec<Instant>,
-    /// Where the packet that is coming began.
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
-    /// The row of each tick that waits; none for one that firmware pushed.
+    /// The row of each queued tick; `None` if firmware pushed it.
     waiting: VecDeque<Option<usize>>,
     ticks: Vec<LoggedTick>,
-    /// When the controller was stopped.
     stops: Vec<Instant>,
-    /// When a tick with steps ended and none was there to follow.
+    /// Ends of ticks with steps that none followed.
     underruns: Vec<Instant>,
-    /// Its replies were recorded: they come when they came.
+    /// Replies come from a recording.
     is_answered: bool,
 }
 
 impl PacketLog {
-    /// Rows: in the order in which they were known while the run goes on, in the order of their starts
-    /// once it is finished. A reply is known before it is sent, and a collision before the packet in which
-    /// it happens.
-    #[must_use]
+    /// In the order of their starts once the log is finished; before, a reply precedes its start, and a collision its
+    /// packet.
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
     }
 
-    /// The ticks that have begun.
-    #[must_use]
     pub fn ticks(&self) -> &[LoggedTick] {
         &self.ticks
     }
 
-    /// First cycle after a tick that lasts `length` where nothing stops it.
-    #[must_use]
+    /// First cycle after a tick of `length`, unless STOP ends it early.
     pub fn tick_end(&self, tick: &LoggedTick, length: Cycles) -> Instant {
         let stop = self.stops.get(self.stops.partition_point(|stop| *stop < tick.start));
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
     }
 
-    /// Bytes of a row.
-    #[must_use]
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
-    /// Where the start bits of a row's bytes were seen; of a reply's, for each the start bit of the first.
-    #[must_use]
+    /// Start bits of a row's bytes; those of a reply share the first.
     pub fn seen(&self, index: usize) -> &[Instant] {
         let row = self.rows.get(index);
         row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
-    /// Where the start bits of bytes were seen whose stop bit was low, rising in time.
-    #[must_use]
+    /// Start bits of bytes with a framing error, rising.
     pub fn broken(&self) -> &[Instant] {
         &self.broken
     }
 
-    /// When a tick with steps ended and none was there to follow (fault UNDERRUN), rising in time.
-    #[must_use]
+    /// Ends of ticks with steps that none followed (fault UNDERRUN), rising.
     pub fn underruns(&self) -> &[Instant] {
         &self.underruns
     }
 
-    /// Whether its replies were recorded, and are not those that the controller made.
-    #[must_use]
+    /// Whether replies come from a recording.
     pub const fn is_answered(&self) -> bool {
         self.is_answered
     }
 
-    /// Puts replies that were recorded, in the order of their starts, in the place of those that controllers made: the rows
-    /// that `is_made` has. The log is finished.
-    pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_made: &[bool]) {
+    /// Replaces the rows of `is_simulated` by recorded replies, in the order of their starts. The log must be finished.
+    pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_simulated: &[bool]) {
         let mut recorded = recorded.iter().peekable();
         let rows = core::mem::take(&mut self.rows);
         let mut place = alloc::vec![None; rows.len()];
-        for ((row, place), is_made) in rows.into_iter().zip(&mut place).zip(is_made) {
-            if *is_made {
+        for ((row, place), is_simulated) in rows.into_iter().zip(&mut place).zip(is_simulated) {
+            if *is_simulated {
                 continue;
             }
             while let Some(reply) = recorded.next_if(|reply| reply.start < row.start) {
@@ -233,7 +204,7 @@ impl PacketLog {
         rows.filter(move |(_, row)| row.end >= start).map(|(index, _)| index)
     }
 
-    /// The run is over: what is still open becomes a row, and the rows stand in the order of their starts.
+    /// Closes an open row and sorts the rows by their starts.
     pub fn finish(&mut self) {
         debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
         if self.open.is_some() {
@@ -254,7 +225,7 @@ impl PacketLog {
     }
 
     fn sort(&mut self) {
-        // Few rows are out of place, and by little: each goes back past those that start after it.
+        // Insertion sort: few rows are out of place, and by little.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
         let start = |row: usize| self.rows.get(row).map(|row| row.start);
         for next in 1..order.len() {
@@ -274,7 +245,6 @@ impl PacketLog {
         }
     }
 
-    /// Bytes that belong to no row yet.
     fn bytes_of_open(&self) -> Vec<u8> {
         let first = self.rows.last().map_or(0, |row| row.bytes_end);
         self.bytes.get(first..).unwrap_or_default().to_vec()
@@ -324,7 +294,7 @@ impl Sink for PacketLog {
                 self.seen.push(seen);
                 self.last = at;
             }
-            // On a framed line only the byte is missing, and the frame's CRC tells.
+            // On a framed line only the byte is missing, and the CRC detects that.
             Event::FramingError { seen, drops: false } => self.broken.push(seen),
             Event::FramingError { seen, .. } => {
                 self.broken.push(seen);
@@ -347,7 +317,7 @@ impl Sink for PacketLog {
                 self.close(end, RowOutcome::Reply(reply));
             }
             Event::Collision => {
-                // The bytes of what is coming stay with it.
+                // Bytes of the incomplete packet stay with it.
                 let (open, coming) = (self.open.take(), self.bytes_of_open());
                 self.bytes.truncate(self.bytes.len() - coming.len());
                 self.open = Some(at);
@@ -371,7 +341,7 @@ impl Sink for PacketLog {
                     row.tick_end = Some(at);
                 }
             }
-            // Stand-alone controllers have no packets.
+            // Controllers without a serial line have no packets.
             _ => {}
         }
     }

@@ -100,6 +100,7 @@ pub struct Choices {
     pub kinds: Vec<&'static str>,
 }
 
+/// The table of one controller.
 #[derive(Clone, Copy)]
 pub struct PacketTable<'a> {
     experiment: &'a Experiment,

@@ -24,6 +24,7 @@ use stepscope_motion::{
 };
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
+/// A motor's figures and their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
     pub id: &'static str,
@@ -44,6 +45,7 @@ pub struct MotorSheet {
     pub typical: &'static [&'static str],
 }
 
+/// A driver's figures and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
     pub id: &'static str,

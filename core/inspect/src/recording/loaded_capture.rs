@@ -67,6 +67,7 @@ pub struct LoadedPart {
     pub of: usize,
 }
 
+/// A capture in cycles, with its report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadedCapture {
     pub format: String,

@@ -62,6 +62,7 @@ impl OpenOptions {
     }
 }
 
+/// Why a capture cannot be loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OpenError {

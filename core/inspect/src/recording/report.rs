@@ -29,6 +29,7 @@ use stepscope_peripheral::{
     trace::Step,
 };
 
+/// Figures of each channel, and what the lines carry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     pub channels: Vec<ChannelReport>,
@@ -41,6 +42,7 @@ pub struct ChannelReport {
     pub figures: StepFigures,
 }
 
+/// A decoded line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineReport {
     pub name: &'static str,

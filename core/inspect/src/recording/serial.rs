@@ -108,6 +108,7 @@ pub struct DecodedByte {
     pub byte: u8,
 }
 
+/// The bytes of a line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DecodedLine {
     pub bytes: Vec<DecodedByte>,

@@ -42,6 +42,7 @@ pub struct RunFingerprint {
     pub controllers: Vec<Fingerprint>,
 }
 
+/// Why a fingerprint cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunFingerprintError {

@@ -1,25 +1,31 @@
-//! A run as the views need it: its records, their digest, and its packets.
+//! A run as the views need it: records, digest and packets, in bounded memory.
 //!
 //! ```
-//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_inspect::trace::stored_run::record_run;
 //! use stepscope_sim::Experiment;
 //!
-//! let mut recording = Recording::default();
-//! Experiment::from_json("{}").expect("no problems").run(&mut recording);
-//! assert_eq!(recording.trace.len() as u64, recording.digest.records());
+//! let experiment = Experiment::from_json("{}").expect("every field has a default");
+//! let (_, recordings) = record_run(&experiment, 1).expect("it is short");
+//! assert_eq!(recordings[0].trace.len() as u64, recordings[0].digest.records());
 //! ```
 
 use crate::packets::log::PacketLog;
 use alloc::vec::Vec;
+use core::fmt;
 use stepscope_peripheral::{
     signal::{Event, Record, Sink},
     trace::Digest,
     units::Instant,
 };
+use stepscope_sim::{Experiment, Run};
+
+/// Maximum records of all controllers together, at 16 bytes each. A step takes two.
+pub const MAX_RECORDS: u64 = 48_000_000;
+/// Interval of [`check_records`], in records.
+pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
 /// A run for the views.
 #[derive(Clone, Default)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Recording {
     pub trace: Vec<Record>,
     pub digest: Digest,
@@ -39,8 +45,102 @@ impl Sink for Recording {
 
 impl Recording {
     /// Start of the first tick: time 0 of a motion.
-    #[must_use]
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
+    }
+}
+
+/// The run exceeds [`MAX_RECORDS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TooLong {
+    Steps(u64),
+    Edges,
+}
+
+impl fmt::Display for TooLong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Steps(steps) => write!(f, "{steps} steps; up to {} are analyzed", MAX_RECORDS / 2)?,
+            Self::Edges => write!(f, "the run makes more than {MAX_RECORDS} edges; no more are analyzed")?,
+        }
+        f.write_str(": give a shorter motion, or end the run sooner with run_cycles")
+    }
+}
+
+impl core::error::Error for TooLong {}
+
+/// Runs an experiment and keeps the traces of its first `controllers` controllers.
+pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<Recording>), TooLong> {
+    record_within(experiment, controllers, MAX_RECORDS)
+}
+
+fn record_within(
+    experiment: &Experiment,
+    controllers: usize,
+    max_records: u64,
+) -> Result<(Run, Vec<Recording>), TooLong> {
+    // Segments have known steps; other edges are counted as they come.
+    let segments = experiment.segments();
+    if let Some(steps) = segments.map(|segments| segments.steps()).filter(|steps| *steps > max_records / 2) {
+        return Err(TooLong::Steps(steps));
+    }
+    let mut recordings: Vec<Recording> = (0..controllers).map(|_| Recording::default()).collect();
+    let mut run = experiment.start();
+    while !run.advance_each(RECORDS_PER_CHECK, &mut recordings) {
+        if segments.is_none() {
+            check_within(&recordings, max_records)?;
+        }
+    }
+    Ok((run, recordings))
+}
+
+pub fn check_records(recordings: &[Recording]) -> Result<(), TooLong> {
+    check_within(recordings, MAX_RECORDS)
+}
+
+fn check_within(recordings: &[Recording], max_records: u64) -> Result<(), TooLong> {
+    let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
+    if records > max_records { Err(TooLong::Edges) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::{format, string::ToString};
+
+    #[test]
+    fn a_run_is_kept_as_it_is_without_a_bound() {
+        let experiment = Experiment::from_json("{}").expect("it runs");
+        let mut expected = Recording::default();
+        let run = experiment.run(&mut expected);
+        let (kept, recordings) = record_run(&experiment, 1).expect("it is short");
+        assert_eq!(recordings.first().map(|found| &found.trace), Some(&expected.trace));
+        assert_eq!(kept.cycles(), run.cycles());
+    }
+
+    #[test]
+    fn a_run_with_too_many_steps_is_refused_before_it_begins() {
+        let json = |count: u32| {
+            let list = format!(r#"{{"segments":[{{"steps":{{"count":{count}}}}}]}}"#);
+            format!(r#"{{"source":{{"segments":{{"channels":[{list}]}}}}}}"#)
+        };
+        let experiment = Experiment::from_json(&json(u32::MAX)).expect("it runs");
+        let refused = record_run(&experiment, 1).err().expect("it is too long");
+        assert_eq!(refused, TooLong::Steps(u32::MAX.into()));
+        assert_eq!(
+            refused.to_string(),
+            "4294967295 steps; up to 24000000 are analyzed: give a shorter motion, or end the run sooner with run_cycles"
+        );
+        let experiment = Experiment::from_json(&json(1000)).expect("it runs");
+        assert!(record_within(&experiment, 1, 2000).is_ok());
+        assert_eq!(record_within(&experiment, 1, 1999).err(), Some(TooLong::Steps(1000)));
+    }
+
+    #[test]
+    fn a_run_that_makes_too_many_edges_is_given_up() {
+        let json = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":200000},"speed":{"steps_s":20000}}}]}]}}}"#;
+        let experiment = Experiment::from_json(json).expect("it runs");
+        assert!(record_run(&experiment, 1).is_ok());
+        assert_eq!(record_within(&experiment, 1, 100_000).err(), Some(TooLong::Edges));
     }
 }

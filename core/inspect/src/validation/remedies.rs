@@ -27,6 +27,7 @@ use stepscope_sim::{ValidatedScenario, axes_of};
 /// Times are rounded up to multiples of this, in s.
 const TIME_STEP_S: f64 = 1e-4;
 
+/// The problem, and changes that solve it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Remedies {
     pub wrong: String,
