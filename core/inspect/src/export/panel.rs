@@ -24,7 +24,6 @@ use stepscope_peripheral::signal::Event;
 pub const PANEL_HEAD: &str =
     "controller,cycle,time_s,word,position,display,state,alarm,trust,outputs,group,loop\n";
 
-/// Writes one row: cycle, word, position, digits and text. Without an alarm that field is empty.
 pub fn write_panel_row(
     out: &mut impl Write,
     index: usize,
@@ -95,7 +94,6 @@ impl PanelSignals {
         &self.signals
     }
 
-    /// Returns whether the event belonged to a panel.
     pub fn take(&mut self, event: Event) -> bool {
         match event {
             Event::Panel { controller, word, .. } => {

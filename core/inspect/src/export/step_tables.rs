@@ -66,7 +66,6 @@ pub struct TableCost {
     pub why: Option<String>,
 }
 
-/// A maximum error in us as whole cycles.
 pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
     // One division, so that 25 us at 16 MHz are 400 cycles and not 399.
     Cycles((error_us * f64::from(clock_hz) / 1e6) as u64)

@@ -128,7 +128,6 @@ impl<W: io::Write> VcdWriter<W> {
         Self::with_analogue(out, timescale, clock_hz, channels, &[])
     }
 
-    /// Adds signals of these names and widths in bits.
     pub fn with_words<'n>(
         out: W,
         timescale: Timescale,
@@ -212,7 +211,6 @@ impl<W: io::Write> VcdWriter<W> {
         self.out.flush()
     }
 
-    /// Ends the file at cycle `end`, the first that was not run.
     pub fn finish(mut self, end: u64) -> io::Result<()> {
         let stamp = self.stamp(end);
         self.result?;

@@ -98,7 +98,6 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Position after all steps up to and including a time.
     pub fn position_at(&self, time_s: f64) -> i32 {
         let after = self.steps_until(time_s);
         after.checked_sub(1).and_then(|last| self.steps.get(last)).map_or(0, |step| step.position)

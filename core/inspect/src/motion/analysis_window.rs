@@ -109,7 +109,6 @@ impl AnalysisWindow {
         let steps_before = |time_s: f64| {
             let before = plan.moves().iter().take_while(|planned| middle_s(planned) < time_s);
             let steps: u64 = before.map(|planned| planned.profile.step_count()).sum();
-            // A truncated run has fewer.
             usize::try_from(steps).map_or(pulses.len(), |steps| steps.min(pulses.len()))
         };
         let own = steps_before(self.start_s)..steps_before(self.start_s + self.length_s());

@@ -49,7 +49,6 @@ impl Band {
     }
 }
 
-/// A time window in s, divided into columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     pub start_s: f64,

@@ -17,7 +17,6 @@
 use crate::motion::curves::{Band, Window};
 use stepscope_peripheral::trace::Step;
 
-/// Steps of a run, in a unit shared by two runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<'a> {
     pub steps: &'a [Step],
@@ -93,7 +92,6 @@ pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Apart {
     pub largest: f64,
-    /// Time of the first largest difference, in s.
     pub at_s: f64,
     pub rms: f64,
 }

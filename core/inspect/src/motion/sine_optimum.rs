@@ -75,7 +75,6 @@ impl Search {
         for _ in 0..MAX_STEPS {
             let (matrix, slope) = self.normal_equations();
             let before = self.cost;
-            // Shorten the step until the cost falls.
             while damping < 1e12 {
                 let step = solve(damped(&matrix, damping), &slope);
                 if step.is_some_and(|step| self.go(&step)) {

@@ -107,7 +107,6 @@ pub(crate) struct OddCosines {
 impl OddCosines {
     pub(crate) fn of(angle: f64) -> Self {
         let now = libm::cos(angle);
-        // cos(-angle) precedes it.
         Self { now, before: now, twice: 2.0 * libm::cos(2.0 * angle) }
     }
 }
@@ -135,7 +134,6 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
             *square += amplitude * amplitude;
             amplitude *= k;
         }
-        // Now k^3 times the harmonic.
         let amplitude = amplitude / k * filtered(k);
         filtered_square += amplitude * amplitude;
     }
@@ -160,7 +158,6 @@ impl Row {
     }
 }
 
-/// Limits of the distortion, and the cosines to compare with.
 #[derive(Clone, Debug)]
 pub struct Measure {
     bounds: Bounds,
@@ -254,7 +251,6 @@ pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     )
 }
 
-/// The best row for each number of segments.
 pub fn best_of_each(rows: impl IntoIterator<Item = Row>) -> Vec<Row> {
     let mut all: Vec<Row> = Vec::new();
     for row in rows {

@@ -36,9 +36,7 @@ use stepscope_motion::AxisPlan;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harmonics {
-    /// Peak amplitudes of harmonics 1, 2, ….
     pub amplitudes: Vec<f64>,
-    /// THD_F as a ratio; `None` without a first harmonic.
     pub distortion: Option<f64>,
 }
 

@@ -56,7 +56,6 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
 
 const MAX_SHORTAGES: usize = 1024;
-/// Samples per move of a chart's needed torque.
 const SAMPLES_PER_MOVE: u32 = 2048;
 /// Samples per plan, in addition to both sides of each breakpoint.
 const SAMPLES: f64 = 512.0;

@@ -37,9 +37,7 @@ use stepscope_peripheral::{
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Such as `seq`, `ch3` or `tick 0 ch3`.
     pub name: Cow<'static, str>,
-    /// Its bytes, from the row's first.
     pub bytes: Range<usize>,
     pub value: String,
 }
@@ -47,12 +45,8 @@ pub struct Field {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
     None,
-    /// The bytes are no complete frame.
     Missing,
-    Compared {
-        found: u32,
-        expected: u32,
-    },
+    Compared { found: u32, expected: u32 },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -167,7 +161,6 @@ pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
 
 struct Content {
     decoded: Vec<u8>,
-    /// Position of each decoded byte, and of the end.
     places: Vec<usize>,
     overhead: Vec<(usize, u8)>,
     whole: bool,

@@ -32,7 +32,6 @@ use stepscope_peripheral::{
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
 
-/// A span of cycles `start..end`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Span {
     pub start: u64,
@@ -40,14 +39,12 @@ pub struct Span {
     pub texts: Vec<String>,
     pub bad: bool,
     pub packet: Option<usize>,
-    /// The cycle in which the receiver sampled it.
     pub sample: Option<u64>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spans {
     pub bits: Vec<Span>,
-    /// Includes bytes with a framing error.
     pub bytes: Vec<Span>,
     pub fields: Vec<Span>,
 }
@@ -172,7 +169,6 @@ impl<'a> LineDecoder<'a> {
             .collect()
     }
 
-    /// Adds bytes with a framing error.
     fn broken_in(&self, start: u64, end: u64, rx: &mut Spans, with_bits: bool) {
         let broken = self.packets().broken();
         let length = BYTE_BITS * self.own().bit().0;

@@ -67,7 +67,6 @@ pub struct Row {
     pub kind: &'static str,
     pub start_cycle: u64,
     pub end_cycle: u64,
-    /// End of its last byte on the line.
     pub line_end_cycle: u64,
     pub start: String,
     /// Time since the end of the row before; empty for the first.
@@ -79,9 +78,7 @@ pub struct Row {
     pub short: String,
     pub why: String,
     pub mark: &'static str,
-    /// Start of the first tick that it delivered.
     pub tick_start_cycle: Option<u64>,
-    /// End of the last of them.
     pub tick_end_cycle: Option<u64>,
 }
 
@@ -93,7 +90,6 @@ pub struct TickRow {
     pub fields: String,
 }
 
-/// Values of the filters, rising; each occurs in some row.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Choices {
     pub addresses: Vec<u8>,

@@ -40,7 +40,6 @@ pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a",
 const BINS: usize = 8192;
 const ENOUGH: u64 = 512;
 const KEPT: usize = 64;
-/// Points per column up to which all are drawn.
 const POINTS_A_COLUMN: u64 = 2;
 
 #[derive(Clone, Debug)]
@@ -52,7 +51,6 @@ pub struct PlantLog {
     max: Vec<f64>,
     latest: Vec<f64>,
     kept: Vec<Kept>,
-    /// Minimum distance of snapshots in points.
     apart: u64,
 }
 
@@ -69,7 +67,6 @@ pub struct CycleWindow {
     pub columns: usize,
 }
 
-/// A value over time; equal minimum and maximum make a line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
     /// Cycles of points, or of the middles of intervals.
@@ -133,7 +130,6 @@ impl PlantLog {
             self.kept.push(Kept { plant: plant.clone(), records });
         }
         if self.kept.len() > KEPT {
-            // Drop every other one and halve the rate.
             let mut index = 0;
             self.kept.retain(|_| {
                 index += 1;

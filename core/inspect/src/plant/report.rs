@@ -73,12 +73,10 @@ pub struct Motor {
     pub energy_left_over: Option<String>,
 }
 
-/// Four full steps lost at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slip {
     pub channel: usize,
     pub cycle: u64,
-    /// The rotor is to the left of its command.
     pub behind: bool,
 }
 

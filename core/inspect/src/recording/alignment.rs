@@ -55,10 +55,8 @@ pub struct Comparison {
     pub drift_ppm: f64,
     pub largest_jitter_s: f64,
     pub rms_jitter_s: f64,
-    /// Steps left out of drift and jitter.
     pub outliers: usize,
     pub first_difference: Option<Off>,
-    /// Steps that are late beyond the tolerance or have the other direction.
     pub differing: usize,
     pub other_values: usize,
 }

@@ -40,7 +40,6 @@ pub struct Difference {
     pub recorded_step: Option<usize>,
     /// When it was recorded or due, in s of the recording.
     pub recorded_s: f64,
-    /// Lateness of the worst one, in s.
     pub late_s: Option<f64>,
     pub planned_value: Option<u8>,
     pub recorded_value: Option<u8>,

@@ -35,7 +35,6 @@ pub use super::side::Kind;
 pub struct Events {
     pub kind: Kind,
     pub clock_hz: u32,
-    /// With cycles; for bytes the position is their number.
     steps: Vec<Step>,
     values: Vec<u8>,
 }

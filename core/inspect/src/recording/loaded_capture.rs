@@ -13,8 +13,8 @@
 //! ```
 
 mod align;
+mod contents;
 mod notes;
-mod report;
 mod scenario;
 #[cfg(test)]
 mod tests;

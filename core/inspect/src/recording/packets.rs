@@ -50,7 +50,6 @@ pub struct LinePacket {
     pub kind: &'static str,
     pub start_cycle: u64,
     pub end_cycle: u64,
-    /// Empty for a framing error.
     pub bytes: Vec<u8>,
     pub meaning: String,
     /// The CRC, or what is wrong; empty where there is none.
@@ -74,7 +73,6 @@ impl Packets {
         Self { rows, clock_hz }
     }
 
-    /// Replies on TX with a valid CRC.
     pub fn replies(&self) -> usize {
         let tx = line_name(Levels::TX);
         self.rows.iter().filter(|row| row.line == tx && row.outcome == HOLDS).count()

@@ -11,14 +11,12 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
-/// Points at which curves are sampled, for a whole run.
 pub const POINTS: u32 = 2048;
 
 /// Deviation of the second of two curves from the first, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurveMetrics {
     pub largest_steps: f64,
-    /// Time of the first largest deviation, in s.
     pub largest_at_s: f64,
     pub rms_steps: f64,
     /// Integral of |second - first|, in steps times s.

@@ -44,7 +44,6 @@ impl Errors {
     }
 
     fn ended(self) -> PulseErrors {
-        // At least 1, so that no pulses have no errors.
         let count = self.found.pulses.max(1) as f64;
         PulseErrors {
             mean_s: self.time / count,
@@ -55,7 +54,6 @@ impl Errors {
     }
 }
 
-/// B1's steps in whole cycles, and their deviation from the ideal instants.
 pub(super) fn due_steps(plan: &AxisPlan, clock_hz: u32) -> (Vec<Step>, PulseErrors) {
     let hz = f64::from(clock_hz);
     let (mut errors, mut position) = (Errors::default(), 0);
@@ -93,7 +91,6 @@ fn gone(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }
 
-/// Steps in one direction, up to a turn.
 struct Run {
     first: usize,
     cycle: u64,

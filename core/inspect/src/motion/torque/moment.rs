@@ -7,7 +7,6 @@ pub struct Moment {
     pub rate: f64,
     /// Torque in the direction of motion; negative where the motor brakes.
     pub needed_mn_m: f64,
-    /// Negative where the motor only brakes.
     pub available_mn_m: f64,
 }
 

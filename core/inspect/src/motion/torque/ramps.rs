@@ -6,7 +6,6 @@ use crate::motion::torque::Machine;
 use serde::Serialize;
 use stepscope_motion::{Curve, Profile, bisection::border, curves::Cosine};
 
-/// Ramps that are tried, evenly up to half of the time.
 const TRIED: u32 = 512;
 const LOOKS: u32 = 128;
 
@@ -19,7 +18,6 @@ pub struct Ramps {
     pub longest_s: Option<f64>,
     /// Even without ramps the rate exceeds f_s.
     pub too_fast: bool,
-    /// T/2: the longest ramp that fits.
     pub room_s: f64,
     /// The shortest and longest ramp above 0 with enough torque and within the stated rate.
     pub enough_s: Option<(f64, f64)>,

@@ -89,7 +89,6 @@ impl TorqueCurve {
         Self::up_to(machine, Some(plan), machine.shown_rate(plan.peaks().speed))
     }
 
-    /// The curve up to a rate in steps/s.
     pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, most: f64) -> Self {
         Self::with(machine, most, |most, bins| {
             plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, most, bins))

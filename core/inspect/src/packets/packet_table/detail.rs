@@ -17,7 +17,6 @@ pub struct Detail {
     #[serde(flatten)]
     pub row: Row,
     pub layout: Vec<FieldRow>,
-    /// `none`, `missing`, `holds` or `fails`.
     pub check: &'static str,
     pub check_found: Option<String>,
     pub check_expected: Option<String>,

@@ -15,7 +15,6 @@ use stepscope_peripheral::{
     },
 };
 
-/// Rows after a frame among which its reply is searched.
 const NEAR: usize = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -61,7 +61,6 @@ struct Needle {
 }
 
 impl Needle {
-    /// Also returns what is wrong with the text.
     fn parse(typed: &str) -> (Option<Self>, String) {
         let text = typed.trim().to_ascii_lowercase();
         if text.is_empty() {

@@ -17,7 +17,6 @@ use stepscope_peripheral::{
 pub enum Mark {
     Good,
     OtherAddress,
-    /// Acknowledged, and not executed again.
     Repeated,
     Bad,
 }

@@ -8,7 +8,6 @@ use stepscope_peripheral::{
     wire::{BitTimes, bit_times::BYTE_BITS},
 };
 
-/// A byte on the line, in the cycles `start..end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlacedByte {
     pub packet: usize,

@@ -1,4 +1,4 @@
-//! The report of a loaded capture: steps and bytes, with or without times.
+//! The contents of a loaded capture: steps and bytes, with or without times, and their report.
 
 use super::LoadedCapture;
 use crate::{
