@@ -146,6 +146,7 @@ impl Reading<'_> {
     }
 }
 
+#[cfg(feature = "std")]
 pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
     let content = Content::of(bytes, last_frame(bytes));
     let check @ Check::Compared { found, expected } = content.check() else { return None };

@@ -22,6 +22,7 @@ mod filter;
 mod format;
 mod places;
 
+#[cfg(feature = "std")]
 pub(crate) use csv::write_fields;
 pub use detail::{Detail, FieldRow};
 pub use faults::FaultPlace;

@@ -51,6 +51,7 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
+#[cfg(feature = "std")]
 pub(crate) fn write_fields(out: &mut impl Write, texts: &[&str]) -> fmt::Result {
     texts.iter().try_for_each(|text| write!(out, ",{}", Quoted(text)))
 }
