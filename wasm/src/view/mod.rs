@@ -7,6 +7,7 @@ mod files;
 mod link;
 mod packets;
 mod panel;
+mod panel_log;
 mod plant;
 mod presets;
 mod pulses;

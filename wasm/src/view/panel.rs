@@ -4,7 +4,7 @@
 use crate::{convert::numbers, view::simulation::Simulation};
 use js_sys::Object;
 use stepscope_core::{
-    controller::{StandAlone, panel::PanelRecord},
+    controller::panel::PanelRecord,
     peripheral::{
         signal::{Event, Record, Sink},
         units::Instant,
@@ -12,31 +12,11 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Maximum number of saved states, so that few questions have to begin at cycle 0.
-const STOPS: usize = 64;
-
 /// Discards everything.
 struct Nowhere;
 
 impl Sink for Nowhere {
     fn record(&mut self, _: Record) {}
-}
-
-/// What is saved of the panels during a run.
-pub(crate) struct PanelLog {
-    /// What was switched at the panels.
-    pub(crate) inputs: Vec<(Instant, Event)>,
-    /// The controllers at some cycles of the run, at equal numbers of slices.
-    stops: Vec<StandAlone>,
-    /// Slices from one of them to the next, and those since the last one.
-    apart: usize,
-    since: usize,
-}
-
-impl Default for PanelLog {
-    fn default() -> Self {
-        Self { inputs: Vec::new(), stops: Vec::new(), apart: 1, since: 0 }
-    }
 }
 
 #[wasm_bindgen]
@@ -75,7 +55,7 @@ impl Simulation {
     #[must_use]
     pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
         let cycle = Instant(cycle.max(0.0) as u64);
-        let mut machine = self.panels.stops.iter().rfind(|stop| stop.now() <= cycle)?.clone();
+        let mut machine = self.panels.last_stop(cycle)?.clone();
         machine.run(cycle, &mut Nowhere);
         let numbers = machine.numbers(controller);
         Some(vec![
@@ -90,32 +70,5 @@ impl Simulation {
             f64::from(*numbers.get(6)?),
             f64::from(*numbers.get(7)?),
         ])
-    }
-}
-
-impl PanelLog {
-    /// Saves the controllers' state if the run has come far enough since the last one.
-    pub(crate) fn save_stop(&mut self, machine: Option<&StandAlone>) {
-        let Some(machine) = machine else { return };
-        self.since += 1;
-        if !self.stops.is_empty() && self.since < self.apart {
-            return;
-        }
-        self.since = 0;
-        let mut stop = machine.clone();
-        // The run itself has what its panel has shown.
-        for index in 0..stop.controllers() {
-            stop.take_panel(index);
-        }
-        self.stops.push(stop);
-        if self.stops.len() > STOPS {
-            // Every other one goes, and new ones are half as frequent.
-            let mut index = 0;
-            self.stops.retain(|_| {
-                index += 1;
-                index % 2 == 1
-            });
-            self.apart *= 2;
-        }
     }
 }

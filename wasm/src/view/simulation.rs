@@ -6,7 +6,7 @@ use crate::{
     judged::{Judged, listed},
     view::{
         advance::{advance, progress},
-        panel::PanelLog,
+        panel_log::PanelLog,
     },
 };
 use std::{mem::take, rc::Rc};

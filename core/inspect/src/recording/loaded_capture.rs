@@ -26,7 +26,7 @@ use super::{
     open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ},
     overview::Overview,
     remedy::Note,
-    report::{Report, Survey, steps},
+    report::{ChannelReport, Report, Survey, steps},
 };
 use crate::{
     motion::curves::{Actual, Window},
@@ -90,6 +90,12 @@ pub struct LoadedCapture {
     generated_pulses: Vec<(u8, PulseSource)>,
 }
 
+/// Whether rounding to cycles has lost no step: figures in ticks are then those of the records.
+fn have_same_steps(exact: &[ChannelReport], rounded: &[ChannelReport]) -> bool {
+    let steps = |channel: &ChannelReport| (channel.channel, channel.figures.steps);
+    exact.iter().map(steps).eq(rounded.iter().map(steps))
+}
+
 impl LoadedCapture {
     /// Loads a capture and frees its memory.
     pub fn new(capture: Capture, options: &OpenOptions) -> Result<Self, OpenError> {
@@ -107,7 +113,7 @@ impl LoadedCapture {
             let changing = Survey::of(all.clone()).changing;
             Report::of_all(all, changing, clock_hz, channels, lines)
         });
-        if let Some(exact) = exact.filter(|_| recorded.rounding.lost == 0) {
+        if let Some(exact) = exact.filter(|exact| have_same_steps(exact, &report.channels)) {
             report.channels = exact;
         }
         loaded.set_report(report, &map)?;
@@ -138,7 +144,7 @@ impl LoadedCapture {
         loaded.note_rounding(passed.rounding, 0);
         let mut report = Report::of_all(all, survey.changing, clock_hz, loaded.channels, options.lines()?);
         if let Some(exact) = loaded.exact_channels(capture, &map, base, options)
-            && passed.rounding.lost == 0
+            && have_same_steps(&exact, &report.channels)
         {
             report.channels = exact;
         }

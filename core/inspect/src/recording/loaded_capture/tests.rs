@@ -32,6 +32,10 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
     };
     assert_eq!(lines(None), [("RX", vec![1]), ("TX", vec![0x55, 0xaa])]);
     assert_eq!(lines(Some("RX=TX,TX=RX")), [("RX", vec![0x55, 0xaa]), ("TX", vec![1])]);
+    // A step within the first cycle is none of the records, and so none of the figures.
+    let loaded =
+        LoadedCapture::new(read("time_s,STEP\n0,0\n1e-18,1\n"), &OpenOptions::default()).expect("it loads");
+    assert!(loaded.report.channels.is_empty() && loaded.steps_of(0).is_empty());
     // Without times each direction is back to back by itself.
     let annotations = "uart-1: rx-data: 41\nuart-1: tx-data: 42\nuart-1: tx-data: AA\n";
     let options = OpenOptions { baud: Some(9600), ..OpenOptions::default() };
