@@ -1,6 +1,6 @@
 //! Installs Debian packages that no Rust registry has: browsers, an emulator and a waveform viewer.
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use tokio::process::Command;
 use tokio::sync::Mutex;
 
@@ -26,6 +26,19 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     };
     apt(&["update"]).await?;
     apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).await
+}
+
+/// Makes sure that `what` finds its programs on PATH; installs the packages if one is missing.
+pub(crate) async fn require(what: &str, programs: &[&str], packages: &[&str]) -> Result<()> {
+    let remedy = || {
+        let (programs, packages) = (programs.join(", "), packages.join(" "));
+        format!("{what} needs {programs} on PATH: install it (Debian: `apt-get install {packages}` as root)")
+    };
+    let found = || programs.iter().try_for_each(|program| which::which(program).map(drop));
+    if found().is_err() {
+        install(packages).await.with_context(remedy)?;
+    }
+    found().with_context(remedy)
 }
 
 #[cfg(unix)]

@@ -1,6 +1,6 @@
 //! Runs the golden cases (`tests/cortex-m3`) in QEMU.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use tokio::process::Command;
 
 use crate::toolchain::{self, BARE_METAL};
@@ -13,10 +13,7 @@ const QEMU: &str = "qemu-system-arm";
 
 pub(crate) async fn test() -> Result<()> {
     toolchain::target(BARE_METAL).await?;
-    if which::which(QEMU).is_err() {
-        apt::install(&[QEMU]).await.with_context(remedy)?;
-        which::which(QEMU).with_context(remedy)?;
-    }
+    apt::require("the microcontroller's test", &[QEMU], &[QEMU]).await?;
     run::to_end(cargo("build")).await?;
     run::test(cargo("run")).await
 }
@@ -25,10 +22,4 @@ fn cargo(what: &str) -> Command {
     let mut command = toolchain::cargo();
     command.args([what, "--release", "--locked", "--package", PACKAGE, "--target", BARE_METAL]);
     command
-}
-
-fn remedy() -> String {
-    format!(
-        "the microcontroller's test needs QEMU's {QEMU} on PATH: install it (Debian: `apt-get install {QEMU}` as root)"
-    )
 }

@@ -24,10 +24,7 @@ pub(crate) async fn test() -> Result<()> {
 }
 
 pub(crate) async fn socat() -> Result<()> {
-    if which::which("socat").is_err() {
-        apt::install(&["socat"]).await.context("the live tests need socat on PATH: install it")?;
-    }
-    Ok(())
+    apt::require("the test of live commands", &["socat"], &["socat"]).await
 }
 
 /// A Python environment with these packages in the tools' cache.

@@ -68,13 +68,10 @@ impl Npm {
     }
 }
 
-/// The path of one of Node's programs; installs the system's packages where it is missing.
+/// The path of one of Node's programs, installing Node.js if it is missing.
 pub(crate) async fn node_program(name: &str) -> Result<PathBuf> {
-    let remedy = || format!("this step needs {name}: install Node.js with npm so that it is on PATH");
-    if which::which(name).is_err() {
-        apt::install(&["nodejs", "npm"]).await.with_context(remedy)?;
-    }
-    which::which(name).with_context(remedy)
+    apt::require("this step", &[name], &["nodejs", "npm"]).await?;
+    which::which(name).with_context(|| format!("{name} is gone"))
 }
 
 /// The path of axe-core's script, installing it if it is missing.
