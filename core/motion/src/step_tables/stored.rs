@@ -61,7 +61,7 @@ pub struct Stored {
     pub document_bytes: Option<u64>,
     /// How far the steps are from their due cycles.
     pub error: TimingError,
-    /// Of a compressed list how many entries it may have more than the fewest ([`Compressed::surplus`]).
+    /// Of a compressed list: the maximum number of entries beyond the minimum.
     pub surplus: Option<u64>,
 }
 
