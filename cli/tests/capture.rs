@@ -202,7 +202,12 @@ fn what_a_file_does_not_tell_is_asked_for() {
             2,
             "'0' for '--sample-rate <HZ>': out of range; use 1 to 1000000000000",
         ),
-        ("0 700000000\n5 700000001\nff 700000000\n", &[], 2, rate),
+        (
+            "0 700000000\n5 700000001\nff 700000000\n",
+            &[],
+            2,
+            "the file does not say how long a cycle lasts; give the clock as the sample rate, in Hz",
+        ),
         ("81 05\n", &[], 2, "the bytes have no times; give the bit rate"),
         ("81 05\n", &["--baud", "115200"], 0, ""),
         ("81 05\n", &["--baud", "0"], 2, "'0' for '--baud <BAUD>': out of range; use 1 to 1000000000"),
