@@ -160,7 +160,7 @@ impl Outputs {
     }
 
     /// Renames all complete files; a signal ends the command before or after all of them. If a rename fails, replaced
-    /// files are restored.
+    /// files are restored where the file system has hard links.
     pub(crate) fn commit(self) -> Result<(), Failure> {
         let mut committed = committed();
         if let Some(folder) = self.waiting.iter().find(|waiting| waiting.name.is_dir()) {

@@ -415,6 +415,18 @@ fn limits_are_compared_in_the_files_own_ticks() {
 }
 
 #[test]
+fn the_noise_of_floats_makes_no_violation() {
+    let mut table = "time_s,STEP\n".to_owned();
+    for k in 1..500_u32 {
+        let rise = f64::from(k) * 5e-6;
+        table += &format!("{rise:e},1\n{:e},0\n", rise + 1e-6);
+    }
+    let line = ["capture", "-", "--driver", "custom:step_high_ns=1000", "--strict"];
+    let (code, out, err) = stepscope(&line, &table);
+    assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
+}
+
+#[test]
 fn rounding_to_a_slower_clock_is_counted_and_makes_no_violation() {
     // 1900 ns, as a DRV8825 needs, are 30.4 cycles of 16 MHz: some pulses become 30 cycles.
     let dump = dump_of("100 ns", 1003, 19);

@@ -6,7 +6,7 @@
 import assert from "node:assert/strict";
 import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
-import init, { Judged, panel_preset, presets, version } from "stepscope-wasm";
+import init, { Judged, presets, version } from "stepscope-wasm";
 
 const [golden] = process.argv.slice(2);
 assert.ok(golden, "give the folder of the golden cases");
@@ -38,7 +38,7 @@ function digests(scenario) {
   }
 }
 
-const scenarios = new Map(presets().map(({ id, scenario }) => [id, scenario ?? panel_preset(id)]));
+const scenarios = new Map(presets().map(({ id, scenario }) => [id, scenario]));
 const cases = (await readdir(golden)).filter((name) => name.startsWith("preset-"));
 let found = 0;
 for (const name of cases) {

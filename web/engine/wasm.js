@@ -30,7 +30,7 @@ let preloaded = false;
 
 /** Loads the tools once the first result is on the screen, so that opening one of them waits for nothing. */
 export function preloadTools() {
-  // A visitor who saves data loads them with the first tool.
+  // With data saving on they load with the first tool, or with the copy for offline use.
   if (preloaded || /** @type {any} */ (navigator).connection?.saveData) return;
   preloaded = true;
   setTimeout(() => compiled("tools").catch(() => {}), PRELOAD_MS);

@@ -209,13 +209,13 @@ pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     if let Some(results) = results {
         command.env("STEPSCOPE_RESULTS", results);
     }
-    run::to_end(command).await
+    run::test(command).await
 }
 
 pub(crate) async fn live() -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["bench", "--package", "stepscope-cli", "--bench", "live", "--locked"]);
-    run::to_end(command).await
+    run::test(command).await
 }
 
 async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
@@ -225,7 +225,7 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     }
     let mut command = kernels(&[]);
     command.args(["--noplot", "--quiet"]).args(effort).env("CRITERION_HOME", home);
-    run::to_end(command).await
+    run::test(command).await
 }
 
 fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {

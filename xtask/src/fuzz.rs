@@ -106,7 +106,7 @@ async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);
     command.arg("--").arg(home);
-    run::to_end(command).await
+    run::test(command).await
 }
 
 async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report> {

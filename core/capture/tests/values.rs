@@ -39,6 +39,8 @@ fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
                 "0:0:4c end 0\n{late}\n! line 3: byte 1, from 0, is not hexadecimal; print all of them with format=hex"
             ),
         ),
+        // sigrok's format=ascii prints control characters so.
+        ("1 2 [0D]", format!("end 10\n- other annotations skipped: [0D]\n{late}\n! line 3: {text}")),
         ("H 1 2", format!("end 20\n- other annotations skipped: H\n{late}\n! line 3: {text}")),
     ] {
         assert_eq!(told(&read_bytes(timed(texts))), format!("Annotations [RX] {expected}"), "{texts}");
@@ -174,10 +176,33 @@ fn numbers_beside_times_are_never_silently_hexadecimal() {
         ("10,4A\n20,42\n", "HexBytes [bytes] 10:0:4a 20:0:42 end 20"),
         ("10 41\n20 42\n", "HexBytes [bytes] 0:0:10 1:0:41 2:0:20 3:0:42 end 3"),
     ]);
-    for text in ["10,41\n20,42\n", "10;41\n20;42\n", "t_us,value\n0,65\n10,66\n", "time,NN\n10,41\n20,42\n"] {
+    for text in [
+        "t_us,value\n0,0\n10,1\n",
+        "10,41\n20,42\n",
+        "10;41\n20;42\n",
+        "t_us,value\n0,65\n10,66\n",
+        "time,NN\n10,41\n20,42\n",
+    ] {
         let reading = read_bytes(text);
         assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", told(&reading));
     }
+}
+
+#[test]
+fn hexadecimal_counts_and_bytes_with_colons_are_told_apart() {
+    let log = "12:00:00.5 RX [0A] 00 01 02 03 04 05 06 07 08 09\n";
+    let bytes = |text: &str| {
+        let reading = read_bytes(text);
+        assert!(reading.error.is_none(), "{}", told(&reading));
+        reading.capture.bytes.iter().map(|byte| byte.byte).collect::<Vec<_>>()
+    };
+    assert_eq!(bytes(log), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
+    assert_eq!(bytes("01:02:03:04\n05:06:07:08\n"), [1, 2, 3, 4, 5, 6, 7, 8]);
+    // No number of bytes: it may be one of them.
+    assert!(read_bytes("12:00:00.5 RX [0B] 00 01\n").error.is_some());
+    // Bits and decimal bytes without classes.
+    let bits = "0-9 uart-1: Start bit\n10-19 uart-1: 1\n20-29 uart-1: 0\n10-99 uart-1: 200\n";
+    assert!(read_bytes(bits).error.is_some());
 }
 
 #[test]

@@ -31,6 +31,8 @@ pub(super) struct Annotations {
     digits: Digits,
     is_text: bool,
     has_bits: bool,
+    /// 0 and 1 without a class were dropped as bits.
+    has_unclear_bits: bool,
     others: Names,
 }
 
@@ -111,6 +113,12 @@ impl Annotation {
     }
 }
 
+/// A control character as sigrok's format=ascii prints it: `[0D]`.
+fn is_control(text: &str) -> bool {
+    let inner = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
+    inner.is_some_and(|text| text.len() == 2 && text.bytes().all(|digit| digit.is_ascii_hexdigit()))
+}
+
 /// Splits `123-456` off the beginning of a line.
 fn samples(line: &str) -> Option<((u64, u64), &str)> {
     let end = line.find(|letter: char| !letter.is_ascii_digit() && letter != '-')?;
@@ -136,6 +144,7 @@ impl Annotations {
             digits: Digits::new(),
             is_text: false,
             has_bits: false,
+            has_unclear_bits: false,
             others: Names::new(),
         }
     }
@@ -165,6 +174,11 @@ impl Annotations {
             return Err(NO_BYTES.into());
         }
         match guess {
+            Guess::Sure(Base::Decimal) if self.has_unclear_bits => Err(
+                "0 and 1 may be bits or decimal bytes; print the bytes alone (sigrok-cli -A uart=rx-data) or with \
+                 format=hex"
+                    .into(),
+            ),
             Guess::Sure(base) => {
                 if base != Base::Hexadecimal {
                     self.recorder.leave_out(format!("the bytes are read as {}", base.name()));
@@ -235,7 +249,9 @@ impl Reader for Annotations {
         let may_be_data = annotation.may_be_data(self.has_bits);
         let value = Value::of(annotation.text.as_bytes()).filter(|_| may_be_data);
         let Some(value) = value else {
-            self.is_text |= may_be_data && annotation.text.chars().count() == 1;
+            self.is_text |=
+                may_be_data && (annotation.text.chars().count() == 1 || is_control(&annotation.text));
+            self.has_unclear_bits |= annotation.class.is_empty() && matches!(text.as_str(), "0" | "1");
             if text == "start bit" || text == "start" || text == "s" {
                 self.has_bits = true;
                 let channel = self.channel(&annotation)?;

@@ -106,6 +106,11 @@ impl Digits {
         self.any.hexadecimal &= Base::Hexadecimal.byte(digits).is_some();
     }
 
+    /// Each is 0 or 1, which may also be levels.
+    pub(super) const fn are_single_bits(&self) -> bool {
+        self.lengths == 0b10 && self.any.binary
+    }
+
     pub(super) const fn are_pairs(&self) -> bool {
         self.lengths == 0b100 && self.any.hexadecimal
     }

@@ -80,7 +80,7 @@ impl HexText {
         if length.is_of(self.bytes.len()) {
             return Ok(());
         }
-        if !is_log || length.text.ends_with(b":") {
+        if !is_log || !length.is_decimal() || length.text.ends_with(b":") {
             return Err(format!(
                 "{} before {} may be a byte or a number of bytes; remove it, or write all bytes in one way",
                 quoted(length.text),

@@ -82,6 +82,10 @@ impl Head {
     fn base(&self, digits: &Digits) -> Result<(Base, bool), String> {
         match (self.column, digits.guess()) {
             (Column::Hexadecimal, _) => Ok((Base::Hexadecimal, false)),
+            (Column::Any, _) if digits.are_single_bits() => Err(format!(
+                "the values of the column “{}” may be levels or bytes; name it STEP, or another signal, or hex",
+                self.name
+            )),
             (Column::Decimal, _) | (_, Guess::Sure(Base::Decimal)) => Ok((Base::Decimal, false)),
             (_, Guess::Sure(Base::Hexadecimal)) => Ok((Base::Hexadecimal, false)),
             (Column::Bytes, Guess::Unclear(Base::Hexadecimal, _)) => Ok((Base::Hexadecimal, true)),

@@ -86,7 +86,12 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     }
     if let Some(stamp) = Stamp::parse(text) {
         let rest = text.get(stamp.length..)?;
-        let is_apart = rest.first().is_none_or(|byte| byte.is_ascii_whitespace() || b",;:|>".contains(byte));
+        let is_apart = match rest {
+            // Bytes with colons in between: 01:02:03:04.
+            [b':', digit, ..] => !digit.is_ascii_hexdigit(),
+            [] => true,
+            [byte, ..] => byte.is_ascii_whitespace() || b",;:|>".contains(byte),
+        };
         return is_apart.then(|| (Time::Clock(stamp), after_mark(rest)));
     }
     if let Some(stamp) = Stamp::without_seconds(text)
@@ -168,7 +173,8 @@ impl<'l> Length<'l> {
             ["len", "length", "n", "size"].iter().find_map(|name| inner.strip_prefix(name.as_bytes()));
         let inner = unnamed.map_or(inner, |rest| after_equals(rest));
         let (number, unit) = word(inner);
-        let is_number = (1..=5).contains(&number.len()) && number.iter().all(u8::is_ascii_digit);
+        let is_decimal = number.iter().all(u8::is_ascii_digit);
+        let is_number = (1..=5).contains(&number.len()) && number.iter().all(u8::is_ascii_hexdigit);
         let is_unit = [&b""[..], b"b", b"byte", b"bytes"].contains(&unit.trim_ascii());
         let is_apart = close.is_some() || after.first().is_some_and(u8::is_ascii_whitespace);
         // Each byte may be in brackets or before a colon.
@@ -179,8 +185,13 @@ impl<'l> Length<'l> {
         (is_number && is_unit && is_apart && has_bytes).then_some(Self {
             text,
             rest: after_mark(after),
-            values: [whole(number), hex],
+            values: [whole(number).filter(|_| is_decimal), hex],
         })
+    }
+
+    pub(super) const fn is_decimal(&self) -> bool {
+        let [decimal, _] = self.values;
+        decimal.is_some()
     }
 
     /// Accepts decimal or hexadecimal counts.

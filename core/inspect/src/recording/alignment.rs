@@ -1,4 +1,4 @@
-//! Recorded steps compared with matched planned steps .
+//! Recorded steps compared with matched planned steps.
 //!
 //! ```text
 //! recorded     |   |  | | |        late = time since the aligned step, recorded minus planned
@@ -6,7 +6,7 @@
 //!              ^ aligned           jitter: what is left of late without it
 //! ```
 //!
-//! Clocks differ by tens of ppm, so drift is reported apart from jitter; outliers affect neither .
+//! Clocks differ by tens of ppm, so drift is reported apart from jitter; outliers affect neither drift nor rms jitter.
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};

@@ -40,6 +40,7 @@ use alloc::{
 use serde::Serialize;
 use stepscope_capture::{
     Capture, ChannelMap, Recorded,
+    capture::Format,
     channel_map::{PulseSource, written},
     recorded::Records,
     timebase::Timebase,
@@ -198,7 +199,10 @@ impl LoadedCapture {
         let (loaded, map, base) = Self::prepare(capture, options)?;
         let are_generated = loaded.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
         let is_rounded = |base: &Timebase| !capture.changes.is_empty() && !base.is_exact(loaded.clock_hz);
-        let Some(base) = base.filter(|base| is_rounded(base) && !are_generated) else { return Ok(None) };
+        // Decimal times below a picosecond carry the noise of a float: 5.000000000000013e-06.
+        let is_noisy = |base: &Timebase| capture.format != Format::Vcd && base.seconds() < 1e-12;
+        let is_compared = |base: &Timebase| is_rounded(base) && !is_noisy(base) && !are_generated;
+        let Some(base) = base.filter(is_compared) else { return Ok(None) };
         let mut check = TimingCheck::in_ticks(rules, base.parts(), max_listed);
         loaded.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         Records::in_ticks(capture, &map).for_each(|record| check.record(record));

@@ -200,7 +200,7 @@ mod tests {
                 assert!(table.address(row).is_none_or(|address| address == addresses[index]), "{row}");
             }
         }
-        // Nobody was commands: what names no controller is with the first, and that is known.
+        // No host sent commands: replies without an address count for the first controller and as unknown.
         report.lines.retain(|line| line.name == "TX");
         let alone = to_bytes(&report, 16_000_000, all.clone(), &addresses);
         assert_eq!((alone.unknown, alone.bytes.len()), (1, bytes.len()));

@@ -53,6 +53,8 @@ pub struct Points {
     pieces: Vec<Cubic>,
     /// Steps that are made by the end of each piece, right positive.
     made: Vec<i64>,
+    /// Steps, in either direction, up to the end of each piece.
+    ends: Vec<u64>,
     between: Between,
 }
 
@@ -92,7 +94,14 @@ impl Points {
         debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
         debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
         let off = off(&pieces, between == Between::Smooth);
-        Some(Self { exact, off, pieces, made, between })
+        let (mut from, mut steps) = (0_i64, 0_u64);
+        let ends = made.iter().map(|to| {
+            steps = steps.saturating_add(from.abs_diff(*to));
+            from = *to;
+            steps
+        });
+        let ends = ends.collect();
+        Some(Self { exact, off, pieces, made, ends, between })
     }
 
     /// Steps of all pieces, whichever way they go.
@@ -127,14 +136,14 @@ impl Points {
 
     /// The piece of step `k` (from 1) of all, and its place.
     fn step(&self, k: u64) -> Option<(usize, f64)> {
-        let mut past = k - 1;
-        for (index, (_, from, to)) in self.counted().enumerate() {
-            if past < from.abs_diff(to) {
-                return Some((index, place(from, to, past as f64)));
-            }
-            past -= from.abs_diff(to);
-        }
-        None
+        let past = k.checked_sub(1)?;
+        let index = self.ends.partition_point(|end| *end <= past);
+        let to = *self.made.get(index)?;
+        let (from, before) = match index.checked_sub(1) {
+            Some(last) => (*self.made.get(last)?, *self.ends.get(last)?),
+            None => (0, 0),
+        };
+        Some((index, place(from, to, (past - before) as f64)))
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {

@@ -134,7 +134,8 @@ impl Profile {
 }
 
 impl Profile {
-    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`; `None` past the last one.
+    /// The cycle of step `k` (from 1) after the move's start, of a clock of `clock_hz`; `None` past the last one. It iterates over
+    /// the steps before it: for all steps in turn plan the axis.
     #[must_use]
     pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
         let steps = MoveSteps::new(self, CycleTime::default(), clock_hz);

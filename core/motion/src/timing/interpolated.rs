@@ -25,7 +25,7 @@ const NODES: usize = 8;
 /// Minimum steps of a block; with fewer each is solved for itself.
 const MIN_STEPS: f64 = 4.0 * NODES as f64;
 const MAX_STEPS: f64 = 4096.0;
-/// Maximum error by the polynomial in cycles.
+/// Estimated maximum error by the polynomial in cycles, from its last coefficients.
 const MAX_REST: f64 = 1.0 / 131_072.0;
 /// How much the errors of the nodes' times grow in between: Lebesgue's constant is 2.3, the rest is that of the sums.
 const GROWTH: f64 = 4.0;

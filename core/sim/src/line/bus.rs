@@ -144,7 +144,7 @@ impl Bus {
                 device.now() < self.until && !(self.until == Instant::NEVER && device.at_rest())
             };
             if self.devices().any(is_behind) {
-                return;
+                break;
             }
             self.start = self.until;
         }

@@ -83,6 +83,8 @@ pub(super) struct Search<'a> {
     trial: Vec<f64>,
     trial_end: f64,
     block: usize,
+    /// A start behind many steps reaches a block without their jitter, so it sets no limit for other starts.
+    is_far: bool,
     /// Bounds the time on recordings that are unlike the plan.
     max_gaps: usize,
     pub(super) tried_gaps: usize,
@@ -102,6 +104,7 @@ impl<'a> Search<'a> {
             trial: vec![f64::INFINITY; TRIAL],
             trial_end: f64::INFINITY,
             block: 0,
+            is_far: false,
             max_gaps: steps.saturating_mul(16).saturating_add(1 << 20),
             tried_gaps: 0,
         }
@@ -141,6 +144,7 @@ impl<'a> Search<'a> {
 
     fn begin(&mut self, model: usize, recorded: usize) {
         self.block = 0;
+        self.is_far = model.max(recorded) > NEAR_START;
         let start = Hypothesis {
             model,
             recorded,
@@ -193,10 +197,14 @@ impl<'a> Search<'a> {
             // Compare with other starts at the end of each block.
             if let Some(others) = self.trial.get_mut(block) {
                 most = libm::fmin(most, *others + 2.0 * MARGIN);
-                *others = libm::fmin(*others, least);
+                if !self.is_far {
+                    *others = libm::fmin(*others, least);
+                }
             } else if self.block < TRIAL {
                 most = libm::fmin(most, self.trial_end);
-                self.trial_end = libm::fmin(self.trial_end, least);
+                if !self.is_far {
+                    self.trial_end = libm::fmin(self.trial_end, least);
+                }
             }
             self.block = block;
         }
