@@ -11,7 +11,7 @@
 //! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
 //! use stepscope_plant::{Plant, parameters::{MotorModel, Setup}};
 //!
-//! let motor = MotorModel { microsteps: 1, ..Motor::default() };
+//! let motor = MotorModel { microsteps: 1, ..MotorModel::default() };
 //! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("it holds");
 //! // One full step to the right in cycle 1600, and 100 ms to come to rest.
 //! let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);

@@ -6,8 +6,8 @@
 //! ```
 //! use stepscope_plant::{Plant, parameters::{DriverModel, MotorModel, CurrentControl, Setup}};
 //!
-//! let drive = DriverModel { regulator: CurrentControl::Chopper, ..Drive::default() };
-//! let setup = Setup { motors: vec![MotorModel { microsteps: 1, drive, ..Motor::default() }], ..Setup::default() };
+//! let drive = DriverModel { regulator: CurrentControl::Chopper, ..DriverModel::default() };
+//! let setup = Setup { motors: vec![MotorModel { microsteps: 1, drive, ..MotorModel::default() }], ..Setup::default() };
 //! let plant = Plant::new(&setup).expect("it holds");
 //! assert_eq!(plant.step_cycles(), 16, "a grid step is a microsecond where a driver chops");
 //! ```

@@ -4,7 +4,7 @@
 //! ```
 //! use stepscope_plant::{parameters::MotorModel, stability::Natural};
 //!
-//! let natural = Natural::of(&Motor::default());
+//! let natural = Natural::of(&MotorModel::default());
 //! assert!((natural.frequency_hz - 282.14).abs() < 0.05);
 //! ```
 
