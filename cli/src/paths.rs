@@ -70,7 +70,7 @@ pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
             .map(PathBuf::as_path)
     };
     if let Some(path) = given(&["pty", "dir"]).find(|path| *path == Path::new(STANDARD)) {
-        let detail = "is standard output, and this is the name of a link or a folder; give a name";
+        let detail = "is standard output, but a link or a folder is needed; give its name";
         return Err(Failure::Output(path.to_owned(), detail));
     }
     if given(paths.read).filter(|path| *path == Path::new(STANDARD)).count() > 1 {

@@ -260,7 +260,7 @@ fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
     best.ok_or_else(|| {
         let given = only.unwrap_or(0);
         let why = format!(
-            "--segments {given}: no d1 from {from} to {to} gives as many; use {least} to {most}, or another range"
+            "--segments {given}: no d1 from {from} to {to} gives this number; use {least} to {most}, or another range"
         );
         Failure::Option(why)
     })

@@ -231,7 +231,7 @@ fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
     ] {
         let (code, out, err) = stepscope(&["capture", "-"], bytes);
         assert_eq!((code, err.as_str()), (Some(0), ""));
-        let told = format!("by the times of its bytes {baud} baud is taken: give it\n");
+        let told = format!("{baud} baud is assumed from the times of its bytes: give it\n");
         assert!(out.contains(&told) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
         let (_, out, _) = stepscope(&["capture", "-", "--baud", "250000"], bytes);
         assert!(!out.contains("note") && out.contains("\nRX: 250000 baud, "), "{out}");

@@ -179,7 +179,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         (&["sine", "best", "--segments", "0"], "'0' for '--segments <N>': out of range; use 1 or more"),
         (
             &["sine", "best", "--segments", MOST],
-            "--segments 18446744073709551615: no d1 from 0.002 to 0.06 gives as many; use 2 to 10",
+            "--segments 18446744073709551615: no d1 from 0.002 to 0.06 gives this number; use 2 to 10",
         ),
         (&["sine", "vertices", "--segments", "33"], "out of range; use 1 to 32"),
         (

@@ -50,6 +50,19 @@ fn again(scenario: &Scenario, run: &Run) -> Scenario {
     again
 }
 
+/// The levels stay as they are: nothing changes after the last packet.
+#[test]
+fn a_level_forced_long_after_the_last_packet_lengthens_no_run() {
+    let scenario = Scenario::from_json(
+        r#"{ "bus": { "channels": 1, "slots": 1 }, "controllers": [{}],
+            "line": { "glitches": [{ "start_cycle": 1000000000, "length_cycles": 100, "level": 1 }] },
+            "source": { "line": { "sends": [{ "start_cycle": 10000, "bytes": "81" }] } } }"#,
+    )
+    .expect("a scenario");
+    let experiment = Experiment::new(&scenario).expect("no problems");
+    equivalence::check(&scenario, &experiment, Ways { slices: &[1], hurry: 100, most_clocked: 400_000 });
+}
+
 proptest! {
     #![proptest_config(effort::cases(600))]
 

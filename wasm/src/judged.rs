@@ -1,4 +1,4 @@
-//! A scenario that was read, judged and planned, once; all questions about it begin here.
+//! A scenario that was read, validated and planned once; all requests about it begin here.
 
 use stepscope_core::{
     peripheral::config::Config,
@@ -7,7 +7,7 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// A scenario that was read, judged and planned, once. A run, a link and the study's questions are made of it.
+/// A scenario that was read, validated and planned once. A run, a link and the study's requests use it.
 #[wasm_bindgen]
 pub struct Judged(pub(crate) sim::ValidatedScenario);
 

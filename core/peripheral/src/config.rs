@@ -1,7 +1,7 @@
 //! The peripheral's configuration: what a device is built from, and the rules of DESIGN A4 and A7 that it keeps.
 //!
-//! [`Bus`] and [`SerialLine`] are what one asks for, [`Config`] is what holds: it is made of them, or every rule that
-//! they break is told with its numbers.
+//! [`Bus`] and [`SerialLine`] are the request. [`Config`] is valid: it is made of them, or every broken rule is reported
+//! with its numbers.
 //!
 //! ```
 //! use stepscope_peripheral::config::{Bus, Config, SerialLine};
@@ -258,14 +258,14 @@ pub struct Config {
 }
 
 impl Config {
-    /// Checks what is requested.
+    /// Validates the bus and the line.
     /// Errors: every rule that is broken, each with the field that has to change.
     pub fn new(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
         Self::judged(clock_hz, bus, line, true)
     }
 
-    /// Checks what is asked of a bus that segments drive: there are no slots for
-    /// the pulses to fit in, and nothing is received.
+    /// Validates a bus that segments drive: there are no slots for the pulses to fit in, and
+    /// nothing is received.
     /// Errors: as [`Self::new`].
     pub fn of_segments(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
         Self::judged(clock_hz, bus, line, false)

@@ -97,7 +97,7 @@ impl Controllers {
         })
     }
 
-    /// Reports an overload, last in the cycle that was run last. Returns whether the controller reacts: stand-alone
+    /// Reports an overload at the end of the latest cycle. Returns whether the controller reacts: stand-alone
     /// ones do not.
     pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
         match &mut self.generator {

@@ -1,4 +1,4 @@
-//! An experiment: a scenario judged once, planned once, and run (DESIGN A2, A9).
+//! An experiment: a scenario that is validated once, planned once, and run (DESIGN A2, A9).
 //!
 //! ```
 //! use stepscope_peripheral::trace::Digest;

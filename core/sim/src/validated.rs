@@ -1,5 +1,4 @@
-//! A scenario read once, judged once and planned once: what a keystroke costs. The run and every question of the study
-//! take what was judged.
+//! A scenario that is read, validated and planned once per edit. The run and every request of the study use the result.
 
 use crate::Experiment;
 use alloc::{rc::Rc, vec::Vec};

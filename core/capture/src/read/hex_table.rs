@@ -70,7 +70,7 @@ impl Head {
         Some(Self { separator, unit, direction, column, name: name.clone() })
     }
 
-    /// Its name is neither a signal nor a position, and its values have two digits.
+    /// Whether its name says bytes or `value`, or is neither a signal nor a position and its values have two digits.
     fn may_be_bytes(&self, digits: &Digits) -> bool {
         let is_value = ["value", "val"].contains(&self.name.to_lowercase().as_str());
         let is_known = self.column != Column::Any || is_value;

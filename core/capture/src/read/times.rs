@@ -22,7 +22,7 @@ const MAX_PLACES: u32 = 18;
 const MAX_FIRST_PLACES: u32 = 12;
 /// ns, however long the recording is.
 const MIN_PLACES: u32 = 9;
-/// In this range (s) the first time is one since 1970, or of a clock that has run for years: it becomes tick 0.
+/// A first time in this range (s) counts from 1970 or from the start of a clock that has run for years: it becomes tick 0.
 const EPOCH_S: Range<i128> = 100_000_000..100_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -40,7 +40,7 @@ impl Drift {
         let middle = median(sampled.iter().copied().map(left).collect());
         let off = |event: (f64, f64)| libm::fabs(left(event) - middle);
         let within_s = DEVIATIONS * median(sampled.iter().copied().map(off).collect()) + cycle_s;
-        // Least squares about the means, of the rest after the first slope.
+        // Least squares about the means, of what the first slope leaves.
         let counting = || (0..count).filter_map(&event).filter(|event| off(*event) <= within_s);
         let (mut n, mut times, mut sum) = (0.0, 0.0, 0.0);
         for event in counting() {

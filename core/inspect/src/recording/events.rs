@@ -5,7 +5,7 @@
 //! use stepscope_inspect::trace::stored_run::Recording;
 //! use stepscope_sim::Experiment;
 //!
-//! // The bytes of a run beside themselves.
+//! // The bytes of a run compared with themselves.
 //! let mut recording = Recording::default();
 //! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);

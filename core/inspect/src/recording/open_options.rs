@@ -93,7 +93,7 @@ impl fmt::Display for OpenError {
             Self::Clock(given) => {
                 write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
             }
-            Self::SampleRate => f.write_str("the sample rate is 0; give the samples a second, in Hz"),
+            Self::SampleRate => f.write_str("the sample rate is 0; give the samples per second, in Hz"),
             Self::NoSampleRate(format) => f.write_str(match format {
                 Format::Klipper => {
                     "the log has no CLOCK_FREQ; give the clock of its controller as the sample rate, in Hz, such as 16000000"
@@ -112,15 +112,15 @@ impl fmt::Display for OpenError {
                 }
             }),
             Self::NoBaud => f.write_str(
-                "the bytes have no times; give the bit rate, and they are taken for sent back to back",
+                "the bytes have no times; give the bit rate; they then count as sent back to back",
             ),
-            Self::Baud => f.write_str("the bit rate is 0; give the bits a second"),
+            Self::Baud => f.write_str("the bit rate is 0; give the bits per second"),
             Self::Uart(given, allowed) => write!(f, "the UART format: \"{given}\" is not one; {allowed}"),
             Self::NoRate(why, _) => f.write_str(why),
             Self::TooLate(error) => error.fmt(f),
             Self::TooManySteps(most) => write!(
                 f,
-                "the positions stand for more than {most} steps, or lead further than 2^31 away; give a shorter table"
+                "the positions need more than {most} steps, or go beyond 2^31; give a shorter table"
             ),
         }
     }

@@ -4,10 +4,10 @@
 //! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
 use crate::{timing::decimal::Exact, timing::double::Double};
 
-/// What 106 bits do not tell from a tie, in parts of a time: 2^-94.
+/// Relative distance from a tie that 106 bits do not resolve: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
-/// What 106 bits do not tell from a tie, of a time in cycles.
+/// Distance from a tie, in cycles, that 106 bits do not resolve at this cycle.
 pub(crate) fn tie(cycle: u64) -> Double {
     ((cycle as f64 + 1.0) * TIE).into()
 }
@@ -51,7 +51,7 @@ impl CycleTime {
         self.whole < cycle || (self.whole == cycle && self.part <= tie(cycle))
     }
 
-    /// Whether it is that cycle, but for a tie.
+    /// Whether the time is the start of `cycle`, to within a tie.
     pub(crate) fn is_at(self, cycle: u64) -> bool {
         let short = Double::from(1.0) - self.part;
         self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && short <= tie(cycle)))

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Solving for every step instead would take 40 to 80 times as long as the square root that a step of a trapezoid
-//! takes; with blocks it is one to two times. A block ends where the curve's formula changes. Beside a point of rest,
-//! where time goes as a root of the way, blocks would have few steps, and their equations are solved one by one.
+//! takes; with blocks it is one to two times. A block ends where the curve's formula changes. Near a point of rest
+//! time is a root of the distance: blocks would have few steps, so each step's equation is solved.
 
 use crate::{
     curves::curve::greater,

@@ -15,7 +15,7 @@
 //! time. Every planner stays below 64 u of its move's duration ([`MAX_OFF`]) or gives its own bound.
 //!
 //! 106 bits have an end, too. E counts as earlier by a [`tie`], 2^10 times what they lose, so a step that is due exactly
-//! at E is in the next cycle, as B1 has it. A step due that little before E would be as well; with evenly spread times
+//! at E is in the next cycle, as B1 has it. A step due less than that before E moves to the next cycle, too; with evenly spread times
 //! that is one step in 2^62 of a motion of 2^32 cycles.
 
 use crate::{

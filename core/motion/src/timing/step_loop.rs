@@ -40,7 +40,7 @@ pub(crate) struct MoveSteps<'p> {
     len: usize,
     /// Steps of the move before the next one.
     past: u64,
-    /// Maximum distance of a time from the middle between two edges with which it decides.
+    /// Maximum distance from the middle between two edges at which a time in f64 decides.
     room: f64,
     right: bool,
 }

@@ -152,7 +152,7 @@ impl SegmentEngine {
         self.levels
     }
 
-    /// All that falls due in cycle `now`: at least one signal changes, but at reset.
+    /// Everything due in cycle `now`: at least one signal changes, except at reset.
     fn act(&mut self, now: Instant) {
         let pulse = self.lists.pulse();
         self.deadline = Instant::NEVER;

@@ -83,7 +83,7 @@ impl Device {
         device
     }
 
-    /// The result of a self-test, last in the cycle that was run last: the settling time dp. If a channel has none,
+    /// Takes the result of a self-test at the end of the latest cycle: the settling time dp. If a channel has none,
     /// dp is T_step and fault SELF_TEST is set. On a common DIR line dp is at least a pulse with DIR around it.
     pub fn settles_in(&mut self, found: Option<Cycles>) {
         let config = &self.latches.config;
@@ -106,7 +106,7 @@ impl Device {
         }
     }
 
-    /// The supply current was too high for too long: STOP and fault OVERLOAD, last in the cycle that was run last.
+    /// The supply current was too high for too long: STOP and fault OVERLOAD, at the end of the latest cycle.
     pub fn overload(&mut self, sink: &mut impl Sink) {
         if self.now == Instant::RESET {
             return;

@@ -1,6 +1,6 @@
 //! Between bytes and the level of the line (DESIGN A4 to A6): `schedule` holds what is sent when, `sender` makes edges
-//! of it and `line` the level that all hear; `uart` makes bytes of levels, `packet` and `frame` orders of bytes. When bits
-//! and bytes begin says `bit_times`, what COBS carries `cobs`.
+//! of it, and `line` the level that all receive; `uart` makes bytes of levels, `packet` and `frame` commands of bytes.
+//! `bit_times` computes when bits and bytes begin, and `cobs` decodes COBS.
 //!
 //! ```
 //! use std::rc::Rc;

@@ -1,10 +1,10 @@
-//! Faults of the line, drawn from seeds: what becomes of the same orders over and over again.
+//! Runs the same commands under random line faults, one run per seed.
 //!
 //! ```text
-//! seed -> a scenario: the base's orders, drawn noise and receiver rates -> a run -> a tally
+//! seed -> a scenario: the base's commands, drawn noise and receiver rates -> a run -> a tally
 //! ```
 //!
-//! A seed's scenario stands for itself: whoever runs it sees the same faults, and the same ends.
+//! A seed's scenario is complete: every run of it has the same faults and the same result.
 //! The sum of tallies does not depend on the order in which seeds are run.
 //!
 //! ```

@@ -3,7 +3,7 @@
 //! A controller hears the AND of what the host and all other controllers send, and 1 while it sends itself; the host hears
 //! the controllers while it is not sending. A forced level is heard by all.
 //!
-//! The run goes from window to window. Within a window nobody changes what it does to the line, so each controller runs
+//! The run goes from window to window. Within a window no sender changes its level, so each controller runs
 //! through it alone. A window ends where the host or a forced level changes, where a controller may begin or go on to drive,
 //! or where the host acts.
 

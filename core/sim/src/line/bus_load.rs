@@ -16,7 +16,7 @@ pub(crate) fn carries(
     if packet_cycles <= tick {
         return Ok(());
     }
-    // What a message cannot tell exactly is more than any line can do.
+    // A number that does not fit is beyond every line, so the message need not be exact.
     let saturated = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
     let (packet_cycles, needed_baud) =
         (saturated(packet_cycles), saturated((bits * u128::from(clock_hz)).div_ceil(tick)));

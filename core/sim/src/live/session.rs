@@ -274,8 +274,8 @@ impl Session {
     }
 
     /// A change at the panel of stand-alone controllers that comes while the model stands behind [`Self::now`]; gives its cycle:
-    /// the next one, or where the same input changes there the one after it. A level that was still to come of that input
-    /// does not come any more.
+    /// the next one, or where the same input changes there the one after it. It cancels a level of that
+    /// input that was still to come.
     /// Errors: what a script would be refused for, and that a line has no buttons.
     pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
         if self.cut.is_none() && !self.presses.has_room() {

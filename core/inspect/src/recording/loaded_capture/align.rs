@@ -27,7 +27,7 @@ impl fmt::Display for Misaligned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Part => f.write_str(
-                "only a part of the recording is shown, and a part is not laid beside an experiment; record a shorter time",
+                "only a part of the recording is shown, and a part cannot be aligned with an experiment; record a shorter time",
             ),
             Self::None { kind, aligned, count } => write!(
                 f,

@@ -62,7 +62,7 @@ impl LoadedCapture {
             let baud = options.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
             if options.baud.is_none() {
                 self.notes.push(Note::from(format!(
-                    "the file does not say the bit rate; by the times of its bytes {baud} baud is taken: give it"
+                    "the file does not say the bit rate; {baud} baud is assumed from the times of its bytes: give it"
                 )));
             }
             let lines = self.lines_of(capture, map).into_iter();

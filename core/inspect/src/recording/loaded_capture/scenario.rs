@@ -23,7 +23,7 @@ impl LoadedCapture {
             scenario.source = Source::Segments(SegmentLists::default());
             scenario.title = title(file);
             scenario.note = format!(
-                "Recorded in {file}. No scenario that could be edited here gives it again: it is too long, too fast for the bus, or of another clock. The command says which, and makes a long one (stepscope capture --scenario)."
+                "Recorded in {file}. No scenario that can be edited here reproduces it: it is too long, too fast for the bus, or has another clock. The command reports which, and can write a long scenario (stepscope capture --scenario)."
             );
             scenario
         });

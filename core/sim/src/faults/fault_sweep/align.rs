@@ -1,6 +1,6 @@
-//! Two lists of ticks side by side: which ordered ones were executed, which not, and what else was.
+//! Aligns the commanded and the executed ticks: which were executed, which were not, and which are additional.
 //!
-//! Where the lists differ, the least that explains it is taken: ticks left out, ticks put in, or
+//! Where the lists differ, the smallest change that explains it counts: ticks missing, ticks added, or
 //! ticks with other steps, until [`SAME`] of them agree again.
 
 use stepscope_peripheral::{signal::MAX_CHANNELS, wire::packet::ChannelCommand};
@@ -12,9 +12,9 @@ const FAR: usize = 64;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Alignment {
-    /// Executed with other steps than ordered.
+    /// Executed with other steps than commanded.
     pub(super) wrong: u64,
-    /// Executed and not ordered, or executed twice.
+    /// Executed but not commanded, or executed twice.
     pub(super) extra: u64,
     /// Ordered and not executed.
     pub(super) missing: u64,

@@ -37,7 +37,7 @@ tally! {
     frames,
     /// Frames that the host sent again.
     repeated,
-    /// How often the host of a framed line died.
+    /// How often the host of a framed line crashed.
     crashes,
     /// Frames whose check failed (CRC).
     bad_check,
@@ -55,13 +55,13 @@ tally! {
     replies,
     /// Replies that the host did not get whole.
     replies_lost,
-    /// Ticks ordered.
+    /// Ticks commanded.
     ordered,
     /// Ticks executed.
     executed,
     /// Ticks that the host did not send, because it gave up or the run ended.
     unreached,
-    /// Ticks executed with other steps than ordered.
+    /// Ticks executed with other steps than commanded.
     wrong,
     /// Ticks executed twice, or never commanded.
     duplicated,
