@@ -5,16 +5,12 @@
  * then, and {facts} or {error}; {sample}, the name of a sample, in the file's place; {id, method, args} for an answer {id, value} or {id, error}. Ending the worker cancels.
  */
 import init, * as core from "../pkg-tools/stepscope_wasm.js";
-import { fatal, text } from "./judging.js";
+import { awaitModule, fatal, text } from "./judging.js";
 
 /** Least time between two reports of progress, in ms. */
 const REPORT_MS = 60;
 
-/** @type {(module: WebAssembly.Module) => void} */
-let provide = () => {};
-const ready = new Promise((resolve) => {
-  provide = (module) => resolve(init({ module_or_path: module }));
-});
+const { provide, ready } = awaitModule(init);
 /** @type {any} */
 let opened = null;
 

@@ -280,7 +280,7 @@ export class Engine {
 /** A worker that has the core; the page says which script it begins with. */
 function another() {
   const made = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
-  compiled("core").then(
+  compiled().then(
     (module) => made.postMessage({ module }),
     // What goes wrong with the core is told by who waits for the charts.
     () => {},

@@ -110,7 +110,7 @@ export class Further {
   }
 }
 
-/** A worker that has the study's part of the core; the page says which script it begins with. @param {string} missing */
+/** A worker that has the tools; the page says which script it begins with. @param {string} missing */
 function another(missing) {
   const made = new Worker(/** @type {string} */ (byId("main").dataset.studyWorker), { type: "module" });
   compiled("tools").then(

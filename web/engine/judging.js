@@ -1,4 +1,17 @@
-/** What both workers do with a question: a scenario judged once for all that is asked of it, and errors as texts. */
+/** What the workers share: the wait for their code, a scenario validated once, errors as texts. */
+
+/**
+ * The wait for the compiled code: `provide` takes it, `ready` resolves once it runs.
+ * @param {(options: {module_or_path: WebAssembly.Module}) => Promise<unknown>} init
+ */
+export function awaitModule(init) {
+  /** @type {(module: WebAssembly.Module) => void} */
+  let provide = () => {};
+  const ready = new Promise((resolve) => {
+    provide = (module) => resolve(init({ module_or_path: module }));
+  });
+  return { provide, ready };
+}
 
 /**
  * Keeps the scenario that was judged last, read and planned once for all that is asked of it until another one comes.

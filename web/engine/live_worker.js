@@ -9,7 +9,7 @@
  * {error} where nothing began, or the core failed: what had the port has given it back, and this worker is of no use any more.
  */
 import init, * as core from "../pkg-tools/stepscope_wasm.js";
-import { fatal, text } from "./judging.js";
+import { awaitModule, fatal, text } from "./judging.js";
 
 /** How much later than on the line a reply may come, in ms: what the system and the adapter add, and the page's window, through which
  * its port's streams go. */
@@ -31,11 +31,7 @@ const MAX_WAITING = 1 << 16;
 /** Bits of a byte on the line. */
 const BYTE_BITS = 10;
 
-/** @type {(module: WebAssembly.Module) => void} */
-let provide = () => {};
-const ready = new Promise((resolve) => {
-  provide = (module) => resolve(init({ module_or_path: module }));
-});
+const { provide, ready } = awaitModule(init);
 /** What ends a rest early. */
 let wake = () => {};
 /** What is asked of what has the port. */

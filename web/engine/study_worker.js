@@ -15,18 +15,14 @@ import init, {
   step_figures,
   with_motor,
 } from "../pkg-tools/stepscope_wasm.js";
-import { createJudging, fatal, text } from "./judging.js";
+import { awaitModule, createJudging, fatal, text } from "./judging.js";
 
 /** Questions that are about no scenario. @type {{[method: string]: (...args: any[]) => any}} */
 const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures, with_motor };
 
 const { judge } = createJudging((json) => new Judged(json));
 
-/** @type {(module: WebAssembly.Module) => void} */
-let provide = () => {};
-const ready = new Promise((resolve) => {
-  provide = (module) => resolve(init({ module_or_path: module }));
-});
+const { provide, ready } = awaitModule(init);
 
 /** What was opened last. @type {any} */
 let opened = null;

@@ -4,20 +4,21 @@
  */
 import { byId } from "../dom.js";
 
-/** @typedef {"core" | "tools"} Part */
+/** Where each module is; the help page names the core alone. */
+const ADDRESSES = {
+  core: () => /** @type {HTMLLinkElement} */ (byId("core")).href,
+  tools: () => byId("main").dataset.toolsCore ?? "",
+};
 
 /** Time for the first result to be drawn before the tools load, in ms. */
 const PRELOAD_MS = 500;
 
-/** @type {{[part in Part]?: Promise<WebAssembly.Module>}} */
+/** @type {{[which in keyof typeof ADDRESSES]?: Promise<WebAssembly.Module>}} */
 const modules = {};
 
-/** @param {Part} which @returns {Promise<WebAssembly.Module>} */
+/** @param {keyof typeof ADDRESSES} which @returns {Promise<WebAssembly.Module>} */
 export function compiled(which = "core") {
-  // The help page has the core alone, and no scripts to name the others.
-  const named = () => byId("main").dataset[`${which}Core`] ?? "";
-  const address = () => (which === "core" ? /** @type {HTMLLinkElement} */ (byId("core")).href : named());
-  const made = modules[which] ?? compile(address());
+  const made = modules[which] ?? compile(ADDRESSES[which]());
   modules[which] = made;
   // What could not be fetched is asked for again.
   made.catch(() => {

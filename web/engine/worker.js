@@ -16,7 +16,7 @@ import init, {
   presets,
   schema,
 } from "../pkg/stepscope_wasm.js";
-import { createJudging, fatal, text } from "./judging.js";
+import { awaitModule, createJudging, fatal, text } from "./judging.js";
 
 /** How long a slice should take, in ms: short enough to be cancelled within a tenth of a second. */
 const SLICE_MS = 15;
@@ -41,11 +41,7 @@ const NONE = -2;
 /** Number of the newest run that was asked for. */
 let newest = NONE;
 
-/** @type {(module: WebAssembly.Module) => void} */
-let provide = () => {};
-const ready = new Promise((resolve) => {
-  provide = (module) => resolve(init({ module_or_path: module }));
-});
+const { provide, ready } = awaitModule(init);
 /** The newest last; their pieces may still come. @type {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}[]} */
 let recordings = [];
 /** As many as the page has. */

@@ -6,7 +6,7 @@ import { createLazyPopover } from "./lazy_popover.js";
 import { loadExperiments } from "./storage.js";
 
 /** Lists the own experiments beside the presets. */
-export function listOwn() {
+function listOwn() {
   const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const { value } = preset;
   preset.querySelector("optgroup[data-own]")?.remove();

@@ -117,7 +117,7 @@ export function maximized({ bare, panes }, view) {
 }
 
 /** Sizes that an edge can be moved to. @param {Edge} edge @param {number} before @param {number} after  Sizes of its panes. */
-export const limitsOf = ({ least, rest }, before, after) => ({
+const limitsOf = ({ least, rest }, before, after) => ({
   least,
   most: Math.max(least, before + after - rest),
 });

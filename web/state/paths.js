@@ -30,6 +30,6 @@ export function movedTo(at, moved) {
 }
 
 /** Whether `path` is `outer` or a part of it. @param {string} path @param {string} outer */
-export function isWithin(path, outer) {
+function isWithin(path, outer) {
   return outer === "" || path === outer || path.startsWith(`${outer}.`) || path.startsWith(`${outer}[`);
 }

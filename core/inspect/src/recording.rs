@@ -27,6 +27,8 @@ pub mod events;
 pub mod figures;
 pub mod loaded_capture;
 mod matching;
+#[cfg(test)]
+mod noise;
 pub mod open_options;
 pub mod overview;
 pub mod packets;

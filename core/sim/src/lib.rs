@@ -35,8 +35,7 @@ mod validated;
 
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
-pub use faults::fault_sweep;
-pub use faults::power_cut;
+pub use faults::{fault_sweep, power_cut};
 pub use hosts::{
     framed_host, raw_host,
     script::{replayed, scripted},
@@ -47,4 +46,4 @@ pub use plant::plant_run;
 pub use run::Run;
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
-pub use validated::{SelectedAxis, ValidatedScenario, axes_of};
+pub use validated::{SelectedAxis, ValidatedScenario, axes_of, bus_of};

@@ -67,10 +67,7 @@ impl ValidatedScenario {
     pub fn axis(&self, controller: usize, axis: usize) -> Option<SelectedAxis<'_>> {
         let plan = self.experiment().ok()?.plans_of(controller).get(axis)?;
         let scenario = &*self.scenario;
-        let bus = match controller.checked_sub(1) {
-            None => &scenario.bus,
-            Some(index) => &scenario.controllers.get(index)?.bus,
-        };
+        let bus = bus_of(scenario, controller)?;
         Some(SelectedAxis { scenario, bus, axis: axes_of(scenario, controller).get(axis)?, plan })
     }
 }
@@ -78,6 +75,15 @@ impl ValidatedScenario {
 impl From<Scenario> for ValidatedScenario {
     fn from(scenario: Scenario) -> Self {
         Self::of(scenario, Vec::new())
+    }
+}
+
+/// The bus of a controller; `None` where there is no such controller.
+#[must_use]
+pub fn bus_of(scenario: &Scenario, controller: usize) -> Option<&Bus> {
+    match controller.checked_sub(1) {
+        None => Some(&scenario.bus),
+        Some(index) => scenario.controllers.get(index).map(|controller| &controller.bus),
     }
 }
 

@@ -95,13 +95,3 @@ pub fn move_end(run: &Run, index: usize, microsteps: u32, last_rise: u64, right:
     }
     Some(end)
 }
-
-/// Greatest |u/microsteps - x| at grid points.
-pub fn greatest_following_error(run: &Run, index: usize, microsteps: u32) -> f64 {
-    let mut greatest = 0.0f64;
-    for point in &run.points {
-        let motor = point.motors[index];
-        greatest = greatest.max((motor.u as f64 / f64::from(microsteps) - motor.x).abs());
-    }
-    greatest
-}

@@ -85,13 +85,6 @@ pub struct Run {
 }
 
 impl Run {
-    /// Least and greatest V at grid points.
-    pub fn v_range(&self) -> (f64, f64) {
-        self.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), point| {
-            (least.min(point.v), most.max(point.v))
-        })
-    }
-
     /// (cycle, `sensed_a`) at each point.
     pub fn sensed_supply(&self) -> Vec<(u64, f64)> {
         self.points.iter().map(|point| (point.cycle, point.sensed_a)).collect()

@@ -4,7 +4,7 @@ use crate::{
     convert::{object, records},
     judged::{Judged, listed},
 };
-use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps};
+use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps, sim::bus_of};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -90,8 +90,7 @@ impl Judged {
     fn tables_of_run(&self, controller: usize, channel: u8, run: &[u8]) -> Result<StepTables<'_>, JsError> {
         self.0.experiment().map_err(listed)?;
         let scenario = self.0.scenario();
-        let further = controller.checked_sub(1).and_then(|index| scenario.controllers.get(index));
-        let bus = further.map_or(&scenario.bus, |controller| &controller.bus);
+        let bus = bus_of(scenario, controller).unwrap_or(&scenario.bus);
         let trace: Vec<_> = records(run).collect();
         StepTables::of_steps(scenario, bus, &steps(&trace, channel)).map_err(|problems| listed(&problems))
     }

@@ -287,19 +287,7 @@ mod page {
 
 #[cfg(all(test, not(target_arch = "wasm32")))]
 mod tests {
-    use super::*;
-
-    fn axis(min: f64, max: f64, unit: &str) -> Axis {
-        Axis {
-            min,
-            max,
-            unit: unit.into(),
-            prefix: true,
-            label_px: 40.0,
-            ticks: Vec::new(),
-            labels: String::new(),
-        }
-    }
+    use super::{axis::axis, *};
 
     fn spec(x: Axis, y: Axis, shape: Shape) -> Spec {
         let series = Series {

@@ -10,13 +10,12 @@ use crate::{
     },
 };
 use std::{mem::take, rc::Rc};
-use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{
     inspect::{
         packets::packet_table::Filter,
         plant::log::PlantLog,
         recording::replies,
-        trace::{changes::Changes, drivers, run_sink::RunSink, timing::TimingCheck},
+        trace::{changes::Changes, drivers, run_sink::RunSink, stored_run::Recording, timing::TimingCheck},
     },
     peripheral::{
         config::Config,

@@ -3,8 +3,6 @@ import { element } from "../../dom.js";
 import { positionCurves } from "./position_curves.js";
 import { NAMES, ROLES } from "./roles.js";
 
-/** @typedef {ReturnType<typeof createLayout>} Layout */
-
 export function createLayout() {
   const roles = NAMES.map((name) => {
     const input = element("input", { type: "radio", name: "live-role", value: name });

@@ -4,7 +4,6 @@ import { levelText, pressCycle, pressText, pushText, shortestPress, whyNoPush } 
 import { entriesOf, inputsOf, moved, nameOf, ownerOf, press, put, sameEntry } from "./script.js";
 
 /** @typedef {import("./script.js").Placed} Placed */
-/** @typedef {ReturnType<typeof createScriptEditor>} ScriptEditor */
 
 /**
  * @param {{report: (text: string, isError?: boolean) => void, played: () => number | null} & import("../../state/types.js").Page} page

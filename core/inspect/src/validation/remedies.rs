@@ -22,7 +22,7 @@ use stepscope_motion::{
     plan_axis, problem,
 };
 use stepscope_scenario::{Cause, MotionEngine, Scenario, Source};
-use stepscope_sim::{ValidatedScenario, axes_of};
+use stepscope_sim::{ValidatedScenario, axes_of, bus_of};
 
 /// Times are rounded up to multiples of this, in s.
 const TIME_STEP_S: f64 = 1e-4;
@@ -84,7 +84,7 @@ impl Rates {
     fn of(scenario: &Scenario, controller: usize) -> Self {
         let peak = |axis: &Axis| plan_axis(axis, "axis").map_or(0.0, |plan| plan.peaks().speed);
         let needed = axes_of(scenario, controller).iter().map(peak).fold(0.0, libm::fmax);
-        let bus = controller.checked_sub(1).map_or(&scenario.bus, |index| &scenario.controllers[index].bus);
+        let bus = bus_of(scenario, controller).unwrap_or(&scenario.bus);
         let limit = f64::from(scenario.clock_hz) / f64::from(bus.step_period_cycles.max(1));
         Self { controller, needed, limit }
     }

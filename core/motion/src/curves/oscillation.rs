@@ -6,7 +6,10 @@
 //! -2*A |    \/        \/       4*A steps a period, 0 at the end of each
 //! ```
 
-use crate::curves::curve::greater;
+use crate::{
+    curves::curve::greater,
+    timing::{CycleTime, Double, Exact},
+};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oscillation {
@@ -26,6 +29,17 @@ impl Oscillation {
 
     pub(crate) fn duration_s(&self) -> f64 {
         self.period_s * f64::from(self.periods)
+    }
+
+    /// All periods in cycles, with all digits.
+    pub(crate) fn length(&self, clock_hz: u32) -> CycleTime {
+        let duration = Exact::of(self.period_s).times(self.periods.into());
+        CycleTime::exact(&duration.times(clock_hz.into()))
+    }
+
+    /// A period in cycles, in 106 bits.
+    pub(crate) fn period(&self, clock_hz: u32) -> Double {
+        Exact::of(self.period_s).times(clock_hz.into()).double()
     }
 
     pub(crate) fn step_count(&self) -> u64 {

@@ -18,9 +18,7 @@ use crate::{
     planners::budget::hold_speed,
     planners::quantities::Quantities,
     square_root,
-    timing::{
-        CycleTime, Double, Exact, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before,
-    },
+    timing::{CycleTime, Double, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before},
 };
 use alloc::{boxed::Box, format, rc::Rc, string::String, vec::Vec};
 use core::f64::consts::{PI, TAU};
@@ -84,8 +82,7 @@ impl Sine {
 /// their cycles, which are three, it is off by at most 10 u.
 impl Schedule for Sine {
     fn length(&self, clock_hz: u32) -> CycleTime {
-        let periods = Exact::of(self.oscillation.period_s).times(self.oscillation.periods.into());
-        CycleTime::exact(&periods.times(clock_hz.into()))
+        self.oscillation.length(clock_hz)
     }
 
     /// All half periods have the same times from their starts; saved, they take a twentieth of an arc sine each.
@@ -108,7 +105,7 @@ impl Schedule for Sine {
     /// In its half period the travel from the nearer extreme is 2*A*sin^2(pi*t/T).
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let travel = 2 * self.oscillation.amplitude;
-        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        let period = self.oscillation.period(clock_hz);
         let half = period * 0.5;
         Box::new(move |k, since| {
             let since = since - half * Double::from((k - 1) / travel);

@@ -24,7 +24,7 @@ use crate::{
     planners::quantities::Quantities,
     problem::ValueError,
     round_half_up,
-    timing::{CycleTime, Double, Exact, IsDueBefore, Run, Runs, Schedule},
+    timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -225,8 +225,7 @@ impl SineSegments {
 
 impl Schedule for SineSegments {
     fn length(&self, clock_hz: u32) -> CycleTime {
-        let periods = Exact::of(self.oscillation.period_s).times(self.oscillation.periods.into());
-        CycleTime::exact(&periods.times(clock_hz.into()))
+        self.oscillation.length(clock_hz)
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
@@ -241,7 +240,7 @@ impl Schedule for SineSegments {
 
     /// A step's time is a quotient of the period's decimal. In f64 it is off by at most 6 u.
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
-        let period = Exact::of(self.oscillation.period_s).times(clock_hz.into()).double();
+        let period = self.oscillation.period(clock_hz);
         let of_period = 4 * self.oscillation.amplitude;
         let mut before = 0;
         let intervals: Vec<(u64, Interval)> = self

@@ -29,17 +29,11 @@ fn check_planned(given: &Move, roundings: f64, ideal: impl FnOnce(&Profile) -> I
     let off = roundings * f64::EPSILON / 2.0 * profile.duration_s() * f64::from(CLOCK_HZ);
     assert!(off > 0.5, "some steps are decided in f64: off by {off} of {given:?}");
     let (ideal, clock, count) = (ideal(profile), whole(CLOCK_HZ.into()), profile.step_count());
-    // A step of segments has its cycle after all before it alone.
-    let listed: Vec<u64> = match given {
-        Move::SineSegments(_) => plan.due_steps(CLOCK_HZ).map(|due| due.cycle).collect(),
-        _ => Vec::new(),
-    };
     let first = MOST.min(count);
     let last = (count - first + 1).max(first + 1);
     let between = (first + 1..last).step_by((count / MOST) as usize + 1);
     for k in (1..=first).chain(between).chain(last..=count) {
-        let own = profile.step_cycle(k, CLOCK_HZ);
-        let cycle = own.or(listed.get(k as usize - 1).copied()).expect("a step has a cycle");
+        let cycle = profile.step_cycle(k, CLOCK_HZ).expect("a step has a cycle");
         let at = |halves: i64| {
             (ideal.compare)(k, &(whole(2 * cycle as i64 + halves) / (whole(2) * clock.clone())))
         };

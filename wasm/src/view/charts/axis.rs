@@ -23,3 +23,17 @@ pub(crate) struct Axis {
     #[serde(default)]
     pub(crate) labels: String,
 }
+
+/// An axis for tests, whose unit takes prefixes.
+#[cfg(test)]
+pub(super) fn axis(min: f64, max: f64, unit: &str) -> Axis {
+    Axis {
+        min,
+        max,
+        unit: unit.into(),
+        prefix: true,
+        label_px: 40.0,
+        ticks: Vec::new(),
+        labels: String::new(),
+    }
+}

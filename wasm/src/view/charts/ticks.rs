@@ -103,18 +103,7 @@ fn count(axis: &Axis, step: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn axis(min: f64, max: f64, unit: &str) -> Axis {
-        Axis {
-            min,
-            max,
-            unit: unit.into(),
-            prefix: true,
-            label_px: 40.0,
-            ticks: Vec::new(),
-            labels: String::new(),
-        }
-    }
+    use crate::view::charts::axis::axis;
 
     #[test]
     fn tick_labels_share_one_prefix_and_one_number_of_digits() {

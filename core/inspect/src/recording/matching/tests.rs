@@ -1,27 +1,7 @@
 use super::*;
+use crate::recording::noise::Noise;
 use alloc::{format, string::String};
 use stepscope_peripheral::trace::Step;
-
-/// Numbers that are the same everywhere.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
-    }
-
-    /// From -1 to 1.
-    fn signed(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
 
 /// Times of `count` steps in s: constant, a ramp up and down, or constant and then a ramp.
 fn plan(kind: usize, count: usize) -> Vec<f64> {
@@ -162,7 +142,7 @@ fn random_edits_are_found_through_drift_and_jitter() {
                 index += missing;
                 continue;
             }
-            let at = libm::fmax(plan[index] + jitter * least * noise.signed(), before + 1e-7);
+            let at = libm::fmax(plan[index] + jitter * least * noise.between(-1.0, 1.0), before + 1e-7);
             recorded.push(at);
             if is_edit {
                 expected.push(format!("+{index}x1"));
@@ -190,7 +170,7 @@ fn a_recording_that_is_unlike_the_plan_is_matched_with_bounded_effort() {
     let (mut noise, mut at) = (Noise(1), 0.0);
     // Intervals from 0.1 to 2.1 of the planned ones.
     let wild = plan.iter().map(|_| {
-        at += 1e-4 * (1.1 + noise.signed());
+        at += 1e-4 * (1.1 + noise.between(-1.0, 1.0));
         at
     });
     let (recorded, model) = (steps(&wild.collect::<Vec<_>>(), 1e6), steps(&plan, 1e6));

@@ -2,28 +2,9 @@
 
 use crate::recording::alignment::Side;
 use crate::recording::differences::*;
+use crate::recording::noise::Noise;
 use alloc::{format, string::String, vec, vec::Vec};
 use stepscope_peripheral::trace::Step;
-
-/// xorshift64: the same numbers on every machine.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
