@@ -50,13 +50,14 @@ fn again(scenario: &Scenario, run: &Run) -> Scenario {
     again
 }
 
-/// The levels stay as they are: nothing changes after the last packet.
+/// A run that pauses at its last record, DE's fall after a reply, is over: the forced level changes nothing.
 #[test]
-fn a_level_forced_long_after_the_last_packet_lengthens_no_run() {
+fn a_level_forced_long_after_the_last_reply_lengthens_no_run() {
     let scenario = Scenario::from_json(
-        r#"{ "bus": { "channels": 1, "slots": 1 }, "controllers": [{}],
-            "line": { "glitches": [{ "start_cycle": 1000000000, "length_cycles": 100, "level": 1 }] },
-            "source": { "line": { "sends": [{ "start_cycle": 10000, "bytes": "81" }] } } }"#,
+        r#"{ "bus": { "channels": 1 }, "controllers": [{ "address": 2 }],
+            "line": { "protocol": "framed",
+                "glitches": [{ "start_cycle": 1000000000, "length_cycles": 100, "level": 1 }] },
+            "source": { "line": { "sends": [{ "start_cycle": 1602, "bytes": "010604cde0fb3600" }] } } }"#,
     )
     .expect("a scenario");
     let experiment = Experiment::new(&scenario).expect("no problems");
