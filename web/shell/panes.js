@@ -144,9 +144,12 @@ export function createPanes({ dispatch, now }) {
     most.setAttribute("aria-pressed", String(isMost));
   }
 
+  let isApplied = false;
+
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     const isChanged =
+      !isApplied ||
       before?.panes !== state.panes ||
       before?.bare !== state.bare ||
       before?.result !== state.result ||
@@ -155,6 +158,7 @@ export function createPanes({ dispatch, now }) {
       hasPanel(before) !== hasPanel(state) ||
       before?.view !== state.view;
     if (!isChanged) return;
+    isApplied = true;
     apply(state);
     showEdges();
     if (before && before.panes !== state.panes) savePanes(JSON.stringify(state.panes));

@@ -33,6 +33,13 @@ fn with_inputs(inputs: &str) -> Result<Known> {
     ))
 }
 
+/// A controller whose program moves for 100 s, so a pause comes within it however slow the machine is.
+fn with_long_program(inputs: &str) -> Result<Known> {
+    Known::of(&format!(
+        r#"{{"run_cycles":1600000000,"source":{{"standalone":[{{"groups":[{{"move":{{"length":999999,"speed_hz":1000}}}}],"inputs":[{inputs}]}}]}}}}"#
+    ))
+}
+
 fn press(input: &str, from: u64, until: u64) -> String {
     format!(
         r#"{{"cycle":{from},"input":"{input}","level":1}},{{"cycle":{until},"input":"{input}","level":0}}"#
@@ -216,10 +223,10 @@ fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()>
 #[test]
 fn a_program_is_started_paused_and_cut_by_keys_alone() -> Result<()> {
     in_browser(|page| async move {
-        open(&page, &with_inputs("")?, 3_200_000).await?;
+        open(&page, &with_long_program("")?, 3_200_000).await?;
         page.press("[data-input='start']", &ENTER.to_string()).await?;
         let start = press("start", 3_200_000, 3_200_000 + SHORTEST);
-        until_run(&page, &with_inputs(&start)?).await?;
+        until_run(&page, &with_long_program(&start)?).await?;
         // By one key live: it goes into the script as it is held, and is one step of the history.
         page.press("#view-panel .head [aria-label='Live'] button", &ENTER.to_string()).await?;
         page.until("document.querySelector('.panel-at').textContent.startsWith('live')").await?;
@@ -233,7 +240,7 @@ fn a_program_is_started_paused_and_cut_by_keys_alone() -> Result<()> {
         page.press("#view-panel .head [aria-label='Live'] button", &ENTER.to_string()).await?;
         page.until(&format!("{WORDS}.startsWith('PAUS')")).await?;
         page.click("#undo").await?;
-        until_run(&page, &with_inputs(&start)?).await
+        until_run(&page, &with_long_program(&start)?).await
     })
 }
 
