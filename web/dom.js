@@ -1,4 +1,4 @@
-/** Small helpers over the DOM. Text goes in as text only. */
+/** DOM helpers. They insert text only as text. */
 
 /**
  * @template {keyof HTMLElementTagNameMap} K
@@ -22,13 +22,13 @@ export function button(text, label, press, disabled = false) {
   return made;
 }
 
-/** Replaces what an element holds. @param {Element} parent @param {...(Node | string)} children */
+/** Replaces the children of an element. @param {Element} parent @param {...(Node | string)} children */
 export function fill(parent, ...children) {
   parent.replaceChildren(...children);
 }
 
 /**
- * The element with an id; the page is wrong without it.
+ * The element with an id; throws if it is missing.
  * @template {HTMLElement} [T=HTMLElement]
  * @param {string} id
  * @returns {T}
@@ -39,15 +39,15 @@ export function byId(id) {
   return /** @type {T} */ (found);
 }
 
-/** Sets a text only where it changed, so that live regions speak once. @param {Element} node @param {string} text */
+/** Sets a text only if it changed, so that live regions speak once. @param {Element} node @param {string} text */
 export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
-/** What stands out now, and the timer that ends it. @type {WeakMap<Element, ReturnType<typeof setTimeout>>} */
+/** Flashing elements and their timers. @type {WeakMap<Element, ReturnType<typeof setTimeout>>} */
 const flashes = new WeakMap();
 
-/** Lets a change stand out for a moment. Fading would draw the whole page anew in every frame. @param {HTMLElement} node */
+/** Highlights a change for a moment. @param {HTMLElement} node */
 export function flash(node) {
   node.classList.add("changed");
   clearTimeout(flashes.get(node));
@@ -57,7 +57,7 @@ export function flash(node) {
   );
 }
 
-/** Fills a select; keeps its value where that is still there. @param {HTMLSelectElement} select @param {[string, string][]} options @param {string} value */
+/** Fills a select. @param {HTMLSelectElement} select @param {[string, string][]} options @param {string} value */
 export function options(select, options, value) {
   const key = JSON.stringify(options);
   if (select.dataset.options !== key) {
@@ -67,7 +67,7 @@ export function options(select, options, value) {
   if (select.value !== value) select.value = value;
 }
 
-/** Loads the style of a part that the page begins without; where it does not come, the part can be used all the same. @param {"study" | "panel" | "live"} part @returns {Promise<void>} */
+/** Loads the style of a part of the page; errors are ignored. @param {"study" | "panel" | "live"} part @returns {Promise<void>} */
 export function style(part) {
   const link = element("link", { rel: "stylesheet", href: byId("main").dataset[`${part}Style`] ?? "" });
   return new Promise((resolve) => {

@@ -1,8 +1,6 @@
 /**
- * The page: makes the state, the engine and the views. Each change flows one way: message, state, validation, run, drawing.
- *
- * The folders stand in one line, too. Each imports, and names types of, what stands to its left alone; a test holds
- * this:
+ * The page: creates the state, the engine and the views. Each change flows from message to state, validation, run and
+ * drawing. Folders only import from folders to their left, which a test checks:
  *
  *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
@@ -20,10 +18,10 @@ import { createImports } from "./shell/imports.js";
 import { createLazyPopover } from "./shell/lazy_popover.js";
 import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
-import { keepOffline } from "./shell/offline.js";
-import { createOwn } from "./shell/own.js";
+import { cacheOffline } from "./shell/offline.js";
 import { createPanes } from "./shell/panes.js";
 import { createRunner } from "./shell/runner.js";
+import { createSavedExperiments } from "./shell/saved_experiments.js";
 import { offerNewer, savedWork } from "./shell/saved_work.js";
 import { listedRecordings, loadScenario, saveGood, saveHistory, saveScenario, setAside } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
@@ -67,10 +65,10 @@ const engine = new Engine({
     dispatch({ type: "baseline", baseline: null });
     dispatch({
       type: "failed",
-      message: `The engine stopped and was started again; the form is as it was (${message}).`,
+      message: `The engine failed and was restarted. The form is unchanged (${message}).`,
     });
   },
-  // All views ask once more: to them it is another result.
+  // All views request their data again.
   restored: () => {
     if (state.result) dispatch({ type: "controller", controller: state.result.controller });
   },
@@ -87,15 +85,15 @@ function dispatch(message) {
   if (state !== before) follow(before);
 }
 
-/** What follows from a change of the state. @param {State | undefined} before */
+/** Reacts to a change of the state. @param {State | undefined} before */
 function follow(before) {
   const { scenario, validation, approved, drafts, result } = state;
   if (before?.scenario !== scenario) {
     document.documentElement.dataset.state = "busy";
     runner.validate();
-    // What stands at the start is no work of this tab.
+    // The initial scenario is not saved.
     if (before && state.origin === "own") {
-      // An edited link or preset becomes the visitor's own work; what was so before is set aside.
+      // An edited link or preset becomes own work.
       if (before.origin !== "own") setAside(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
@@ -104,7 +102,7 @@ function follow(before) {
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
     if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
-    // Asked before the views ask.
+    // Before the requests of the views.
     engine.ask("select", result.controller).catch(unlessDropped);
   }
   if (state.run.progress) unveil();
@@ -118,19 +116,19 @@ function follow(before) {
   else if (state.run.phase === "failed") settle(Promise.resolve());
 }
 
-/** Shows the form and the views: they stand, or it takes longer. */
+/** Shows the form and the views. */
 function unveil() {
   delete document.documentElement.dataset.boot;
 }
 
-/** Says that nothing more is to come, once it is drawn. @param {Promise<unknown>} drawn */
+/** Marks the page as ready after drawing. @param {Promise<unknown>} drawn */
 async function settle(drawn) {
   const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
   unveil();
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
-  keepOffline();
+  cacheOffline();
 }
 
 const runner = createRunner({
@@ -143,7 +141,7 @@ const runner = createRunner({
   },
 });
 
-/** The content of the popover of exports, which loads when it is first opened. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/lazy_popover.js").Popover} popover */
+/** The content of the export panel, loaded on demand. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/lazy_popover.js").Popover} popover */
 async function exportsOf(page, popover) {
   const [{ createExports }, { chartFiles }, { packetFiles }, { tableFiles }] = await Promise.all([
     import("./shell/exports.js"),
@@ -168,7 +166,7 @@ async function start() {
   offerGuide();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
-    byId("status").textContent = "no engine";
+    byId("status").textContent = "No engine";
     return;
   }
   const [fallback, presets, drivers, schema] = await Promise.all([
@@ -180,14 +178,14 @@ async function start() {
   ]);
   takeSchema(schema);
   const made = samples();
-  // Another version may have saved another kind of history.
+  // The history of another version is not used.
   const version = byId("version").textContent ?? "";
   const { left, good } = await savedWork(engine, fallback, version);
   state = left;
   const page = { engine, dispatch, now: () => state };
-  // At its end, for many long steps cost more than a keystroke may.
+  // Saving long histories is too slow for every keystroke.
   window.addEventListener("pagehide", () => saveHistory(version, state));
-  // Nothing is ever sent; Enter in a field must not try to.
+  // Enter in a field must not submit the form.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
@@ -219,18 +217,18 @@ async function start() {
       "link-about",
     ),
     createLazyPopover("export", "export-panel", (popover) => exportsOf(page, popover), "export-status"),
-    createOwn({ fresh: fallback, ...page }),
+    createSavedExperiments({ fresh: fallback, ...page }),
     link,
   ];
   createKeys(spectrum.load);
   createGuide(page);
-  // Its code and its storage are looked at only where there is something.
+  // Loaded only if there are saved recordings.
   if (listedRecordings())
     await import("./shell/recording/saved_recordings.js").then(({ restore }) => restore(page)).catch(() => {});
   await link.start(loadScenario() !== null);
   if (state.revision === 0) {
     follow(undefined);
-    // What stood before it went wrong is shown, dimmed.
+    // The last valid run is shown dimmed.
     if (good !== null) engine.run(EARLIER, good);
   }
   await offerNewer(page);
@@ -238,7 +236,7 @@ async function start() {
 
 start().catch((error) => {
   byId("try-again").addEventListener("click", () => location.reload());
-  byId("status").textContent = "the engine could not be started";
+  byId("status").textContent = "The engine could not be started";
   byId("engine-message").hidden = false;
   /** @type {Element} */ (byId("engine-message").firstElementChild).textContent =
     `The engine could not be started: ${error instanceof Error ? error.message : error}`;

@@ -1,10 +1,7 @@
 /**
- * The service worker: keeps the files of one build on this device and answers with them, so that the page
- * works without a network and loads at once. All files of a build belong together, so nothing is mixed: a newer build waits,
- * complete, until the visitor asks for it.
+ * The service worker: caches all files of a build for offline use. A newer build waits until the visitor reloads.
  *
- * In the sources the list is empty, and the worker does away with itself and what an earlier build left:
- * who develops sees files, not memories of them.
+ * In the sources the list is empty, and the worker removes itself and earlier caches.
  */
 // The build writes its number and its files here.
 const build = { id: "development", files: [] };
@@ -21,9 +18,9 @@ worker.onactivate = (event) => event.waitUntil(activate());
 worker.onfetch = (event) => {
   const { request } = event;
   if (build.files.length > 0 && request.method === "GET" && request.url.startsWith(worker.registration.scope))
-    event.respondWith(answer(request));
+    event.respondWith(respond(request));
 };
-/** The page asks to change over. @param {any} event */
+/** The page activates this build. @param {any} event */
 worker.onmessage = ({ data }) => {
   if (data === "take over") worker.skipWaiting();
 };
@@ -35,11 +32,11 @@ async function install() {
     build.files.map(async (/** @type {string} */ file) => {
       const url = new URL(file, worker.registration.scope).href;
       const hashed = file.startsWith("assets/");
-      // The name of a file with a hash says what it holds: an earlier build's is the same.
-      const kept = hashed && (await caches.match(url));
-      const response = kept || (await fetch(url, { cache: hashed ? "default" : "no-cache" }));
+      // A hashed name identifies the content, also in an earlier cache.
+      const cached = hashed && (await caches.match(url));
+      const response = cached || (await fetch(url, { cache: hashed ? "default" : "no-cache" }));
       if (!response.ok) throw new Error(`${file}: ${response.status}`);
-      // Some hosts send pages to names of their own; what came over a detour may not answer for a page.
+      // A redirected response cannot be used for a page.
       await cache.put(url, response.redirected ? new Response(response.body, { headers: response.headers }) : response);
     }),
   );
@@ -50,12 +47,12 @@ async function activate() {
     if (name.startsWith(PREFIX) && name !== own) await caches.delete(name);
   }
   if (build.files.length === 0) return worker.registration.unregister();
-  // Also the page of the very first visit is offline-proof from now on.
+  // Also serve the page of the first visit.
   await worker.clients.claim();
 }
 
 /** @param {Request} request */
-async function answer(request) {
+async function respond(request) {
   const url = new URL(request.url);
   url.search = url.hash = "";
   if (request.mode === "navigate") url.pathname = url.pathname.replace(/\/index\.html$/, "/");

@@ -66,7 +66,7 @@ fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
     let (_, out, _) = stepscope(&["torque", "-"], &scenario);
     assert!(!out.contains("plant"), "{out}");
     let (code, _, err) = stepscope(&["torque", "-", "--plant"], &scenario);
-    assert!(code == Some(2) && err.contains("36 V beside 24 V of the first motor"), "{err}");
+    assert!(code == Some(2) && err.contains("36 V, but the first motor has 24 V"), "{err}");
     let (_, out, _) = stepscope(&["torque", "-", "--plant"], &axes(r#"{"motor":{}},{"motor":{}}"#));
     assert_eq!(out.matches("follows; both models agree").count(), 2, "{out}");
     // A broken or long plant runs only on request.

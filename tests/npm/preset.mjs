@@ -6,7 +6,7 @@
 import assert from "node:assert/strict";
 import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
-import init, { Judged, presets, version } from "stepscope-wasm";
+import init, { ValidatedScenario, presets, version } from "stepscope-wasm";
 
 const [golden] = process.argv.slice(2);
 assert.ok(golden, "give the folder of the golden cases");
@@ -25,16 +25,16 @@ for (const name of [about.main, about.types, "stepscope_wasm_bg.wasm", "README.m
 await init({ module_or_path: await readFile(installed("stepscope_wasm_bg.wasm")) });
 assert.equal(version(), about.version);
 
-/** The digests of all controllers of a scenario's run, a line each. */
-function digests(scenario) {
-  const judged = new Judged(scenario);
-  const simulation = judged.run();
+/** The digests of all controllers of a run. */
+function digests(json) {
+  const scenario = new ValidatedScenario(json);
+  const simulation = scenario.run();
   try {
     while (!simulation.advance(100_000).done);
     return simulation.summary().controllers.map(({ digest }) => digest);
   } finally {
     simulation.free();
-    judged.free();
+    scenario.free();
   }
 }
 

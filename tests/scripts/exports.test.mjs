@@ -25,7 +25,7 @@ test("files are named after the experiment", () => {
 test("before a run only the scenario is offered", () => {
   assert.deepEqual(names(start), []);
   assert.deepEqual(names(update(start, { type: "validated", revision: 0, validation })), ["u-bung-one-turn.json"]);
-  assert.equal(statusOf(start), "Nothing was run yet.");
+  assert.equal(statusOf(start), "There is no run yet.");
 });
 
 test("a run is offered as signals, tables and a line script", () => {

@@ -74,7 +74,7 @@ test("a press of STOP is kept until it has reached the device", () => {
   assert.equal(stream.closed(), false);
   const late = streaming();
   late.reported(framed);
-  assert.match(late.pressStop().text, /as soon as the port is given back/);
+  assert.match(late.pressStop().text, /as soon as the port is free/);
   assert.ok(late.stopPressed);
 });
 
@@ -124,7 +124,7 @@ test("a role that is impossible is not selected first, and only then", () => {
 test("a failed worker leaves a streaming device unsettled", () => {
   const stream = session();
   stream.begin("stream", false, "");
-  assert.match(stream.failed("out of memory"), /^This failed: out of memory\. The device does what is in its queue/);
+  assert.match(stream.failed("out of memory"), /^This failed: out of memory\. The device executes its queue/);
   assert.equal(stream.device.unsettled, stream.sent);
   assert.equal(stream.closed(), true);
   const idle = session();
@@ -136,7 +136,7 @@ test("start needs a port, an experiment that can be sent and an idle dialog", ()
   const rows = [
     [session(), {}, false, ""],
     [session({ port: null }), {}, true, "Choose a port first"],
-    [session({ found: facts({ stream: role("no line") }) }), {}, true, "Not with this experiment: no line."],
+    [session({ found: facts({ stream: role("no line") }) }), {}, true, "Not available: no line."],
     [session({ found: null }), {}, true, "Loading…"],
     [session(), { noPort: "no serial" }, true, "no serial"],
     [streaming(), {}, true, ""],
@@ -168,7 +168,7 @@ test("the dialog says first that a device is unsettled", () => {
   assert.equal(unsettledText({ port: null, unsettled: null }), "");
   assert.match(
     unsettledText({ port: null, unsettled: { baud: 9600 } }),
-    /choose its port, then STOP goes as it went, at 9600 baud/,
+    /choose its port, then press STOP\. STOP is sent at 9600 baud/,
   );
 });
 
@@ -180,15 +180,15 @@ test("an outcome claims nothing that is not known", () => {
     [{ ...framed, stopped: true, stop_acknowledged: true }, true, /^STOP is confirmed/],
     [{ ...framed, stopped: true, lost: "gone." }, false, /The port is lost: gone\.$/],
   ];
-  for (const [reported, good, said] of rows) {
+  for (const [reported, good, expected] of rows) {
     const found = outcome(reported);
     assert.equal(found.good, good);
-    assert.match(found.said, said);
+    assert.match(found.text, expected);
   }
 });
 
 test("a report has the median and the longest of all delays", () => {
   const text = reportText("turn", "2026-01-01", framed, { own: [5, 1, 3], model: [2] });
-  assert.match(text, /delay of 3 replies: median 3\.00 ms, longest 5\.00 ms; the model's median 2\.00 ms/);
-  assert.match(text, /no reply differs/);
+  assert.match(text, /delay of 3 replies: median 3\.00 ms, maximum 5\.00 ms; median of the model 2\.00 ms/);
+  assert.match(text, /all replies match the model/);
 });

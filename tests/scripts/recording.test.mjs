@@ -98,8 +98,8 @@ const COMPARISON = {
 
 test("a comparison reports drift only between clocks that are close", () => {
   const text = texts.comparisonText(COMPARISON, 0);
-  assert.match(text, /^Compared with the baseline: all 100 steps compared, 0 off/);
-  assert.match(text, /none is off; RMS 0 s\. Drift 0\.0 ppm/);
+  assert.match(text, /^Compared with the baseline: all 100 steps compared, 0 differ/);
+  assert.match(text, /no deviation; RMS 0 s\. Drift 0\.0 ppm/);
   assert.doesNotMatch(texts.comparisonText({ ...COMPARISON, drift_ppm: 60_000 }, 0), /Drift/);
   assert.match(texts.comparisonText({ ...COMPARISON, outliers: 1 }, 0), /, 1 outlier excluded\.$/);
 });
@@ -112,8 +112,8 @@ test("a comparison names the alignment, the worst step and the first differences
     5,
   );
   assert.match(text, /, aligned by byte 5: 100 bytes, the baseline has 100, 2 missing, 1 extra; the others compared/);
-  assert.match(text, /byte 3 \(the first is 0\) is off most, 1 µs early, 4 have another value/);
-  assert.match(text, / a; b; c; 9 differences in all\./);
+  assert.match(text, /byte 3 \(the first is 0\) has the largest deviation, 1 µs early, 4 with another value/);
+  assert.match(text, / a; b; c; 9 differences in total\./);
 });
 
 test("the place of the worst step has the step in its middle and stays in the run", () => {
@@ -129,30 +129,30 @@ test("the place of the worst step has the step in its middle and stays in the ru
 test("the message of an import says what the views show", () => {
   const imported = {
     file: "a.csv",
-    kept: null,
+    part: null,
     isRecorded: true,
     hasBaseline: false,
     replies: undefined,
     isShort: false,
     own: " Undo.",
   };
-  assert.equal(texts.importedText(imported), "Opened a.csv. The views show what was recorded. Undo.");
+  assert.equal(texts.importedText(imported), "Opened a.csv. The views show the recording. Undo.");
   const bytes = (list, unknown = 0) => ({ bytes: new Uint8Array(list), unknown });
-  assert.match(texts.importedText({ ...imported, replies: bytes([]) }), /Nothing came on TX/);
-  assert.match(texts.importedText({ ...imported, replies: bytes([1], 2) }), /has the replies.*Of 2 packets on TX/);
+  assert.match(texts.importedText({ ...imported, replies: bytes([]) }), /TX has no bytes/);
   assert.match(
-    texts.importedText({ ...imported, isRecorded: false, hasBaseline: true }),
-    /model makes of it\..*baseline/,
+    texts.importedText({ ...imported, replies: bytes([1], 2) }),
+    /recorded replies.* 2 packets on TX have no known/,
   );
-  const kept = { from_s: 1, to_s: 2, end_s: 9, records: 10, of: 90 };
+  assert.match(texts.importedText({ ...imported, isRecorded: false, hasBaseline: true }), /simulation\..*baseline/);
+  const part = { from_s: 1, to_s: 2, end_s: 9, records: 10, of: 90 };
   assert.match(
-    texts.importedText({ ...imported, kept, isShort: true }),
+    texts.importedText({ ...imported, part, isShort: true }),
     /^Opened a\.csv\. Shown: 1 s to 2 s of 9 s, 10 of 90 changes;/,
   );
 });
 
-test("packets are listed as far as there is room", () => {
-  assert.match(texts.packetsText({ total: 1, replies: 0, rows: [1] }), /^1 packet, 0 whole frames of the device: $/);
+test("packets are listed up to a maximum", () => {
+  assert.match(texts.packetsText({ total: 1, replies: 0, rows: [1] }), /^1 packet, 0 complete frames of the device: $/);
   assert.match(texts.packetsText({ total: 9, replies: 4, rows: [1, 2] }), /; the first 2 of them: $/);
   const packet = {
     line: "RX",

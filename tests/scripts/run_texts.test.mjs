@@ -20,7 +20,7 @@ test("the header says what a run does, and what it came to", () => {
     [at(0, 0), true, "planning the motion…"],
     [at(25, 100), true, "25 %, edges in 5 cycles so far"],
     [done, false, "12\u202f345 edges · 400 ms"],
-    [update(done, { type: "draft", path: "x", text: "", message: "" }), false, "not run: the form needs attention"],
+    [update(done, { type: "draft", path: "x", text: "", message: "" }), false, "not run: fix the form"],
   ];
   for (const [state, long, expected] of rows) assert.equal(statusText(state, long), expected);
 });

@@ -106,9 +106,9 @@ test("a crashed scenario is not tried again by itself, but on request", async ()
   mock.timers.reset();
 });
 
-test("a cancelled run keeps the last result", () => {
+test("a canceled run keeps the last result", () => {
   const made = bench();
   made.runner.cancel();
   assert.deepEqual(made.calls, ["cancel 0"]);
-  assert.match(made.state.run.message, /^The run was cancelled/);
+  assert.match(made.state.run.message, /^The run was canceled/);
 });

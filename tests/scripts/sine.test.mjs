@@ -45,7 +45,7 @@ test("the pieces cover all points and the whole range without a gap", () => {
 test("progress counts points first, and then the search", () => {
   assert.equal(progressOf(0, 25).text, "0 of 25 points");
   assert.equal(progressOf(2, 25).text, "20 of 25 points");
-  assert.deepEqual(progressOf(19, 25), { part: 1, text: "the best d1 of the range" });
+  assert.deepEqual(progressOf(19, 25), { part: 1, text: "best d1 of the range" });
 });
 
 test("a d1 is rounded up to the digits of the scenario", () => {
@@ -96,10 +96,10 @@ test("the ends of the range are recognized", () => {
 test("cells and texts show a missing row and a missing sensor", () => {
   assert.deepEqual(cellsOf("the scenario", null, "none"), ["the scenario", "none", "", "", "", "", "", ""]);
   assert.deepEqual(cellsOf("x", rowOf(rows, 0), ""), ["x", "0.01", "8", "5 %", "10 %", "20 %", "–", "1"]);
-  assert.match(captionOf("filtered", 5, 7), /a sensor of 5 harmonics feels, against d1, harmonics 2 to 7/);
+  assert.match(captionOf("filtered", 5, 7), /filtered by a sensor of 5 harmonics, against d1, harmonics 2 to 7/);
   assert.equal(whyNoChart(rows, "position", undefined), "");
-  assert.match(whyNoChart(rows, "filtered", undefined), /give its bandwidth/);
-  assert.match(whyNoChart(rows, "filtered", 5), /not made yet/);
+  assert.match(whyNoChart(rows, "filtered", undefined), /enter a sensor bandwidth/);
+  assert.match(whyNoChart(rows, "filtered", 5), /has not run/);
 });
 
 const stateWith = (moves, problems = []) => ({
@@ -129,7 +129,7 @@ test("a form with problems is not edited", () => {
   assert.equal(target.axis, null);
   assert.match(
     vertexEdit(target, {}, () => ({})),
-    /^Not while the form has a problem/,
+    /^Not available while the form has errors/,
   );
 });
 

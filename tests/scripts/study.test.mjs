@@ -36,8 +36,8 @@ test("the compared move is within the axis and has its own duration and ramp", (
   assert.deepEqual([first.duration_s, costs.ownRamp(first), first.steps], [0.4, 0.1, 8]);
   const last = costs.subjectOf(state, axis, 7);
   assert.deepEqual([last.index, last.duration_s, costs.ownRamp(last)], [1, 2, 0.5]);
-  assert.match(costs.aboutText(last, 0), /^Axis 0, move 2: 9 steps in 2 s; it has no ramp of its own/);
-  assert.match(costs.aboutText({ ...last, steps: 0 }, 0), /ends where it begins/);
+  assert.match(costs.aboutText(last, 0), /^Axis 0, move 2: 9 steps in 2 s; it has no ramp, so enter one/);
+  assert.match(costs.aboutText({ ...last, steps: 0 }, 0), /ends where it starts/);
 });
 
 test("a ramp is refused only where every kind refuses it for one reason", () => {
@@ -82,7 +82,7 @@ test("the motor of the study is that of the selected channel, if its controller 
   assert.equal(motor.subjectOf({ ...state, result: null }).channel, 1);
   const second = motor.subjectOf({ ...state, result: { controller: 1 } });
   assert.deepEqual([second.controller, second.channel], [1, 0]);
-  assert.match(motor.subjectText(second), /^Motor of channel 0 of controller 2,/);
+  assert.match(motor.subjectText(second), /^Motor of channel 0 of controller 2 alone/);
   assert.equal(motor.subjectOf({ ...state, result: { controller: 2 } }), null);
 });
 
@@ -90,10 +90,10 @@ test("limits name the rate of the largest swing and say when it is the map's edg
   const found = { ...motor.noFindings(), start: 1234.5, swing: [1, 3, 2], loses: [0, 1, 1] };
   const rows = motor.limitRows(found);
   assert.deepEqual(rows[0][1], `1${THIN}234 steps/s`);
-  assert.deepEqual(rows[1][1], "not even 500 steps/s");
-  assert.deepEqual(rows[2], ["Swings most at", "24 full steps/s"]);
+  assert.deepEqual(rows[1][1], "below 500 steps/s");
+  assert.deepEqual(rows[2], ["Largest oscillation at", "24 full steps/s"]);
   assert.equal(rows[4][1], "2 of 3");
-  assert.equal(motor.limitRows({ ...found, swing: [3, 2, 1] })[2][0], "Swings most at the map's edge");
+  assert.equal(motor.limitRows({ ...found, swing: [3, 2, 1] })[2][0], "Largest oscillation at the edge of the map");
   assert.equal(motor.limitRows(motor.noFindings()).length, 2);
 });
 
@@ -120,10 +120,10 @@ test("pulses that are staggered already keep the scenario's settling time", () =
 test("a run that cannot be compared says why", () => {
   const state = { validation: { cost: { over_budget: true } }, approved: -1, revision: 0, scenario: { source: {} } };
   assert.match(motor.whyNoPair(state, 1), /one motor/);
-  assert.match(motor.whyNoPair(state, 2), /before it is approved/);
+  assert.match(motor.whyNoPair(state, 2), /start it first/);
   assert.equal(motor.whyNoPair({ ...state, approved: 0 }, 2), "");
   const supply = (above_a, below_a) => ({ above_a, below_a });
-  assert.match(motor.pairText([supply(0.4, 0.2), supply(0.1, 0.2)]), /: 2 times less\.$/);
+  assert.match(motor.pairText([supply(0.4, 0.2), supply(0.1, 0.2)]), /, 2 times less\.$/);
   assert.match(motor.pairText([supply(null, null), supply(1, 1)]), /at least eight steps/);
 });
 
@@ -152,8 +152,8 @@ test("a motor without current is not said to have full torque", () => {
   const report = { standing_mn_m: 100, load_mn_m: 10, torque_rate: null, working_rate: null, least: null, jump: 0 };
   const first = (corner_rate) => torque.motorRows({ ...report, corner_rate })[0][0];
   assert.deepEqual([first(0), first(500)], ["Torque at standstill", "Full torque"]);
-  assert.match(torque.stepsText(3, "", { least: {} }), /what its motor has/);
-  assert.match(torque.stepsText(3, "", { least: null }), /makes no step/);
+  assert.match(torque.stepsText(3, "", { least: {} }), /torque of its motor/);
+  assert.match(torque.stepsText(3, "", { least: null }), /has no steps/);
 });
 
 test("distortion is shown of a periodic motion of the selected axis only", () => {

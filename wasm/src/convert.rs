@@ -8,14 +8,13 @@ use stepscope_core::peripheral::{
 };
 use wasm_bindgen::{JsError, JsValue};
 
-/// A plain object of anything that serde knows; maps become objects.
+/// A plain object; maps become objects.
 pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
     value.serialize(&serde_wasm_bindgen::Serializer::json_compatible()).map_err(JsError::from)
 }
 
 /// Adds a field to an object.
 pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
-    // Setting a field of a fresh plain object cannot fail.
     let _ = Reflect::set(object, &name.into(), value);
 }
 
@@ -24,7 +23,7 @@ pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
     field(object, name, &Float64Array::from(values));
 }
 
-/// Records as they go from one worker to another: 16 bytes each, cycle and levels, little-endian.
+/// Records of 16 bytes: cycle and levels, little-endian.
 pub(crate) fn records(bytes: &[u8]) -> impl Iterator<Item = Record> {
     let word = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_le_bytes);
     let record = move |record: &[u8]| Record {

@@ -1,13 +1,15 @@
-//! What the page calls: the core behind wasm-bindgen. Nothing is decided here.
+//! The interface of the page: the core behind wasm-bindgen.
 //!
-//! The page builds this crate twice. The first module has the feature [`view`] and is all that the first screen needs; the
-//! second one has [`tools`] and loads in the background.
+//! The page builds this crate twice: with the feature [`view`] for the first screen, and with [`tools`], which loads in the
+//! background.
+
+#![allow(clippy::missing_errors_doc, reason = "without an errors section only converting a value can fail")]
 
 mod convert;
-mod judged;
+mod scenario;
 #[cfg(feature = "tools")]
 pub mod tools;
 #[cfg(feature = "view")]
 pub mod view;
 
-pub use judged::Judged;
+pub use scenario::ValidatedScenario;

@@ -6,7 +6,7 @@ mod js;
 use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
 use stepscope_wasm::{
-    Judged,
+    ValidatedScenario,
     tools::{sheets, with_motor},
     view::{Simulation, default_scenario, drivers, open_link, presets, version},
 };
@@ -27,16 +27,16 @@ fn there<T>(found: Option<T>) -> T {
 
 /// What is said of a text before it runs.
 fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
-    Judged::new(json).check()
+    ValidatedScenario::new(json).check()
 }
 
 fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
-    Judged::new(json).link()
+    ValidatedScenario::new(json).link()
 }
 
 /// A finished run.
 fn finished(json: &str) -> Simulation {
-    let mut simulation = sure(Judged::new(json).run());
+    let mut simulation = sure(ValidatedScenario::new(json).run());
     while !get(&sure(simulation.advance(100_000)), "done").is_truthy() {}
     simulation
 }
@@ -67,7 +67,7 @@ fn numbers(object: &JsValue, name: &str) -> Vec<f64> {
 }
 
 #[wasm_bindgen_test]
-fn a_good_scenario_is_judged_with_what_follows_from_it() {
+fn a_valid_scenario_is_checked_with_its_derived_values() {
     let judgement = sure(check(&default_scenario()));
     assert_eq!(paths(&judgement), [""; 0]);
     assert_eq!(text(&judgement, "scenario"), default_scenario());
@@ -105,7 +105,7 @@ fn all_problems_of_a_bad_text_are_listed_with_their_paths() {
         assert!(list(&judgement, "problems").iter().all(|problem| !text(problem, "message").is_empty()));
         assert!(get(&judgement, "derived").is_null() && get(&judgement, "cost").is_null(), "{given}");
         assert!(paths(&sure(check(&text(&judgement, "scenario")))).len() <= expected.len(), "{given}");
-        assert!(Judged::new(given).run().is_err(), "{given}");
+        assert!(ValidatedScenario::new(given).run().is_err(), "{given}");
     }
 }
 
@@ -145,7 +145,7 @@ fn stand_alone_controllers_have_a_run_and_panels() {
     let standalone: Vec<_> = scenarios.filter(|(_, scenario)| scenario.contains("\"standalone\"")).collect();
     assert!(standalone.len() > 5);
     for (id, scenario) in standalone {
-        let mut run = sure(Judged::new(&scenario).run());
+        let mut run = sure(ValidatedScenario::new(&scenario).run());
         while !get(&sure(run.advance(1000)), "done").is_truthy() {}
         let summary = sure(run.summary());
         assert!(!get(&summary, "recorded").is_truthy(), "{id}");
@@ -455,15 +455,15 @@ fn a_host_that_gives_up_says_why() {
 
 #[wasm_bindgen_test]
 fn measures_are_those_of_the_axis_that_is_asked_for() {
-    let judged = Judged::new(
+    let scenario = ValidatedScenario::new(
         r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"constant":{"distance":{"steps":100}}}]}]}}}"#,
     );
     let counts = |measures: &JsValue| number(&get(measures, "counts"), "due");
-    assert_eq!([0, 1].map(|axis| counts(&sure(judged.measures(0, axis)))), [3200.0, 100.0]);
-    let measures = sure(judged.measures(0, 1));
+    assert_eq!([0, 1].map(|axis| counts(&sure(scenario.measures(0, axis)))), [3200.0, 100.0]);
+    let measures = sure(scenario.measures(0, 1));
     assert!((number(&get(&measures, "steps"), "rms_steps") - 0.288_675).abs() < 1e-5);
     assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "requested_s").is_null());
-    assert!(sure(judged.measures(0, 2)).is_null(), "there is no third axis");
+    assert!(sure(scenario.measures(0, 2)).is_null(), "there is no third axis");
 }
 
 #[wasm_bindgen_test]
@@ -488,13 +488,13 @@ fn a_motor_of_the_list_takes_the_place_of_the_scenarios() {
     assert!(list(&sheets, "motors").len() >= 8 && list(&sheets, "drives").len() >= 4);
     let made = with_motor("{}", "17hs4401", "a4988");
     assert!(made.contains("\"plant\"") && made.contains("\"resistance_ohm\": 1.5"), "{made}");
-    let judged = Judged::new(&made);
-    assert!(list(&sure(judged.check()), "problems").is_empty());
+    let scenario = ValidatedScenario::new(&made);
+    assert!(list(&sure(scenario.check()), "problems").is_empty());
     // As `stepscope limits` has it for the default motor.
-    let usual = Judged::new(r#"{"plant":{}}"#);
+    let usual = ValidatedScenario::new(r#"{"plant":{}}"#);
     let rate = there(sure(usual.start_stop(0, 0)));
     assert!((rate - 34_700.0).abs() < 400.0, "{rate}");
-    assert!(usual.start_stop(0, 1).is_err() && Judged::new("{}").start_stop(0, 0).is_err());
+    assert!(usual.start_stop(0, 1).is_err() && ValidatedScenario::new("{}").start_stop(0, 0).is_err());
     let map = sure(usual.resonance(0, 0, 100.0, 50.0, 3));
     assert_eq!(numbers(&map, "swing").len(), 3);
 }

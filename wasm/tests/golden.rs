@@ -8,7 +8,7 @@ use stepscope_tests::{
     golden::{CASES, Case},
     plant_digests::plant_cases,
 };
-use stepscope_wasm::Judged;
+use stepscope_wasm::ValidatedScenario;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_dedicated_worker);
@@ -35,7 +35,7 @@ fn the_contracts_plant_digests_come_out() {
 fn every_case_gives_its_digest_in_slices() {
     every_case(|case| {
         let mut simulation =
-            Judged::new(case.json()?).run().map_err(|_| format!("{}: refused", case.name))?;
+            ValidatedScenario::new(case.json()?).run().map_err(|_| format!("{}: refused", case.name))?;
         let controllers = case.experiment()?.controllers();
         let mut records = 0.0;
         for slice in [1, 2, 3, 100].into_iter().chain(std::iter::repeat(10_000)) {

@@ -1,8 +1,6 @@
 /**
- * The only module that talks to the worker: questions with answers, one run at a time, and a new
- * worker after a crash, or where a cancel is not heard in time. A new worker makes the last good run
- * once more, so that the views that show it can still ask. Long questions, those of the study, go to further workers
- * (further.js) and keep neither runs nor views waiting; they and their code load with the first of them.
+ * Talks to the worker: requests, one run at a time, and a new worker after a crash or a cancel without a reply. A new worker
+ * repeats the last valid run for the views. Long requests go to additional workers (worker_pool.js).
  */
 import { byId } from "../dom.js";
 import { compiled } from "./wasm.js";
@@ -15,42 +13,42 @@ import { compiled } from "./wasm.js";
  * @property {(revision: number, progress: Progress) => void} progress
  * @property {(revision: number, summary: Summary, ms: number) => void} done
  * @property {(revision: number, message: string) => void} failed
- * @property {(message: string) => void} crashed  A new worker is there already.
- * @property {() => void} restored  After a crash the last good run is there again; what was asked meanwhile is to be asked anew.
- * @property {() => void} stopped  The worker did not hear a cancel; a new one is there, and open questions are dropped.
+ * @property {(message: string) => void} crashed  A new worker has started.
+ * @property {() => void} restored  After a crash the last valid run is available again; requests have to be repeated.
+ * @property {() => void} stopped  A cancel got no reply; a new worker has started, and open requests are dropped.
  */
 
-/** @typedef {{id: number, scenario: string, pieces: Uint8Array[], replies?: Uint8Array}} Held  A recording. */
+/** @typedef {{id: number, scenario: string, pieces: Uint8Array[], replies?: Uint8Array}} Recording */
 
-/** How long a cancel may go unanswered, in ms: one long call hears nothing. */
+/** Maximum time without a reply to a cancel, in ms. */
 const PATIENCE_MS = 1000;
 
-/** Recordings that undo finds again. */
+/** Recordings that undo can restore. */
 const MAX_RECORDINGS = 3;
-/** What is told where the study's code could not be fetched. */
-const MISSING = "this part of the page could not be loaded; try again when the network is there";
+/** Error if the code of additional workers cannot be fetched. */
+const MISSING = "this part of the page could not be loaded; check the network and try again";
 
-/** Thrown into questions that no longer matter: a newer one took their place, or the worker is gone. */
+/** Rejects requests that were replaced or whose worker is gone. */
 export class Dropped extends Error {}
 
 export class Engine {
   #worker = this.#start();
   #listener;
   #next = 0;
-  /** The run under way, the last good one, and that one while another worker makes it again. @type {{run: number, json: string} | null} */
+  /** The current run; the last valid run; the run that a new worker repeats. @type {{run: number, json: string} | null} */
   #running = null;
   /** @type {{run: number, json: string} | null} */
   #good = null;
   /** @type {{run: number, json: string} | null} */
   #restoring = null;
-  /** What is looked at in place of what these scenarios' runs make, the newest last. @type {Held[]} */
+  /** Recordings shown instead of the runs of these scenarios, newest last. @type {Recording[]} */
   #recordings = [];
-  /** The controller that the worker was told to look at. */
+  /** The controller that the worker has selected. */
   #selected = 0;
   #cancelling = 0;
-  /** What has the further workers, once it is needed. @type {Promise<import("./further.js").Further> | null} */
+  /** Additional workers, loaded on demand. @type {Promise<import("./worker_pool.js").WorkerPool> | null} */
   #loading = null;
-  /** Crashes since the worker last answered; one that cannot even start is not started for ever. */
+  /** Crashes since the last reply; limits restarts. */
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
   #requests = new Map();
@@ -63,10 +61,10 @@ export class Engine {
   }
 
   /**
-   * Asks the core (`check`, `encode_link`, …) or the last finished run (`motion`, `pulses`, …).
+   * Sends a request to the core (`check`, `encode_link`, …) or about the last finished run (`motion`, `pulses`, …).
    * @param {string} method
    * @param {...any} args
-   * @returns {Promise<any>}  null where there is no run to ask.
+   * @returns {Promise<any>}  null if there is no run.
    */
   ask(method, ...args) {
     const id = this.#next++;
@@ -78,8 +76,8 @@ export class Engine {
   }
 
   /**
-   * As `ask`, but of the questions that wait in one slot only the newest is put; the others end in
-   * `Dropped`. So a moving pointer never builds a queue.
+   * Like `ask`, but only the newest waiting request of a slot is sent; the others are rejected with `Dropped`. So a moving
+   * pointer builds no queue.
    * @param {string} slot
    * @param {string} method
    * @param {...any} args
@@ -111,23 +109,23 @@ export class Engine {
     this.#pump(slot);
   }
 
-  /** Runs a scenario; a run that is not done yet is dropped. @param {number} revision @param {string} json */
+  /** Runs a scenario and drops an unfinished run. @param {number} revision @param {string} json */
   run(revision, json) {
     this.#running = { run: revision, json };
     this.#worker.postMessage(this.#running);
   }
 
   /**
-   * From now on a run of this scenario shows what was recorded, as long as its source, clock, channels and plant are the same.
-   * @param {string} scenario @param {Uint8Array[]} pieces  Its records; none where what the run makes is looked at.
-   * @param {Uint8Array} [replies]  What was recorded on TX, in the place of the run's replies.
+   * Shows a recording instead of the run of a scenario with this source, clock, channels and plant.
+   * @param {string} scenario @param {Uint8Array[]} pieces  Its records, if any.
+   * @param {Uint8Array} [replies]  Recorded replies.
    */
   record(scenario, pieces, replies) {
     this.#recordings = [...this.#recordings, { id: this.#next++, scenario, pieces, replies }].slice(-MAX_RECORDINGS);
     void this.#give(this.#recordings.slice(-1));
   }
 
-  /** Gives recordings to the worker, a piece at a time: a copy of all would hold the page. @param {Held[]} recordings */
+  /** Sends recordings to the worker in pieces, so that the page stays responsive. @param {Recording[]} recordings */
   async #give(recordings) {
     const worker = this.#worker;
     for (const { id, scenario, pieces, replies } of recordings)
@@ -141,28 +139,27 @@ export class Engine {
     }
   }
 
-  /** Ends a run that is not done yet. @param {number} revision */
+  /** Cancels an unfinished run. @param {number} revision */
   cancel(revision) {
     this.#running = null;
     this.#worker.postMessage({ cancel: revision });
     clearTimeout(this.#cancelling);
     this.#cancelling = window.setTimeout(() => {
-      this.#renew("cancelled");
+      this.#renew("canceled");
       this.#listener.stopped();
     }, PATIENCE_MS);
   }
 
   #start() {
-    const worker = another();
-    worker.onmessage = ({ data }) => this.#heard(data);
+    const worker = startWorker();
+    worker.onmessage = ({ data }) => this.#receive(data);
     worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
     return worker;
   }
 
-  /** What has the further workers. */
-  async #further() {
+  async #pool() {
     try {
-      this.#loading ??= import("./further.js").then(({ Further }) => new Further(Dropped, MISSING));
+      this.#loading ??= import("./worker_pool.js").then(({ WorkerPool }) => new WorkerPool(Dropped, MISSING));
       return await this.#loading;
     } catch {
       this.#loading = null;
@@ -171,30 +168,29 @@ export class Engine {
   }
 
   /**
-   * Distributes a long question: each piece is one call of the core, and further workers make them beside each other.
-   * Neither the run nor the views' questions wait for it.
+   * Distributes a long request to additional workers; each piece is one call of the core. Runs and views do not wait for it.
    * @param {string} method @param {any[][]} pieces  The arguments of each call.
-   * @param {AbortSignal} signal  Ends it at once, in `Dropped`.
-   * @param {(at: number, answer: any) => void} [onAnswer]  Hears each answer as it comes.
-   * @returns {Promise<any[]>}  All answers, in the order of the pieces.
+   * @param {AbortSignal} signal  Rejects it with `Dropped`.
+   * @param {(at: number, reply: any) => void} [onReply]  Called with each reply.
+   * @returns {Promise<any[]>}  All replies, in the order of the pieces.
    */
-  async distribute(method, pieces, signal, onAnswer) {
-    return (await this.#further()).distribute(method, pieces, signal, onAnswer);
+  async distribute(method, pieces, signal, onReply) {
+    return (await this.#pool()).distribute(method, pieces, signal, onReply);
   }
 
   /**
-   * One question to a further worker; a newer one in its slot ends it, in `Dropped`.
+   * A request to an additional worker; a newer one of its slot rejects it with `Dropped`.
    * @param {string} slot @param {string} method @param {...any} args
    * @returns {Promise<any>}
    */
   async consider(slot, method, ...args) {
-    return (await this.#further()).consider(slot, method, args);
+    return (await this.#pool()).consider(slot, method, args);
   }
 
   /**
-   * The same about the last good run, which the further worker makes again.
+   * The same for the last valid run, which the worker repeats.
    * @param {string} slot @param {string} method @param {...any} args
-   * @returns {Promise<any>}  undefined where there is no run to ask about.
+   * @returns {Promise<any>}  undefined if there is no run.
    */
   async considerRun(slot, method, ...args) {
     const good = this.#good ?? this.#restoring;
@@ -202,20 +198,20 @@ export class Engine {
   }
 
   /**
-   * Several questions to one further worker, which keeps what it opened: `open` makes an object of a scenario, `of` asks
-   * it. The last good run's scenario is at hand.
+   * Several requests to one additional worker about the last valid run: `open` creates an object of its scenario, `of` calls
+   * it.
    * @template T
    * @param {(ask: (method: "open" | "of", ...args: any[]) => Promise<any>, json: string) => Promise<T>} work
-   * @returns {Promise<T | null>}  null where there is no run.
+   * @returns {Promise<T | null>}  null if there is no run.
    */
   async session(work) {
     const good = this.#good ?? this.#restoring;
     if (good === null) return null;
-    return (await this.#further()).session((ask) => work(ask, good.json));
+    return (await this.#pool()).session((ask) => work(ask, good.json));
   }
 
   /** @param {any} data */
-  #heard(data) {
+  #receive(data) {
     if (data.event !== "crashed") this.#crashes = 0;
     switch (data.event) {
       case "progress":
@@ -223,7 +219,7 @@ export class Engine {
       case "restored":
         this.#good ??= this.#restoring;
         return this.#listener.restored();
-      case "cancelled":
+      case "canceled":
         return clearTimeout(this.#cancelling);
       case "done":
         if (this.#running?.run === data.run) [this.#good, this.#running] = [this.#running, null];
@@ -241,29 +237,29 @@ export class Engine {
 
   /** @param {string} message */
   #restart(message) {
-    // What ended the worker is not run again by itself.
+    // The run that ended the worker is not repeated.
     this.#running = null;
     if (++this.#crashes <= 2) this.#renew(message);
     else this.#drop(message);
     this.#listener.crashed(message);
   }
 
-  /** Tries once more with a new worker, where crash after crash has left none. */
+  /** Starts a new worker after too many crashes. */
   revive() {
     if (this.#crashes <= 2) return;
     this.#crashes = 0;
-    this.#renew("started again");
+    this.#renew("restarted");
   }
 
-  /** Another worker in the place of this one. @param {string} why */
+  /** Replaces the worker. @param {string} why */
   #renew(why) {
     this.#drop(why);
     this.#worker = this.#start();
     void this.#give(this.#recordings);
-    // Should it end this worker, too, it is not made again.
+    // If it also ends this worker, it is not repeated.
     [this.#restoring, this.#good] = [this.#good, null];
     if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });
-    // Asked for after the cancel that was not heard.
+    // Requested after the cancel.
     if (this.#running) this.#worker.postMessage(this.#running);
   }
 
@@ -277,18 +273,18 @@ export class Engine {
   }
 }
 
-/** A worker that has the core; the page says which script it begins with. */
-function another() {
-  const made = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
+/** A worker with the core. */
+function startWorker() {
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.worker), { type: "module" });
   compiled().then(
-    (module) => made.postMessage({ module }),
-    // What goes wrong with the core is told by who waits for the charts.
+    (module) => worker.postMessage({ module }),
+    // Loading the charts reports the error.
     () => {},
   );
-  return made;
+  return worker;
 }
 
-/** Lets `Dropped` pass in silence and everything else through. @param {unknown} error */
+/** Ignores `Dropped` and throws other errors. @param {unknown} error */
 export function unlessDropped(error) {
   if (!(error instanceof Dropped)) throw error;
 }

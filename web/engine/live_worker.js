@@ -1,48 +1,46 @@
 /**
- * The worker that has a port: the host of a real device, or the device of a real host. It reads and writes; what is said and
- * when, the core decides (LIVE H1, H3, H4). STOP comes first of all.
+ * The worker with a port: the host of a real device, or the device of a real host. The core decides what is sent and when
+ * (LIVE H1, H3, H4).
  *
- * In: first of all {module}, the compiled code; {judge}, a scenario, for {facts}; {stream, readable, writable, stop} to send its
- * ticks, or STOP alone; {serve, readable, writable} to be its controllers; {stop}; {end}. Raw packets go without replies, and
- * their stop is that no more are sent.
- * Out: {facts}; while it has the port {state} and {rows}; {reported} or {recorded} at the end; {closed} when both streams are;
- * {error} where nothing began, or the core failed: what had the port has given it back, and this worker is of no use any more.
+ * In: {module}, the compiled code, first; {validate}, a scenario, replied with {facts}; {stream, readable, writable, stop} to
+ * send its ticks, or only STOP; {serve, readable, writable} to be its controllers; {stop}; {end}.
+ * Out: {facts}; {state} and {rows} while the port is open; {reported} or {recorded} at the end; {closed}; {error}, after which
+ * the worker cannot be used.
  */
 import init, * as core from "../pkg-tools/stepscope_wasm.js";
-import { awaitModule, fatal, text } from "./judging.js";
+import { awaitModule, fatal, text } from "./worker_common.js";
 
-/** How much later than on the line a reply may come, in ms: what the system and the adapter add, and the page's window, through which
- * its port's streams go. */
+/** Additional delay of a reply by the system, the adapter and the page, in ms. */
 const SLACK_MS = 100;
-/** How late the model may be before its clock is set back, in ms. */
+/** Maximum lag of the model before its clock is set back, in ms. */
 const LAG_MS = 50;
-/** How long a port may take no bytes, beyond the line's own time, in ms. */
+/** Maximum time of a write beyond the line time, in ms. */
 const WRITE_MS = 2000;
-/** Least time between two reports, in ms. */
+/** Minimum time between two reports, in ms. */
 const REPORT_MS = 100;
-/** Longest rest of a model that nobody talks to, in ms. */
+/** Maximum pause of an idle model, in ms. */
 const IDLE_MS = 5;
-/** Shorter rests than a timer keeps are passed by turns of the worker, in ms. */
+/** Shorter pauses use messages, because timers are too coarse, in ms. */
 const TIMER_MS = 5;
-/** How long the model runs without a look at what came, in ms. */
+/** Maximum time of the model before messages are read, in ms. */
 const TURN_MS = 10;
-/** Bytes of replies that wait for a host that does not read; then it misses further ones, as it would of a real line. */
+/** Maximum bytes of unread replies; more are lost, as on a real line. */
 const MAX_WAITING = 1 << 16;
 /** Bits of a byte on the line. */
 const BYTE_BITS = 10;
 
 const { provide, ready } = awaitModule(init);
-/** What ends a rest early. */
+/** Ends a pause early. */
 let wake = () => {};
-/** What is asked of what has the port. */
-let asked = { stop: false, end: false };
+/** Requests of the page. */
+let requested = { stop: false, end: false };
 
 const turn = new MessageChannel();
 /** @type {() => void} */
 let turned = () => {};
 turn.port1.onmessage = () => turned();
 
-/** Rests so long, or until there is something to do. @param {number} ms @returns {Promise<void>} */
+/** Pauses until `wake` or a timeout. @param {number} ms @returns {Promise<void>} */
 function rest(ms) {
   return new Promise((resolve) => {
     const timer = ms >= TIMER_MS && ms < Number.POSITIVE_INFINITY ? setTimeout(() => wake(), ms) : 0;
@@ -58,22 +56,22 @@ function rest(ms) {
 }
 
 /**
- * A port's two streams: what comes is handed on at once, with its time.
+ * The streams of a port.
  * @param {{readable: ReadableStream<Uint8Array>, writable: WritableStream<Uint8Array>}} streams
- * @param {(bytes: Uint8Array) => void | Promise<void>} hear Reading goes on when it is done.
+ * @param {(bytes: Uint8Array) => void | Promise<void>} receive  Reading continues when it is done.
  */
-function openPort({ readable, writable }, hear) {
+function openPort({ readable, writable }, receive) {
   const reader = readable.getReader();
   const writer = writable.getWriter();
   const port = {
-    /** Why it is lost; empty while it is there. */
+    /** Why it is lost; empty if it is not. */
     lost: "",
     /** @param {unknown} error */
     lose(error) {
       port.lost ||= text(error) || "the port is lost";
       wake();
     },
-    /** Bytes that wait to be written. */
+    /** Bytes to be written. */
     waiting: 0,
     /** @param {Uint8Array} bytes */
     write(bytes) {
@@ -84,17 +82,17 @@ function openPort({ readable, writable }, hear) {
       }, port.lose);
       return written;
     },
-    /** Writes, and knows when the system has taken it. @param {Uint8Array} bytes @param {number} baud */
+    /** Writes, and resolves when the system has accepted it. @param {Uint8Array} bytes @param {number} baud */
     async send(bytes, baud) {
       const within = WRITE_MS + (1000 * BYTE_BITS * bytes.length) / baud;
       let timer = 0;
       const late = new Promise((_, reject) => {
-        timer = setTimeout(() => reject(new Error("the port takes no bytes")), within);
+        timer = setTimeout(() => reject(new Error("the port accepts no bytes")), within);
       });
       await Promise.race([port.write(bytes), late]).catch(port.lose);
       clearTimeout(timer);
     },
-    /** Gives the port back, whatever becomes of the work with it. @param {() => Promise<void>} work */
+    /** Closes the port after the work, even after an error. @param {() => Promise<void>} work */
     async use(work) {
       try {
         await work();
@@ -111,41 +109,41 @@ function openPort({ readable, writable }, hear) {
   const read = async () => {
     for (;;) {
       const { value, done } = await reader.read();
-      if (done) throw new Error("the port was closed at its other end");
-      const heard = hear(value);
+      if (done) throw new Error("the other end closed the port");
+      const taken = receive(value);
       wake();
-      await heard;
+      await taken;
     }
   };
   read().catch(port.lose);
   return port;
 }
 
-/** Reports now and then. @param {() => void} report */
-function everySoOften(report) {
-  let told = 0;
+/** Limits the rate of reports. @param {() => void} report */
+function throttled(report) {
+  let reported = 0;
   return () => {
-    if (performance.now() - told < REPORT_MS) return;
-    told = performance.now();
+    if (performance.now() - reported < REPORT_MS) return;
+    reported = performance.now();
     report();
   };
 }
 
-/** The host of a device. @param {{stream: string, readable: ReadableStream, writable: WritableStream, stop: boolean}} order */
+/** The host of a device. @param {{stream: string, readable: ReadableStream, writable: WritableStream, stop: boolean}} request */
 async function stream({ stream: json, stop, ...streams }) {
   if (core.live_is_raw(json)) return streamRaw(json, stop, streams);
   const host = new core.LiveHost(json, SLACK_MS);
   const began = performance.now();
   const now = () => performance.now() - began;
   const baud = host.baud();
-  const port = openPort(streams, (bytes) => host.hear(bytes, now()));
+  const port = openPort(streams, (bytes) => host.receive(bytes, now()));
   let stopped = false;
-  asked = { stop, end: false };
+  requested = { stop, end: false };
   const report = () => postMessage({ state: host.state(), rows: host.rows() });
-  const tell = everySoOften(report);
+  const reportSometimes = throttled(report);
   await port.use(async () => {
     while (port.lost === "" && !host.is_over()) {
-      if (asked.stop && !stopped) {
+      if (requested.stop && !stopped) {
         stopped = true;
         host.stop(now());
       }
@@ -154,8 +152,8 @@ async function stream({ stream: json, stop, ...streams }) {
         await port.send(bytes, baud);
         host.sent(now());
       }
-      tell();
-      // What was asked while it was written is not slept over.
+      reportSometimes();
+      // A request may have arrived during the write.
       if (!bytes && port.lost === "" && !host.is_over()) await rest(host.wait(now()));
     }
     report();
@@ -171,54 +169,54 @@ async function streamRaw(json, stop, streams) {
   const began = performance.now();
   const now = () => performance.now() - began;
   const baud = host.baud();
-  // What is heard answers nothing.
+  // Received bytes are ignored.
   const port = openPort(streams, () => {});
-  asked = { stop, end: false };
+  requested = { stop, end: false };
   const report = () => postMessage({ state: host.state() });
-  const tell = everySoOften(report);
+  const reportSometimes = throttled(report);
   await port.use(async () => {
-    while (port.lost === "" && !asked.stop && !host.is_over()) {
+    while (port.lost === "" && !requested.stop && !host.is_over()) {
       const at = now();
       const bytes = host.packet(at);
       if (bytes) {
-        // What was given to the port counts as written; one that is lost takes nothing.
+        // Bytes given to the port count as written.
         await port.send(bytes, baud);
         if (port.lost === "") host.written(at);
       } else await rest(host.wait(at));
-      tell();
+      reportSometimes();
     }
     report();
     const { lost } = port;
-    const stopped = asked.stop && !host.is_over();
+    const stopped = requested.stop && !host.is_over();
     postMessage({ reported: { raw: host.report(stopped, now()), lost, stopped, ms: now() } });
     host.free();
   });
 }
 
-/** The device of a host. @param {{serve: string, readable: ReadableStream, writable: WritableStream}} order */
+/** The device of a host. @param {{serve: string, readable: ReadableStream, writable: WritableStream}} request */
 async function serve({ serve: json, ...streams }) {
   const device = new core.LiveDevice(json, LAG_MS, Date.now());
   const began = performance.now();
   const now = () => performance.now() - began;
-  /** What was read and waits for the line. @type {{bytes: Uint8Array, at: number, taken: () => void} | null} */
-  let heard = null;
-  const hear = (/** @type {Uint8Array} */ bytes) =>
+  /** Bytes that wait for the line. @type {{bytes: Uint8Array, at: number, taken: () => void} | null} */
+  let received = null;
+  const receive = (/** @type {Uint8Array} */ bytes) =>
     new Promise((/** @type {(value: void) => void} */ taken) => {
-      heard = { bytes, at: now(), taken };
+      received = { bytes, at: now(), taken };
     });
-  const port = openPort(streams, hear);
+  const port = openPort(streams, receive);
   const take = () => {
-    if (!heard) return;
-    const { bytes, at, taken } = heard;
+    if (!received) return;
+    const { bytes, at, taken } = received;
     const rest = bytes.subarray(device.receive(bytes, at));
-    heard = rest.length > 0 ? { bytes: rest, at: now(), taken } : null;
-    if (!heard) taken();
+    received = rest.length > 0 ? { bytes: rest, at: now(), taken } : null;
+    if (!received) taken();
   };
   let missed = 0;
-  asked = { stop: false, end: false };
+  requested = { stop: false, end: false };
   const report = () => postMessage({ state: { ...device.state(), missed } });
-  const tell = everySoOften(report);
-  const turnRound = () => {
+  const reportSometimes = throttled(report);
+  const runRound = () => {
     const behind = device.round(now());
     const replies = device.replies(now());
     if (port.waiting + replies.length > MAX_WAITING) missed += replies.length;
@@ -226,13 +224,13 @@ async function serve({ serve: json, ...streams }) {
     return behind;
   };
   await port.use(async () => {
-    while (port.lost === "" && !asked.end) {
+    while (port.lost === "" && !requested.end) {
       const since = now();
-      let behind = turnRound();
-      while (behind && now() - since < TURN_MS) behind = turnRound();
-      // What was read does not come before its time.
+      let behind = runRound();
+      while (behind && now() - since < TURN_MS) behind = runRound();
+      // Bytes are not used before their time.
       if (!behind) take();
-      tell();
+      reportSometimes();
       await rest(behind ? 0 : Math.min(IDLE_MS, device.wait()));
     }
     report();
@@ -242,14 +240,14 @@ async function serve({ serve: json, ...streams }) {
   });
 }
 
-/** What a host, and a device, of a scenario would be; or why there is none. @param {string} json */
+/** Properties of the host and the device of a scenario, or why there is none. @param {string} json */
 function facts(json) {
   /** @param {() => {baud: () => number, margin_ms?: () => number, free: () => void, state: () => any}} make */
-  const look = (make) => {
+  const describe = (make) => {
     try {
-      const made = make();
-      const found = { why: "", baud: made.baud(), margin_ms: made.margin_ms?.() ?? 0, state: made.state() };
-      made.free();
+      const end = make();
+      const found = { why: "", baud: end.baud(), margin_ms: end.margin_ms?.() ?? 0, state: end.state() };
+      end.free();
       return found;
     } catch (error) {
       if (fatal(error)) throw error;
@@ -257,24 +255,24 @@ function facts(json) {
     }
   };
   return {
-    stream: look(() => (core.live_is_raw(json) ? new core.LiveRawHost(json) : new core.LiveHost(json, SLACK_MS))),
-    serve: look(() => new core.LiveDevice(json, LAG_MS, Date.now())),
+    stream: describe(() => (core.live_is_raw(json) ? new core.LiveRawHost(json) : new core.LiveHost(json, SLACK_MS))),
+    serve: describe(() => new core.LiveDevice(json, LAG_MS, Date.now())),
   };
 }
 
 self.onmessage = async ({ data }) => {
   if ("module" in data) return provide(data.module);
-  if ("stream" in data === false && "serve" in data === false && "judge" in data === false) {
-    Object.assign(asked, data);
+  if ("stream" in data === false && "serve" in data === false && "validate" in data === false) {
+    Object.assign(requested, data);
     return wake();
   }
   try {
     await ready;
-    if ("judge" in data) return postMessage({ facts: facts(data.judge) });
+    if ("validate" in data) return postMessage({ facts: facts(data.validate) });
     await ("stream" in data ? stream(data) : serve(data));
     postMessage({ closed: true });
   } catch (error) {
-    // Where nothing began nobody has them yet.
+    // If nothing began, the streams are still here.
     await Promise.allSettled([data.readable?.cancel(), data.writable?.abort()]);
     postMessage({ error: text(error) });
   }

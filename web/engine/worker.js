@@ -1,60 +1,60 @@
 /**
- * The worker: holds the wasm core, judges a scenario once, runs it in slices, answers the views' questions about the
- * last finished run. Between two slices it reads its messages, so a newer scenario ends an older run.
+ * The worker: validates scenarios, runs them in slices, and serves requests about the last finished run. It reads messages
+ * between slices, so a newer scenario ends an older run.
  *
- * In: first of all {module}, the compiled core; {id, method, args} for an answer {id, value} or {id, error};
- * {recording}, the number of a scenario whose run is looked at as it was recorded, and how many {piece} of it come; {run, json} for events {event, run, …}, without a word of it if `quiet`, and then looking at controller `select`;
- * {cancel} for {event: "cancelled"} once that run is no longer under way.
+ * In: {module}, the compiled core, first; {id, method, args}, replied with {id, value} or {id, error}; {recording} and its
+ * {piece}s, shown instead of a run; {run, json}, replied with events {event, run, …}, or only {event: "restored"} if `quiet`;
+ * {cancel}, replied with {event: "canceled"}.
  */
 import init, {
   default_scenario,
   drivers,
-  Judged,
   link_part,
   link_with,
   open_link,
   presets,
   schema,
+  ValidatedScenario,
 } from "../pkg/stepscope_wasm.js";
-import { awaitModule, createJudging, fatal, text } from "./judging.js";
+import { awaitModule, createScenarioCache, fatal, text } from "./worker_common.js";
 
-/** How long a slice should take, in ms: short enough to be cancelled within a tenth of a second. */
+/** Duration of a slice, in ms; short enough to cancel within 100 ms. */
 const SLICE_MS = 15;
-/** Least time between two reports of progress, in ms. */
+/** Minimum time between two reports of progress, in ms. */
 const REPORT_MS = 60;
-/** Records that are handed on at a time. */
+/** Records per message. */
 const PIECE = 1 << 19;
 
-/** @type {any} The simulation that the views ask about. */
+/** @type {any} The simulation that the views show. */
 let finished = null;
-/** @type {any} The simulation that later ones are compared with; may be the finished one. */
+/** @type {any} The baseline; may be the finished simulation. */
 let baseline = null;
-/** Controller that the views look at. */
+/** Controller that the views show. */
 let selected = 0;
-const judging = createJudging((json) => new Judged(json));
-/** Questions about no run. @type {{[method: string]: (...args: any[]) => any}} */
+const scenarios = createScenarioCache((json) => new ValidatedScenario(json));
+/** Requests without a run. @type {{[method: string]: (...args: any[]) => any}} */
 const CALLS = { decode_link: open_link, default_scenario, drivers, link_part, link_with, presets, schema };
-/** How often a scenario was run; a test reads it. */
+/** Number of runs, for a test. */
 let runs = 0;
 /** No run has this number. */
 const NONE = -2;
-/** Number of the newest run that was asked for. */
+/** Number of the newest requested run. */
 let newest = NONE;
 
 const { provide, ready } = awaitModule(init);
-/** The newest last; their pieces may still come. @type {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}[]} */
+/** Newest last; pieces may still arrive. @type {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}[]} */
 let recordings = [];
-/** As many as the page has. */
+/** As in the page. */
 const MAX_RECORDINGS = 3;
-/** Goes on with a run that waits for a message: a piece of its recording, or a newer run. @type {(heard?: unknown) => void} */
+/** Resumes a run that waits for a piece of its recording. @type {(message?: unknown) => void} */
 let goOn = () => {};
 const between = new MessageChannel();
 
-/** Who waits for messages to be let in: a run, a search. @type {((event: MessageEvent) => void)[]} */
+/** Tasks that let messages in. @type {((event: MessageEvent) => void)[]} */
 const yielding = [];
 between.port1.onmessage = (event) => yielding.shift()?.(event);
 
-/** Lets waiting messages in. */
+/** Lets messages in. */
 function yieldToMessages() {
   return new Promise((resolve) => {
     yielding.push(resolve);
@@ -62,26 +62,26 @@ function yieldToMessages() {
   });
 }
 
-/** Asks of a scenario. @param {string} method @param {any[]} args  Its text first. */
+/** Calls a method of a scenario. @param {string} method @param {any[]} args  Its JSON first. */
 function ofScenario(method, [text, ...args]) {
   const json = String(text);
-  // What is judged next frees it: it is asked at once.
-  const value = /** @type {any} */ (judging.judge(json))[method](...args);
-  // What could not be read stands at its default in the text that comes back: that is another scenario.
-  if (method === "check" && value.problems.length === 0) judging.alias(value.scenario);
+  // The next scenario frees it, so it is used at once.
+  const value = /** @type {any} */ (scenarios.get(json))[method](...args);
+  // With problems, the returned JSON is another scenario.
+  if (method === "check" && value.problems.length === 0) scenarios.alias(value.scenario);
   return value;
 }
 
-/** What a recording stands for: as long as this is the same, it is looked at. @param {string} json */
+/** A recording is shown while this is the same. @param {string} json */
 function recordable(json) {
   const { source, clock_hz, bus, run_cycles, plant } = JSON.parse(json);
   return JSON.stringify([source, clock_hz, bus.channels, run_cycles, plant]);
 }
 
 /**
- * Makes a run in slices.
- * @param {any} simulation @param {{run: number, quiet?: boolean}} order
- * @returns {Promise<boolean>}  Whether it came to its end: where a newer one came, it is freed.
+ * Runs in slices.
+ * @param {any} simulation @param {{run: number, quiet?: boolean}} request
+ * @returns {Promise<boolean>}  Whether it ended; if a newer run replaced it, it is freed.
  */
 async function runInSlices(simulation, { run, quiet = false }) {
   let records = 4096;
@@ -104,15 +104,15 @@ async function runInSlices(simulation, { run, quiet = false }) {
   }
 }
 
-/** @param {{run: number, json: string, quiet?: boolean, select?: number}} order */
-async function simulate(order) {
-  const { run, json, quiet = false, select = 0 } = order;
+/** @param {{run: number, json: string, quiet?: boolean, select?: number}} request */
+async function simulate(request) {
+  const { run, json, quiet = false, select = 0 } = request;
   const begin = performance.now();
-  const scenario = /** @type {any} */ (judging.judge(json));
+  const scenario = /** @type {any} */ (scenarios.get(json));
   runs += 1;
   const simulation = scenario.run();
   const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
-  if (recording?.replies) simulation.answer(recording.replies);
+  if (recording?.replies) simulation.set_replies(recording.replies);
   for (let at = 0; recording && at < recording.count; ) {
     const piece = recording.pieces[at];
     if (piece) {
@@ -126,7 +126,7 @@ async function simulate(order) {
         }));
     if (run !== newest) return letGo(simulation);
   }
-  if (!(await runInSlices(simulation, order))) return;
+  if (!(await runInSlices(simulation, request))) return;
   if (finished !== baseline) letGo(finished);
   finished = simulation;
   selected = 0;
@@ -143,29 +143,29 @@ function letGo(simulation) {
   simulation?.free();
 }
 
-/** Makes the finished run the one that later ones are compared with, or lets that one go. @param {boolean} on */
+/** Sets or clears the baseline. @param {boolean} on */
 function setBaseline(on) {
   if (baseline !== finished) letGo(baseline);
   baseline = on ? finished : null;
   return baseline !== null;
 }
 
-/** Asks of the baseline, about one of its controllers. @param {string} method @param {any[]} args  The controller first. */
+/** Calls a method of the baseline. @param {string} method @param {any[]} args  The controller first. */
 function ofBaseline(method, [controller, ...args]) {
   if (!baseline) return null;
-  // A run cannot be compared with itself: it is no other.
-  const own = method === "motion" || method === "between";
-  if (baseline === finished && !own) return null;
+  // A run is not compared with itself.
+  const isOwn = method === "motion" || method === "between";
+  if (baseline === finished && !isOwn) return null;
   baseline.select(controller);
-  const value = own ? baseline[method](...args) : finished[method](baseline, ...args);
+  const value = isOwn ? baseline[method](...args) : finished[method](baseline, ...args);
   if (baseline === finished) baseline.select(selected);
   return value;
 }
 
-/** Number of the newest search over the packets. */
+/** Number of the newest packet search. */
 let searches = 0;
 
-/** Looks for packets in slices: how many there are, or null where a newer search or run ended it. @param {any[]} args */
+/** Searches packets in slices; null if a newer search or run replaced it. @param {any[]} args */
 async function search(args) {
   const own = ++searches;
   const simulation = finished;
@@ -186,12 +186,12 @@ async function search(args) {
 }
 
 /** @param {string} method @param {any[]} args */
-async function answer(method, args) {
+async function reply(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
   if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
-  if (method === "counts") return { judged: judging.count(), runs };
+  if (method === "counts") return { validated: scenarios.count(), runs };
   if (method === "encode_link") return ofScenario("link", args);
-  if (method in Judged.prototype) return ofScenario(method, args);
+  if (method in ValidatedScenario.prototype) return ofScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const call = CALLS[method];
@@ -213,7 +213,7 @@ self.onmessage = async ({ data }) => {
   }
   if ("cancel" in data) {
     if (newest === data.cancel) newest = NONE;
-    return postMessage({ event: "cancelled" });
+    return postMessage({ event: "canceled" });
   }
   if ("run" in data) newest = data.run;
   try {
@@ -221,7 +221,7 @@ self.onmessage = async ({ data }) => {
     if ("run" in data) {
       if (data.run === newest) await simulate(data);
     } else {
-      postMessage({ id: data.id, value: await answer(data.method, data.args) });
+      postMessage({ id: data.id, value: await reply(data.method, data.args) });
     }
   } catch (error) {
     if (fatal(error)) postMessage({ event: "crashed", message: text(error) });

@@ -1,4 +1,4 @@
-/** Parts of the form that few experiments have; they load when one of them is first on show. */
+/** Parts of the form that few experiments use, loaded on demand. */
 import { controllerPart } from "./controller_part.js";
 import { LISTS } from "./lists.js";
 import { motorFields } from "./motor_fields.js";

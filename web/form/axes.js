@@ -1,4 +1,4 @@
-/** The axes of a controller in the form: their mechanics and their moves. The first controller's and any additional one's alike. */
+/** The axes of a controller: mechanics, moves and motor. */
 import { button, element } from "../dom.js";
 import { MAX_CHANNELS } from "../state/limits.js";
 import { get, set } from "../state/paths.js";
@@ -45,7 +45,9 @@ function axisItem(kit, place, axes, index) {
     kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (chosen) =>
       become(`${path}.mechanics`, "Mechanics", chosen, samples.mechanics[chosen]),
     ),
-    ...(axes.length > 1 ? [button("To all", `Copy ${name} to all others`, () => copyToAll(kit, place, index))] : []),
+    ...(axes.length > 1
+      ? [button("Copy to all", `Copy ${name} to all others`, () => copyToAll(kit, place, index))]
+      : []),
     button("Copy", `Copy ${name}`, () => addAxis(kit, place, (now) => now[index]), axes.length >= MAX_CHANNELS),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, index), axes.length <= place.least),
   );
@@ -83,7 +85,7 @@ function moveItem({ samples, become, raise, remove, block, item, kindSelect }, l
   return item(`Move ${index + 1}`, path, [head, ...fields, note], `Move.${kind}`);
 }
 
-/** An axis needs its channel: the bus grows with it. @param {Kit} kit @param {Place} place @param {(axes: any[]) => any} like */
+/** Adds an axis, and a channel if needed. @param {Kit} kit @param {Place} place @param {(axes: any[]) => any} like */
 function addAxis({ change }, place, like) {
   const path = `${place.bus}.channels`;
   change("", (scenario) => {
@@ -106,7 +108,7 @@ function copyToAll({ change, now }, place, index) {
   );
 }
 
-/** The spectrum stays with its axis, or goes to a neighbour of the one that is removed. @param {Kit} kit @param {Place} place @param {number} index */
+/** Removes an axis; the spectrum keeps its axis or moves to a neighbor. @param {Kit} kit @param {Place} place @param {number} index */
 function removeAxis({ change, now }, place, index) {
   change(
     "",

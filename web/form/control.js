@@ -1,7 +1,4 @@
-/**
- * One field of the form: a label, an input (or select), its unit, a hint, its error. What is typed goes out
- * as a value, or as a draft while it is no number yet.
- */
+/** A field of the form: label, input or select, unit, hint and error. Invalid text is dispatched as a draft. */
 import { element, flash, say } from "../dom.js";
 import { get } from "../state/paths.js";
 import { termButton } from "./term_button.js";
@@ -19,7 +16,7 @@ import { convert, isHex, isList, isSame, listTools, meaning, print, read } from 
  * @property {() => void} focus
  */
 
-/** More characters than an input beside its label shows. */
+/** Maximum characters of an input next to its label. */
 const LONG = 12;
 let made = 0;
 
@@ -102,7 +99,7 @@ export function control(path, field, { dispatch, now }) {
     else edit(result.value);
   });
   input.addEventListener("change", () => {
-    // A box of cycles shows cycles: a time that was typed is what it comes to, and stands beside it.
+    // A field of cycles shows cycles after a time was typed.
     if (field.kind.endsWith("cycles") && !(path in now().drafts)) {
       typed = null;
       input.value = print(get(now().scenario, path), field);
@@ -114,7 +111,7 @@ export function control(path, field, { dispatch, now }) {
     dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
   });
 
-  /** A field without use stays away, unless what is wrong is in it. @param {State} state */
+  /** Hides an unused field, unless it has an error. @param {State} state */
   function place({ scenario }) {
     const { when } = field;
     const beside = when && (when.path ?? path.slice(0, path.length - field.key.length) + when.key);
@@ -133,7 +130,7 @@ export function control(path, field, { dispatch, now }) {
       const text = drafted?.text ?? print(next, field);
       const known = typed !== null ? read(typed, field, state, next) : null;
       if (known && "value" in known && isSame(known.value, next) && input.value === typed) {
-        // The visitor's own way of writing this value stays.
+        // The typed text stays.
       } else if (input.value !== text) {
         input.value = text;
         typed = null;

@@ -1,4 +1,4 @@
-/** An additional controller in the form: its address, its bus and what it is to do. */
+/** An additional controller in the form. */
 import { button, element } from "../dom.js";
 import { MAX_ADDITIONAL_CONTROLLERS } from "../state/limits.js";
 import { fields } from "./schema.js";
@@ -8,10 +8,10 @@ import { SOURCES } from "./sources.js";
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 /** @typedef {import("./kit.js").Kit} Kit */
 
-/** The bus of a controller: what every user sets. */
+/** The common fields of a bus. */
 const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
 
-/** An additional controller: its own fields, its bus, and what of that is folded away. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
+/** An additional controller with its bus. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
 const controllerFields = () => ({
   own: fields("Controller").filter(({ kind }) => kind !== "lines"),
   bus: fields("Bus", BUS_SIZE),

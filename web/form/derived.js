@@ -2,19 +2,32 @@
 import { byId, element, fill, flash, say } from "../dom.js";
 import { derivedShown } from "../state/queries.js";
 import { derivedRows, moveNote } from "./derived_rows.js";
+import { documents } from "./schema.js";
 import { termButton } from "./term_button.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** Name and note of the scenario: what to look at. @param {State} state */
+/** A note with links to the papers that it cites. @param {string} note @returns {(Node | string)[]} */
+function noteNodes(note) {
+  const papers = Object.entries(documents());
+  const names = papers.map(([, { short }]) => short.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
+  const parts = names.length > 0 ? note.split(new RegExp(`(${names.join("|")})`)) : [note];
+  return parts.map((part) => {
+    const [id, paper] = papers.find(([, { short }]) => short === part) ?? [];
+    return paper ? element("a", { href: `help.html#paper-${id}`, target: "_blank", title: paper.title }, part) : part;
+  });
+}
+
+/** Name and note of the scenario. @param {State} state */
 export function showAbout({ scenario }) {
   const root = byId("about");
   root.hidden = !scenario.title && !scenario.note;
   say(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
-  say(/** @type {Element} */ (root.querySelector("p")), String(scenario.note ?? ""));
+  const note = /** @type {Element} */ (root.querySelector("p"));
+  if (note.textContent !== scenario.note) fill(note, ...noteNodes(String(scenario.note ?? "")));
 }
 
-const OF_LAST_RUN = "of the last run: what the form holds is refused";
+const OF_LAST_RUN = "From the last run; the form has errors";
 
 /** @param {State} state @param {HTMLElement} form */
 export function showDerived(state, form) {

@@ -44,11 +44,11 @@ export function derivedRows(state, derived) {
       : /** @type {[string, string, string, string][]} */ ([
           [
             several ? "Tick of controller 1" : "Tick",
-            sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in all`,
+            sends ? si(tick_s, "s") : `${si(tick_s, "s")}, ${count(ticks)} in total`,
             "",
             "tick",
           ],
-          [several ? "Limit of its bus" : "Limit of the bus", plain(limit_steps_s, "steps/s"), "", "limit"],
+          [several ? "Max step rate of controller 1" : "Max step rate", plain(limit_steps_s, "steps/s"), "", "limit"],
           sent(state, derived),
           [
             "Line load",

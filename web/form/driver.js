@@ -38,5 +38,5 @@ function summary({ rules, source }) {
     const ns = rules[key];
     return ns ? [`${label} ${si(ns * 1e-9, "s")}`] : [];
   });
-  return `At least: ${times.join(", ")}. ${source[0].toUpperCase()}${source.slice(1)}.`;
+  return `Minimum times: ${times.join(", ")}. ${source[0].toUpperCase()}${source.slice(1)}.`;
 }

@@ -144,7 +144,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
 
   /** Another kind of source could not be loaded. @param {Error} error */
   function refused({ message }) {
-    dispatch({ type: "notice", notice: { kind: "error", text: `The source stays as it is: ${message}`, place: null } });
+    dispatch({ type: "notice", notice: { kind: "error", text: `The source is unchanged: ${message}`, place: null } });
     anew();
   }
 

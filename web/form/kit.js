@@ -38,7 +38,7 @@ export function createKit({ samples, now, dispatch, anew }) {
   /** Such a part; until it can be made a note stands in its place, and the form is built once more. @param {(parts: AdditionalParts) => Node[]} make */
   function later(make) {
     if (parts) return make(parts);
-    const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
+    const note = element("p", { class: "item-note" }, "Loading fields…");
     loading ??= import("./additional_parts.js")
       .then((loaded) => {
         parts = loaded.ADDITIONAL_PARTS;
@@ -47,8 +47,7 @@ export function createKit({ samples, now, dispatch, anew }) {
       .finally(() => {
         loading = null;
       });
-    const missing = () =>
-      say(note, "Its fields could not be loaded; undo, or reload the page when the network is there.");
+    const missing = () => say(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
     // Building it takes all notes away.
     loading.then(() => note.isConnected && anew(), missing);
     return [note];

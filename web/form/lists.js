@@ -1,7 +1,7 @@
 /** How fields are typed that hold a list: whole numbers, segments, points of a curve. */
 import { button, element } from "../dom.js";
 import { WHOLE, whole } from "../state/json.js";
-import { parseNumber } from "../state/number.js";
+import { parseNumber } from "../state/parse_number.js";
 import { printPoints, readPoints } from "./points.js";
 import { printSegments, readSegments } from "./segments.js";
 

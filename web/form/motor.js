@@ -12,12 +12,7 @@ export function motorItems(kit, path, { motor }, name) {
     kit.change(at, () => (check.checked ? kit.samples.motor : null), [[at, null]]),
   );
   const plant = kit.now().scenario.plant;
-  const label = element(
-    "label",
-    { class: "check" },
-    check,
-    plant ? "A motor of its own" : "Check the torque of its motor",
-  );
+  const label = element("label", { class: "check" }, check, plant ? "Motor for this axis" : "Check the motor torque");
   return [
     kit.errorOf(at),
     label,

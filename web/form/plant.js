@@ -2,6 +2,6 @@
 
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {
-  const on = kit.toggle("plant", "Drive motors with the pulses", Boolean(plant), kit.samples.plant);
+  const on = kit.toggle("plant", "Simulate motors", Boolean(plant), kit.samples.plant);
   return [kit.errorOf("plant"), on, ...(plant ? kit.later((parts) => parts.plantFields(kit, plant)) : [])];
 }

@@ -12,7 +12,7 @@ export function plantFields(kit, plant) {
   const guard = plant.protection ?? null;
   return [
     ...kit.block("plant", fields("PlantSettings")),
-    kit.toggle("plant.protection", "Protection: stop at an overload", guard !== null, kit.samples.protection),
+    kit.toggle("plant.protection", "Stop at an overload", guard !== null, kit.samples.protection),
     ...(guard ? kit.block("plant.protection", fields("Protection")) : []),
     group("current_sensor", "CurrentSensor"),
     group("encoder", "Encoder"),

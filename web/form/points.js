@@ -37,10 +37,10 @@ export function readPoints(text) {
     const point = [numberIn(cells[time] ?? ""), numberIn(cells[position] ?? "")];
     if (point[0] === null || point[1] === null)
       return {
-        message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is no point; give its time in s and its position, such as 0.25, 12.5.`,
+        message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is not a point; give time in s and position, such as 0.25, 12.5.`,
       };
     value.push([point[0], point[1]]);
-    if (value.length > most) return { message: `Line ${index + 1}: more than ${most} points; give fewer.` };
+    if (value.length > most) return { message: `Line ${index + 1}: more than ${most} points; give at most ${most}.` };
   }
   return { value };
 }

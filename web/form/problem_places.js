@@ -1,5 +1,6 @@
-/** Where the form shows each problem: at a field, at a part, or in the list alone. */
+/** Where the form shows each problem: at a field, at a part, or only in the list. */
 import { pretty } from "../state/number.js";
+import { withLabels } from "./schema.js";
 
 /** @typedef {import("../state/types.js").Problem} Problem */
 /** @typedef {{fields: Map<string, string>, parts: Map<string, string>, others: Problem[]}} Places  Messages by the path of a field or of a part. */
@@ -11,7 +12,7 @@ export function problemsOf({ drafts, validation }) {
   return [
     ...Object.entries(drafts).map(([path, { message }]) => ({ path, message })),
     ...(validation?.problems ?? []).filter(({ path }) => !isDraft(path)),
-  ].map(({ path, message }) => ({ path, message: pretty(message) }));
+  ].map(({ path, message }) => ({ path, message: pretty(withLabels(message)) }));
 }
 
 /** @param {Problem[]} problems @param {Map<string, unknown>} fields @param {Map<string, unknown>} parts  By their paths. @returns {Places} */

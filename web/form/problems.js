@@ -20,7 +20,7 @@ export function showProblems(state, controls, groups) {
   list.hidden = problems.length === 0;
   say(
     /** @type {Element} */ (list.querySelector("h2")),
-    problems.length === 0 ? "" : state.result ? "Not run: the views show the last good result." : "Not run.",
+    problems.length === 0 ? "" : state.result ? "Not run: showing the last valid result." : "Not run.",
   );
   const fields = [...places.fields].map(([path, message]) => {
     const control = /** @type {Control} */ (controls.get(path));
@@ -32,7 +32,7 @@ export function showProblems(state, controls, groups) {
   const more = buttons.length - MAX_LISTED;
   const items = [
     ...buttons.slice(0, MAX_LISTED),
-    ...(more > 0 ? [`and ${counted(more, "other place")}`] : []),
+    ...(more > 0 ? [`and ${counted(more, "more problem")}`] : []),
     ...places.others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
   ].map((item) => element("li", {}, item));
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);

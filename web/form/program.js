@@ -78,7 +78,7 @@ function until(kit, path, move) {
   );
   return [
     kit.errorOf(at),
-    kit.toggle(at, "Ends early, when an input has a level", Boolean(move.until), kit.samples.until),
+    kit.toggle(at, "End early on an input level", Boolean(move.until), kit.samples.until),
     ...(move.until ? choiceBlock(kit, at, given) : []),
   ];
 }
@@ -90,10 +90,10 @@ function profile(kit, path, given) {
   const { moves } = kit.samples;
   return [
     kit.errorOf(at),
-    kit.toggle(at, "By a motion, not by intervals", Boolean(kind), { cosine: moves.cosine }),
+    kit.toggle(at, "Motion instead of intervals", Boolean(kind), { cosine: moves.cosine }),
     ...(kind
       ? [
-          kit.kindSelect("Kind of the profile's motion", at, kind, labels("Move"), (to) =>
+          kit.kindSelect("Kind of profile motion", at, kind, labels("Move"), (to) =>
             kit.become(at, "Move", to, moves[to]),
           ),
           ...kit.block(`${at}.${kind}`, pointsFirst(fieldsOfKind("Move", kind))),

@@ -1,7 +1,4 @@
-/**
- * What went wrong in a run and can be put right at once: what it is, why, and a button that changes the numbers, as
- * one step of the history. One function a cause.
- */
+/** Problems of a run that one click can fix: the problem, its cause, and the change. One function per cause. */
 import { button, byId, element, fill } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { count, pretty, si } from "../state/number.js";
@@ -32,16 +29,15 @@ export function showRemedy(state, sheets, apply) {
 }
 
 /**
- * A motion that is too fast for its bus, while it is refused: the rate that it needs, and what would do, each a step of
- * the history.
+ * Offers changes for a motion that is too fast for its bus.
  * @param {(json: string | null) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} ask
- * @param {() => State} now @param {(scenario: Scenario) => void} apply @param {() => Promise<void>} released  Waits for the pointer: what comes late moves nothing under it.
+ * @param {() => State} now @param {(scenario: Scenario) => void} apply @param {() => Promise<void>} released  Waits for the pointer, so that nothing moves under it.
  */
 export async function showOffers(ask, now, apply, released) {
   const { revision, scenario, validation, drafts } = now();
   const root = byId("offers");
   const refused = (validation?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
-  // Those that stand are of numbers before: nothing that was typed since may go with them.
+  // Current offers belong to earlier numbers.
   for (const press of root.querySelectorAll("button")) press.disabled = true;
   const found = await ask(refused ? JSON.stringify(scenario) : null);
   await released();
@@ -64,7 +60,7 @@ export async function showOffers(ask, now, apply, released) {
   );
 }
 
-/** Pulses that do not meet a driver's timing: they get the times that its sheet asks for. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
+/** Pulses that violate the timing of the driver get the times of its data sheet. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
 function timing({ scenario, result }, sheets) {
   const { driver_timing: driver, clock_hz: clock, controllers } = scenario;
   const sheet = sheets.find(({ id }) => id === driver?.preset);
@@ -84,20 +80,20 @@ function timing({ scenario, result }, sheets) {
       fixed = set(fixed, `${path}.${key}`, needed);
       changes.push(`${name} ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
       wrongs.push(
-        `${name} is ${si(bus[key] / clock, "s")}, ${count(needed)} cycles (${si(needed / clock, "s")}) would do`,
+        `${name} is ${si(bus[key] / clock, "s")} and needs at least ${count(needed)} cycles (${si(needed / clock, "s")})`,
       );
     }
   }
   if (changes.length === 0) return null;
   return {
     wrong: "The pulses do not meet the driver’s timing",
-    why: `${sheet?.name ?? "The driver"}: ${[...new Set(wrongs)].join("; ")}. A pulse that is too short may be overlooked, and one that comes too soon after DIR may step the old way.`,
+    why: `${sheet?.name ?? "The driver"}: ${[...new Set(wrongs)].join("; ")}. A driver can miss a short pulse. A pulse too soon after DIR can step in the old direction.`,
     change: changes.join(", "),
     scenario: fixed,
   };
 }
 
-/** What each time of a bus has to be at least, with what it is called. @param {any} bus @param {(rule: string) => number} least @param {boolean} isLineless @returns {{[key: string]: [string, number]}} */
+/** Minimum and label of each time of a bus. @param {any} bus @param {(rule: string) => number} least @param {boolean} isLineless @returns {{[key: string]: [string, number]}} */
 function wantedOf(bus, least, isLineless) {
   const width = Math.max(bus.pulse_width_cycles, least("step_high"));
   const setup = Math.max(bus.dir_setup_cycles, least("dir_setup"));
@@ -108,7 +104,7 @@ function wantedOf(bus, least, isLineless) {
     dir_hold_cycles: ["DIR hold", hold],
   };
   if (isLineless) return /** @type {any} */ (times);
-  // The rules of the contract that join the times of a slot.
+  // The rules of a slot.
   const pulse = width + Math.max(setup + hold, 1);
   const inSlot = bus.pulse_phasing === "staggered" ? bus.channels : bus.dir_line === "common" ? 2 : 1;
   const slot = Math.max(bus.step_period_cycles, pulse * inSlot, width + least("step_low"));
@@ -119,7 +115,7 @@ function wantedOf(bus, least, isLineless) {
   });
 }
 
-/** Raw packets on a line that goes wrong: frames are checked and repeated. @param {State} state @returns {Remedy | null} */
+/** Raw packets on a noisy line; frames would be repeated. @param {State} state @returns {Remedy | null} */
 function lost({ scenario, derived, result }) {
   const { line, source, run_cycles } = scenario;
   const disturbed =
@@ -140,8 +136,8 @@ function lost({ scenario, derived, result }) {
   if (missed.length === 0) return null;
   return {
     wrong: "Steps were lost on the line",
-    why: `${missed[0][0].toUpperCase()}${missed.join("; ").slice(1)}. Raw packets carry no check and are never sent again: what the line does to them moves the motors, or is missing.`,
-    change: "Protocol framed",
+    why: `${missed[0][0].toUpperCase()}${missed.join("; ").slice(1)}. Raw packets have no checksum and are not repeated, so errors move the motors or lose steps.`,
+    change: "Use the framed protocol",
     scenario: set(scenario, "line.protocol", "framed"),
   };
 }

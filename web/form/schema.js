@@ -1,8 +1,4 @@
-/**
- * The scenario's schema as the core describes it (`core/scenario/src/schema`), made what the form and the help take:
- * fields with label, unit, hint and choices; kinds; terms; and one of everything with its defaults. Nothing is said of
- * a field here: a row of the core says it.
- */
+/** The schema of the core (`core/scenario/src/schema`) as fields, kinds, terms and samples for the form and the help. */
 
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./field.js").Term} Term */
@@ -19,20 +15,20 @@
 /** @type {Schema} */
 let schema = { documents: {}, groups: {} };
 
-/** Heads and texts of the terms' cards, by group and name, once they are loaded. @type {{[id: string]: [string, string]}} */
+/** Titles and texts of the help cards, by group and name, once loaded. @type {{[id: string]: [string, string]}} */
 let explanations = {};
 
-/** Takes what the core says; nothing is built before. @param {Schema} described */
+/** Sets the schema. @param {Schema} described */
 export function takeSchema(described) {
   schema = described;
 }
 
-/** Takes what terms mean. @param {typeof explanations} all */
+/** Sets the texts of the help cards. @param {typeof explanations} all */
 export function takeExplanations(all) {
   explanations = all;
 }
 
-/** Where terms come from. */
+/** The papers. */
 export const documents = () => schema.documents;
 
 /** @param {string} group @param {string} name @returns {Row} */
@@ -42,16 +38,16 @@ function row(group, name) {
   return found;
 }
 
-/** What a field or a kind is called. @param {string} group @param {string} name */
+/** The label of a field or a kind. @param {string} group @param {string} name */
 export const labelOf = (group, name) => row(group, name).label;
 
-/** How many a list may have. @param {string} group @param {string} name */
+/** The maximum length of a list. @param {string} group @param {string} name */
 export const mostOf = (group, name) => row(group, name).most ?? Number.POSITIVE_INFINITY;
 
-/** A field of a group as the form takes it. @param {string} group @param {string} name @returns {Field} */
+/** A field of a group for the form. @param {string} group @param {string} name @returns {Field} */
 export function field(group, name) {
   const { label, type, unit, when, ...given } = row(group, name);
-  // None of them is one more to choose.
+  // An optional field can also be empty.
   const words = [...(isOptional(type) ? [{ name: "", label: given.empty ?? "none" }] : []), ...wordsOf(type)];
   const units = quantity(type);
   return {
@@ -68,14 +64,14 @@ export function field(group, name) {
   };
 }
 
-/** Fields of a group: those that are named, or all that are typed as one value. @param {string} group @param {string[]} [names] */
+/** The named fields of a group, or all with a single value. @param {string} group @param {string[]} [names] */
 export function fields(group, names) {
   const typed = () =>
     schema.groups[group].fields.filter(({ type, unit }) => kindOf(type, unit) !== null).map(({ name }) => name);
   return (names ?? typed()).map((name) => field(group, name));
 }
 
-/** The kinds of a choice by their names: what each is called. @param {string} group @returns {{[kind: string]: string}} */
+/** The labels of the kinds of a choice. @param {string} group @returns {{[kind: string]: string}} */
 export function labels(group) {
   return Object.fromEntries(schema.groups[group].fields.map(({ name, label }) => [name, label]));
 }
@@ -85,7 +81,7 @@ export function fieldsOfKind(group, kind) {
   return fields(groupIn(row(group, kind).type) ?? "");
 }
 
-/** What is meant by a field or a kind. @param {string} id  Its group and its name, such as `Bus.slots`. @returns {Term | undefined} */
+/** The help text of a field or a kind. @param {string} id  Its group and its name, such as `Bus.slots`. @returns {Term | undefined} */
 export function termOf(id) {
   const [group, name] = id.split(".");
   const found = schema.groups[group]?.fields.find((each) => each.name === name);
@@ -95,7 +91,7 @@ export function termOf(id) {
   return { name: head, text: plain(described), from };
 }
 
-/** All terms of groups or of all but those, by their ids. @returns {{[id: string]: Term}} */
+/** All terms by their ids. @returns {{[id: string]: Term}} */
 export function terms() {
   return Object.fromEntries(
     Object.entries(schema.groups).flatMap(([group, { fields, choice }]) =>
@@ -106,9 +102,8 @@ export function terms() {
   );
 }
 
-/** One of everything that can be added, with the core's own defaults. @returns {Samples} */
+/** Defaults of everything that can be added. @returns {Samples} */
 export function samples() {
-  // Of stand-alone controllers nothing is known before their part of the core is there.
   const one = (/** @type {string} */ group) => structuredClone(schema.groups[group]?.default);
   const each = (/** @type {string} */ group) =>
     Object.fromEntries(
@@ -138,7 +133,7 @@ export function samples() {
   };
 }
 
-/** The name of a rule of a driver's timing. @param {string} rule  Without its unit. */
+/** The label of a timing rule. @param {string} rule  Without its unit. */
 export function ruleName(rule) {
   return schema.groups.TimingRules?.fields.find(({ name }) => name === `${rule}_ns`)?.label ?? rule;
 }
@@ -148,14 +143,14 @@ function groupIn(type) {
   return typeof type === "object" && "group" in type ? type.group : null;
 }
 
-/** The units of a number that has some: JSON's name to the printed one. @param {Type} type */
+/** The units of a quantity: names in JSON and labels. @param {Type} type */
 function quantity(type) {
   const group = schema.groups[groupIn(type) ?? ""];
   const numbers = group?.choice && group.fields.every(({ type }) => type === "number");
   return numbers ? Object.fromEntries(group.fields.map(({ name, label }) => [name, label])) : null;
 }
 
-/** What may be chosen. @param {Type} type @returns {Word[]} */
+/** The words of a choice. @param {Type} type @returns {Word[]} */
 function wordsOf(type) {
   if (type === "bool")
     return [
@@ -171,7 +166,7 @@ function isOptional(type) {
   return typeof type === "object" && "optional" in type;
 }
 
-/** How a value is typed; null where it is no single one. @param {Type} type @param {string} [unit] @returns {any} */
+/** The kind of a field; null if it is not a single value. @param {Type} type @param {string} [unit] @returns {any} */
 function kindOf(type, unit) {
   if (type === "whole") return unit === "cycles" ? "cycles" : "integer";
   if (type === "bool") return "choice";
@@ -189,7 +184,7 @@ function kindOf(type, unit) {
   return groupIn(type.list) === "Segment" ? "segments" : null;
 }
 
-/** What a field is, which values it takes and what none of them means, in sentences. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
+/** The hint of a field: its text, its range, and the meaning of an empty field. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
 function hintOf({ text, type, range, empty, unit }) {
   const words = type === "bool" ? [] : wordsOf(type);
   const described = words.filter(({ label, text }) => text !== label);
@@ -198,7 +193,7 @@ function hintOf({ text, type, range, empty, unit }) {
     ...described.map(({ label, text }) => capital(text.startsWith(label) ? text : `${label}: ${text}`)),
     capital(range),
     empty && `Empty: ${empty}`,
-    unit === "cycles" || unit === "ns" ? "A time such as 2.5 us is taken too" : "",
+    unit === "cycles" || unit === "ns" ? "Or a time, such as 2.5 us" : "",
   ];
   return parts
     .filter((part) => part)
@@ -209,11 +204,36 @@ function hintOf({ text, type, range, empty, unit }) {
 /** @param {string} text */
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
+/** The label of a field or word by its name or path; undefined for other text. @param {string} path */
+function labelAt(path) {
+  const names = path.split(/[.[\]\d]+(?!_)/).filter(Boolean);
+  const name = /** @type {string} */ (names.pop());
+  const fields = Object.values(schema.groups).flatMap((group) => group.fields);
+  const parent = groupIn(bare(fields.find((field) => field.name === names.at(-1))?.type ?? "text"));
+  const inParent = schema.groups[parent ?? ""]?.fields.find((field) => field.name === name);
+  const words = () => fields.flatMap(({ type }) => (type === "bool" ? [] : wordsOf(type)));
+  return (inParent ?? fields.find((field) => field.name === name) ?? words().find((word) => word.name === name))?.label;
+}
+
+/** @param {Type} type @returns {Type} */
+function bare(type) {
+  return isOptional(type) ? type.optional : type;
+}
+
+/** A message of the core with labels instead of names: “Channels” instead of `bus.channels`. @param {string} text */
+export function withLabels(text) {
+  return text.replace(/`([\w.[\]]+)`|\b[a-z]+(?:_[a-z0-9]+)+\b/g, (found, quoted) => {
+    const label = labelAt(quoted ?? found);
+    return label ? `“${label}”` : (quoted ?? found);
+  });
+}
+
 /** Text of the documentation as the page prints it. @param {string} text */
 function plain(text) {
   const raised = (/** @type {string} */ digits) =>
     [...digits].map((digit) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(digit)]).join("");
   return text
+    .replace(/`([\w.]+)`/g, (_, name) => labelAt(name) ?? name)
     .replaceAll("`", "")
     .replace(/\^(-?\d+)/g, (_, digits) => raised(digits))
     .replace(/(?<=\w)\*(?=\w)/g, " · ")

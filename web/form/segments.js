@@ -31,7 +31,7 @@ export function readSegments(text) {
     const segment = readSegment(line);
     if (!segment)
       return {
-        message: `Line ${index + 1}: “${line}” is no segment; give count, interval, growth and direction, such as 20 1048576000 -500 right, or dwell 65536000.`,
+        message: `Line ${index + 1}: “${line}” is not a segment; give count, interval, change and direction, such as 20 1048576000 -500 right, or dwell 65536000.`,
       };
     value.push(segment);
   }

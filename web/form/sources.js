@@ -59,9 +59,9 @@ export const SOURCES = {
     },
     form: (kit, scenario) => {
       if (standAlone) return standAlone.standAloneItems(kit, scenario);
-      const note = element("p", { class: "item-note" }, "Its fields are being loaded.");
+      const note = element("p", { class: "item-note" }, "Loading fields…");
       const missing = () =>
-        say(note, "Its fields could not be loaded; undo, or reload the page when the network is there.");
+        say(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
       SOURCES.standalone.load?.(kit).then(kit.anew, missing);
       return [note];
     },

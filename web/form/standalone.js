@@ -84,7 +84,7 @@ function panelItem(kit, all, index) {
     [
       head,
       ...kit.block(at, own),
-      kit.part(`Self-test, debouncing, trust${whose}`, false, kit.block(at, rest)),
+      kit.part(`Self-test, debounce, trust${whose}`, false, kit.block(at, rest)),
       ...programItems(kit, at, panel.groups ?? [], whose),
       part("jog", "Jog"),
       part("return", "ReturnToZero"),
@@ -111,8 +111,8 @@ function inputs(kit, path, list) {
   const rows = kit.rows(path, list.slice(0, MAX_INPUT_ROWS), given, "Input", fresh, "StandAlone.inputs");
   return [
     kit.errorOf(path),
-    element("p", { class: "item-note" }, "The view Panel puts presses here, and moves them."),
+    element("p", { class: "item-note" }, "Use the view Panel to add and move presses."),
     ...(more > 0 ? rows.slice(0, -1) : rows),
-    ...(more > 0 ? [element("p", { class: "item-note" }, `${count(more)} more are in the view Panel.`)] : []),
+    ...(more > 0 ? [element("p", { class: "item-note" }, `${count(more)} more in the view Panel.`)] : []),
   ];
 }

@@ -1,5 +1,6 @@
 /** What is typed into a field and what it means: texts to values and back, units, and the same value in another light. */
-import { parseNumber, si } from "../state/number.js";
+import { si } from "../state/number.js";
+import { parseNumber, parseQuantity } from "../state/parse_number.js";
 import { get } from "../state/paths.js";
 import { derivedAxis } from "../state/queries.js";
 
@@ -88,28 +89,16 @@ export function read(text, field, state, before) {
     case "quantity":
       return readQuantity(text, field, before);
     case "number":
-      return parseNumber(text, unit === "°" || unit.includes(" ") ? "" : unit);
+      return parseNumber(text, unit);
     default:
       return parseNumber(text, unit, { integer: true, clockHz });
   }
 }
 
-/** `250 mm` also chooses the unit. @param {string} text @param {Field} field @param {any} before @returns {{value: any} | {message: string}} */
-function readQuantity(text, field, before) {
-  const units = field.units ?? {};
-  const chosen = Object.keys(before ?? units)[0];
-  const named = Object.entries(units).find(([name, printed]) => {
-    const tail = text.trim().match(/[^\d.,\s+−-].*$/)?.[0] ?? "";
-    return (
-      tail === printed ||
-      tail === name ||
-      tail === printed.replace("²", "2").replace("³", "3") ||
-      tail === printed.replace("°", "deg")
-    );
-  });
-  const unit = named?.[0] ?? chosen;
-  const result = parseNumber(named ? text.trim().replace(/[^\d.,\s+−-].*$/, "") : text, units[chosen] ?? "");
-  return "message" in result ? result : { value: { [unit]: result.value } };
+/** `250 mm` also selects the unit. @param {string} text @param {Field} field @param {any} before @returns {{value: any} | {message: string}} */
+function readQuantity(text, { units = {} }, before) {
+  const parsed = parseQuantity(text, units, Object.keys(before ?? units)[0]);
+  return "message" in parsed ? parsed : { value: { [parsed.unit]: parsed.value } };
 }
 
 /** A quantity in another unit, the same way where the mechanics are known. @param {any} value @param {string} to @param {string} path @param {State} state */

@@ -1,15 +1,12 @@
-/**
- * The card that a word with dots under it opens: what the word means and which document it comes from. One card serves
- * all of them; a click elsewhere and Escape close it.
- */
+/** The help card of a term: its meaning and its source. All terms share one card. */
 import { byId, element, fill } from "../dom.js";
 import { CARD, termButton } from "../form/term_button.js";
 import { VIEWS } from "../state/views.js";
 
-/** From the word to its card, and from the card to the window's edges, in CSS pixels. */
+/** From the word to its card, and from the card to the window, in CSS pixels. */
 const GAP_PX = 4;
 
-/** Opens the card of the word that explains an element, if there is one. @param {Element} at */
+/** Opens the card of the term that explains an element, if any. @param {Element} at */
 export function explain(at) {
   const word = /** @type {HTMLElement | null} */ (at.closest(".field, .item")?.querySelector(".term") ?? null);
   if (!word) return false;
@@ -17,11 +14,11 @@ export function explain(at) {
   return true;
 }
 
-/** Makes the card, and the headings of the views words of it. */
+/** Creates the card, and makes the headings of the views terms. */
 export function createCard() {
   const card = element("div", { id: CARD, class: "term-card", popover: "auto", role: "note", "aria-live": "polite" });
   document.body.append(card);
-  // A press anywhere closes the card before the click comes: one on the card's own word must not open it again.
+  // A press closes the card before its click arrives, so that a click on the same term does not reopen it.
   /** @type {HTMLElement | null} */
   let closing = null;
   document.addEventListener(
@@ -35,7 +32,7 @@ export function createCard() {
     const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
     if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
     else if (word) card.hidePopover();
-    // As a label does: what is typed next goes into its field.
+    // Like a label, it moves the focus to its field.
     const field = word?.closest(".field")?.querySelector("input, select, textarea");
     if (field instanceof HTMLElement) field.focus({ preventScroll: true });
     closing = null;
@@ -47,13 +44,13 @@ export function createCard() {
   for (const { name, title } of VIEWS) fill(byId(`title-${name}`), termButton(title, `view:${name}`));
 }
 
-/** The word whose card is on show, or was last. @type {HTMLElement | null} */
+/** The term of the current or last card. @type {HTMLElement | null} */
 let opener = null;
 
-/** What fills the card; it loads with the first. @type {Promise<typeof import("./filled.js")> | null} */
+/** Loaded with the first card. @type {Promise<typeof import("./card_content.js")> | null} */
 let loading = null;
 
-/** Fills the card for a word and shows it there. @param {HTMLElement} word */
+/** Shows the card of a term. @param {HTMLElement} word */
 async function show(word) {
   const card = document.getElementById(CARD);
   if (!card) return;
@@ -61,13 +58,13 @@ async function show(word) {
   opener = word;
   const isWanted = () => opener === word && word.isConnected;
   try {
-    loading ??= import("./filled.js");
+    loading ??= import("./card_content.js");
     await (await loading).fillCard(card, word, isWanted);
   } catch {
     loading = null;
-    if (isWanted()) fill(card, element("p", {}, "The text could not be loaded; try again when the network is there."));
+    if (isWanted()) fill(card, element("p", {}, "The text could not be loaded. Check the network and try again."));
   }
-  // Another word was asked for meanwhile.
+  // Another term was requested meanwhile.
   if (!isWanted()) return;
   card.hidePopover();
   card.showPopover();
@@ -75,7 +72,7 @@ async function show(word) {
   word.setAttribute("aria-expanded", "true");
 }
 
-/** Puts the card under its word, or above it where there is more room. @param {HTMLElement} card @param {HTMLElement} word */
+/** Places the card below its word, or above it if there is more room. @param {HTMLElement} card @param {HTMLElement} word */
 function place(card, word) {
   const { left, top, bottom } = word.getBoundingClientRect();
   const { width, height } = card.getBoundingClientRect();

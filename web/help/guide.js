@@ -1,4 +1,4 @@
-/** The way to the guide (guide_steps.js), which loads when it is first asked for; a new visitor is offered it once. */
+/** Offers the guide (guide_steps.js) to new visitors, and loads it on demand. */
 import { byId } from "../dom.js";
 import { loadGuided, loadScenario, saveGuided } from "../shell/storage.js";
 
@@ -7,7 +7,7 @@ export function createGuide(page) {
   byId("guide-start").addEventListener("click", async () => (await import("./guide_steps.js")).startGuide(page));
 }
 
-/** Offers the guide to who has never been here. */
+/** Offers the guide to a new visitor. */
 export function offerGuide() {
   const welcome = byId("welcome");
   if (loadGuided() || loadScenario() !== null) return;

@@ -1,7 +1,4 @@
-/**
- * The first steps with Stepscope, over the real page: a small panel that points at one thing after another. It covers
- * nothing that it speaks of, and the page can be used meanwhile. It loads when it is first asked for (guide.js).
- */
+/** The guided tour: a small panel next to each element that it explains. The page stays usable. */
 import { button, byId, element, fill } from "../dom.js";
 import { saveGuided } from "../shell/storage.js";
 
@@ -12,39 +9,39 @@ export const STEPS = [
   {
     title: "Choose a motion",
     at: "#fields > details",
-    text: "A preset above, or a move of your own here: type a distance such as 1.2k. All that follows is computed at once. A word with dots under it explains itself.",
+    text: "Choose a preset above, or enter a move here: type a distance such as 1.2k. The result updates at once. Click a word with a dotted underline to see its meaning.",
   },
   {
-    title: "Look at the curves",
+    title: "View the curves",
     at: "#view-motion",
     view: "motion",
-    text: "Position, speed and acceleration: the thin line is what was asked for, the broad one what the pulses make of it. A click sets cursor A, with Shift cursor B; their handles can be dragged.",
+    text: "Position, speed and acceleration: the thin line is the ideal curve, the wide one the actual pulses. Click to set cursor A, with Shift cursor B. Drag their handles to move them.",
   },
   {
     title: "Zoom into the pulses",
     at: "#view-pulses",
     view: "pulses",
-    text: "Turn the wheel, or press + and the arrow keys, until single pulses show: every edge stands at its exact clock cycle. N goes to the next edge.",
+    text: "Turn the wheel, or press + and the arrow keys, until you see single pulses. Every edge is cycle-exact. N goes to the next edge.",
   },
   {
-    title: "See what was sent",
+    title: "Inspect the packets",
     at: "#view-packets",
     view: "packets",
-    text: "A row a packet, with its bytes and what the controller did with it. Choose one: it is shown in the pulses.",
+    text: "One row per packet, with its bytes and its outcome. Select one to show it in the pulses.",
   },
   {
-    title: "Break it, and fix it",
+    title: "Find and fix an error",
     at: "#preset",
-    text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” go wrong on purpose. The page says what is wrong and why, and “Fix it” puts it right; Undo takes that back.",
+    text: "“Pulses too short for a DRV8825” and “Raw packets on a noisy line” contain a deliberate error. The page explains it, and “Fix it” corrects it. Undo restores it.",
   },
   {
     title: "Share it",
     at: "#share",
-    text: "The link holds the whole experiment. Whoever opens it computes the same edges, and the digest proves it. ? at the right end has the keys and the help.",
+    text: "The link contains the whole experiment. It reproduces the same edges, and the digest proves it. The ? button at the right has keys and help.",
   },
 ];
 
-/** Distance of the panel from what it points at, and from the window's edges, in CSS pixels. */
+/** Distance of the panel from its target and from the window, in CSS pixels. */
 const GAP_PX = 10;
 
 /** @type {{go: (step: number) => void} | null} */
@@ -79,7 +76,7 @@ function createGuide({ dispatch, now }) {
     current = step;
     const { title, text, view } = STEPS[step];
     if (view) dispatch({ type: "view", view });
-    // What it points at has to be on show.
+    // The target must be visible.
     const { form, folded, largest } = now().panes;
     if (largest !== null || form === 0 || folded.length > 0) {
       dispatch({ type: "pane", panes: { largest: null, folded: [], form: form || null } });
@@ -116,14 +113,14 @@ function createGuide({ dispatch, now }) {
     return /** @type {HTMLElement | null} */ (document.querySelector(STEPS[current]?.at ?? ":not(*)"));
   }
 
-  /** Marks what the panel points at, and nothing else. @param {HTMLElement | null} target */
+  /** Highlights the target. @param {HTMLElement | null} target */
   function mark(target) {
     for (const marked of document.querySelectorAll(".pointed")) marked.classList.remove("pointed");
     target?.classList.add("pointed");
     target?.scrollIntoView({ block: narrow.matches ? "start" : "nearest" });
   }
 
-  /** Beside its target where there is room, else over the least of it. */
+  /** Next to the target if there is room, else over a part of it. */
   function place() {
     const target = targetOf();
     const { clientWidth, clientHeight } = document.documentElement;
@@ -137,11 +134,11 @@ function createGuide({ dispatch, now }) {
     const below = box.bottom + GAP_PX;
     const within = (/** @type {number} */ at, /** @type {number} */ most) =>
       Math.max(GAP_PX, Math.min(at, most - GAP_PX));
-    // Left of the views, over the form; right of the form, over the views; under what stands in the header.
+    // Left of the views, right of the form, or below the header.
     const left = box.width > clientWidth / 3 ? box.left - width - GAP_PX : box.right + GAP_PX;
-    const beside = box.height > height / 2;
-    panel.style.left = `${within(beside ? left : box.left, clientWidth - width)}px`;
-    panel.style.top = `${within(beside ? box.top : below, clientHeight - height)}px`;
+    const isBeside = box.height > height / 2;
+    panel.style.left = `${within(isBeside ? left : box.left, clientWidth - width)}px`;
+    panel.style.top = `${within(isBeside ? box.top : below, clientHeight - height)}px`;
   }
 
   function end() {

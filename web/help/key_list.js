@@ -1,8 +1,8 @@
-/** Every key, from the list of commands itself, for the help in the page. */
+/** The list of all keys. */
 import { byId, element, fill } from "../dom.js";
 import { listed } from "../shell/commands.js";
 
-/** How keys are called on keycaps. @type {{[key: string]: string}} */
+/** Names on keycaps. @type {{[key: string]: string}} */
 const CAPS = {
   arrowleft: "←",
   arrowright: "→",
@@ -13,7 +13,7 @@ const CAPS = {
   pagedown: "Page down",
 };
 
-/** Lists them. */
+/** Fills the list. */
 export function listKeys() {
   fill(
     byId("keys-list"),

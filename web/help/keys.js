@@ -1,16 +1,16 @@
-/** The help in the page: every key (key_list.js), and the way to the rest. */
+/** The dialog of keys (key_list.js), and the F1 key. */
 import { byId, say } from "../dom.js";
 import { listen } from "../shell/commands.js";
 import { explain } from "./card.js";
 
-/** @param {() => Promise<unknown>} load  Loads what has keys of its own and may not be there yet. */
+/** @param {() => Promise<unknown>} load  Loads parts of the page that have keys. */
 export function createKeys(load) {
   const dialog = /** @type {HTMLDialogElement} */ (byId("keys"));
   const list = async () => {
     try {
       (await import("./key_list.js")).listKeys();
     } catch {
-      say(byId("keys-list"), "The keys could not be loaded; open this again when the network is there.");
+      say(byId("keys-list"), "The keys could not be loaded. Check the network and open this again.");
     }
   };
   const open = () => {
@@ -21,14 +21,14 @@ export function createKeys(load) {
   };
   byId("help").addEventListener("click", open);
   byId("keys-close").addEventListener("click", () => dialog.close());
-  // The ground around it is the dialog itself.
+  // A click outside the content has the dialog as its target.
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();
   });
   listen(document, "Help", [
     {
       keys: ["F1"],
-      text: "explain the field with the focus, or show this help",
+      text: "explain the focused field, or show this help",
       run: () => {
         const active = document.activeElement;
         if (!active || !explain(active)) open();

@@ -1,4 +1,4 @@
-/** The help page: its lists are those that the page itself uses. */
+/** Fills the lists of the help page. */
 import { byId, element, fill } from "../dom.js";
 import { compiled } from "../engine/wasm.js";
 import { documents, labels, takeExplanations, takeSchema, termOf, terms } from "../form/schema.js";
@@ -6,7 +6,7 @@ import init, { schema } from "../pkg/stepscope_wasm.js";
 import { VIEWS } from "../state/views.js";
 import { EXPLAINED } from "./explained.js";
 import { meaning } from "./meaning.js";
-import { DERIVED, TERMS } from "./texts.js";
+import { DERIVED, TERMS } from "./term_texts.js";
 
 /** @typedef {import("../form/field.js").Term} Term */
 
@@ -14,7 +14,7 @@ await init({ module_or_path: await compiled() });
 takeSchema(schema());
 takeExplanations(EXPLAINED);
 
-/** The kinds of a choice, each with what it is. @param {string} group */
+/** The kinds of a choice with their meaning. @param {string} group */
 const kinds = (group) =>
   Object.entries(labels(group)).flatMap(([kind, label]) => [
     element("dt", {}, label),
@@ -24,12 +24,18 @@ const kinds = (group) =>
 fill(byId("moves"), ...kinds("Move"));
 fill(byId("mechanics"), ...kinds("Mechanics"));
 fill(byId("view-list"), ...VIEWS.flatMap(({ title, about }) => [element("dt", {}, title), element("dd", {}, about)]));
-fill(byId("documents"), ...Object.values(documents()).map(({ title }) => element("li", {}, title)));
+fill(
+  byId("documents"),
+  ...Object.entries(documents()).map(([id, { title }]) => element("li", { id: `paper-${id}` }, title)),
+);
 
-// Fields of several groups share a term; two terms can have one name, such as the width of a pulse and the rule for it.
+// Several groups share terms, and two terms can have the same name.
 const all = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
 const ofViews = Object.values(TERMS).flatMap((terms) => Object.values(terms));
 const each = [...all.map(([, term]) => term), ...Object.values(DERIVED), ...ofViews];
-const said = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
-said.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));
-fill(byId("terms"), ...said.flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]));
+const unique = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
+unique.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));
+fill(byId("terms"), ...unique.flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]));
+
+// The lists were empty when the browser looked for the target of the link.
+if (location.hash) document.getElementById(location.hash.slice(1))?.scrollIntoView();

@@ -1,7 +1,4 @@
-/**
- * The panel of the visitor's own experiments: kept under a name on this device, opened again, put into one file and taken
- * from one. It loads when it is first opened.
- */
+/** The panel of experiments that are saved on this device. */
 import { button, byId, element, fill, say } from "../dom.js";
 import { Dropped } from "../engine/engine.js";
 import { MAX_TITLE } from "../state/history.js";
@@ -13,18 +10,18 @@ import { loadExperiments, saveExperiments } from "./storage.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
-/** What the file says of itself, so that it is told from one scenario. */
+/** Key that marks a file of experiments. */
 const FILE = "stepscope_experiments";
 const FILE_NAME = "stepscope-experiments.json";
-/** Most bytes of such a file. */
+/** Maximum bytes of such a file. */
 const MAX_FILE = 32 << 20;
 
-/** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: what a new experiment begins with, as JSON. */
+/** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: a new experiment as JSON. */
 
-/** What the panel does; made once. @param {Given} page @param {{close: () => void, changed: () => void, open: (kept: Scenario) => void}} panel  `changed`: other experiments are kept than before. */
+/** @param {Given} page @param {{close: () => void, changed: () => void, open: (saved: Scenario) => void}} panel  `changed`: the list has changed. */
 export function createExperiments({ fresh, engine, dispatch, now }, { close, changed, open }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
-  const keep = /** @type {HTMLButtonElement} */ (byId("experiment-keep"));
+  const saveButton = /** @type {HTMLButtonElement} */ (byId("experiment-save"));
   const list = byId("experiment-list");
   const about = byId("experiment-about");
   const exportAll = /** @type {HTMLButtonElement} */ (byId("experiments-export"));
@@ -32,14 +29,14 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
 
   name.addEventListener("input", show);
   name.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") keepAs();
+    if (event.key === "Enter") saveAs();
   });
-  keep.addEventListener("click", keepAs);
+  saveButton.addEventListener("click", saveAs);
   byId("experiment-new").addEventListener("click", () => {
     dispatch({ type: "replace", scenario: readJson(fresh), origin: "own" });
     close();
   });
-  exportAll.addEventListener("click", exportThem);
+  exportAll.addEventListener("click", exportFile);
   byId("experiments-import").addEventListener("click", () => chooser.click());
   chooser.addEventListener("change", async () => {
     const [file] = chooser.files ?? [];
@@ -48,26 +45,23 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     say(
       about,
       file.size > MAX_FILE
-        ? `${file.name} has ${si(file.size, "B", 3)}; at most ${si(MAX_FILE, "B", 3)} are read.`
-        : await takeExperiments(await file.text(), engine),
+        ? `${file.name} has ${si(file.size, "B", 3)}; at most ${si(MAX_FILE, "B", 3)} are allowed.`
+        : await importExperiments(await file.text(), engine),
     );
     show();
   });
 
-  function keepAs() {
+  function saveAs() {
     const title = name.value.trim();
     if (title === "") {
-      say(about, "Give it a name first.");
+      say(about, "The name is missing; enter one.");
       return name.focus();
     }
     const scenario = { ...now().scenario, title };
     if (now().scenario.title !== title) dispatch({ type: "edit", path: "title", value: title });
     if (!saveExperiments([...loadExperiments().filter((each) => each.title !== title), scenario]))
-      return say(
-        about,
-        "This browser keeps nothing here (a private window, or no space is left): export it as a file.",
-      );
-    say(about, `Kept on this device as “${title}”.`);
+      return say(about, "The browser cannot save here (private window or no space left). Export it as a file.");
+    say(about, `Saved on this device as “${title}”.`);
     return show();
   }
 
@@ -75,9 +69,9 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   function remove(removed) {
     const { title } = removed;
     saveExperiments(loadExperiments().filter((each) => each.title !== title));
-    const back = button("Put it back", `Put ${title} back`, () => {
+    const back = button("Restore", `Restore ${title}`, () => {
       saveExperiments([...loadExperiments().filter((each) => each.title !== title), removed]);
-      say(about, `“${title}” is kept again.`);
+      say(about, `“${title}” is restored.`);
       show();
       name.focus();
     });
@@ -86,7 +80,7 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     back.focus();
   }
 
-  function exportThem() {
+  function exportFile() {
     save(FILE_NAME, "application/json", [JSON.stringify({ [FILE]: 1, experiments: loadExperiments() }, null, 1)]);
     say(about, `Saved ${FILE_NAME}.`);
   }
@@ -94,7 +88,7 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   function show() {
     const saved = loadExperiments();
     const title = name.value.trim();
-    say(keep, saved.some((each) => each.title === title) ? "Replace" : "Keep");
+    say(saveButton, saved.some((each) => each.title === title) ? "Replace" : "Save");
     exportAll.disabled = saved.length === 0;
     fill(
       list,
@@ -113,21 +107,21 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     changed();
   }
 
-  function opened() {
+  function onOpen() {
     name.value = String(now().scenario.title ?? "");
     say(about, "");
     show();
   }
 
-  return { opened };
+  return { onOpen };
 }
 
-/** Takes the experiments of a file beside those that are kept: one of a name that there is gets another. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  What became of them. */
-async function takeExperiments(text, engine) {
+/** Adds the experiments of a file to the saved ones; duplicate names get a number. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  The result as text. */
+async function importExperiments(text, engine) {
   try {
     const file = readJson(text);
     if (!Array.isArray(file?.experiments) || !(FILE in file))
-      return `This is no file of experiments; give one that “Export all” has made. One experiment is opened with “Open…”.`;
+      return "This is not a file of experiments; choose one from “Export all”. Use “Open…” for a single experiment.";
     const saved = loadExperiments();
     const refused = [];
     for (const each of file.experiments) {
@@ -137,11 +131,11 @@ async function takeExperiments(text, engine) {
       else if (!saved.some((known) => JSON.stringify(known) === JSON.stringify(read)))
         saved.push({ ...read, title: freeName(read.title || "experiment", saved) });
     }
-    if (!saveExperiments(saved)) return "This browser keeps nothing here (a private window, or no space is left).";
-    const not = refused.length > 0 ? ` Not taken: ${refused.join("; ")}.` : "";
-    return `${counted(file.experiments.length - refused.length, "experiment")} taken.${not}`;
+    if (!saveExperiments(saved)) return "The browser cannot save here (private window or no space left).";
+    const not = refused.length > 0 ? ` Not imported: ${refused.join("; ")}.` : "";
+    return `${counted(file.experiments.length - refused.length, "experiment")} imported.${not}`;
   } catch (error) {
-    if (error instanceof Dropped) return "The engine was started again; import again.";
+    if (error instanceof Dropped) return "The engine was restarted; import the file again.";
     return `This file cannot be read: ${message(error)}`;
   }
 }

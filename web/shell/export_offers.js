@@ -24,8 +24,8 @@ export function partsOf({ result }, span) {
 
 /** @param {State} state */
 export function statusOf(state) {
-  if (!state.result) return "Nothing was run yet.";
-  return isStale(state) ? "The views show an earlier experiment than the form; files are of what the views show." : "";
+  if (!state.result) return "There is no run yet.";
+  return isStale(state) ? "The views show an earlier experiment than the form. Files contain what the views show." : "";
 }
 
 /** @param {State} state @param {Engine} engine @param {Span | null} span  Cycles, both in it; null is the whole run. @returns {Group[]} */
@@ -41,7 +41,7 @@ export function exportOffers(state, engine, span) {
   // A panel has neither ticks nor segments, and sends nothing.
   const steps = hasSegments
     ? file("segments", "-segments.csv", "text/csv", "Segment lists")
-    : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps of each channel");
+    : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps per channel");
   const margins = [
     table("-margins.csv", "Driver timing: margins", "timing", marginsTable),
     table("-violations.csv", "Driver timing: violations", "timing", violationsTable),
@@ -50,7 +50,7 @@ export function exportOffers(state, engine, span) {
   const script = {
     name: `${baseName(state)}-line.json`,
     type: "application/json",
-    label: hasSegments ? "Scenario of its segments, JSON" : "Line script of what was sent, JSON",
+    label: hasSegments ? "Scenario with its segments, JSON" : "Line script of the sent bytes, JSON",
     make: async () => [await engine.ask("line_script"), "\n"],
   };
   return [
@@ -58,7 +58,7 @@ export function exportOffers(state, engine, span) {
       title: "Signals",
       offers: [
         file("vcd", ".vcd", "text/plain", "VCD, for GTKWave, Surfer, PulseView"),
-        file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(controller.records)} rows in the whole run`),
+        file("edges", "-edges.csv", "text/csv", `CSV of edges, ${count(controller.records)} rows for the whole run`),
         file("trace", ".trace", "text/plain", "Trace, cycle and levels in hex"),
       ],
     },
@@ -119,7 +119,7 @@ async function pieces(engine, file, pace) {
   let from = 0;
   while (from !== null) {
     const piece = await engine.ask("file_piece", ...file, from);
-    if (!piece) throw new Error("there is no run to be saved");
+    if (!piece) throw new Error("there is no run to save");
     gathered.push(piece.bytes);
     if (gathered.length === PIECES || piece.next === null) {
       blobs.push(new Blob(gathered));

@@ -66,19 +66,19 @@ export function createExports({ engine, now }, others, { isOpen }) {
     };
     stopped = false;
     bar.value = 0;
-    say(status, `Making ${name}…`);
+    say(status, `Writing ${name}…`);
     show(true);
     try {
       const parts = await make((done) => {
         if (stopped) throw new Cancelled();
-        if (now().result?.summary !== begun) throw new Error("the experiment was run anew meanwhile; export again");
+        if (now().result?.summary !== begun) throw new Error("the experiment has run again; export again");
         bar.value = done;
       });
       save(name, type, parts);
       say(status, `Saved ${name}, ${si(sizeOf(parts), "B", 3)}.`);
     } catch (error) {
-      const why = error instanceof Dropped ? "the engine was started again; export again" : message(error);
-      say(status, error instanceof Cancelled ? "Left off: nothing was saved." : `No ${name}: ${why}`);
+      const why = error instanceof Dropped ? "the engine was restarted; export again" : message(error);
+      say(status, error instanceof Cancelled ? "Canceled: nothing was saved." : `${name} was not saved: ${why}`);
     }
     show(false);
     offerAgain();
@@ -101,5 +101,5 @@ export function createExports({ engine, now }, others, { isOpen }) {
     )
       offer();
   }
-  return { opened: offer, render };
+  return { onOpen: offer, render };
 }

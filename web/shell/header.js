@@ -1,4 +1,4 @@
-/** The header: presets, undo and redo, what the run made, the theme; and the messages under it. */
+/** The header: presets, undo and redo, the state of the run, and the messages below it. */
 import { byId, element, fill, options, say } from "../dom.js";
 import { readJson } from "../state/json.js";
 import { si } from "../state/number.js";
@@ -10,10 +10,10 @@ import { statusText } from "./run_texts.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Preset} Preset */
 
-/** Recordings that can be opened as presets are. */
+/** Recordings in the list of presets. */
 const RECORDED = [
   ["recorded-step-table", "A step table on an ATmega328P"],
-  ["recorded-late-packet", "A packet that comes too late"],
+  ["recorded-late-packet", "A packet that arrives too late"],
 ];
 
 /** Progress is shown only for runs longer than this, in ms. */
@@ -110,7 +110,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
   }
 
-  /** The controllers on the line, where there are several. @param {State} state */
+  /** The controllers on the line, if there are several. @param {State} state */
   function chooser({ result }) {
     const controllers = result?.summary.controllers ?? [];
     options(
@@ -124,7 +124,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   return { render };
 }
 
-/** Whether a key is meant for a text that is no part of the experiment. @param {KeyboardEvent} event */
+/** Whether a key is typed into a text outside of the form. @param {KeyboardEvent} event */
 function isElsewhere({ target }) {
   return target instanceof Element && target.matches("input, textarea") && !target.closest("#form");
 }
@@ -136,14 +136,14 @@ function messages(state) {
   budget.hidden = !over;
   say(
     /** @type {Element} */ (budget.firstElementChild),
-    over ? `Not run yet: ${state.validation?.cost?.message ?? "this is much work."}` : "",
+    over ? `Not run yet: ${state.validation?.cost?.message ?? "this run takes long."}` : "",
   );
   const failed = byId("engine-message");
   failed.hidden = state.run.phase !== "failed";
   say(/** @type {Element} */ (failed.firstElementChild), state.run.message);
 }
 
-/** Presets by the document that they come from. @param {Preset[]} presets */
+/** Presets by paper. @param {Preset[]} presets */
 function groups(presets) {
   /** @type {Map<string, HTMLOptGroupElement>} */
   const made = new Map();

@@ -63,7 +63,7 @@ export function createHealth({ engine, dispatch, now }) {
       ]),
     );
     const counted = `${count(broken ?? 0)} timing ${broken === 1 ? "violation" : "violations"}`;
-    if (broken === 0) groups.push([{ text: "driver timing met" }]);
+    if (broken === 0) groups.push([{ text: "driver timing OK" }]);
     else if (broken !== null) groups.push([{ text: counted, bad: true, press: violations }]);
     return groups
       .filter((group) => group.length > 0)

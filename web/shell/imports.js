@@ -2,7 +2,7 @@
  * with the first (opened.js, live.js). */
 import { byId } from "../dom.js";
 
-/** @param {import("./opened.js").Given} page */
+/** @param {import("./open_file.js").Given} page */
 export function createImports(page) {
   const chooser = /** @type {HTMLInputElement} */ (byId("open-file"));
   const hint = byId("drop-hint");
@@ -60,7 +60,7 @@ export function createImports(page) {
   });
 
   /** @param {File[]} files */
-  const open = (files) => attempt(async () => (await import("./opened.js")).openFiles(page, files));
+  const open = (files) => attempt(async () => (await import("./open_file.js")).openFiles(page, files));
 
   /** @param {() => Promise<void>} work */
   async function attempt(work) {
@@ -71,7 +71,7 @@ export function createImports(page) {
         type: "notice",
         notice: {
           kind: "error",
-          text: "Nothing was opened: a part of the page could not be loaded; try again when the network is there.",
+          text: "The file was not opened: a part of the page could not be loaded. Check the network and try again.",
           place: null,
         },
       });

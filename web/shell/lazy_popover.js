@@ -4,10 +4,10 @@ import { dropDown } from "./popover.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {{isOpen: () => boolean, close: () => void}} Popover */
-/** @typedef {{opened: () => void, render?: (state: State, before: State | undefined) => void}} Content  `opened` is called whenever the panel opens. */
+/** @typedef {{onOpen: () => void, render?: (state: State, before: State | undefined) => void}} Content  `onOpen` is called whenever the panel opens. */
 
 /** What is told where its code could not be fetched. */
-const MISSING = "This part of the page could not be loaded; try again when the network is there.";
+const MISSING = "This part of the page could not be loaded. Check the network and try again.";
 
 /** @param {string} button @param {string} panel  Their ids. @param {(popover: Popover) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
 export function createLazyPopover(button, panel, load, about) {
@@ -35,7 +35,7 @@ export function createLazyPopover(button, panel, load, about) {
     }
     if (message.textContent === MISSING) message.textContent = "";
     setInert(false);
-    content.opened();
+    content.onOpen();
   });
   return {
     /** @param {State} state @param {State | undefined} before */

@@ -5,7 +5,7 @@
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { blockedBy } from "../state/queries.js";
-import { ownIsKept } from "./storage.js";
+import { undoHint } from "./storage.js";
 import { parseView, viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -66,8 +66,8 @@ export function createLink({ engine, dispatch, now }) {
   /** Shows what a fragment asks to be shown, and keeps what its sender saw. @param {string} fragment */
   async function open(fragment) {
     const [view, seen] = await Promise.all(["v", "d"].map((name) => engine.ask("link_part", fragment, name)));
-    const asked = parseView(view);
-    if (Object.keys(asked).length > 0) dispatch({ type: "open", view: asked });
+    const part = parseView(view);
+    if (Object.keys(part).length > 0) dispatch({ type: "open", view: part });
     if (seen) dispatch({ type: "seen", text: seen });
   }
 
@@ -90,7 +90,7 @@ export function createLink({ engine, dispatch, now }) {
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
         dispatch({ type: "replace", scenario, origin: "shared" });
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
-        const text = `Shared with you: ${name}.${ownIsKept()}`;
+        const text = `Shared with you: ${name}.${undoHint()}`;
         if (!isKnown) dispatch({ type: "notice", notice: { kind: "info", text } });
       }
       await open(fragment);

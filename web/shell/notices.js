@@ -1,7 +1,4 @@
-/**
- * The lines under the header: what there is to say of a link or a file, and whether the run is the one that a
- * link's sender saw, with a button that shows the place that is meant.
- */
+/** The messages below the header: about links and files, and whether the run is that of the sender of a link. */
 import { button, byId, element, fill } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 
@@ -21,7 +18,7 @@ export function showPlace({ dispatch, now }, { start, end, controller, cycle }) 
 /** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createNotices(page) {
   const { engine, dispatch, now } = page;
-  /** What a verdict says; it loads with the first. @type {typeof import("./verdict.js").verdictText | null} */
+  /** Loaded with the first verdict. @type {typeof import("./verdict.js").verdictText | null} */
   let verdictText = null;
 
   /** @param {string} text */
@@ -32,7 +29,7 @@ export function createNotices(page) {
     if (!verdictText)
       return showLine(
         "seen-message",
-        "This part of the page could not be loaded; try again when the network is there.",
+        "This part of the page could not be loaded. Check the network and try again.",
         null,
       );
     if (verdict && now().result?.summary === result?.summary) dispatch({ type: "compared", text, verdict });
@@ -41,13 +38,13 @@ export function createNotices(page) {
   /** @param {string} id @param {string} text @param {Place | null} [place] @param {NonNullable<State["notice"]>["offer"]} [offer] */
   function showLine(id, text, place, offer) {
     const line = byId(id);
-    const known = line.dataset.said;
+    const known = line.dataset.text;
     const key = JSON.stringify([text, place, offer?.label]);
     if (known === key) return;
-    line.dataset.said = key;
+    line.dataset.text = key;
     line.hidden = text === "";
     fill(line, element("span", {}, text));
-    if (place) line.append(button("Show the place", "Show the place", () => showPlace(page, place)));
+    if (place) line.append(button("Go to this time", "Go to this time", () => showPlace(page, place)));
     if (offer) {
       const { label, scenario } = offer;
       line.append(button(label, label, () => dispatch({ type: "replace", scenario, origin: "own" })));

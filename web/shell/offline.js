@@ -10,13 +10,13 @@ const ASK_MS = 3_600_000;
 let begun = false;
 
 /** Starts to keep the page, once it stands: that costs the first view nothing. The sources as they lie are not kept. */
-export function keepOffline() {
+export function cacheOffline() {
   if (begun) return;
   begun = true;
   if (!("serviceWorker" in navigator) || document.documentElement.dataset.build === "development") return;
   const { serviceWorker } = navigator;
   const notice = byId("newer-version");
-  let isAsked = false;
+  let isRequested = false;
 
   /** @param {ServiceWorkerRegistration} registration */
   const waits = (registration) => {
@@ -24,7 +24,7 @@ export function keepOffline() {
     if (registration.waiting && serviceWorker.controller) notice.hidden = false;
   };
   byId("reload").addEventListener("click", async () => {
-    isAsked = true;
+    isRequested = true;
     const waiting = (await serviceWorker.getRegistration())?.waiting;
     if (waiting) waiting.postMessage("take over");
     else location.reload();
@@ -34,7 +34,7 @@ export function keepOffline() {
   });
   let controlled = serviceWorker.controller !== null;
   serviceWorker.addEventListener("controllerchange", () => {
-    if (isAsked) location.reload();
+    if (isRequested) location.reload();
     // Another tab changed over: this one's files may be gone.
     else if (controlled) notice.hidden = false;
     controlled = true;

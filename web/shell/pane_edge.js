@@ -24,7 +24,7 @@ export function createEdge(edge, { resize, reset }) {
     "aria-valuemin": "0",
     "aria-valuemax": "100",
     "aria-valuenow": "50",
-    title: `${label}: drag, or arrow keys; Enter or double click: as it was`,
+    title: `${label}: drag, or use arrow keys; Enter or double-click: reset`,
   });
   document.querySelector(edge.after)?.before(node);
   if (place) node.style.gridArea = upright ? place.area : `${place.area} / 1 / ${place.area} / -1`;
@@ -53,13 +53,13 @@ export function createEdge(edge, { resize, reset }) {
   });
   node.addEventListener("dblclick", () => reset(false));
   listen(node, "Line between two panes", [
-    { keys: ["ArrowLeft", "ArrowUp"], text: "make the pane before it smaller", run: () => by(-STEP_PX) },
-    { keys: ["ArrowRight", "ArrowDown"], text: "make the pane before it larger", run: () => by(STEP_PX) },
+    { keys: ["ArrowLeft", "ArrowUp"], text: "make the previous pane smaller", run: () => by(-STEP_PX) },
+    { keys: ["ArrowRight", "ArrowDown"], text: "make the previous pane larger", run: () => by(STEP_PX) },
     { keys: ["Shift+ArrowLeft", "Shift+ArrowUp"], text: "much smaller", run: () => by(-5 * STEP_PX) },
     { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "much larger", run: () => by(5 * STEP_PX) },
-    { keys: ["Home"], text: "as small as can be", run: () => to(0) },
-    { keys: ["End"], text: "as large as can be", run: () => to(1e6) },
-    { keys: ["Enter"], text: "as it was at first; the form: fold or unfold it", run: () => reset(true) },
+    { keys: ["Home"], text: "minimum size", run: () => to(0) },
+    { keys: ["End"], text: "maximum size", run: () => to(1e6) },
+    { keys: ["Enter"], text: "reset; fold or unfold the form", run: () => reset(true) },
   ]);
 
   /** Shows where it is, unless it is hidden. @param {(css: string) => boolean} isHiddenBy  Whether a pane of this selector hides it. */

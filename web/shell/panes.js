@@ -74,7 +74,7 @@ export function createPanes({ dispatch, now }) {
     const name = title.toLowerCase();
     const maximize = () => change(maximized(now(), view));
     const fold = button("–", `Fold ${name}`, () => change(folded(now(), view)));
-    const most = button("□", `Maximise ${name}`, maximize);
+    const most = button("□", `Maximize ${name}`, maximize);
     fold.classList.add("fold");
     most.classList.add("most");
     head.append(element("span", { class: "pane-buttons" }, fold, most));
@@ -84,7 +84,7 @@ export function createPanes({ dispatch, now }) {
     listen(section, "Any view on a wide screen", [
       {
         keys: ["f"],
-        text: "maximise the view, or show all views again",
+        text: "maximize the view, or show all views",
         run: ({ target }) => {
           if (!wide.matches || /** @type {Element} */ (target).matches("input, textarea, select")) return false;
           maximize();
@@ -139,7 +139,7 @@ export function createPanes({ dispatch, now }) {
     const [fold, most] = /** @type {HTMLElement[]} */ ([...section.querySelectorAll(".pane-buttons button")]);
     const lower = title.toLowerCase();
     label(fold, small ? "+" : "–", `${small ? "Unfold" : "Fold"} ${lower}`);
-    label(most, isMost ? "❐" : "□", isMost ? "Show all views (F)" : `Maximise ${lower} (F)`);
+    label(most, isMost ? "❐" : "□", isMost ? "Show all views (F)" : `Maximize ${lower} (F)`);
     fold.setAttribute("aria-expanded", String(!small));
     most.setAttribute("aria-pressed", String(isMost));
   }

@@ -6,14 +6,14 @@ const EDGE = 8;
 /** Between a panel and its button. */
 const GAP = 4;
 /** With less room than this a panel opens the other way. */
-const LEAST_PX = 260;
+const MIN_PX = 260;
 
 /**
  * @param {string} button  Id of the button that opens it.
  * @param {string} panel   Id of the panel, an element with `popover`.
- * @param {() => void} opened  Called when it is about to open.
+ * @param {() => void} onOpen  Called when it is about to open.
  */
-export function dropDown(button, panel, opened) {
+export function dropDown(button, panel, onOpen) {
   const opener = /** @type {HTMLButtonElement} */ (byId(button));
   const box = byId(panel);
   opener.popoverTargetElement = box;
@@ -21,14 +21,14 @@ export function dropDown(button, panel, opened) {
   box.addEventListener("beforetoggle", (event) => {
     const open = /** @type {ToggleEvent} */ (event).newState === "open";
     opener.setAttribute("aria-expanded", String(open));
-    if (open) opened();
+    if (open) onOpen();
   });
   const place = () => {
     const { right, top, bottom } = opener.getBoundingClientRect();
     const { clientWidth: wide, clientHeight: high } = document.documentElement;
     const [above, under] = [top - GAP - EDGE, high - Math.max(EDGE, bottom + GAP) - EDGE];
     // Over the button where there is too little room under it.
-    const over = under < Math.min(box.scrollHeight, LEAST_PX) && above > under;
+    const over = under < Math.min(box.scrollHeight, MIN_PX) && above > under;
     box.style.top = over ? "auto" : `${Math.max(EDGE, bottom + GAP)}px`;
     box.style.bottom = over ? `${high - top + GAP}px` : "auto";
     box.style.left = `${Math.max(EDGE, Math.min(right, wide - EDGE) - box.offsetWidth)}px`;

@@ -10,7 +10,7 @@ export function statusText(state, long) {
   if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress)
     return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
-  if (blockedBy(state) === "problems") return "not run: the form needs attention";
+  if (blockedBy(state) === "problems") return "not run: fix the form";
   if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
   const { edges = 0 } = selected(state) ?? {};
   return `${count(edges)} edges · ${si(state.result.summary.end_s, "s")}`;

@@ -63,7 +63,7 @@ export function createRunner({ engine, blocked, started, dispatch, now }) {
     },
     cancel() {
       engine.cancel(now().revision);
-      dispatch({ type: "failed", message: "The run was cancelled; the views show the last result." });
+      dispatch({ type: "failed", message: "The run was canceled. The views show the last result." });
     },
     retry() {
       engine.revive();

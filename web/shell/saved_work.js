@@ -36,6 +36,6 @@ export async function offerNewer({ engine, dispatch }) {
   if (validation === null) return;
   const scenario = readJson(validation.scenario);
   const name = scenario.title ? `, “${scenario.title}”` : "";
-  const text = `Another tab has newer work${name}. This tab shows its own.`;
+  const text = `Another tab has newer work${name}. This tab shows its own work.`;
   dispatch({ type: "notice", notice: { kind: "info", text, offer: { label: "Open the newer work", scenario } } });
 }

@@ -32,8 +32,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
     copy.disabled = true;
     text.value = "";
     say(about, "Making the link…");
-    if (blockedBy(now()) === "problems")
-      return say(about, "No link yet: fields of the form need other values; fix them first.");
+    if (blockedBy(now()) === "problems") return say(about, "No link: the form has errors; fix them first.");
     try {
       const { full, digests } = await shared();
       if (mine !== request) return;
@@ -54,10 +53,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
     } catch {
       text.focus();
       text.select();
-      say(
-        about,
-        "This browser did not let the page copy. The link is selected: copy it with Ctrl+C, or Command+C on a Mac.",
-      );
+      say(about, "The browser blocked copying. The link is selected: copy it with Ctrl+C, or Command+C on a Mac.");
     }
   }
 
@@ -70,20 +66,20 @@ export function createShare({ engine, address, now }, { isOpen }) {
     )
       make();
   }
-  return { opened: make, render };
+  return { onOpen: make, render };
 }
 
 /** What is in the link, in words. @param {State} state @param {boolean} digests */
 function contents(state, digests) {
   const edges = state.result?.summary.controllers.reduce((sum, { edges }) => sum + edges, 0) ?? 0;
   const seen = digests
-    ? `the digest of this run (${count(edges)} edges), so that whoever opens it is told whether theirs is the same`
+    ? `the digest of this run (${count(edges)} edges), which is checked when the link is opened`
     : "";
   const why = isStale(state)
-    ? "no digest, for it was not run"
+    ? "no digest, because it has not run"
     : state.result?.summary.recorded
-      ? "no digest, for it is a recording: whoever opens it sees what the model makes of its steps or bytes"
-      : "no digest, for it would be too long";
-  const parts = ["the whole experiment", viewOf(state) ? "what is on show" : "", seen || why].filter(Boolean);
+      ? "no digest, because it is a recording: the link shows a simulation of its steps or bytes"
+      : "no digest, because it would be too long";
+  const parts = ["the whole experiment", viewOf(state) ? "the current view" : "", seen || why].filter(Boolean);
   return parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts[parts.length - 1]}` : parts[0];
 }

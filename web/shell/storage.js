@@ -79,8 +79,8 @@ export function saveScenario(json) {
   save(LATEST, latest, ofTab);
 }
 /** What there is to say of what was shown before, where something else takes its place. */
-export const ownIsKept = () =>
-  loadScenario() === null ? " Undo brings back what was there." : " Your own work is kept; Undo brings it back.";
+export const undoHint = () =>
+  loadScenario() === null ? " Undo restores the previous experiment." : " Undo restores your own work.";
 /** The work that another tab kept after this one's; null where there is none, or this tab has none of its own. */
 export function loadNewer() {
   const [own, all] = [load(LATEST, ofTab), load(LATEST)].map(parsed);

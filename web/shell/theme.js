@@ -3,9 +3,9 @@ import { byId, say } from "../dom.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 const THEMES = {
-  system: ["◐", "Colours: as the system"],
-  light: ["☀", "Colours: light"],
-  dark: ["☾", "Colours: dark"],
+  system: ["◐", "Colors: system"],
+  light: ["☀", "Colors: light"],
+  dark: ["☾", "Colors: dark"],
 };
 
 /** Applies the saved theme, and each one that is chosen. */

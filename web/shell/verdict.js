@@ -18,7 +18,7 @@ export function verdictText(verdict, { result }) {
     const which = controllers.length > 1 ? `all ${controllers.length} controllers, ` : "";
     const made = version ? ` It was sent by version ${version}; this is ${verdict.own_version}.` : "";
     return {
-      text: `Identical, bit for bit: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`,
+      text: `Reproduced bit-exactly: ${which}${count(verdict.edges)} edges, digest ${controllers[result.controller].digest}.${made}`,
       place: null,
     };
   }
@@ -28,9 +28,9 @@ export function verdictText(verdict, { result }) {
   const ends =
     shorter === "this" ? " This run ends there." : shorter === "other" ? " The sender's run ends there." : "";
   const made = version
-    ? ` The link was made with version ${version}, this is ${verdict.own_version}: that may be why.`
+    ? ` The link was made with version ${version}, this is ${verdict.own_version}. That may be the cause.`
     : "";
-  const text = `Not the run that the sender saw: the first difference${which} lies between ${at(after)} and ${at(until)}.${ends}${made}`;
+  const text = `The run differs from the sender's: the first difference${which} is between ${at(after)} and ${at(until)}.${ends}${made}`;
   return { text, place: around(after.cycle, until.cycle, end_cycle, controller) };
 }
 

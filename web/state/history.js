@@ -1,4 +1,4 @@
-/** Changes of the scenario, and undo and redo of them. */
+/** Changes of the scenario, with undo and redo. */
 import { OWN_TEXTS } from "./initial.js";
 import { get, movedTo, set } from "./paths.js";
 
@@ -6,11 +6,11 @@ import { get, movedTo, set } from "./paths.js";
 /** @typedef {import("./types.js").Scenario} Scenario */
 /** @typedef {import("./types.js").Origin} Origin */
 
-/** Steps of history that are kept. */
+/** Maximum steps of undo. */
 export const DEPTH = 50;
 /** Prefix of an edited experiment's name until it has a name of its own. */
 const CHANGED_FROM = "changed from ";
-/** Characters that a name can have; a longer one would be refused. */
+/** Maximum characters of a name. */
 export const MAX_TITLE = 120;
 
 /**
@@ -32,8 +32,7 @@ export function edit(state, { path, value, joins = false, moved = [[path, null]]
 }
 
 /**
- * A preset or shared experiment that is edited no longer matches its name and note: it is "changed from" that until the
- * visitor names it, and the note goes.
+ * An edited preset or shared experiment gets the name "changed from …" and loses its note.
  * @param {State} state @param {Scenario} next
  */
 function disowned({ scenario, borrowed }, next) {
@@ -81,7 +80,7 @@ export function changed(state, scenario, origin) {
 
 /** Undo or redo. @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
 export function travel(state, from, to) {
-  // A draft was never a step of the history: going back discards it first.
+  // Undo discards drafts first.
   if (from === "past" && Object.keys(state.drafts).length > 0) return { ...state, drafts: {}, edited: null };
   const moment = state[from][state[from].length - 1];
   if (!moment) return state;

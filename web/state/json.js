@@ -1,7 +1,4 @@
-/**
- * Scenarios as JSON text and back, with every digit: times of segments go up to 2⁶⁴ − 1, and a number of JavaScript
- * is exact up to 2⁵³ only. Greater whole numbers are BigInt in the page.
- */
+/** Scenarios as JSON text. Whole numbers above 2⁵³, such as times of segments, are BigInt. */
 
 /** Whole digits, without point and power. */
 export const WHOLE = /^-?\d+$/;

@@ -1,6 +1,5 @@
 /**
- * The shapes that the modules of the page share; no code. The core's own text (`core/scenario/src/schema`) is
- * the reference for what a scenario may hold.
+ * Types that modules of the page share. `core/scenario/src/schema` defines scenarios.
  *
  * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
  * @typedef {{path: string, message: string}} Problem

@@ -1,7 +1,4 @@
-/**
- * The one function that changes the page's state: `update(state, message)`. No DOM, no worker, no clock: the sender of a
- * message validates, runs and draws what follows from it.
- */
+/** Changes the state of the page: `update(state, message)`, without DOM, worker or clock. */
 import { changed, edit, remember, travel } from "./history.js";
 import { FRESH_VIEW, OWN_TEXTS } from "./initial.js";
 import { MAX_CHANNELS } from "./limits.js";

@@ -1,10 +1,8 @@
 /**
- * The views, a row each, in the order of their tabs: the one list that the page makes tabs, headings, panes, links and
- * help from. Nothing but data and what follows from it.
+ * The views in the order of their tabs, for tabs, headings, panes, links and help.
  *
- * A wide screen shows them in bands, one below the other, of which the last may hold several beside each other; views
- * that name one place share it, and a button in their heads goes from one to the other. A view without a place stands
- * alone while it is open.
+ * A wide screen shows them in bands; the last band may have several columns. Views with the same place share it. A view
+ * without a place fills the screen.
  */
 
 /** @typedef {import("./types.js").State} State */
@@ -41,7 +39,7 @@ const ROWS = /** @type {const} */ ([
   {
     name: "panel",
     title: "Panel",
-    about: "The front panel of a stand-alone controller: its display, and every press, switch and power cut over time.",
+    about: "Front panel of a stand-alone controller: display, presses, switches and power over time.",
     place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
     offered: hasPanel,
     leads: hasPanel,
@@ -49,33 +47,33 @@ const ROWS = /** @type {const} */ ([
   {
     name: "motor",
     title: "Motor",
-    about: "What the pulses do to a motor: where its rotor is, what it draws, whether it loses steps.",
+    about: "Simulated motor: rotor position, currents and lost steps.",
     place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
     leads: (/** @type {State} */ state) => Boolean(state.scenario.plant),
   },
   {
     name: "pulses",
     title: "Pulses",
-    about: "All signals between controller, drivers and line, exact to the cycle.",
+    about: "All signals between controller, drivers and line, cycle-exact.",
     place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 110px, 40%)", part: 0.26, least_px: 110 },
   },
   {
     name: "packets",
     title: "Packets",
-    about: "What went over the line, and what the controller did with it.",
+    about: "Packets on the line and their outcomes.",
     place: { area: "packets", band: 2, height: "27%", part: 6 / 11, least_px: 110 },
   },
   {
     name: "spectrum",
     title: "Spectrum",
-    about: "Which frequencies the motion is made of.",
+    about: "Frequencies and distortion of the motion.",
     place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
   },
   {
     name: "timing",
     title: "Driver timing",
     tab: "Timing",
-    about: "Could the driver have followed? Each rule of its data sheet against the pulses.",
+    about: "Pulses checked against each rule of the driver data sheet.",
     place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
     offered: (/** @type {State} */ { result }) =>
       typeof result?.summary.controllers[result.controller]?.violations === "number",
@@ -84,7 +82,7 @@ const ROWS = /** @type {const} */ ([
   {
     name: "study",
     title: "Study",
-    about: "Which profile, stored how, for this motor? The questions that a design begins with, for the selected axis.",
+    about: "Compare profiles, step tables and motors for the selected axis.",
     place: null,
   },
 ]);
@@ -95,15 +93,15 @@ const ROWS = /** @type {const} */ ([
 /** @type {readonly View[]} */
 export const VIEWS = ROWS;
 export const NAMES = VIEWS.map(({ name }) => name);
-/** Those that stand on a wide screen beside others. */
+/** Views with a place on a wide screen. */
 export const PLACED = /** @type {Placed[]} */ (VIEWS.filter(({ place }) => place !== null));
-/** Places that several views share: from the name of the place to them. */
+/** Views by shared place. */
 export const SHARED = new Map(
   PLACED.map(({ place: { area } }) => [area, PLACED.filter(({ place }) => place.area === area)]),
 );
 for (const [area, views] of SHARED) if (views.length < 2) SHARED.delete(area);
 
-/** Whether there is such a view now. @param {View} view @param {State} state */
+/** Whether a view exists for the scenario. @param {View} view @param {State} state */
 export function isOffered({ offered }, state) {
   return offered?.(state) ?? true;
 }

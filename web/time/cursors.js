@@ -1,4 +1,4 @@
-/** What lies over every view of the time axis: what is pointed at, the lines of pointer, cursors and markers. */
+/** Draws highlight, pointer, cursors and markers over the views of the time axis. */
 import { color } from "./plot.js";
 import { pixelOf } from "./timeline.js";
 
@@ -47,7 +47,7 @@ export function drawCursors(context, state, plot, height) {
   line(state.cursors.b, "--cursor-b", [5, 3], 1.5);
 }
 
-/** Whether what lies over the views has changed. @param {State | undefined} before @param {State} state */
+/** Whether they have changed. @param {State | undefined} before @param {State} state */
 export function overlaid(before, state) {
   return (
     before?.hover !== state.hover ||

@@ -1,7 +1,4 @@
-/**
- * Gestures on an axis, of time or of frequency: wheel and pinch zoom at the pointer, dragging moves, or draws a box that is
- * shown then, a double click shows all of it. They know pixels and places on the axis, nothing of what is drawn.
- */
+/** Gestures on a time or frequency axis: wheel and pinch zoom, dragging moves or draws a zoom box, double-click shows all. */
 
 /** @typedef {import("../state/types.js").Span} Span */
 /**
@@ -15,7 +12,7 @@
  * @property {(event: PointerEvent, at: number) => void} click
  */
 
-/** Notches of the wheel that come within this time, in ms, are one gesture. */
+/** Wheel events within this time are one gesture, in ms. */
 const WHEEL_MS = 600;
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
@@ -31,7 +28,7 @@ export function moved({ start, end }, part) {
   return { start: start + by, end: end + by };
 }
 
-/** Place under a pixel of the plotting area. @param {Span} window @param {{left: number, right: number}} plot @param {number} x */
+/** Position at a pixel of the plotting area. @param {Span} window @param {{left: number, right: number}} plot @param {number} x */
 export function valueAt({ start, end }, plot, x) {
   return start + ((x - plot.left) / Math.max(1, plot.right - plot.left)) * (end - start);
 }

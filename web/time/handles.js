@@ -1,7 +1,6 @@
 /**
- * Handles of the cursors A and B, and flags of the markers, in a strip beside what is drawn: so they cover no reading.
- * A handle is dragged by mouse, pen or finger, keys do the same. It waits at the left while its cursor is not on show;
- * a press brings it into the middle, and dragged back there it is removed.
+ * Handles of cursors A and B and flags of markers, in a strip next to the chart. Without a visible cursor its handle is at
+ * the left edge.
  */
 import { element, fill } from "../dom.js";
 import { listen } from "../shell/commands.js";
@@ -14,9 +13,9 @@ import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
 
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
-/** So far left of the plotting area a cursor is let go. */
+/** Distance left of the plotting area at which a cursor is removed. */
 const LET_GO_PX = 14;
-/** A cursor that is moved fast goes so many columns. */
+/** Columns of a fast move. */
 const FAST = 10;
 
 /**
@@ -43,7 +42,7 @@ export function createHandles(strip, plot, page) {
         tabindex: "0",
         "aria-label": `Cursor ${name}`,
         "aria-valuemin": "0",
-        title: `Cursor ${name}: drag it, or arrow keys; Delete removes it`,
+        title: `Cursor ${name}: drag it, or use the arrow keys; Delete removes it`,
       },
       element("span", {}, name),
     );
@@ -58,7 +57,7 @@ export function createHandles(strip, plot, page) {
 
     node.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
-      // What lies under it is not dragged with it.
+      // The view below must not be dragged.
       event.stopPropagation();
       event.preventDefault();
       node.focus();
@@ -93,13 +92,13 @@ export function createHandles(strip, plot, page) {
     });
     const by = (/** @type {number} */ columns) => () => nudge(page, plot(), which, columns);
     listen(node, "Handle of a cursor", [
-      { keys: ["ArrowLeft", "ArrowDown"], text: "the cursor to the left", run: by(-1) },
-      { keys: ["ArrowRight", "ArrowUp"], text: "the cursor to the right", run: by(1) },
+      { keys: ["ArrowLeft", "ArrowDown"], text: "move the cursor left", run: by(-1) },
+      { keys: ["ArrowRight", "ArrowUp"], text: "move the cursor right", run: by(1) },
       { keys: ["Shift+ArrowLeft", "PageDown"], text: "far to the left", run: by(-FAST) },
       { keys: ["Shift+ArrowRight", "PageUp"], text: "far to the right", run: by(FAST) },
-      { keys: ["Home"], text: "to the beginning of what is shown", run: () => move(Math.ceil(shown(now()).start)) },
-      { keys: ["End"], text: "to its end", run: () => move(Math.floor(shown(now()).end)) },
-      { keys: ["Enter", "Space"], text: "bring it into the middle, where it is not on show", run: place },
+      { keys: ["Home"], text: "move to the start of the visible time", run: () => move(Math.ceil(shown(now()).start)) },
+      { keys: ["End"], text: "move to its end", run: () => move(Math.floor(shown(now()).end)) },
+      { keys: ["Enter", "Space"], text: "bring it to the center if it is not visible", run: place },
       { keys: ["Delete", "Backspace"], text: "remove it", run: () => move(null) },
     ]);
     return node;

@@ -1,19 +1,15 @@
-/**
- * Charts on the main thread: sizes a canvas for the screen, hands the wasm charts the page's colours,
- * remembers where the plotting area lies. plotters-canvas measures text in the page's document, so this
- * cannot be done in the worker.
- */
+/** Draws charts on the main thread, because plotters-canvas measures text in the document. */
 import { compiled } from "../engine/wasm.js";
 import init, { chart_svg, draw_chart } from "../pkg/stepscope_wasm.js";
 
 /** @typedef {import("../state/types.js").Plot} Plot */
 
-/** Width of the tick labels' column in CSS pixels; the pulses keep the same, so that all time axes line up. */
+/** Width of the labels in CSS pixels; the same in all views, so that time axes are aligned. */
 export const GUTTER = 68;
 /** Free space at the right of a plotting area, as the charts draw it. */
 export const MARGIN = 26;
 
-/** Charts are always drawn at double size: they know whole pixels only, and half a pixel of a curve can be seen. */
+/** Charts are drawn at double size, because they only have whole pixels. */
 const CHART_RATIO = 2;
 
 let loaded = /** @type {Promise<unknown> | null} */ (null);
@@ -24,13 +20,13 @@ export function load() {
   return loaded;
 }
 
-/** Device pixels to a CSS pixel, at most 2: more costs time and shows nothing. */
+/** Device pixels per CSS pixel, at most 2. */
 export function ratio() {
   return Math.min(2, Math.max(1, window.devicePixelRatio || 1));
 }
 
 /**
- * Gives a canvas the device size of its box and clears it.
+ * Sizes a canvas to its box and clears it.
  * @param {HTMLCanvasElement} canvas
  * @param {number} [scale]  Device pixels to a CSS pixel.
  * @returns {{width: number, height: number, ratio: number}}  CSS pixels.
@@ -49,7 +45,7 @@ const probe = document.createElement("span");
 const known = new Map();
 
 /**
- * A colour of the page as `#rrggbb`, also where a forced-colours theme replaces it by a system colour.
+ * A color of the page as `#rrggbb`, also with forced colors.
  * @param {string} name  Custom property, such as `--ideal`.
  */
 export function color(name) {
@@ -74,7 +70,7 @@ document.addEventListener("themechange", () => known.clear());
 
 let family = "";
 
-/** The page's fonts. Asked for once: it never changes, and asking makes the browser lay out the page. */
+/** The fonts of the page; read once, because reading causes a layout. */
 export function font() {
   family ||= getComputedStyle(document.body).fontFamily;
   return family;
@@ -115,7 +111,7 @@ export function draw(canvas, chart) {
   return draw_chart(canvas, spec(chart));
 }
 
-/** As the wasm module takes a chart. @param {Chart} chart */
+/** A chart for the wasm module. @param {Chart} chart */
 function spec({ x, y, series }) {
   return {
     ratio: CHART_RATIO,
@@ -128,7 +124,7 @@ function spec({ x, y, series }) {
   };
 }
 
-/** A chart on a canvas of its own, which is not on show. @param {Chart} chart @param {number} width @param {number} height */
+/** A chart on a hidden canvas. @param {Chart} chart @param {number} width @param {number} height */
 export function picture(chart, width, height) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [width * CHART_RATIO, height * CHART_RATIO];

@@ -1,6 +1,7 @@
-/** The shown time in fields and buttons: from, to, zoom in, zoom out, all of it. */
+/** Fields and buttons of the visible time. */
 import { byId, say } from "../dom.js";
-import { parseNumber, time } from "../state/number.js";
+import { time } from "../state/number.js";
+import { parseNumber } from "../state/parse_number.js";
 import { endOf, shown } from "../state/time_window.js";
 import { zoom } from "./timeline.js";
 
@@ -37,9 +38,9 @@ export function createRange({ dispatch, now }) {
     const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
     if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
     const last = endOf(state) / clockHz;
-    if (start.value < 0) return say(byId("window-error"), "Time begins at 0; give that or more for “from”.");
-    if (start.value >= last) return say(byId("window-error"), `The run ends at ${time(last)}; give less for “from”.`);
-    if (end.value <= start.value) return say(byId("window-error"), "“to” is to lie after “from”.");
+    if (start.value < 0) return say(byId("window-error"), "“from” is out of range; use 0 or more.");
+    if (start.value >= last) return say(byId("window-error"), `“from” is out of range; the run ends at ${time(last)}.`);
+    if (end.value <= start.value) return say(byId("window-error"), "“to” must be after “from”.");
     say(byId("window-error"), "");
     const inRun = (/** @type {number} */ s) => Math.min(Math.max(0, s * clockHz), endOf(state));
     dispatch({ type: "window", window: { start: inRun(start.value), end: inRun(end.value) } });

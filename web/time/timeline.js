@@ -1,7 +1,4 @@
-/**
- * The time axis that motion and pulses share: gestures move it, a click sets a cursor, keys do all of it. It knows pixels
- * and cycles, nothing of what is drawn.
- */
+/** The time axis that motion and pulses share: gestures, cursors and keys. */
 import { listen } from "../shell/commands.js";
 import { endOf, shown } from "../state/time_window.js";
 import { gestures, moved, valueAt, zoomed } from "./gestures.js";
@@ -66,7 +63,7 @@ export function pixelOf(state, plot, cycle) {
 }
 
 /**
- * Makes an element a part of the time axis.
+ * Adds the time axis to an element.
  * @param {HTMLElement} target
  * @param {() => {left: number, right: number}} plot  Plotting area in the element's CSS pixels.
  * @param {Page & {click?: Click}} page
@@ -111,7 +108,7 @@ export function nudge(page, { left, right }, which, columns) {
   reveal(page, cycle);
 }
 
-/** What the keys do on the time axis. @param {Page} page @param {() => {left: number, right: number}} plot @returns {import("../shell/commands.js").Command[]} */
+/** The keys of the time axis. @param {Page} page @param {() => {left: number, right: number}} plot @returns {import("../shell/commands.js").Command[]} */
 function keys(page, plot) {
   const { dispatch, now } = page;
   const at = () => now().cursors.a ?? undefined;
@@ -138,10 +135,10 @@ function keys(page, plot) {
     { keys: DIGITS, text: "show marker 0 to 9", run: (event) => void goToMarker(page, digitOf(event)) },
     {
       keys: DIGITS.map((digit) => `Shift+${digit}`),
-      text: "set that marker at the pointer, else at cursor A; once more removes it",
+      text: "set that marker at the pointer, or at cursor A; again to remove it",
       run: mark,
     },
-    { keys: ["+", "="], text: "zoom in, around cursor A if it is set", run: () => zoom(page, 0.5, at()) },
+    { keys: ["+", "="], text: "zoom in, around cursor A if set", run: () => zoom(page, 0.5, at()) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
     { keys: ["ArrowLeft"], text: "earlier", run: () => pan(page, -0.1) },
@@ -152,9 +149,9 @@ function keys(page, plot) {
     { keys: ["Shift+ArrowRight"], text: "cursor A to the right", run: by("a", 1) },
     { keys: ["Alt+ArrowLeft"], text: "cursor B to the left", run: by("b", -1) },
     { keys: ["Alt+ArrowRight"], text: "cursor B to the right", run: by("b", 1) },
-    { keys: ["Backspace"], text: "back to what was shown before", run: () => dispatch({ type: "back" }) },
-    { keys: ["b"], text: "drag a box to zoom, or no longer", run: () => dispatch({ type: "box", on: !now().box }) },
-    { keys: ["z"], text: "show what lies between the cursors", run: () => zoomToCursors(page) },
+    { keys: ["Backspace"], text: "back to the previous view", run: () => dispatch({ type: "back" }) },
+    { keys: ["b"], text: "turn box zoom on or off", run: () => dispatch({ type: "box", on: !now().box }) },
+    { keys: ["z"], text: "show the time between the cursors", run: () => zoomToCursors(page) },
     { keys: ["Escape"], text: "remove the cursors; then leave the view", run: clear },
   ];
 }

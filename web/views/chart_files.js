@@ -138,7 +138,7 @@ export function bitmap(sheet) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [2 * WIDTH, 2 * heightOf(sheet)];
   const context = canvas.getContext("2d");
-  if (!context) throw new Error("this browser gave no canvas to draw on");
+  if (!context) throw new Error("the browser has no canvas to draw on");
   context.scale(2, 2);
   context.fillStyle = color("--pane");
   context.fillRect(0, 0, WIDTH, heightOf(sheet));
@@ -161,7 +161,10 @@ export function bitmap(sheet) {
     chart: (chart, x, y, width, height) => context.drawImage(picture(chart, width, height), x, y, width, height),
   });
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("this browser made no picture"))), "image/png"),
+    canvas.toBlob(
+      (blob) => (blob ? resolve(blob) : reject(new Error("the browser could not create the picture"))),
+      "image/png",
+    ),
   );
 }
 

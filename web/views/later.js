@@ -25,7 +25,7 @@ export function createLater(page, name, load) {
       made ??= await loading;
     } catch {
       loading = null;
-      return say(byId(`${name}-note`), "This view could not be loaded; fold and unfold it when the network is there.");
+      return say(byId(`${name}-note`), "This view could not be loaded. Check the network, then fold and unfold it.");
     }
     if (drawn === page.now()) return;
     const before = drawn;

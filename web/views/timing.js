@@ -44,14 +44,14 @@ export function createTiming(page) {
       return await loading;
     } catch {
       loading = null;
-      showNote("This part of the page could not be loaded; try again when the network is there.");
+      showNote("This part of the page could not be loaded. Check the network and try again.");
       return null;
     }
   }
 
   /** The next violation after cursor A, or after the one that is chosen. @param {boolean} forward */
   async function next(forward) {
-    if (!timing) return showNote("There is no driver whose timing could be broken.");
+    if (!timing) return showNote("There is no driver to check.");
     await (await found())?.next(timing, forward);
   }
 

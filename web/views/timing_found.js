@@ -45,7 +45,7 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
     const first = timing?.violations.findIndex((each) => each.rule === rule) ?? -1;
     const { least, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
     if (first >= 0) return show(first);
-    if (!least) return showNote(`${ruleName(rule)}: never measured in this run.`);
+    if (!least) return showNote(`${ruleName(rule)}: not measured in this run.`);
     current = -1;
     const clock = now().result?.summary.clock_hz ?? 1;
     go({
@@ -56,7 +56,7 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
       required_cycles: required_cycles ?? 0,
     });
     showNote(
-      `${ruleName(rule)}: least ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
+      `${ruleName(rule)}: shortest ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
     );
   }
 
@@ -77,7 +77,7 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
   /** Shows a violation in the pulses, its edge at cursor A. @param {number} index */
   function show(index) {
     const violation = timing?.violations[index];
-    if (!violation) return showNote("No further violation that way.");
+    if (!violation) return showNote("No more violations in this direction.");
     const { cycle, channel, rule, measured_cycles } = violation;
     current = index;
     go(violation);

@@ -26,13 +26,13 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   const sheet = drivers.find(({ id }) => id === timing?.driver);
   const total = timing?.total ?? 0;
   const listed = timing?.violations.length ?? 0;
-  say(byId("timing-driver"), sheet?.name ?? "rules of your own");
+  say(byId("timing-driver"), sheet?.name ?? "custom rules");
   byId("timing-driver").title = sheet?.source ?? "";
   const few = total > listed ? `; the first ${count(listed)} are listed` : "";
   say(
     byId("timing-total"),
     total === 0
-      ? "The pulses meet the data sheet’s timing: no violation."
+      ? "The pulses meet the timing of the data sheet: no violations."
       : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
   );
   byId("timing-total").classList.toggle("error", total > 0);
@@ -51,7 +51,7 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   say(
     byId("timing-rounding"),
     example
-      ? `Pulses last whole cycles of ${at(1)}: ${time(example.required_ns * 1e-9)} needs at least ${count(example.required_cycles)} cycles (${at(example.required_cycles)}).`
+      ? `Pulse times are whole cycles of ${at(1)}: ${time(example.required_ns * 1e-9)} needs at least ${count(example.required_cycles)} cycles (${at(example.required_cycles)}).`
       : "",
   );
   byId("violations").hidden = total === 0;
@@ -102,7 +102,7 @@ function heads(table, columns) {
 function ruleButton(rule, bad, toRule) {
   const made = element(
     "button",
-    { type: "button", title: bad ? "Show its first violation" : "Show its least margin" },
+    { type: "button", title: bad ? "Show the first violation" : "Show the smallest margin" },
     ruleName(rule),
   );
   made.addEventListener("click", () => toRule(rule));

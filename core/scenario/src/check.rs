@@ -1,10 +1,10 @@
-//! Checks the rules that join several fields (DESIGN A4, A7, A9); `schema::judge` checks single fields.
+//! Checks rules between fields (DESIGN A4, A7, A9); `schema::ranges` checks single fields.
 //!
-//! Motions are checked where they are planned (`motion`); `sim::Experiment` collects the problems of both.
+//! Motions are checked when they are planned (`motion`).
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
-    limits::END_OF_TIME, schema::judge::judge,
+    limits::END_OF_TIME, schema::ranges::check_ranges,
 };
 use alloc::{
     format,
@@ -22,30 +22,21 @@ use stepscope_peripheral::{
 /// Maximum bytes of a line script, and maximum packets of a packet list.
 const MAX_BYTES: usize = 4 << 20;
 
-/// A valid scenario; its motions are not checked yet.
+/// A valid scenario. Its motions are checked later.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "fields are named as in the scenario")]
 pub struct CheckedScenario {
-    /// The controllers on the line, the scenario's own first.
     pub configs: Vec<Config>,
-    /// The commands of the additional controllers.
     pub additional: Vec<Controller>,
-    /// The host's bit rate.
     pub baud: u32,
-    /// The host of a framed line.
     pub host: Host,
-    /// Random faults of the line.
     pub noise: Noise,
-    /// Levels forced on the line; of two that overlap, the later wins.
+    /// Levels forced on the line. If two overlap, the later wins.
     pub forced: Vec<ForcedLevel>,
-    /// What the host sends; motions are not checked yet.
     pub source: Source,
-    /// The segments, if they are the source.
     pub segments: Option<CheckedSegments>,
-    /// The stand-alone controllers, if they are the source.
     pub stand_alone: Option<stepscope_controller::CheckedSetup>,
-    /// Length of the run, if given.
     pub run: Option<Cycles>,
-    /// The plants, if any.
     pub plants: Option<crate::plant::Plants>,
 }
 
@@ -71,21 +62,19 @@ impl Scenario {
         } else {
             validator.whole("version", self.version, 1..=crate::VERSION.into(), "");
         }
-        judge(self, &mut validator);
+        check_ranges(self, &mut validator);
         let runs_alone = self.source.runs_alone();
         let configure = if runs_alone { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
-        let config = config.map_err(|broken| tell(broken, ToString::to_string, &mut validator)).ok();
+        let config = config.map_err(|broken| report(broken, ToString::to_string, &mut validator)).ok();
         // By default the receiver has the host's rate, which is checked above.
         if self.line.receiver_baud.is_some() && !runs_alone {
             validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
         }
         if runs_alone && !self.controllers.is_empty() {
             let detail = match self.source {
-                Source::Standalone(_) => {
-                    "stand-alone controllers are on no line; give all of them in source.standalone"
-                }
-                _ => "segments run one controller by itself; take the others out, or choose ticks",
+                Source::Standalone(_) => "stand-alone controllers have no line; move them to the source",
+                _ => "segments run only one controller; remove the others, or choose ticks",
             };
             validator.add("controllers", ValueError::Conflict { detail });
         }
@@ -96,16 +85,20 @@ impl Scenario {
         let mut stand_alone = None;
         match &self.source {
             Source::Motion(motion) => {
-                let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
-                validator.length("source.motion.axes", motion.axes.len(), 1..=most, "axes");
+                let axes = motion.axes.len();
+                validator.at("source.motion.axes", |here| {
+                    fit_channels(here, axes, (1, "axes"), (self.bus.channels, "bus.channels"));
+                });
             }
             Source::Packets(packets) => {
-                let address = usize::from(self.line.protocol == Protocol::Raw && self.line.address.is_some());
-                let len = usize::from(self.bus.channels) + address;
+                let is_addressed = self.line.protocol == Protocol::Raw && self.line.address.is_some();
                 let additional = self.controllers.iter().map(|controller| &controller.packets);
                 let total: usize =
                     additional.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
-                validator.at("source.packets.packets", |here| judge_packets(&packets.packets, len, here));
+                let channels = (self.bus.channels, "bus.channels");
+                validator.at("source.packets.packets", |here| {
+                    check_packets(&packets.packets, is_addressed, channels, here);
+                });
                 validator.length("source.packets.packets", total, 0..=MAX_BYTES, "bytes");
             }
             Source::Line(script) => self.script(script, &mut validator),
@@ -123,7 +116,7 @@ impl Scenario {
         validator.end(()).map(|()| CheckedScenario {
             configs,
             additional: self.controllers.clone(),
-            // If nothing is sent, it has not been checked.
+            // Not checked if nothing is sent.
             baud: self.line.baud.max(1),
             host: self.line.host.clone(),
             noise: self.line.noise.clone(),
@@ -156,12 +149,12 @@ impl Scenario {
     }
 
     fn additional(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
-        // A line script may address several controllers at once, for tests of such lines.
+        // A line script may use one address for several controllers.
         let scripted = matches!(self.source, Source::Line(_));
-        let nameless = self.line.protocol == Protocol::Raw && self.line.address.is_none();
-        if !self.controllers.is_empty() && nameless && !scripted {
+        let has_no_address = self.line.protocol == Protocol::Raw && self.line.address.is_none();
+        if !self.controllers.is_empty() && has_no_address && !scripted {
             let detail =
-                "several controllers on a line need an address each; give the first one an address, 0 to 254";
+                "several controllers on a line need addresses; give the first one an address, 0 to 254";
             validator.add("line.address", ValueError::Conflict { detail });
         }
         let mut configs = Vec::new();
@@ -176,12 +169,12 @@ impl Scenario {
                 Ok(config) => configs.push(config),
                 Err(broken) => {
                     let path = |field: &Field| match field {
-                        // These belong to the whole line and are reported for the first controller.
+                        // Already reported for the first controller.
                         Field::ClockHz | Field::Line("baud") => field.to_string(),
                         Field::Line(own) => format!("controllers[{index}].{own}"),
                         Field::Bus(_) => format!("controllers[{index}].{field}"),
                     };
-                    tell_once(broken, path, validator);
+                    report_new(broken, path, validator);
                 }
             }
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
@@ -193,7 +186,7 @@ impl Scenario {
                     if same && !scripted {
                         here.add("address", Cause::SameAddress { address: controller.address });
                     }
-                    self.orders(controller, here);
+                    self.commands(controller, index, here);
                 });
             });
         }
@@ -208,28 +201,29 @@ impl Scenario {
         configs
     }
 
-    fn orders(&self, controller: &Controller, here: &mut Validator) {
-        let most = usize::from(controller.bus.channels).clamp(1, MAX_CHANNELS);
-        here.length("axes", controller.axes.len(), 0..=most, "axes");
+    fn commands(&self, controller: &Controller, index: usize, here: &mut Validator) {
+        let path = format!("controllers[{index}].bus.channels");
+        let channels = (controller.bus.channels, path.as_str());
+        here.at("axes", |here| fit_channels(here, controller.axes.len(), (0, "axes"), channels));
         if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
-            let detail = "axes are for a source of kind motion; take them out, or choose that source";
+            let detail = "axes need a motion as the source; remove them, or choose a motion";
             here.add("axes", ValueError::Conflict { detail });
         }
         if !controller.packets.is_empty() && !matches!(self.source, Source::Packets(_)) {
-            let detail = "packets are for a source of kind packets; take them out, or choose that source";
+            let detail = "packets need packets as the source; remove them, or choose packets";
             here.add("packets", ValueError::Conflict { detail });
         }
-        let len = usize::from(controller.bus.channels) + usize::from(self.line.protocol == Protocol::Raw);
-        here.at("packets", |here| judge_packets(&controller.packets, len, here));
+        let is_addressed = self.line.protocol == Protocol::Raw;
+        here.at("packets", |here| check_packets(&controller.packets, is_addressed, channels, here));
     }
 
     fn host(&self, validator: &mut Validator) {
-        let hears_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
-        if hears_replies && self.line.receiver_baud.is_some() {
+        let receives_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
+        if receives_replies && self.line.receiver_baud.is_some() {
             let host = SerialLine { receiver_baud: None, ..self.line.serial() };
             let mut broken = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
             broken.retain(|problem| problem.field == Field::Line("baud"));
-            tell_once(broken, ToString::to_string, validator);
+            report_new(broken, ToString::to_string, validator);
         }
     }
 
@@ -245,7 +239,7 @@ impl Scenario {
                     here.add("start_cycle", Cause::Overlap { start, free_from });
                 }
                 if send.frame.is_some() && !send.bytes.0.is_empty() {
-                    let detail = "a send has bytes or a frame, not both; take one out";
+                    let detail = "a send has bytes or a frame, not both; remove one";
                     here.add("bytes", ValueError::Conflict { detail });
                 }
             });
@@ -257,8 +251,8 @@ impl Scenario {
     }
 }
 
-/// A range that the field's own row has reported is not reported again.
-fn tell(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
+/// Skips ranges that `check_ranges` has reported.
+fn report(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
     for ConfigProblem { field, error } in broken {
         let path = path(&field);
         if !(matches!(error, ConfigError::Range { .. }) && validator.has(&path)) {
@@ -267,8 +261,8 @@ fn tell(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: 
     }
 }
 
-/// Skips problems that another configuration has, too.
-fn tell_once(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
+/// Skips problems that another configuration has as well.
+fn report_new(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
     for ConfigProblem { field, error } in broken {
         let path = path(&field);
         if !validator.has(&path) {
@@ -289,9 +283,29 @@ fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
     }
 }
 
-fn judge_packets(packets: &[Hex], len: usize, here: &mut Validator) {
+/// `least` is the minimum and what is counted, `channels` the number of channels and its path.
+pub(crate) fn fit_channels(
+    here: &mut Validator,
+    given: usize,
+    least: (usize, &'static str),
+    channels: (u8, &str),
+) {
+    let ((least, of), (channels, path)) = (least, channels);
+    if !(least..=usize::from(channels).clamp(1, MAX_CHANNELS)).contains(&given) {
+        here.add("", Cause::Channels { given, of, channels, path: path.into() });
+    }
+}
+
+/// `channels` is their number and its path.
+fn check_packets(packets: &[Hex], is_addressed: bool, channels: (u8, &str), here: &mut Validator) {
+    let (channels, path) = channels;
     for (index, Hex(bytes)) in packets.iter().enumerate() {
-        here.at_entry(index, |here| here.length("", bytes.len(), len..=len, "bytes"));
+        let given = bytes.len();
+        if given != usize::from(channels) + usize::from(is_addressed) {
+            here.at_entry(index, |here| {
+                here.add("", Cause::PacketLength { given, channels, is_addressed, path: path.into() });
+            });
+        }
     }
 }
 
@@ -303,6 +317,34 @@ mod tests {
     fn paths(json: &str) -> Vec<String> {
         let scenario = Scenario::from_json(json).expect("reads");
         scenario.check().err().unwrap_or_default().into_iter().map(|p| p.path).collect()
+    }
+
+    #[test]
+    fn errors_state_the_number_of_channels() {
+        let rows = [
+            (
+                r#"{"source":{"motion":{"axes":[{},{}]}}}"#,
+                "source.motion.axes: 2 axes, but `bus.channels` is 1; remove 1, or set `bus.channels` to 2",
+            ),
+            (r#"{"source":{"motion":{"axes":[]}}}"#, "source.motion.axes: 0 axes; give at least 1"),
+            (
+                r#"{"controllers":[{"axes":[{},{},{}]}],"line":{"address":0}}"#,
+                "controllers[0].axes: 3 axes, but `controllers[0].bus.channels` is 1; remove 2, or set `controllers[0].bus.channels` to 3",
+            ),
+            (
+                r#"{"source":{"packets":{"packets":["8001"]}}}"#,
+                "source.packets.packets[0]: 2 bytes; give 1: one per channel (`bus.channels` is 1)",
+            ),
+            (
+                r#"{"line":{"address":7},"source":{"packets":{"packets":["80"]}}}"#,
+                "source.packets.packets[0]: 1 bytes; give 2: the address and one per channel (`bus.channels` is 1)",
+            ),
+            (r#"{"line":{"baud":0}}"#, "line.baud: 0 baud is out of range; give 1 to 1523809 baud"),
+        ];
+        for (json, expected) in rows {
+            let problems = Scenario::from_json(json).expect("reads").check().expect_err(json);
+            assert_eq!(problems[0].to_string(), expected);
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use alloc::{format, string::String, vec::Vec};
 use base16ct::{lower, mixed};
 use serde_json::Value;
 
-/// Bytes that JSON writes as hexadecimal digits. Reads capitals and spaces; writes small letters without spaces.
+/// Bytes as hexadecimal digits in JSON. Reads capitals and spaces; writes neither.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hex(pub Vec<u8>);
 
@@ -38,10 +38,12 @@ impl Hex {
 fn wrong_in(digits: &str) -> String {
     let wrong = digits.chars().enumerate().find(|(_, c)| !c.is_ascii_hexdigit());
     let what = match wrong {
-        Some((index, c)) => format!("\u{201c}{c}\u{201d} in byte {} is no hexadecimal digit", index / 2 + 1),
-        None => format!("byte {} has one digit only", digits.len() / 2 + 1),
+        Some((index, c)) => {
+            format!("\u{201c}{c}\u{201d} in byte {} is not a hexadecimal digit", index / 2 + 1)
+        }
+        None => format!("byte {} has only one digit", digits.len() / 2 + 1),
     };
-    format!("{what}; give 0 to 9 and a to f, two a byte, such as 80 01 7f")
+    format!("{what}; give two digits per byte, such as 80 01 7f")
 }
 
 impl crate::schema::ToParts for Hex {
@@ -60,17 +62,17 @@ mod tests {
     use alloc::vec;
 
     #[test]
-    fn what_is_no_byte_is_told_by_its_place_with_what_is_allowed() {
+    fn errors_state_the_byte_and_the_allowed_digits() {
         let rows = [
-            ("80 0g", "\u{201c}g\u{201d} in byte 2 is no"),
-            ("8x", "\u{201c}x\u{201d} in byte 1 is no"),
-            ("\u{fc}0", "\u{201c}\u{fc}\u{201d} in byte 1 is no"),
-            ("80 01 7", "byte 3 has one digit only"),
+            ("80 0g", "\u{201c}g\u{201d} in byte 2 is not"),
+            ("8x", "\u{201c}x\u{201d} in byte 1 is not"),
+            ("\u{fc}0", "\u{201c}\u{fc}\u{201d} in byte 1 is not"),
+            ("80 01 7", "byte 3 has only one digit"),
         ];
         for (given, expected) in rows {
             let error = Hex::of_text(given).unwrap_err();
             assert!(error.starts_with(expected), "{given}: {error}");
-            assert!(error.ends_with("give 0 to 9 and a to f, two a byte, such as 80 01 7f"), "{error}");
+            assert!(error.ends_with("give two digits per byte, such as 80 01 7f"), "{error}");
         }
         assert_eq!(Hex::of_text("80 01\n7F").unwrap(), Hex(vec![0x80, 1, 0x7f]));
     }

@@ -1,11 +1,8 @@
 //! Encodes and decodes share links (PAGE "Share link").
 //!
 //! `c=<version>.<codec>.<base64url payload>.<crc>`: the payload is the canonical JSON, plain (codec `j`) or deflated
-//! (codec `z`), whichever is shorter. The CRC-32 (ISO-HDLC, as in zip) covers everything before its dot. Equal
-//! scenarios have equal links.
-//!
-//! Links are untrusted. Checks in order: length, version, alphabet and CRC, inflated size, types and names. The
-//! caller checks ranges and cost.
+//! (codec `z`), whichever is shorter. The CRC-32 covers everything before its dot. Links are untrusted; the caller checks
+//! ranges and cost.
 //!
 //! ```
 //! use stepscope_scenario::{Scenario, link};
@@ -32,37 +29,25 @@ pub const MAX_JSON_BYTES: usize = 64 << 10;
 const DEFLATE_LEVEL: u8 = 10;
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Maximum problems in one message.
-const MAX_TOLD: usize = 8;
+const MAX_LISTED: usize = 8;
 /// Punctuation that a chat program or a sentence may add to a link.
 const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"', '\''];
 
 /// Why a link does not open.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum LinkError {
     /// Longer than any link.
-    TooLong {
-        /// Bytes of the fragment, or of the scenario's JSON.
-        given: usize,
-        /// Maximum bytes.
-        most: usize,
-    },
+    TooLong { given: usize, most: usize },
     /// It has no `c=`.
     NoScenario,
     /// Made by a newer version.
-    Newer {
-        /// The link's version.
-        given: u64,
-        /// The newest readable version.
-        newest: u32,
-    },
+    Newer { given: u64, newest: u32 },
     /// Wrong CRC: truncated or changed.
     Damaged,
     /// The payload does not fit its codec, or inflates to too much.
-    Payload {
-        /// Maximum inflated bytes.
-        most: usize,
-    },
+    Payload { most: usize },
     /// The scenario cannot be read.
     Scenario(Vec<Problem>),
 }
@@ -73,29 +58,27 @@ impl fmt::Display for LinkError {
             Self::TooLong { given, most } => {
                 write!(
                     f,
-                    "the link is too long: {given} bytes, at most {most} are allowed; share the scenario as a file instead"
+                    "the link is too long: {given} bytes, at most {most} are allowed; share the scenario as a file"
                 )
             }
             Self::NoScenario => {
-                f.write_str("the link holds no scenario: there is no c= behind its #; ask for the whole link")
+                f.write_str("the link has no scenario (no c= after #); ask for the complete link")
             }
             Self::Newer { given, newest } => write!(
                 f,
-                "the link was made with a newer version of Stepscope (format {given}, this one reads up to {newest}); reload the page to get the newest, or ask for the scenario as a file"
+                "the link was made with a newer version of Stepscope (format {given}, this one reads up to {newest}); reload the page to update, or ask for the scenario as a file"
             ),
-            Self::Damaged => {
-                f.write_str("the link was cut short or changed on the way; ask for the whole link")
-            }
+            Self::Damaged => f.write_str("the link was cut short or changed; ask for the complete link"),
             Self::Payload { most } => write!(
                 f,
-                "what the link holds is not a scenario, or more than {most} bytes of it; ask for the link again"
+                "the link has no valid scenario, or one of more than {most} bytes; ask for the link again"
             ),
             Self::Scenario(problems) => {
                 f.write_str("the link's scenario has problems")?;
-                for (index, problem) in problems.iter().take(MAX_TOLD).enumerate() {
+                for (index, problem) in problems.iter().take(MAX_LISTED).enumerate() {
                     write!(f, "{}{problem}", if index == 0 { ": " } else { "; " })?;
                 }
-                if let Some(more @ 1..) = problems.len().checked_sub(MAX_TOLD) {
+                if let Some(more @ 1..) = problems.len().checked_sub(MAX_LISTED) {
                     write!(f, "; and {more} more")?;
                 }
                 Ok(())
@@ -142,8 +125,7 @@ pub fn with_part(link: String, name: &str, text: &str) -> String {
     link + "&" + name + "=" + text
 }
 
-/// Decodes a link's fragment, with or without `#`; ignores other parts (`&v=`, `&d=`). Ranges and cost are not
-/// checked.
+/// Decodes a link's fragment, with or without `#`; ignores other parts (`&v=`, `&d=`).
 ///
 /// # Errors
 /// The first that [`LinkError`] lists.
@@ -164,7 +146,7 @@ pub struct Packed {
 /// Decodes the JSON in a link's fragment.
 ///
 /// # Errors
-/// As [`decode`], but those of reading the scenario.
+/// As [`decode`], except problems of the scenario.
 pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     if fragment.len() > MAX_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: fragment.len(), most: MAX_FRAGMENT_BYTES });
@@ -196,8 +178,7 @@ pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     Ok(Packed { json, version })
 }
 
-/// Returns part `name` of a fragment without trailing punctuation. Accepts percent-encoded links, `&` included, and
-/// line breaks (`%0A`); errors in other parts do not matter.
+/// Returns part `name` of a fragment without trailing punctuation. Accepts percent-encoded links and line breaks.
 #[must_use]
 pub fn part(fragment: &str, name: &str) -> Option<String> {
     fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
@@ -245,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_gives_back_the_very_scenario_and_the_same_scenario_the_same_link() {
+    fn links_and_scenarios_round_trip() {
         for scenario in [Scenario::default(), sixteen_axes()] {
             let link = encode(&scenario).expect("short enough");
             assert_eq!(decode(&link), Ok(scenario.clone()));
@@ -278,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_added_as_long_as_the_link_can_be_read() {
+    fn parts_are_added_while_the_link_is_short_enough() {
         let link = encode(&sixteen_axes()).expect("short enough");
         let whole = with_part(with_part(link.clone(), "v", "1-2"), "d", "1.x");
         assert_eq!(whole, format!("{link}&v=1-2&d=1.x"));
@@ -311,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_version_is_judged_before_the_check() {
+    fn the_version_is_checked_before_the_crc() {
         let rows = [
             ("c=3.z.anything.00000000", LinkError::Newer { given: 3, newest: VERSION }),
             ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
@@ -345,9 +326,9 @@ mod tests {
     fn a_message_names_some_problems_and_counts_the_others() {
         let problem =
             |count: u32| Problem::new("bus.slots", stepscope_motion::Cause::NoSteps { steps: count.into() });
-        let told = |count| LinkError::Scenario((0..count).map(problem).collect()).to_string();
-        assert!(told(8).matches("bus.slots").count() == 8 && !told(8).contains("more"));
-        assert!(told(1000).matches("bus.slots").count() == 8 && told(1000).ends_with("; and 992 more"));
+        let text = |count| LinkError::Scenario((0..count).map(problem).collect()).to_string();
+        assert!(text(8).matches("bus.slots").count() == 8 && !text(8).contains("more"));
+        assert!(text(1000).matches("bus.slots").count() == 8 && text(1000).ends_with("; and 992 more"));
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Builds the plants of a scenario, one per controller (F9), and reports problems at the field that a number came
-//! from.
+//! Builds the plants of a scenario, one per controller (F9).
 
 use crate::{Cause, PlantSettings, Scenario, Source, Validator, ValueError};
 use alloc::{
@@ -27,8 +26,8 @@ pub struct Plants {
     pub tail: Cycles,
 }
 
-/// A motor with the paths of its own numbers and of its mechanics'.
-struct Placed<'a> {
+/// A motor with the paths of its fields and its mechanics.
+struct MotorAtPath<'a> {
     motor: Option<&'a Motor>,
     full_step_deg: f64,
     microsteps: u16,
@@ -37,9 +36,9 @@ struct Placed<'a> {
 }
 
 impl Scenario {
-    /// Adds all problems to `validator`. Rules that join fields are checked only if the fields are valid.
+    /// Rules between fields are checked only if the fields are valid.
     pub(crate) fn plants(&self, configs: &[Config], validator: &mut Validator) -> Option<Plants> {
-        self.judge_motors(validator);
+        self.check_motors(validator);
         let settings = self.plant.as_ref()?;
         if !validator.is_ok() {
             return None;
@@ -49,23 +48,23 @@ impl Scenario {
             one_supply(&placed, validator);
             let setup = setup(self.clock_hz, settings, &placed);
             for refused in Plant::new(&setup).err().unwrap_or_default() {
-                tell(refused, &placed, validator);
+                report(refused, &placed, validator);
             }
             setup
         });
         let setups = setups.collect();
         let tail = Cycles((settings.tail_s * f64::from(self.clock_hz) + 0.5) as u64);
         if settings.self_test {
-            self.judge_self_test(configs, validator);
+            self.check_self_test(configs, validator);
         }
         Some(Plants { setups, self_test: settings.self_test, tail })
     }
 
-    /// A boot needs time for a step and its return per channel (F7).
-    fn judge_self_test(&self, configs: &[Config], validator: &mut Validator) {
+    /// A self-test steps each motor there and back (F7).
+    fn check_self_test(&self, configs: &[Config], validator: &mut Validator) {
         for (index, config) in configs.iter().enumerate() {
             if self.source.runs_alone() {
-                let detail = "segments and stand-alone controllers have no boot in which a self-test could run; choose ticks, or leave it out";
+                let detail = "segments and stand-alone controllers have no self-test; choose ticks, or set it to false";
                 validator.add("plant.self_test", ValueError::Conflict { detail });
                 return;
             }
@@ -83,23 +82,28 @@ impl Scenario {
     }
 
     /// Checks numbers that only a plant uses, and motors without an axis.
-    fn judge_motors(&self, validator: &mut Validator) {
+    fn check_motors(&self, validator: &mut Validator) {
         if let Source::Motion(motion) = &self.source {
-            judge_axes(&motion.axes, "source.motion.axes", validator);
+            check_axes(&motion.axes, "source.motion.axes", validator);
         }
         for (index, controller) in self.controllers.iter().enumerate() {
-            judge_axes(&controller.axes, &format!("controllers[{index}].axes"), validator);
+            check_axes(&controller.axes, &format!("controllers[{index}].axes"), validator);
         }
         for (index, entry) in self.plant.iter().flat_map(|plant| &plant.motors).enumerate().take(MAX_CHANNELS)
         {
             let path = format!("plant.motors[{index}]");
             let axis = Axis { motor: Some(entry.motor.clone()), ..Axis::default() };
             validator.extend(plan_axis(&axis, &path).err().unwrap_or_default());
-            validator.at(&format!("{path}.motor"), |here| judge_motor(&entry.motor, here));
+            validator.at(&format!("{path}.motor"), |here| check_motor(&entry.motor, here));
         }
     }
 
-    fn motors<'a>(&'a self, settings: &'a PlantSettings, controller: usize, channels: u8) -> Vec<Placed<'a>> {
+    fn motors<'a>(
+        &'a self,
+        settings: &'a PlantSettings,
+        controller: usize,
+        channels: u8,
+    ) -> Vec<MotorAtPath<'a>> {
         let (axes, axes_path): (&[Axis], _) = match (&self.source, controller.checked_sub(1)) {
             (Source::Motion(motion), None) => (&motion.axes, "source.motion.axes".to_string()),
             (_, None) => (&[], String::new()),
@@ -118,7 +122,7 @@ impl Scenario {
                 {
                     let mechanics_path = format!("{path}.mechanics.{name}");
                     let motor = axis.motor.as_ref();
-                    return Placed {
+                    return MotorAtPath {
                         motor,
                         full_step_deg,
                         microsteps,
@@ -130,7 +134,7 @@ impl Scenario {
                 let entry = settings.motors.get(channel.min(last));
                 let Rotary { full_step_deg, microsteps } = Rotary::default();
                 let path = format!("plant.motors[{}]", channel.min(last));
-                Placed {
+                MotorAtPath {
                     motor: entry.map(|entry| &entry.motor),
                     full_step_deg: entry.map_or(full_step_deg, |entry| entry.full_step_deg),
                     microsteps: entry.map_or(microsteps, |entry| entry.microsteps),
@@ -152,15 +156,15 @@ fn mechanics(mechanics: &Mechanics) -> Option<(&'static str, f64, u16)> {
     }
 }
 
-fn judge_axes(axes: &[Axis], path: &str, validator: &mut Validator) {
+fn check_axes(axes: &[Axis], path: &str, validator: &mut Validator) {
     for (index, axis) in axes.iter().enumerate().take(MAX_CHANNELS) {
         if let Some(motor) = &axis.motor {
-            validator.at(&format!("{path}[{index}].motor"), |here| judge_motor(motor, here));
+            validator.at(&format!("{path}[{index}].motor"), |here| check_motor(motor, here));
         }
     }
 }
 
-fn judge_motor(motor: &Motor, here: &mut Validator) {
+fn check_motor(motor: &Motor, here: &mut Validator) {
     let most = *limits::TORQUE_MN_M.end();
     here.range("friction_mn_m", motor.friction_mn_m, limits::TORQUE_MN_M, "mN*m");
     if let Some(stiction) = motor.stiction_mn_m {
@@ -186,8 +190,9 @@ fn judge_motor(motor: &Motor, here: &mut Validator) {
 }
 
 /// All motors of a plant share one supply.
-fn one_supply(placed: &[Placed<'_>], validator: &mut Validator) {
-    let supply = |placed: &Placed<'_>| placed.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
+fn one_supply(placed: &[MotorAtPath<'_>], validator: &mut Validator) {
+    let supply =
+        |placed: &MotorAtPath<'_>| placed.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
     let Some(first) = placed.first().map(supply) else { return };
     for other in placed {
         let path = format!("{}.supply_v", other.path);
@@ -197,7 +202,7 @@ fn one_supply(placed: &[Placed<'_>], validator: &mut Validator) {
     }
 }
 
-fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[Placed<'_>]) -> parameters::Setup {
+fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[MotorAtPath<'_>]) -> parameters::Setup {
     let default = Motor::default();
     let supply_v =
         placed.first().and_then(|first| first.motor).map_or(default.supply_v, |motor| motor.supply_v);
@@ -235,7 +240,7 @@ fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[Placed<'_>]) -> para
     }
 }
 
-fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::MotorModel {
+fn motor(placed: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
     let drive = &motor.drive;
     parameters::MotorModel {
         full_step_deg: placed.full_step_deg,
@@ -278,7 +283,7 @@ fn motor(placed: &Placed<'_>, motor: &Motor) -> parameters::MotorModel {
     }
 }
 
-fn tell(refused: Refused, placed: &[Placed<'_>], validator: &mut Validator) {
+fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validator) {
     let of_motor = refused.channel.and_then(|channel| placed.get(channel));
     let path = match (refused.refusal, of_motor) {
         (Refusal::Unstable { .. }, _) => "plant.step_cycles".into(),
@@ -315,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn each_problem_of_a_plant_stands_at_its_field_with_the_remedy() {
+    fn each_problem_of_a_plant_has_its_path_and_a_remedy() {
         let motor = |motor: &str| {
             format!(r#"{{"plant":{{}},"source":{{"motion":{{"axes":[{{"motor":{{{motor}}}}}]}}}}}}"#)
         };
@@ -355,11 +360,11 @@ mod tests {
             ),
             (
                 r#"{"bus":{"channels":3},"plant":{"motors":[{},{"motor":{"supply_v":36}}]},"source":{"packets":{}}}"#.into(),
-                &["plant.motors[1].motor.supply_v: 36 V beside 24 V of the first motor"],
+                &["plant.motors[1].motor.supply_v: 36 V, but the first motor has 24 V"],
             ),
             (
                 r#"{"bus":{"boot_cycles":100},"plant":{"self_test":true}}"#.into(),
-                &["bus.boot_cycles: a self-test takes 7681 cycles and the boot has 100; give at least 7681"],
+                &["bus.boot_cycles: 100 cycles are too short for the self-test; give at least 7681"],
             ),
         ];
         for (given, expected) in rows {
@@ -372,14 +377,14 @@ mod tests {
     }
 
     #[test]
-    fn a_channel_has_its_axis_motor_or_the_entry_of_the_list_or_the_last_of_them() {
+    fn a_channel_has_the_motor_of_its_axis_or_of_the_list() {
         let json = r#"{"bus":{"channels":4},"plant":{"motors":[
                 {"motor":{"inductance_mh":1}},{"microsteps":2,"motor":{"inductance_mh":2}}]},
             "source":{"motion":{"axes":[{},{"mechanics":{"rotary":{"microsteps":8}},"motor":{"inductance_mh":3}}]}}}"#;
         let checked = Scenario::from_json(json).expect("reads").check().expect("holds");
         let setups = checked.plants.expect("a plant").setups;
-        let told: Vec<(f64, u16)> =
+        let found: Vec<(f64, u16)> =
             setups[0].motors.iter().map(|m| (m.inductance_mh, m.microsteps)).collect();
-        assert_eq!(told, [(1.0, 16), (3.0, 8), (2.0, 2), (2.0, 2)]);
+        assert_eq!(found, [(1.0, 16), (3.0, 8), (2.0, 2), (2.0, 2)]);
     }
 }

@@ -1,10 +1,4 @@
-//! Points of a profile (DESIGN B6), in a scenario or in a table.
-//!
-//! ```json
-//! { "points": { "unit": "mm", "interpolation": "smooth", "points": [[0, 0], [0.25, 12.5], [0.5, 0]] } }
-//! ```
-//!
-//! Both columns count from the first point: a record may begin at any time and place.
+//! Reads points of a profile (DESIGN B6) from a scenario or a table.
 
 use crate::{
     Json, Parts, Read, Reader, ToParts,
@@ -18,7 +12,7 @@ impl Read for Point {
         let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
         let Some(numbers) = value.list() else { return reader.refuse(value, wanted) };
         let [time_s, position] = &numbers[..] else {
-            return reader.wrong(format!("a point of {} numbers; give {wanted}", numbers.len()));
+            return reader.wrong(format!("a point with {} numbers; give {wanted}", numbers.len()));
         };
         reader.entry(0, *time_s, &mut self.time_s);
         reader.entry(1, *position, &mut self.position);
@@ -36,30 +30,28 @@ impl ToParts for Point {
     }
 }
 
-/// Reads the points of a table with two columns: time in s and position.
+/// Reads points from a table with two columns: time in s and position.
 ///
-/// A head is optional; with one, `time_s` and `position` are used if present, else the first two columns. The first
-/// row decides between comma, semicolon and tab; with the latter two, decimal commas are allowed.
+/// A header is optional. If it has `time_s` and `position`, these columns are used, else the first two. The first row
+/// decides between comma, semicolon and tab. With semicolon or tab, decimal commas are allowed.
 ///
 /// # Errors
-/// [`BadTable`] with the first line that cannot be used. Whether the times rise is judged with the
-/// scenario that the points become a part of.
+/// [`BadTable`] with the first invalid line. The order of times is checked later.
 pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
     let first = table.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
     let separator = [b';', b'\t'].into_iter().find(|mark| first.as_bytes().contains(mark)).unwrap_or(b',');
     let number = |text: &str| {
         let text = text.trim().trim_start_matches('+');
         let text = if separator == b',' { text.to_owned() } else { text.replace(',', ".") };
-        // serde_json's number reader is linked anyway; the standard library's would add tables.
         serde_json::from_str::<f64>(&text).ok()
     };
     let mut rows = Rows::new(table, separator)?;
     let (mut points, mut columns, mut is_first) = (Vec::new(), (0, 1), true);
     while let Some((at, row)) = rows.next() {
-        let head = core::mem::take(&mut is_first) && row.iter().all(|field| number(field).is_none());
-        if head {
-            let place = |name: &str| row.iter().position(|field| field.trim().eq_ignore_ascii_case(name));
-            columns = place("time_s").zip(place("position")).unwrap_or(columns);
+        let header = core::mem::take(&mut is_first) && row.iter().all(|field| number(field).is_none());
+        if header {
+            let column = |name: &str| row.iter().position(|field| field.trim().eq_ignore_ascii_case(name));
+            columns = column("time_s").zip(column("position")).unwrap_or(columns);
             continue;
         }
         let read = |column: usize, what: &str| {
@@ -71,7 +63,7 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
         };
         points.push(Point { time_s: read(columns.0, "time in s")?, position: read(columns.1, "position")? });
         if points.len() > MAX_POINTS {
-            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; give fewer")));
+            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; give at most {MAX_POINTS}")));
         }
     }
     if points.len() < 2 {
@@ -92,11 +84,11 @@ mod tests {
     }
 
     #[test]
-    fn tables_of_all_kinds_are_the_same_points() {
+    fn tables_of_all_kinds_give_the_same_points() {
         let expected = Ok(vec![(0.0, 1.5), (0.25, -2e3)]);
         for table in [
             "0,1.5\n0.25,-2e3\n",
-            "\u{feff}time,way\r\n0,1.5\r\n\r\n0.25,-2000",
+            "\u{feff}time,travel\r\n0,1.5\r\n\r\n0.25,-2000",
             "name,position,time_s\nfirst,+1.5,0\nsecond,-2000,0.25\n",
             "t;x\n0;1,5\n0,25;-2000,0\n",
             "0\t1.5\n0.25\t-2000\n",
@@ -107,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_is_told_with_its_line() {
+    fn errors_state_the_line() {
         for (table, expected) in [
             ("", "line 1: 0 points; give 2 to 4096"),
             ("time,position\n1,2\n", "line 3: 1 points; give 2 to 4096"),
@@ -122,7 +114,7 @@ mod tests {
             assert_eq!(points(table), Err(expected.into()), "{table:?}");
         }
         let many = "0,0\n".repeat(MAX_POINTS + 1);
-        assert_eq!(points(&many), Err("line 4097: more than 4096 points; give fewer".into()));
+        assert_eq!(points(&many), Err("line 4097: more than 4096 points; give at most 4096".into()));
     }
 
     #[test]
@@ -131,7 +123,7 @@ mod tests {
             |json: &str| crate::part_from_json::<Point>(json).map_err(|problems| problems[0].to_string());
         assert_eq!(read("[0.25,-1]"), Ok(Point { time_s: 0.25, position: -1.0 }));
         for json in ["[1]", "[1,2,3]", "[]"] {
-            assert!(read(json).unwrap_err().starts_with("a point of "), "{json}");
+            assert!(read(json).unwrap_err().starts_with("a point with "), "{json}");
         }
         assert_eq!(Point { time_s: 0.5, position: -0.0 }.compact().to_string(), "[0.5,0.0]");
     }

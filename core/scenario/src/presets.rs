@@ -1,11 +1,4 @@
 //! Presets: experiments from the papers, shared by tests, command and page.
-//!
-//! ```
-//! use stepscope_scenario::presets::PRESETS;
-//!
-//! let four = PRESETS.iter().find(|preset| preset.id == "patent-2019-four-motors").expect("it is there");
-//! assert_eq!(four.scenario().bus.channels, 4);
-//! ```
 
 use crate::Scenario;
 
@@ -14,29 +7,29 @@ use crate::Scenario;
 pub struct Preset {
     /// Name in files and on the command line.
     pub id: &'static str,
-    /// The document that it comes from.
+    /// Heading in the menu: the paper that it comes from.
     pub document: &'static str,
     /// The scenario as JSON.
     pub json: &'static str,
 }
 
 impl Preset {
-    /// Reads the scenario; tests check that every file is valid.
+    /// Reads the scenario. Tests check that every preset is valid.
     #[must_use]
     pub fn scenario(&self) -> Scenario {
         Scenario::from_json(self.json).unwrap_or_default()
     }
 }
 
-const SINE: &str = "SWorldJournal, issue 11: sine by segments";
-const SONG: &str = "Song, Han, Lu 2021: exact S-curve";
+const SINE: &str = "SWorldJournal 2022: sine by segments";
+const SONG: &str = "Song 2021: exact S-curve";
 const SONOBE: &str = "Sonobe 2011: acceleration table";
 const PATENT: &str = "RU 2704486, 2019: tick packets";
 const ZHANG: &str = "Zhang 2012: fixed-length controller";
-const ALONE: &str = "Beyond the document: a stand-alone controller";
-const FRAMED: &str = "The framed protocol: checked, answered, repeated";
-const PROFILES: &str = "Further profiles: exact sine, jerk-limited, points";
-const DRIVERS: &str = "Drivers' data sheets: timing";
+const ALONE: &str = "Stand-alone controller: additional functions";
+const FRAMED: &str = "Framed protocol: checked, acknowledged, repeated";
+const PROFILES: &str = "Additional profiles: exact sine, jerk-limited, points";
+const DRIVERS: &str = "Driver data sheets: timing";
 
 macro_rules! presets {
     ($(#[$meta:meta])* $list:ident: $($document:expr => $id:literal;)*) => {
@@ -125,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn every_preset_reads_and_holds() {
+    fn every_preset_is_valid() {
         let all: Vec<&Preset> = PRESETS
             .iter()
             .chain(PLANT_PRESETS)
@@ -135,7 +128,10 @@ mod tests {
         for (index, preset) in all.iter().enumerate() {
             let scenario =
                 Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
-            assert!(!scenario.title.is_empty() && !scenario.note.is_empty(), "{}", preset.id);
+            let lines: Vec<&str> = scenario.note.lines().collect();
+            let [see, attempt] = lines[..] else { panic!("{}: two lines: {lines:?}", preset.id) };
+            assert!(see.starts_with("See ") && attempt.starts_with("Try "), "{}: {lines:?}", preset.id);
+            assert!(!scenario.title.is_empty() && !scenario.note.contains('_'), "{}", preset.id);
             scenario.check().unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             assert!(all[..index].iter().all(|other| other.id != preset.id), "{} twice", preset.id);
         }

@@ -6,23 +6,26 @@ use alloc::{
 };
 use core::fmt;
 use stepscope_motion::problem as motion;
-use stepscope_peripheral::config::{ConfigError, ConfigProblem};
+use stepscope_peripheral::{
+    config::{ConfigError, ConfigProblem},
+    signal::MAX_CHANNELS,
+};
 
 pub use stepscope_motion::problem::ValueError;
 
 /// A problem at the path of the field that has to change.
 pub type Problem = motion::Problem<Cause>;
 
-/// Collects a scenario's problems.
+/// Collects problems of a scenario.
 pub type Validator = motion::Validator<Cause>;
 
-/// Converts a plan's problems.
+/// Converts the problems of a plan.
 #[must_use]
 pub fn of_motion(problems: Vec<motion::Problem>) -> Vec<Problem> {
     problems.into_iter().map(motion::Problem::widen).collect()
 }
 
-/// Converts a configuration's problems to the paths of a scenario.
+/// Converts the problems of a configuration.
 #[must_use]
 pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
     problems
@@ -34,92 +37,79 @@ pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum Cause {
-    /// A single value.
     Value(ValueError),
-    /// A motion that cannot be planned.
     Motion(motion::Cause),
-    /// A peripheral that cannot be configured.
     Config(ConfigError),
     /// Not JSON.
     Syntax {
-        /// Line, from 1.
         line: usize,
-        /// Column, from 1.
         column: usize,
-        /// What was found.
         detail: String,
     },
     /// A wrong type or name.
     Type {
-        /// What was found and expected.
         detail: String,
     },
     /// Written by a newer Stepscope.
     NewerVersion {
-        /// The scenario's version.
         given: u64,
-        /// The newest readable version.
         newest: u32,
     },
     /// A send overlaps the one before (A9).
     Overlap {
-        /// Its start.
         start: u64,
-        /// First free cycle.
         free_from: u64,
     },
     /// The line cannot carry one packet per tick (A9).
     LineTooSlow {
-        /// Cycles per packet.
         packet_cycles: u64,
-        /// Cycles per tick.
         tick_cycles: u64,
-        /// The line's rate.
         baud: u32,
-        /// The minimum rate.
         needed_baud: u64,
-        /// The receiver's maximum rate at this clock.
         max_baud: u64,
     },
-    /// Two controllers of one address.
+    /// More axes, lists or controllers than channels.
+    Channels {
+        given: usize,
+        of: &'static str,
+        channels: u8,
+        path: String,
+    },
+    /// A packet of the wrong length (A5).
+    PacketLength {
+        given: usize,
+        channels: u8,
+        is_addressed: bool,
+        path: String,
+    },
     SameAddress {
-        /// The address.
         address: u8,
     },
-    /// Packet lengths differ on a raw line, where each controller also skips the others' packets by its own length
-    /// (A5).
+    /// Different packet lengths on a raw line, where a controller skips packets by its own length (A5).
     OtherPackets {
-        /// This controller's channels.
         channels: u8,
-        /// The first controller's channels.
         first_channels: u8,
     },
-    /// Controllers with common ticks have different tick lengths (A9).
+    /// Different tick lengths of controllers with common ticks (A9).
     OtherTick {
-        /// This controller's cycles per tick.
         tick_cycles: u64,
-        /// The first controller's cycles per tick.
         first_cycles: u64,
     },
-    /// A refused stand-alone controller (CONTROLLER.md).
     StandAlone(stepscope_controller::Refusal),
     /// An endless program (CONTROLLER.md G5).
     Work(stepscope_controller::Work),
-    /// A plant with impossible numbers (F3, F5).
+    /// A plant that cannot be simulated (F3, F5).
     Plant(stepscope_plant::Refused),
-    /// Motors of one plant have different supplies (F9).
+    /// Different supplies of the motors of one controller (F9).
     OtherSupply {
-        /// This motor's supply in V.
         supply_v: f64,
-        /// The first motor's supply in V.
         first_v: f64,
     },
-    /// A boot is too short for its self-test (F7).
+    /// A boot that is too short for its self-test (F7).
     SelfTest {
-        /// Its cycles.
         given: u64,
-        /// The minimum cycles.
         needed: u64,
     },
 }
@@ -152,7 +142,7 @@ impl From<ConfigError> for Cause {
 }
 
 impl Cause {
-    /// Whether it involves several fields and so means nothing if one of them cannot be read.
+    /// Whether it involves several fields, so that it is wrong if one of them cannot be read.
     #[must_use]
     pub const fn joins_fields(&self) -> bool {
         match self {
@@ -176,53 +166,68 @@ impl fmt::Display for Cause {
                 write!(f, "not JSON at line {line}, column {column}: {detail}")
             }
             Self::Type { detail } => f.write_str(detail),
-            Self::NewerVersion { given, newest } => write!(
-                f,
-                "version {given} was made with a newer Stepscope; this one reads up to version {newest}"
-            ),
+            Self::NewerVersion { given, newest } => {
+                write!(f, "version {given} needs a newer Stepscope; this one reads versions 1 to {newest}")
+            }
             Self::Overlap { start, free_from } => write!(
                 f,
-                "starts at cycle {start} while the bytes before it last to cycle {}; start at {free_from} or later",
+                "starts at cycle {start}, but the bytes before it end at cycle {}; start at {free_from} or later",
                 free_from - 1
             ),
             Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, max_baud } => {
                 write!(
                     f,
-                    "at {baud} baud what is sent for a tick takes {packet_cycles} cycles, a tick has {tick_cycles}; give "
+                    "at {baud} baud the bytes of a tick take {packet_cycles} cycles, but a tick has {tick_cycles}; give "
                 )?;
                 if needed_baud <= max_baud {
                     write!(
                         f,
-                        "at least {needed_baud} baud, longer ticks or fewer channels; on a framed line also more ticks a frame and a deeper queue"
+                        "at least {needed_baud} baud, longer ticks or fewer channels; on a framed line also more ticks per frame and a deeper queue"
                     )
                 } else {
                     write!(
                         f,
-                        "longer ticks or fewer channels: it would need {needed_baud} baud, and this clock hears at most {max_baud}"
+                        "longer ticks or fewer channels: {needed_baud} baud would be needed, and this clock allows at most {max_baud}"
                     )
                 }
             }
+            Self::Channels { given: 0, of, .. } => write!(f, "0 {of}; give at least 1"),
+            Self::Channels { given, of, channels, path } => {
+                let surplus = given.saturating_sub(usize::from(*channels));
+                write!(f, "{given} {of}, but `{path}` is {channels}; remove {surplus}")?;
+                if *given <= MAX_CHANNELS {
+                    write!(f, ", or set `{path}` to {given}")?;
+                }
+                Ok(())
+            }
+            Self::PacketLength { given, channels, is_addressed, path } => {
+                let (needed, address) = match is_addressed {
+                    true => (u16::from(*channels) + 1, "the address and "),
+                    false => (u16::from(*channels), ""),
+                };
+                write!(f, "{given} bytes; give {needed}: {address}one per channel (`{path}` is {channels})")
+            }
             Self::SameAddress { address } => {
-                write!(f, "another controller has address {address} already; give each its own, 0 to 254")
+                write!(f, "address {address} is already used; give each controller another one, 0 to 254")
             }
             Self::OtherPackets { channels, first_channels } => write!(
                 f,
-                "{channels} channels beside {first_channels} on the first controller; a raw packet has a byte a channel and no end mark, so all controllers of a raw line need as many: change one of them, or choose the framed protocol"
+                "{channels} channels, but the first controller has {first_channels}; on a raw line all controllers need the same number: change one of them, or choose the framed protocol"
             ),
             Self::StandAlone(refusal) => refusal.fmt(f),
             Self::Work(work) => work.fmt(f),
             Self::Plant(refused) => refused.fmt(f),
             Self::OtherSupply { supply_v, first_v } => write!(
                 f,
-                "{supply_v} V beside {first_v} V of the first motor; all motors of a plant hang on one supply: give {first_v}"
+                "{supply_v} V, but the first motor has {first_v} V; all motors of a controller share one supply: give {first_v} V"
             ),
             Self::SelfTest { given, needed } => write!(
                 f,
-                "a self-test takes {needed} cycles and the boot has {given}; give at least {needed}, or no plant.self_test"
+                "{given} cycles are too short for the self-test; give at least {needed}, or set `plant.self_test` to false"
             ),
             Self::OtherTick { tick_cycles, first_cycles } => write!(
                 f,
-                "ticks of {tick_cycles} cycles beside ticks of {first_cycles} on the first controller; paced packets need one length (slots x step period): change one of them, or choose the framed protocol"
+                "ticks of {tick_cycles} cycles, but the first controller has ticks of {first_cycles}; on a raw line all ticks need the same length (slots × slot): change one of them, or choose the framed protocol"
             ),
         }
     }

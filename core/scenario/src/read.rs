@@ -17,8 +17,7 @@ impl Scenario {
     /// Reads a scenario of any version up to [`VERSION`].
     ///
     /// # Errors
-    /// Every field with a wrong type or name, or given twice. [`Scenario::check`] checks ranges.
-    /// [`Scenario::check`].
+    /// Every unknown or duplicate field and every wrong type. [`Scenario::check`] checks ranges.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
         strictly(read(text, None))
     }
@@ -43,8 +42,8 @@ impl Scenario {
         to_json(self)
     }
 
-    /// All fields as JSON if that is short enough, else without defaults and indentation; `None` if that exceeds
-    /// [`MAX_TEXT_BYTES`], too.
+    /// All fields as JSON, or without defaults and indentation if that is too long. `None` if that exceeds
+    /// [`MAX_TEXT_BYTES`] as well.
     #[must_use]
     pub fn to_file_json(&self) -> Option<String> {
         self.within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
@@ -208,7 +207,33 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_written_shorter_where_it_would_be_long_and_not_at_all_where_it_could_not_be_read() {
+    fn hints_fit_the_context() {
+        let rows = [
+            (
+                r#"{"source":{"segments":{"channels":[{"segments":[5]}]}}}"#,
+                "source.segments.channels[0].segments[0]: 5; give an object with one key (steps, dwell), such as {\"steps\": {\u{2026}}}",
+            ),
+            (
+                r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":5}}]}]}}}"#,
+                "source.motion.axes[0].moves[0].constant.distance: 5; give an object with one key (steps, mm, deg), such as {\"steps\": 250}",
+            ),
+            (
+                r#"{"source":{"packet":{}}}"#,
+                "source: unknown kind \u{201c}packet\u{201d}; use one of motion, packets, line, standalone, segments",
+            ),
+            (
+                r#"{"bus":{"slot":3}}"#,
+                "bus.slot: unknown field; use one of channels, slots, step_period_cycles, pulse_width_cycles, dir_setup_cycles, dir_hold_cycles, distribution, dir_line, pulse_phasing, settle_cycles, queue_depth, boot_cycles",
+            ),
+        ];
+        for (json, expected) in rows {
+            let problems = Scenario::from_json(json).expect_err(json);
+            assert_eq!(problems[0].to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn long_files_are_written_without_defaults() {
         let texts = [
             "{}",
             r#"{"title":"ü\u001b","source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12}},{"dwell":{}}]},{}]}}}"#,
@@ -241,14 +266,14 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_read_is_kept_beside_a_wrong_field() {
-        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","clock_hz":"x"}"#);
-        assert_eq!(scenario.title, "kept");
+    fn valid_fields_are_read_next_to_a_wrong_one() {
+        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"title","clock_hz":"x"}"#);
+        assert_eq!(scenario.title, "title");
         assert_eq!(problems.len(), 1);
         assert!(format!("{}", problems[0]).starts_with("clock_hz: "));
         // serde would read the list as fields in order.
-        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"kept","bus":[7]}"#);
-        assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("kept", 1, 1));
+        let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"title","bus":[7]}"#);
+        assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("title", 1, 1));
         assert_eq!(Scenario::from_json_lenient("[2]").0, Scenario::default());
     }
 }

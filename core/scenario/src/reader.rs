@@ -1,11 +1,10 @@
 //! Reads JSON into the scenario's types in one pass and reports every field with a wrong type or name.
 //!
-//! The walk is not generic, so that the page contains it once. Unreadable values keep their defaults. Unlike serde,
-//! it does not accept a list for a map.
+//! Unreadable values keep their defaults. Unlike serde, this does not accept a list for an object.
 
 use crate::{
     Cause, Json, Problem, Validator,
-    schema::{Field, Group, Limit},
+    schema::{Field, Group, Limit, Type},
     upgrade,
 };
 use alloc::{
@@ -16,16 +15,15 @@ use alloc::{
 };
 use core::{fmt::Display, mem::size_of};
 
-/// Limits memory: a short text could contain very many empty entries. All valid lists are smaller.
+/// Limits memory: a short text can contain very many empty entries.
 const MAX_LIST_BYTES: usize = 256 << 20;
 
 /// A type that can be read from JSON.
 pub trait Read {
-    /// Reads a value. Returns false, noted in `reader`, if it has the wrong type and nothing was read; a map with
-    /// unreadable fields returns true.
+    /// Reads a value. Returns false, noted in `reader`, if it has the wrong type.
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool;
 
-    /// The initial value of a list's entry.
+    /// The initial value of a list entry.
     fn blank() -> Self
     where
         Self: Sized;
@@ -116,7 +114,7 @@ impl Reader {
         taken
     }
 
-    /// False, and reported, if it is no map.
+    /// False, and reported, if it is not an object.
     fn map<'v>(
         &mut self,
         value: Json<'v>,
@@ -127,8 +125,7 @@ impl Reader {
             return self.refuse(value, wanted);
         }
         if !value.members(&mut |name, value| each(self, name, value)) {
-            return self
-                .wrong("a name in it is no text: half of a surrogate pair; give another name".to_owned());
+            return self.wrong("a name is not valid Unicode; give another name".to_owned());
         }
         true
     }
@@ -143,7 +140,7 @@ impl Reader {
         let mut given: Vec<&'static str> = Vec::new();
         // A new name wins over the old one wherever it is in the text.
         let mut older: Vec<(&'static str, &'static str, Json<'_>)> = Vec::new();
-        let is_map = self.map(value, "a map of names and values", &mut |reader, name, value| {
+        let is_map = self.map(value, "an object with named fields", &mut |reader, name, value| {
             if let Some((field, target)) = fields.iter_mut().find(|(field, _)| *field == name) {
                 reader.field(group, &mut given, (*field, *field), value, *target);
             } else if let Some((old, new)) = reader.renamed(name, fields) {
@@ -183,7 +180,7 @@ impl Reader {
 
     fn unknown(&mut self, name: &str, fields: &[(&'static str, &mut dyn Read)]) {
         let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
-        let detail = format!("there is no such field; give one of {}", names.join(", "));
+        let detail = format!("unknown field; use one of {}", names.join(", "));
         self.validator.add(name, Cause::Type { detail });
     }
 
@@ -196,15 +193,15 @@ impl Reader {
         names.find(|(old, new)| *old == name && fields.iter().any(|(field, _)| field == new)).copied()
     }
 
-    /// A choice is a map with exactly one key.
+    /// A choice is an object with one key.
     pub(super) fn choice<'v>(
         &mut self,
         value: Json<'v>,
         group: &'static Group,
     ) -> Option<(&'static Field, Json<'v>)> {
-        let wanted = "a map of one key that names the choice, such as {\"mm\": 250}";
+        let wanted = wanted_of(group);
         let (mut first, mut count) = (None, 0_usize);
-        let is_map = self.map(value, wanted, &mut |_, name, content| {
+        let is_map = self.map(value, &wanted, &mut |_, name, content| {
             count += 1;
             first.get_or_insert_with(|| {
                 let kind = group.fields.iter().find(|kind| kind.name == name);
@@ -218,10 +215,7 @@ impl Reader {
             Some((Ok(kind), content)) if count == 1 => return Some((kind, content)),
             Some((Err(name), _)) if count == 1 => {
                 let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
-                self.note(format!(
-                    "\u{201c}{name}\u{201d} is no choice here; give one of {}",
-                    kinds.join(", ")
-                ));
+                self.note(format!("unknown kind \u{201c}{name}\u{201d}; use one of {}", kinds.join(", ")));
             }
             _ => self.note(format!("a map of {count} keys; give {wanted}")),
         }
@@ -242,6 +236,18 @@ impl Reader {
     }
 }
 
+/// The hint names the group's own kinds: `{"mm": 250}` is wrong where a segment is expected.
+fn wanted_of(group: &Group) -> String {
+    let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
+    let example = match group.fields.first() {
+        Some(Field { name, ty: Type::Number, .. }) => format!("{{\"{name}\": 250}}"),
+        Some(Field { name, ty: Type::List(_), .. }) => format!("{{\"{name}\": [\u{2026}]}}"),
+        Some(Field { name, .. }) => format!("{{\"{name}\": {{\u{2026}}}}}"),
+        None => "{}".to_owned(),
+    };
+    format!("an object with one key ({}), such as {example}", kinds.join(", "))
+}
+
 fn describe(value: Json<'_>) -> String {
     const LONGEST: usize = 40;
     let short = |text: &str| match text.char_indices().nth(LONGEST) {
@@ -253,7 +259,7 @@ fn describe(value: Json<'_>) -> String {
     } else if value.is_list() {
         "a list".to_owned()
     } else if value.is_map() {
-        "a map".to_owned()
+        "an object".to_owned()
     } else if value.written().starts_with('"') {
         let text = value.text();
         text.map_or_else(

@@ -1,8 +1,7 @@
 //! Converts a table of recorded packets to a line script that sends them again.
 //!
-//! Uses the columns `bytes` and `start_cycle` or `start_s` in any order. Skips rows whose `kind` is `reply` or
-//! `collision`, and replies of other controllers in older tables without `meaning`. The bytes of a packet are sent
-//! without pauses.
+//! Uses the columns `bytes` and `start_cycle` or `start_s`. Skips replies, collisions, and replies of other controllers
+//! in older tables without `meaning`.
 
 use crate::{
     Hex, LineScript, ScriptedSend,
@@ -15,21 +14,23 @@ impl LineScript {
     /// Reads the packets of a table; times in s become cycles of `clock_hz`.
     ///
     /// # Errors
-    /// [`BadTable`] with the first line that cannot be used. Whether the packets follow one another
-    /// without overlapping is judged with the scenario that they become a part of.
+    /// [`BadTable`] with the first invalid line. Overlaps are checked later.
     pub fn recorded(table: &str, clock_hz: u32) -> Result<Self, BadTable> {
         let mut rows = Rows::new(table, b',')?;
         let (_, head) = rows.next().unwrap_or_default();
-        let place = |name: &str| head.iter().position(|field| field.trim() == name);
+        let column = |name: &str| head.iter().position(|field| field.trim() == name);
         let missing = |name: &str| {
-            rows.bad(0, format!("there is no column {name}; a table of packets has start_cycle and bytes"))
+            rows.bad(
+                0,
+                format!("no column {name}; a table of packets needs start_cycle (or start_s) and bytes"),
+            )
         };
-        let start = place("start_cycle").map(|at| (at, false)).or(place("start_s").map(|at| (at, true)));
+        let start = column("start_cycle").map(|at| (at, false)).or(column("start_s").map(|at| (at, true)));
         let (start, in_seconds) = start.ok_or_else(|| missing("start_cycle"))?;
-        let bytes = place("bytes").ok_or_else(|| missing("bytes"))?;
-        let kind = place("kind");
+        let bytes = column("bytes").ok_or_else(|| missing("bytes"))?;
+        let kind = column("kind");
         // Tables with meanings mark all replies; older ones need the outcome.
-        let outcome = place("outcome").filter(|_| place("meaning").is_none());
+        let outcome = column("outcome").filter(|_| column("meaning").is_none());
         let mut sends = Vec::new();
         while let Some((at, row)) = rows.next() {
             let field = |index: usize| row.get(index).map_or("", |field| field.trim());
@@ -57,7 +58,7 @@ impl LineScript {
             }
         }
         if sends.is_empty() {
-            return Err(rows.bad(rows.at, "the table has no packets".to_owned()));
+            return Err(rows.bad(rows.at, "the table has no packets; give at least one".to_owned()));
         }
         Ok(Self { sends })
     }
@@ -74,7 +75,6 @@ fn is_reply(bytes: &[u8]) -> bool {
 }
 
 fn cycle_at(seconds: &str, clock_hz: u32) -> Option<u64> {
-    // serde_json's number reader is linked anyway; the standard library's would add tables.
     let cycle = libm::round(serde_json::from_str::<f64>(seconds).ok()? * f64::from(clock_hz));
     (1.0..9e15).contains(&cycle).then_some(cycle as u64)
 }
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reply_of_another_controller_that_is_called_a_frame_is_not_sent() {
+    fn replies_of_other_controllers_are_not_sent() {
         use stepscope_peripheral::wire::frame::emit;
         let hex = |bytes: Vec<u8>| base16ct::lower::encode_string(&bytes);
         let (frame, reply) = (hex(emit(2, 4, &[])), hex(emit(2, 0x84, &[0; 9])));
@@ -118,15 +118,15 @@ mod tests {
         };
         assert_eq!(starts("another address"), [9]);
         assert_eq!(starts("refused: UNKNOWN_KIND"), [9, 500], "the host did send that");
-        let told = format!("start_cycle,bytes,outcome,kind,meaning\n500,{reply},another address,frame,\n");
-        assert_eq!(sends(&told).map(|sends| sends.len()), Ok(1), "that table knows who sent it");
+        let marked = format!("start_cycle,bytes,outcome,kind,meaning\n500,{reply},another address,frame,\n");
+        assert_eq!(sends(&marked).map(|sends| sends.len()), Ok(1), "a table with meanings marks replies");
     }
 
     #[test]
-    fn what_cannot_be_used_is_told_with_its_line() {
+    fn errors_state_the_line() {
         for (table, expected) in [
-            ("", "line 1: there is no column start_cycle"),
-            ("start_cycle,hex\n", "line 1: there is no column bytes"),
+            ("", "line 1: no column start_cycle"),
+            ("start_cycle,hex\n", "line 1: no column bytes"),
             ("start_cycle,bytes\n", "line 2: the table has no packets"),
             ("start_cycle,bytes\n1,00\n\n0,00\n", "line 4: start_cycle is “0”"),
             ("start_cycle,bytes\r\n1,00\r\n2.5,00\r\n", "line 3: start_cycle is “2.5”"),

@@ -1,6 +1,9 @@
 //! Checks segment lists (DESIGN A8) and converts them for the segment engine, and back.
 
-use crate::{Cause, ChannelSegments, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator};
+use crate::{
+    Cause, ChannelSegments, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
+    check::fit_channels,
+};
 use alloc::vec::Vec;
 use stepscope_motion::{self as motion, problem::MAX_PROBLEMS};
 use stepscope_peripheral::{
@@ -17,8 +20,8 @@ impl SegmentLists {
     /// Checks and converts the lists.
     pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
         let mut validator = Validator::within("source.segments.channels");
-        let most = usize::from(bus.channels).clamp(1, MAX_CHANNELS);
-        validator.length("", self.channels.len(), 0..=most, "lists of segments");
+        let channels = (bus.channels, "bus.channels");
+        fit_channels(&mut validator, self.channels.len(), (0, "lists of segments"), channels);
         let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
         validator.length("", total, 0..=MAX_SEGMENTS, "segments");
         let pulse = PulseTimes::from(bus);
@@ -27,7 +30,7 @@ impl SegmentLists {
             Ok(lists) => validator.end(lists),
             Err(refused) => {
                 for Refused { channel, segment, refusal } in refused {
-                    // Starts and the number of lists are checked elsewhere.
+                    // `check_ranges` has checked the starts.
                     if let Some(segment) = segment {
                         validator.at_entry(channel, |list| {
                             list.at("segments", |segments| {
@@ -97,7 +100,12 @@ mod tests {
         let rows: [(&str, &[&str]); 7] = [
             ("", &[]),
             (r#"{"segments":[{"steps":{}},{"dwell":{}}]}"#, &[]),
-            ("{},{}", &["source.segments.channels: 2 lists of segments; give 0 to 1"]),
+            (
+                "{},{}",
+                &[
+                    "source.segments.channels: 2 lists of segments, but `bus.channels` is 1; remove 1, or set `bus.channels` to 2",
+                ],
+            ),
             (
                 r#"{"start_cycle":0,"segments":[{"steps":{"dir":2}}]}"#,
                 &[

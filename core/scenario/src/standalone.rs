@@ -2,7 +2,9 @@
 //! (CONTROLLER.md).
 
 use crate::{
-    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError, of_motion,
+    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError,
+    check::fit_channels,
+    of_motion,
     schema::{
         Homing, PanelInput, ProfileGroup, ProgramGroup, Sensor, SoftLimits, Switch, Type, Typed, Until,
         VirtualAxis,
@@ -28,8 +30,8 @@ impl Scenario {
         validator: &mut Validator,
     ) -> Option<stepscope_controller::CheckedSetup> {
         let outside = validator.enter("source.standalone");
-        let most = usize::from(self.bus.channels).clamp(1, MAX_CHANNELS);
-        validator.length("", controllers.len(), 1..=most, "controllers, each on a channel of `bus.channels`");
+        let channels = (self.bus.channels, "bus.channels");
+        fit_channels(validator, controllers.len(), (1, "controllers"), channels);
         let before = validator.count();
         let pulse = PulseTimes::from(&self.bus);
         let mut steps_left = MAX_PROFILE_STEPS;
@@ -43,7 +45,6 @@ impl Scenario {
             Ok(checked) => read.then_some(checked),
             Err(refused) => {
                 for one in refused {
-                    // The bus is checked elsewhere.
                     let Some(controller) = one.controller else { continue };
                     validator.at_entry(controller, |here| {
                         if !here.has(&one.path) {
@@ -120,7 +121,6 @@ impl ProgramGroup {
                 until: group.until.as_ref().map(Until::plain),
             }),
             Self::MoveTo(group) => Group::MoveTo(parameters::MoveTo {
-                // Its row checks the range.
                 length: group.length.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
                 speed_hz: group.speed_hz,
                 level: group.level,
@@ -158,7 +158,7 @@ impl ProfileGroup {
         };
         if let Some(motion) = &self.motion {
             if !self.intervals_q16.is_empty() {
-                let detail = "a profile has a motion or intervals, not both; take one out";
+                let detail = "a profile has a motion or intervals, not both; remove one";
                 here.add("intervals_q16", ValueError::Conflict { detail });
             }
             if let Some((intervals, right)) =
@@ -187,10 +187,10 @@ fn intervals(
         return None;
     };
     *steps_left = left;
-    let (mut intervals, mut before, mut way) = (Vec::with_capacity(count as usize), 0, None);
+    let (mut intervals, mut before, mut direction) = (Vec::with_capacity(count as usize), 0, None);
     for step in plan.due_steps(clock_hz) {
-        if *way.get_or_insert(step.right) != step.right {
-            let detail = "goes both ways; a profile goes one way: give a group to each";
+        if *direction.get_or_insert(step.right) != step.right {
+            let detail = "moves in both directions; a profile moves in one: use one group per direction";
             here.add("", ValueError::Conflict { detail });
             return None;
         }
@@ -206,7 +206,7 @@ fn intervals(
         intervals.push(interval);
         before = step.cycle;
     }
-    Some((intervals, way.unwrap_or(true)))
+    Some((intervals, direction.unwrap_or(true)))
 }
 
 impl Until {
@@ -279,12 +279,11 @@ impl PanelInput {
     fn plain(&self, here: &mut Validator) -> Input {
         let change = match (self.input, self.push_steps) {
             (Some(signal), None) => Change::Level(signal, self.level != 0),
-            // Its row checks the range.
             (None, Some(steps)) => Change::Push(steps.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
             (given, _) => {
                 let detail = match given {
-                    Some(_) => "an entry is an input with its level or a push, not both; make two of it",
-                    None => "nothing happens here; give an input and its level, or push_steps",
+                    Some(_) => "an entry is an input or a push, not both; make two entries",
+                    None => "the entry is empty; give an input, or `push_steps`",
                 };
                 here.add("", ValueError::Conflict { detail });
                 Change::Push(0)
@@ -303,7 +302,7 @@ impl Read for Initial {
             ("blank", _) => Self::Blank,
             ("factory", _) => Self::Factory,
             (_, Ok(Hex(bytes))) => Self::Bytes(bytes),
-            (_, Err(wrong)) => return reader.wrong(format!("{wrong}; or blank, or factory")),
+            (_, Err(wrong)) => return reader.wrong(format!("{wrong}; or use blank or factory")),
         };
         true
     }

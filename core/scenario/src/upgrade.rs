@@ -1,6 +1,5 @@
-//! Names of earlier format versions. A published name is never removed: every old file and link still opens.
-//!
-//! Version 1 has other names with the same meaning. An old name is accepted only in maps that have the new field.
+//! Names of earlier format versions. They are never removed, so every old file and link still opens. An old name is
+//! accepted only where the new field exists.
 
 /// Old and new field names.
 pub(crate) const FIELDS: &[(&str, &str)] = &[
@@ -25,8 +24,8 @@ mod tests {
     const RENAMED: [(&str, &str); 8] = [
         (r#"{"driver":{"preset":"a4988"}}"#, r#"{"driver_timing":{"preset":"a4988"}}"#),
         (
-            r#"{"driver":{"rules":{"step_high_ns":5}},"title":"kept"}"#,
-            r#"{"driver_timing":{"rules":{"step_high_ns":5}},"title":"kept"}"#,
+            r#"{"driver":{"rules":{"step_high_ns":5}},"title":"title"}"#,
+            r#"{"driver_timing":{"rules":{"step_high_ns":5}},"title":"title"}"#,
         ),
         (r#"{"bus":{"pulses":"staggered"}}"#, r#"{"bus":{"pulse_phasing":"staggered"}}"#),
         (
@@ -81,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn where_both_names_stand_the_new_one_counts_and_the_old_one_is_told() {
+    fn if_both_names_are_given_the_new_one_counts_and_the_old_one_is_reported() {
         for (both, path, expected) in [
             (
                 r#"{"driver":{"preset":"a4988"},"driver_timing":{"preset":"a4979"}}"#,

@@ -167,7 +167,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         // Another experiment, without loading the page anew.
         page.follow(&later.link).await?;
         page.until_digest(&later.digest).await?;
-        page.until("document.getElementById('compared').textContent.includes('differs by')").await?;
+        page.until("document.getElementById('compared').textContent.includes('maximum difference')").await?;
         for chart in ["chart-position", "chart-speed", "chart-acceleration"] {
             let look =
                 async || Ok((page.canvas(chart).await?.ink("--baseline").columns > 100.0).then_some(()));
@@ -180,7 +180,11 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         let common_s = baseline.seconds(cycles(&later).min(cycles(&baseline)));
         let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
-        ensure!(told.contains(&format!("differs by {} steps", apart.largest)), "{} in {told}", apart.largest);
+        ensure!(
+            told.contains(&format!("maximum difference {} steps", apart.largest)),
+            "{} in {told}",
+            apart.largest
+        );
         for fact in ["duration", "peak speed", "peak acceleration", "edges", "RMS"] {
             ensure!(told.contains(fact), "{fact} in {told}");
         }
@@ -195,7 +199,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         page.eventually("the difference is drawn", look).await?;
         assert_eq!(page.canvas("chart-position").await?.ink("--baseline").pixels, 0);
 
-        page.click("[aria-label='Drop the baseline']").await?;
+        page.click("[aria-label='Clear the baseline']").await?;
         page.until("document.getElementById('compared').hidden").await?;
         let look =
             async || Ok((page.canvas("chart-speed").await?.ink("--baseline").pixels == 0).then_some(()));

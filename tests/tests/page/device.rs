@@ -11,7 +11,7 @@ pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed","host":{"attempt
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 
 pub(crate) const ABOUT: &str = "(document.getElementById('live-about')?.textContent ?? '')";
-pub(crate) const SAID: &str = "(document.getElementById('live-said')?.textContent ?? '')";
+pub(crate) const SAID: &str = "(document.getElementById('live-status')?.textContent ?? '')";
 pub(crate) const REPORT: &str = "document.getElementById('live-report').value";
 pub(crate) const STANDING: &str = "document.getElementById('live-standing').textContent";
 pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
@@ -153,7 +153,7 @@ pub(crate) async fn session_opens(page: &Session, known: &Known) -> Result<()> {
     page.until(&format!("{STANDING}.includes('READY, queue 0/{depth}, positions {steps}')")).await?;
     page.click("#live-end").await?;
     page.until("document.querySelector('dialog.live') === null").await?;
-    page.until(&format!("{MESSAGE}.includes('Recorded: run again, the session has the digest')")).await?;
+    page.until(&format!("{MESSAGE}.includes('Recorded. The simulation reproduces the digest')")).await?;
     page.ready().await?;
     let digest = page.shown().await?.digest;
     page.until(&format!("{MESSAGE}.includes('{digest}')")).await?;

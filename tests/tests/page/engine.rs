@@ -40,9 +40,9 @@ async fn begin_long_run(page: &Session) -> Result<()> {
     page.until("document.getElementById('status').textContent.includes('%')").await
 }
 
-/// What the worker has counted: scenarios judged, and runs.
+/// What the worker has counted: scenarios validated, and runs.
 const COUNTS: &str = "new Promise((done) => { const hear = ({ data }) => { if (data.id === -1) { \
-     window.engine.removeEventListener('message', hear); done([data.value.judged, data.value.runs]); } }; \
+     window.engine.removeEventListener('message', hear); done([data.value.validated, data.value.runs]); } }; \
      window.engine.addEventListener('message', hear); window.engine.postMessage({ id: -1, method: 'counts', args: [] }); })";
 
 /// Takes three digits away from a field, each when the worker has answered for the one before.
@@ -70,28 +70,28 @@ fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study()
         page.eval::<bool>("(window.engine = window.worker, true)").await?;
         page.fill(DISTANCE, "1600").await?;
         page.until_digest(&Known::of(&with_distance(1600.0))?.digest).await?;
-        let [judged, runs]: [u32; 2] = page.eval(COUNTS).await?;
-        // Another digit, and the motion is too fast: that is judged, and not run.
+        let [validated, runs]: [u32; 2] = page.eval(COUNTS).await?;
+        // Another digit, and the motion is too fast: it is validated, but not run.
         let field = format!("[data-path=\"{DISTANCE}\"]");
         page.press(&field, "\u{e010}0").await?;
         page.press(&field, "0").await?;
         // Each question waits for the answers before it, so there is an end of it.
-        let mut counts = [judged, runs];
+        let mut counts = [validated, runs];
         for _ in 0..200 {
             counts = page.eval(COUNTS).await?;
-            if counts[0] >= judged + 2 {
+            if counts[0] >= validated + 2 {
                 break;
             }
         }
-        assert_eq!(counts, [judged + 2, runs], "a problem is not run");
-        // Each as soon as the one before is judged: none rests on the way.
+        assert_eq!(counts, [validated + 2, runs], "a problem is not run");
+        // Each as soon as the previous one is validated.
         page.js::<Value>(SHORTEN, vec![json!(field)]).await?;
         let known = Known::of(&with_distance(160.0))?;
         page.until_digest(&known.digest).await?;
         page.until(&format!("location.hash.startsWith('#{}')", known.link)).await?;
         assert_eq!(
             page.eval::<[u32; 2]>(COUNTS).await?,
-            [judged + 5, runs + 1],
+            [validated + 5, runs + 1],
             "five keystrokes, one run, one link"
         );
         page.click("#study").await?;
@@ -101,8 +101,8 @@ fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study()
         }
         assert_eq!(
             page.eval::<[u32; 2]>(COUNTS).await?,
-            [judged + 5, runs + 1],
-            "the study takes what was judged"
+            [validated + 5, runs + 1],
+            "the study reuses the validated scenario"
         );
         Ok(())
     })
@@ -114,7 +114,7 @@ fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
         page.before_scripts(REACH).await?;
         begin_long_run(&page).await?;
         page.click("#cancel").await?;
-        page.until("document.getElementById('engine-message').textContent.includes('cancelled')").await?;
+        page.until("document.getElementById('engine-message').textContent.includes('canceled')").await?;
         // A run goes on by a slice of some ms between two answers, and tells of itself after a few.
         let heard = "(async () => { const before = window.heard; \
              for (let question = 0; question < 100; question++) await new Promise((answered) => { \
@@ -146,7 +146,7 @@ fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() 
         page.click("#cancel").await?;
         page.until("window.workers === 2").await?;
         let message = page.text("#engine-message").await?;
-        ensure!(message.contains("cancelled"), "{message}");
+        ensure!(message.contains("canceled"), "{message}");
 
         // The views still show the last result, and it can be asked: another part of it is drawn.
         assert_eq!(page.text("#digest").await?, known.digest);
@@ -194,7 +194,7 @@ fn a_crash_of_the_engine_is_told_keeps_the_form_and_is_mended() -> Result<()> {
         crash(&page).await?;
         page.until("!document.getElementById('engine-message').hidden").await?;
         let message = page.text("#engine-message").await?;
-        ensure!(message.contains("engine stopped"), "{message}");
+        ensure!(message.contains("engine failed"), "{message}");
         assert_eq!(page.form().await?, form, "the form is as it was");
 
         page.click("#try-again").await?;

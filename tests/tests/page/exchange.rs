@@ -41,7 +41,7 @@ fn whoever_opens_a_link_is_told_that_the_run_is_the_senders_until_it_is_edited()
         let stranger = page.stranger().await?;
         let (_, fragment) = link.split_once('#').context("no fragment")?;
         stranger.open(&format!("#{fragment}")).await?;
-        stranger.until(&format!("{SEEN}.startsWith('Identical, bit for bit: ')")).await?;
+        stranger.until(&format!("{SEEN}.startsWith('Reproduced bit-exactly: ')")).await?;
         ensure!(stranger.text("#seen-message").await?.contains(&known.digest), "the digest is named");
         // The digests stay in the address, also for a reload.
         stranger.until_equal("location.hash", &json!(format!("#{fragment}"))).await?;
@@ -201,7 +201,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         };
         drop_file(&page, "run.csv", &table(&recording.trace)?).await?;
         page.until(&format!(
-            "{MESSAGE}.startsWith('run.csv is identical, bit for bit') && {MESSAGE}.includes('all of this run')"
+            "{MESSAGE}.startsWith('run.csv is bit-identical') && {MESSAGE}.includes('the whole run')"
         ))
         .await?;
 

@@ -135,7 +135,7 @@ fn tables_have_the_numbers_of_the_views_and_a_long_file_can_be_left_off() -> Res
             vec![],
         )
         .await?;
-        page.until("document.getElementById('export-status').textContent.startsWith('Left off')").await?;
+        page.until("document.getElementById('export-status').textContent.startsWith('Canceled')").await?;
         ensure!(
             page.eval::<bool>("!Object.keys(window.saved).some((name) => name.endsWith('.trace'))").await?,
             "it was saved all the same"

@@ -116,7 +116,7 @@ fn a_long_run_tells_its_progress_and_can_be_cancelled() -> Result<()> {
         page.until("document.getElementById('progress').hidden").await?;
         page.ready().await?;
         ensure!(
-            page.text("#engine-message").await?.contains("cancelled"),
+            page.text("#engine-message").await?.contains("canceled"),
             "nothing says that it was cancelled"
         );
         assert_ne!(page.shown().await?.digest, known.digest);

@@ -22,7 +22,7 @@ fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
         page.fill(DISTANCE, "0").await?;
         page.until("document.querySelector('#status').textContent.startsWith('not run')").await?;
         page.click("#share").await?;
-        ensure!(page.text("#link-about").await?.starts_with("No link yet"), "a link of what does not stand");
+        ensure!(page.text("#link-about").await?.starts_with("No link:"), "a link of what does not stand");
         ensure!(page.eval::<bool>("document.getElementById('copy-link').disabled").await?, "nothing to copy");
 
         page.open("").await?;
@@ -313,7 +313,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         // The panel's script comes after the panel, which takes nothing before that nobody would hear of.
         assert!(page.eval::<bool>("!!document.getElementById('experiment-name').closest('[inert]')").await?);
         page.click("#experiments").await?;
-        page.until("document.getElementById('experiment-keep').offsetWidth > 0").await?;
+        page.until("document.getElementById('experiment-save').offsetWidth > 0").await?;
         page.until("!document.getElementById('experiment-name').closest('[inert]')").await?;
         page.until("document.getElementById('experiments-export').disabled").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;

@@ -194,11 +194,11 @@ fn without_ports_streams_or_anything_to_confirm_the_buttons_are_off_and_say_why(
         for (lack, why) in [
             (
                 "Object.defineProperty(navigator, 'serial', { configurable: true, value: undefined })",
-                "This browser has no Web Serial",
+                "This browser does not support Web Serial",
             ),
             (
                 "window.structuredClone = () => { throw new DOMException('It can not be cloned.', 'DataCloneError'); }",
-                "This browser cannot hand a port's streams to a worker",
+                "This browser cannot transfer the streams of a port to a worker",
             ),
         ] {
             open_with(&page, &format!("#{}", Known::of(FRAMED)?.link), "serve", FRAMED).await?;

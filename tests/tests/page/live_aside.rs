@@ -140,7 +140,7 @@ fn a_soft_device_shows_its_positions_and_leaves_the_wall_clock_of_its_session() 
         page.click("#live-aside").await?;
         page.until(&format!("!{MODAL}")).await?;
         page.click("#live-end").await?;
-        page.until(&format!("{MESSAGE}.includes('Recorded: run again, the session has the digest')")).await?;
+        page.until(&format!("{MESSAGE}.includes('Recorded. The simulation reproduces the digest')")).await?;
         page.ready().await?;
         let digest = page.shown().await?.digest;
 

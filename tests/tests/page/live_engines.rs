@@ -45,12 +45,12 @@ async fn all(page: Session) -> Result<()> {
         "{engine:?}: {has_serial}"
     );
     if !has_serial {
-        refused(&page, "This browser has no Web Serial").await?;
+        refused(&page, "This browser does not support Web Serial").await?;
     }
     if !page.js::<bool>(MOVES, vec![]).await? {
         ensure!(engine == Browser::WebKit, "{engine:?} moves no streams");
         open_with(&page, &link, "serve", FRAMED).await?;
-        refused(&page, "This browser cannot hand a port's streams to a worker").await?;
+        refused(&page, "This browser cannot transfer the streams of a port to a worker").await?;
         ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "the port was opened");
         return Ok(());
     }

@@ -82,7 +82,7 @@ async fn start_as(page: &Session, known: &Known, role: &str) -> Result<()> {
         "[...document.querySelectorAll('#live-allowed button')].map((button) => button.textContent)";
     page.until_equal(offered, &json!(["Port allowed before"])).await?;
     page.click("#live-allowed button").await?;
-    page.until(&format!("{SAID}.startsWith('A port is chosen')")).await?;
+    page.until(&format!("{SAID}.startsWith('Port selected')")).await?;
     ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is open before its press");
     page.click("#live-start").await
 }
@@ -116,7 +116,7 @@ fn a_host_at_a_port_of_the_system_is_answered_and_its_session_opens_with_its_dig
     let driver = driver(&own, &page)?;
     in_chromium_of(driver, page, |page| async move {
         start_as(&page, &known, "serve").await?;
-        page.until(&format!("{SAID} === 'Answering…'")).await?;
+        page.until(&format!("{SAID} === 'Replying…'")).await?;
         let steps = positions(&known).join(" ");
         let said = sent(&folder, FRAMED, &other)?;
         ensure!(said.contains(&format!("positions {steps}: the sums of the ticks")), "{said}");

@@ -56,7 +56,7 @@ fn raw_packets_go_with_their_lead_and_the_device_does_them_but_nothing_is_called
         start(&page).await?;
         page.until(ENDED).await?;
         let said: String = page.eval(SAID).await?;
-        ensure!(said.starts_with("Not verified: raw packets are not answered. All "), "{said}");
+        ensure!(said.starts_with("Not verified: raw packets get no reply. All "), "{said}");
         let report: String = page.eval(REPORT).await?;
         for part in [
             format!("sent {packets} of {packets} packets; not verified: raw packets are not answered"),
@@ -69,7 +69,7 @@ fn raw_packets_go_with_their_lead_and_the_device_does_them_but_nothing_is_called
         // What the page says of the lateness it says of the motor, too.
         assert_eq!(
             report.contains("the motor must have stood before"),
-            said.contains("The motor must have stood before")
+            said.contains("The motor stopped before")
         );
         // The motion of the model, packet by packet, whenever they came.
         let steps = positions(&known);
@@ -133,7 +133,7 @@ fn replies_of_an_earlier_stream_are_gone_when_raw_packets_go() -> Result<()> {
         page.until("peer.closed === 2").await?;
         page.click("#live-close").await?;
         page.click("#packets-of-device").await?;
-        page.until("document.querySelector('.live-replies').innerText === 'Raw packets were sent, which nobody answers.'").await
+        page.until("document.querySelector('.live-replies').innerText === 'Raw packets get no reply.'").await
     })
 }
 

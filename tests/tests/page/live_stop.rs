@@ -81,7 +81,7 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
         drop_file(&page, "other.json", OTHER).await?;
         page.until_digest(&Known::of(OTHER)?.digest).await?;
         page.click("#live-aside").await?;
-        page.until(&format!("{ABOUT}.startsWith('Not with this experiment')")).await?;
+        page.until(&format!("{ABOUT}.startsWith('Not available')")).await?;
         ensure!(
             page.eval::<bool>("document.querySelector('[name=live-role][value=stream]').checked").await?,
             "another role was taken, which has no STOP"
@@ -92,7 +92,7 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
         page.click("#live-close").await?;
         page.until("document.querySelector('dialog.live') === null").await?;
         page.click("#device").await?;
-        page.until(&format!("{SAID}.endsWith('STOP goes as it went, at 115200 baud.')")).await?;
+        page.until(&format!("{SAID}.endsWith('STOP is sent at 115200 baud.')")).await?;
         page.press("#live-close", ESCAPE).await?;
         page.until("peer.closed === 2").await?;
         page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
@@ -181,7 +181,7 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
         .await?;
         start(&page).await?;
         page.until(&format!("{SAID}.startsWith('This failed: ')")).await?;
-        ensure!(page.eval::<String>(SAID).await?.contains("Cut its power if it must not move"));
+        ensure!(page.eval::<String>(SAID).await?.contains("Switch off its power if it must not move"));
         page.until("peer.closed === 1").await?;
         page.until("!document.getElementById('live-start').disabled").await?;
         page.eval::<Value>("(window.spoil = null)").await?;
@@ -209,7 +209,7 @@ fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
         // A press on the browser's list, which has it all the same, says so again.
         page.click("#live-choose").await?;
         page.until(&format!(
-            "{SAID} === 'The port could not be closed: load this page again before it is used by anyone.'"
+            "{SAID} === 'The port could not be closed: reload this page before you use it again.'"
         ))
         .await?;
         for button in ["live-start", "live-stop"] {

@@ -94,7 +94,7 @@ fn nothing_moves_while_the_page_comes_in() -> Result<()> {
 
 #[test]
 fn a_part_that_does_not_come_is_told_of_and_asked_for_again() -> Result<()> {
-    let missing = "Its fields could not be loaded";
+    let missing = "The fields could not be loaded";
     in_browser(|page| async move {
         let block = async |files: Value| {
             page.devtools("Network.enable", json!({})).await?;

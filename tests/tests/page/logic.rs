@@ -222,7 +222,7 @@ fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<
         page.press("#pulses", "v").await?;
         until_reads(&page, "Violation 1 of ").await?;
         page.press("#pulses", &format!("{SHIFT}v{RELEASE}")).await?;
-        until_reads(&page, "No further violation").await?;
+        until_reads(&page, "No more violations").await?;
         page.click("#pulses-violation-next").await?;
         until_reads(&page, "Violation 2 of ").await?;
         page.press("#margins tbody tr:not(.bad) th button", &ENTER.to_string()).await?;

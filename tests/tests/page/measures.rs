@@ -84,7 +84,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
         close(&errors[0], found.step_errors.largest_s)?;
         close(&errors[1], found.tick_errors.largest_s)?;
         assert_eq!(errors[2], "", "both together have no instants of their own");
-        let late = cells(&page, "Duration", "last pulse late by", 0).await?;
+        let late = cells(&page, "Duration", "delay of the last pulse", 0).await?;
         close(&late[0], found.duration.end_error_s.expect("there are pulses"))?;
         let start_stop = cells(&page, "Peaks of the ideal curve", "start-stop rate", 0).await?;
         ensure!(
@@ -143,7 +143,7 @@ fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> R
         };
         for (name, wanted) in [
             ("steps", figures.steps),
-            ("of them right", figures.right),
+            ("right", figures.right),
             ("of them left", figures.left),
             ("turns", figures.turns),
             ("position", figures.position.unsigned_abs().into()),

@@ -33,8 +33,7 @@ async fn values(page: &Session, table: &str) -> Result<Vec<String>> {
 /// Waits until the searches of the study have come to their ends.
 async fn until_found(page: &Session) -> Result<()> {
     page.until("document.querySelectorAll('#study-motor .study-job').length === 4").await?;
-    page.until("document.querySelectorAll(`table[aria-label='What the motor can do'] tbody tr`).length > 3")
-        .await?;
+    page.until("document.querySelectorAll(`table[aria-label='Motor limits'] tbody tr`).length > 3").await?;
     page.until("[...document.querySelectorAll('#study-motor .study-job')].every((job) => job.hidden)").await
 }
 
@@ -120,7 +119,7 @@ fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
         let setup = known.experiment.plants().expect("a plant").setups[0].alone(0).expect("a motor");
         page.open(&format!("#{}&v=tstudy.ymotor", known.link)).await?;
         until_found(&page).await?;
-        let found = values(&page, "What the motor can do").await?;
+        let found = values(&page, "Motor limits").await?;
         let rate = |found: Option<f64>| format!("{} steps/s", found.expect("a rate").floor());
         let start = search(|rate| starts(&setup, rate, setup.motors[0].steps_a_turn())).expect("a plant");
         let pull = search(|rate| pulls(&setup, rate, RAMP_STEPS_S2)).expect("a plant");
@@ -130,7 +129,7 @@ fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
         let reached = settling(&setup, 0, slot, SHARE).expect("a plant").reached.expect("it settles");
         let text: String = page.eval("document.getElementById('study-motor').textContent").await?;
         ensure!(text.contains(&format!("{reached} cycles")) && text.contains("times less"), "{text}");
-        page.click("#study-motor [aria-label^='Take as settling time']").await?;
+        page.click("#study-motor [aria-label^='Use as settling time']").await?;
         page.until(&format!(
             "document.querySelector(`[data-path='bus.settle_cycles']`).value === '{reached}'"
         ))
@@ -169,7 +168,7 @@ fn a_further_controllers_motor_has_its_own_curve_and_its_settling_time_goes_into
         let shown =
             "[...document.querySelectorAll('#study-motor .torque-chart')].map((chart) => !chart.hidden)";
         page.until(&format!("{shown}.every(Boolean)")).await?;
-        page.click("#study-motor [aria-label^='Take as settling time']").await?;
+        page.click("#study-motor [aria-label^='Use as settling time']").await?;
         let value =
             |path: &str| format!("document.querySelector(`[data-path='{path}.settle_cycles']`).value");
         page.until(&format!("{} > 100", value("controllers[0].bus"))).await?;

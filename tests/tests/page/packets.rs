@@ -179,7 +179,7 @@ fn the_inspector_reads_raw_packets_as_the_core_does() -> Result<()> {
         open(&page, &known).await?;
         inspected(&page, &known, known.recording.packets.rows().len()).await?;
         let facts = page.text("#packet-facts").await?;
-        ensure!(facts.contains("raw packets carry none"), "{facts}");
+        ensure!(facts.contains("raw packets have no CRC"), "{facts}");
         Ok(())
     })
 }
@@ -297,7 +297,7 @@ fn a_table_without_rows_says_why() -> Result<()> {
         open(&page, &known).await?;
         page.until("document.getElementById('packets-empty').checkVisibility()").await?;
         let said = page.text("#packets-empty").await?;
-        assert_eq!(said, "Segments come from the controller itself: nothing is on the line.");
+        assert_eq!(said, "The controller runs segments: nothing is on the line.");
         ensure!(!page.visible("#packet-inspector").await? && !page.visible("#packets-unmatched").await?);
         Ok(())
     })

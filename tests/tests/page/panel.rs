@@ -22,7 +22,7 @@ const LCD: &str = "document.querySelector('.lcd')?.textContent";
 /// What the panel says in words.
 const WORDS: &str = "document.querySelector('.panel-words')?.textContent";
 /// What became of the last press.
-const SAID: &str = "document.getElementById('panel-said').textContent";
+const SAID: &str = "document.getElementById('panel-status').textContent";
 /// A release so far behind its press: debouncing, and 10 ms.
 const SHORTEST: u64 = 320_000;
 
@@ -140,7 +140,7 @@ fn what_is_to_be_done_next_is_told_and_where_a_move_never_comes_to_its_speed() -
         )?;
         open(&page, &known, 3_200_000).await?;
         let advice = "document.querySelector('.panel-advice').textContent";
-        page.until(&format!("{WORDS}.startsWith('ALARM MEMORY · trust LOST')")).await?;
+        page.until(&format!("{WORDS}.startsWith('ALARM MEMORY · position lost')")).await?;
         page.until(&format!("{advice}.startsWith('Clear. Nothing is remembered')")).await?;
         let speed = "source.standalone[0].groups[0].move.speed_hz";
         page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('too short for 4000 Hz')")).await?;
@@ -179,7 +179,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
         let known = with_inputs(&jog)?;
         open(&page, &known, 4_000_000).await?;
         page.click("[data-input='jog_plus']").await?;
-        page.until(&format!("{SAID}.includes('jog_plus is changed at 250 ms already')")).await?;
+        page.until(&format!("{SAID}.includes('jog_plus already changes at 250 ms')")).await?;
         page.click("[data-input='limit_max']").await?;
         page.until(&format!("{SAID}.includes('limit_max is driven by the axis (axis.max_switch_at)')"))
             .await?;
@@ -214,7 +214,7 @@ fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()>
         page.js::<bool>(&fill("0.45 s"), vec![]).await?;
         until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, 7_200_000))?).await?;
         page.js::<bool>(&fill("4000000"), vec![]).await?;
-        page.until(&format!("{SAID}.includes('jog_plus would be changed twice at 250 ms')")).await?;
+        page.until(&format!("{SAID}.includes('jog_plus would change twice at 250 ms')")).await?;
         page.press(".strip canvas", "\u{e017}").await?;
         until_run(&page, &with_inputs(r#"{"cycle":4000000,"input":"jog_plus","level":1}"#)?).await
     })

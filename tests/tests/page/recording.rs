@@ -210,13 +210,13 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         .await?;
         let said = page.text("#link-message").await?;
         ensure!(
-            said.contains("mine.csv") && said.contains("Undo") && said.contains("Show the place"),
+            said.contains("mine.csv") && said.contains("Undo") && said.contains("Go to this time"),
             "{said}"
         );
         // The message may be closed: the experiment's note has it.
         let note = page.field("note").await?.value;
         ensure!(note.contains("Compared with the baseline: 200 steps, the baseline has 800"), "{note}");
-        page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Against the baseline: the experiment')").await?;
+        page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Compared with the baseline: the experiment')").await?;
         // The position at a cursor is that of the file.
         page.press("#charts-handles .handle.a", &ENTER.to_string()).await?;
         let look = async || cursors::cycle(&page, "#charts-handles .handle.a").await;
@@ -230,7 +230,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         let read = cursors::reading(&page.text("#read-position").await?, "from pulses")?;
         ensure!((20.0..180.0).contains(&read), "{read}");
         assert_eq!(read, f64::from(position), "at cycle {cycle}");
-        page.picture("recording-beside").await?;
+        page.picture("recording-compare").await?;
 
         page.click("#undo").await?;
         page.until_digest(&own.digest).await?;
@@ -258,9 +258,9 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         says(&page, "200 steps, 200 right and 0 left").await?;
         // Alone there is nothing to align by.
         let aligned = "#recording-aligned-by-step";
-        page.click("#recording-beside").await?;
+        page.click("#recording-compare").await?;
         ensure!(!page.visible(aligned).await?);
-        page.click("#recording-beside").await?;
+        page.click("#recording-compare").await?;
         ensure!(page.visible(aligned).await?);
         type_into(&page, "Aligned by step", "-1").await?;
         page.until(
@@ -301,7 +301,7 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
         page.click(&named("X_DIR is inverted")).await?;
         says(&page, "200 left").await?;
         // Alone: nothing is moved to the model's first step.
-        page.click("#recording-beside").await?;
+        page.click("#recording-compare").await?;
         says(&page, "200 left").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
@@ -309,7 +309,13 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
             OpenOptions { map: Some("STEP0=X_STEP,DIR0=!X_DIR".to_owned()), ..OpenOptions::default() };
         let opened = natively(&text, &options, None)?;
         page.until_digest(&digest(&opened)).await?;
-        ensure!(!page.eval::<bool>("document.body.innerText.includes('Against the baseline')").await?);
+        ensure!(
+            !page
+                .eval::<bool>(
+                    "document.body.innerText.includes('Compared with the baseline: the experiment')"
+                )
+                .await?
+        );
         // Its acceleration is drawn: as great as its figures have it.
         let greatest = opened.report.channels[0].figures.greatest_acceleration_steps_s2.context("steps")?;
         let label = "document.getElementById('chart-acceleration').getAttribute('aria-label').replace(/\\u202f/g, '')";
@@ -441,7 +447,7 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
         ensure!(page.js::<bool>(script, vec![json!(table)]).await?, "the page takes it");
         says(&page, "40 steps").await?;
         page.until(READY).await?;
-        page.click("#recording-beside").await?;
+        page.click("#recording-compare").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
         page.until(CLOSED).await?;
@@ -468,7 +474,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
         type_into(&page, "Show up to", "150 ms").await?;
         says(&page, "Shown: 100 ms to 150 ms of 203").await?;
         says(&page, "200 steps, 200 right and 0 left").await?;
-        ensure!(!page.visible("#recording-beside").await?, "a part is not laid beside anything");
+        ensure!(!page.visible("#recording-compare").await?, "a part is not laid beside anything");
         type_into(&page, "Show up to", "x").await?;
         page.until(
             "document.getElementById('recording-show-up-to-error').innerText.includes('not a number')",
@@ -498,13 +504,13 @@ fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() ->
         let signals = [("RX", Levels::RX), ("TX", Levels::TX)];
         choose_file(&page, "link.csv", &saleae(&framed.recording.trace, clock_hz, &signals)).await?;
         page.until(READY).await?;
-        let said = "document.querySelector('.packets-said').textContent.replace(/\\u202f/g, '')";
-        page.click(".packets-said summary").await?;
+        let said = "document.querySelector('.packet-list').textContent.replace(/\\u202f/g, '')";
+        page.click(".packet-list summary").await?;
         let log = &framed.recording.packets;
         let all = log.rows().len();
-        page.until(&format!("{said}.includes('{all} packets, {} whole frames of the device')", all / 2))
+        page.until(&format!("{said}.includes('{all} packets, {} complete frames of the device')", all / 2))
             .await?;
-        let cells = "[...document.querySelectorAll('.packets-said tbody tr')].slice(0, 2).map((row) => [...row.cells].map((cell) => cell.textContent))";
+        let cells = "[...document.querySelectorAll('.packet-list tbody tr')].slice(0, 2).map((row) => [...row.cells].map((cell) => cell.textContent))";
         let rows: Vec<Vec<String>> = page.eval(cells).await?;
         for (index, (row, line)) in rows.iter().zip(["RX frame", "TX reply"]).enumerate() {
             let bytes: Vec<String> = log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -516,7 +522,7 @@ fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() ->
         axe::none(&wrong)?;
         // Another map has other packets: the list is closed.
         choose_signal(&page, "TX", "DE").await?;
-        page.until("!document.querySelector('.packets-said').open").await?;
+        page.until("!document.querySelector('.packet-list').open").await?;
         cancel(&page).await
     })
 }

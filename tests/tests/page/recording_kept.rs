@@ -29,7 +29,7 @@ fn wandering(steps: u32) -> String {
 async fn open(page: &Session, name: &str, text: &str) -> Result<LoadedCapture> {
     choose_file(page, name, text).await?;
     page.until(READY).await?;
-    page.click("#recording-beside").await?;
+    page.click("#recording-compare").await?;
     page.until(READY).await?;
     page.click(SHOW).await?;
     page.until(CLOSED).await?;
@@ -165,7 +165,7 @@ fn what_storage_lost_damaged_or_refused_is_said_once_and_the_model_is_shown() ->
             database(&page, work).await?;
             reload(&page).await?;
             page.until_digest(&model(&opened, "mine.csv")?).await?;
-            let gone = "The recording mine.csv is not there any more";
+            let gone = "The recording mine.csv is no longer available";
             page.until(&format!("{MESSAGE}.startsWith('{gone}') && {MESSAGE}.includes('{what}')"))
                 .await
                 .with_context(|| work.to_owned())?;
@@ -180,7 +180,7 @@ fn what_storage_lost_damaged_or_refused_is_said_once_and_the_model_is_shown() ->
         ensure!(
             page.text("#link-message")
                 .await?
-                .contains("until this page is left: this browser does not keep it (no room)")
+                .contains("until you leave this page: the browser cannot save it (no room)")
         );
         linked(&page).await?;
         reload(&page).await?;

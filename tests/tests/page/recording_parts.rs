@@ -36,7 +36,7 @@ const DRAWN: &str = "(() => { const canvas = document.querySelector('.whole canv
 async fn show_part(page: &Session, name: &str, text: &str) -> Result<()> {
     choose_file(page, name, text).await?;
     says(page, "200 steps").await?;
-    page.click("dialog.recording [aria-label='Show a part of it: by its times']").await?;
+    page.click("dialog.recording [aria-label='Show a part, from one time to another']").await?;
     type_into(page, "Show from", "0.1").await?;
     type_into(page, "Show up to", "150 ms").await?;
     says(page, "Shown: 100 ms to 150 ms").await?;
@@ -124,7 +124,7 @@ fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in
         page.eval::<bool>("window.failing = true").await?;
         type_into(&page, "Clock", "8000000").await?;
         says(&page, "at 8 MHz").await?;
-        page.until(&format!("{SAID}?.startsWith('All of channel 0 cannot be shown: ')")).await?;
+        page.until(&format!("{SAID}?.startsWith('The overview of channel 0 cannot be shown: ')")).await?;
         ensure!(!page.eval::<bool>(DRAWN).await?);
         says(&page, "200 steps, 200 right and 0 left").await?;
         page.until(READY).await?;
@@ -142,10 +142,8 @@ fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in
         type_into(&page, "Clock", "1000000").await?;
         for (rate, end) in [("1000", "399 ms"), ("2000", "199.5 ms")] {
             type_into(&page, "Sample rate", rate).await?;
-            page.until(&format!(
-                "{SAID}?.replace(/[\\u202f\\u00a0]/g, ' ').startsWith('All of channel 0, {end}')"
-            ))
-            .await?;
+            page.until(&format!("{SAID}?.replace(/[\\u202f\\u00a0]/g, ' ').startsWith('Channel 0, {end}')"))
+                .await?;
         }
         Ok(())
     })
@@ -168,7 +166,7 @@ fn a_run_waits_for_the_pieces_of_its_recording_and_a_newer_one_does_not() -> Res
         let text = cosine();
         choose_file(&page, "mine.csv", &text).await?;
         page.until(READY).await?;
-        page.click("#recording-beside").await?;
+        page.click("#recording-compare").await?;
         page.until(READY).await?;
         page.click(SHOW).await?;
         page.until(&format!("{MESSAGE}.startsWith('Opened mine.csv')")).await?;

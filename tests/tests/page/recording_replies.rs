@@ -28,8 +28,8 @@ const ON_SHOW: &str = "document.getElementById('on-show').checkVisibility()";
 async fn open(page: &Session, name: &str, text: &str) -> Result<()> {
     choose_file(page, name, text).await?;
     page.until(READY).await?;
-    if page.visible("#recording-beside").await? {
-        page.click("#recording-beside").await?;
+    if page.visible("#recording-compare").await? {
+        page.click("#recording-compare").await?;
         page.until(READY).await?;
     }
     page.click(SHOW).await?;
@@ -65,7 +65,7 @@ fn of_a_silent_device_the_table_has_no_replies_and_of_one_that_was_not_recorded_
         rows(&page, all / 2).await?;
         page.until(ON_SHOW).await?;
         let said = page.text("#link-message").await?;
-        ensure!(said.contains("Nothing came on TX, and the table of packets has no replies."), "{said}");
+        ensure!(said.contains("TX has no bytes, so the packets show no replies."), "{said}");
         Ok(())
     })
 }

@@ -44,8 +44,8 @@ const LATER: u64 = 500;
 /// Shows what the dialog has, alone.
 async fn show(page: &Session) -> Result<()> {
     page.until(READY).await?;
-    if page.visible("#recording-beside").await? {
-        page.click("#recording-beside").await?;
+    if page.visible("#recording-compare").await? {
+        page.click("#recording-compare").await?;
         page.until(READY).await?;
     }
     page.click(SHOW).await?;
@@ -96,7 +96,7 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
             ensure!((found - expected).abs() <= 1e-5 * expected.abs(), "{found}, wanted {expected}");
         }
         let said = page.text("#between-tables").await?;
-        ensure!(said.contains("the eight steps from here less that of the eight before"), "{said}");
+        ensure!(said.contains("rate of the next eight steps minus rate of the eight steps before"), "{said}");
         let read = cursors::reading(&page.text("#read-acceleration").await?, "from pulses")?;
         ensure!(
             (read - expected[0]).abs() <= 1e-5 * expected[0].abs(),
@@ -194,7 +194,7 @@ fn the_header_says_as_long_as_a_recording_is_on_show_and_a_phone_is_told_little(
         show(&page).await?;
         page.until_digest(&digest(&natively(&text, &OpenOptions::default(), None)?)).await?;
         page.until(ON_SHOW).await?;
-        page.until(&format!("{MESSAGE}.startsWith('Opened mine.csv. The views show what was recorded.')"))
+        page.until(&format!("{MESSAGE}.startsWith('Opened mine.csv. The views show the recording.')"))
             .await?;
         // Its message may be closed: the word stays.
         page.click("#link-message .close").await?;
@@ -258,7 +258,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         page.js::<bool>(drag, vec![json!(0.2), json!(0.2)]).await?;
         page.until("document.getElementById('recording-show-from').checkVisibility() === false").await?;
         page.until(READY).await?;
-        page.click("dialog.recording [aria-label='Show a part of it: by its times']").await?;
+        page.click("dialog.recording [aria-label='Show a part, from one time to another']").await?;
         page.until("document.activeElement.id === 'recording-show-from'").await?;
         type_into(&page, "Show from", &times[0]).await?;
         type_into(&page, "Show up to", &times[1]).await?;

@@ -144,7 +144,7 @@ fn the_chosen_row_is_moved_and_hidden_by_keys_and_said() -> Result<()> {
         page.press("#pulses", "h").await?;
         page.until_equal(chosen, &json!("EN")).await?;
         page.press("#pulses", "h").await?;
-        page.until_equal(said, &json!("One signal stays on show.")).await?;
+        page.until_equal(said, &json!("At least one signal must be visible.")).await?;
         until_rows(&page, 3).await?;
         // A hidden signal is shown while it is chosen.
         page.choose("#edge-row", "0").await?;

@@ -100,7 +100,7 @@ fn a_view_with_nothing_to_show_gives_its_room_away_until_it_is_unfolded() -> Res
         // Segments run alone: nothing is on the line, and the page says so.
         open(&page, "sonobe-2011-segments").await?;
         page.until("document.getElementById('view-packets').offsetHeight < 100").await?;
-        ensure!(page.text("#packets-empty").await?.starts_with("Segments come from the controller itself"));
+        ensure!(page.text("#packets-empty").await?.starts_with("The controller runs segments"));
         ensure!(!page.visible("#packets-search").await?, "there is nothing to search");
         ensure!(height("motion").await? > curves + 40.0, "the curves have none of the room");
         // Not periodic: a line, until somebody wants to see it.

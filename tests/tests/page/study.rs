@@ -134,7 +134,7 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
         page.until("document.getElementById('sine-charts')?.ariaValueMax === '32'").await?;
         let rows: Vec<Row> = sweep(0.004, 0.012, 33, 99).collect();
         page.press("#sine-charts", &format!("{RIGHT}{RIGHT}{RIGHT}{LEFT}")).await?;
-        let pointed = cells(&page, "What a d1 gives", "pointed at").await?;
+        let pointed = cells(&page, "Results by d1", "selected").await?;
         let same = |cells: &[String], row: &Row| -> Result<()> {
             ensure!(cells.len() > 7, "{cells:?}");
             ensure!(cells[2] == row.segments.to_string(), "{cells:?} are not {row:?}");
@@ -143,7 +143,7 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
             [1, 3, 4, 5, 7].into_iter().zip(wanted).try_for_each(|(at, wanted)| close(&cells[at], wanted))
         };
         same(&pointed, &rows[1])?;
-        same(&cells(&page, "What a d1 gives", "the scenario").await?, &Row::of(0.0054, 99))?;
+        same(&cells(&page, "Results by d1", "current").await?, &Row::of(0.0054, 99))?;
         // All polylines of the range, not those of the sweep alone.
         page.until("document.querySelectorAll('table[aria-label=\"Best d1 of each number of segments\"] tbody tr').length > 1").await?;
         let six =
@@ -168,7 +168,7 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
         )
         .await?;
         page.until("[...document.querySelectorAll('#study-sine tr')].some((row) => row.innerText.includes('the scenario') && row.cells[1].textContent === '0.00425')").await?;
-        same(&cells(&page, "What a d1 gives", "the scenario").await?, &rows[1])?;
+        same(&cells(&page, "Results by d1", "current").await?, &rows[1])?;
         page.click("#undo").await?;
         page.until_digest(&known.digest).await?;
         // By the pointer: the last one is at the right end of the plot.
@@ -282,12 +282,12 @@ fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
         page.until("document.querySelector('#study-sine .study-job button').offsetWidth > 0").await?;
         // By its key: the button may move while the numbers beside it grow.
         page.press("#study-sine .study-job button", &ENTER.to_string()).await?;
-        page.until("document.querySelector('#study-sine .study-job').innerText.startsWith('Left off: ')")
+        page.until("document.querySelector('#study-sine .study-job').innerText.startsWith('Canceled: ')")
             .await?;
         // The sweep before is there still: it can be pointed at, and its best be taken.
         page.press("#sine-charts", &RIGHT.to_string()).await?;
-        for head in ["pointed at", "best by position"] {
-            let row = cells(&page, "What a d1 gives", head).await?;
+        for head in ["selected", "best by position"] {
+            let row = cells(&page, "Results by d1", head).await?;
             ensure!(row.len() == 9 && row[1].starts_with("0.0") && row[8] == "Use", "{row:?}");
         }
         // Nothing goes on behind it, and what comes next is whole.
@@ -316,7 +316,7 @@ fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Resu
 
 async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> Result<()> {
     for (name, form) in
-        [("Exact list", "exact"), ("Document's table", "document"), ("Compressed", "compressed")]
+        [("Exact list", "exact"), ("Table of the paper", "document"), ("Compressed", "compressed")]
     {
         for format in EntryFormat::ALL {
             let shown = cells(page, "Stored forms", &format!("{name} {}", format.name)).await?;
@@ -349,7 +349,7 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         page.until(made).await?;
         tables_are_the_cores(&page, &known, 25).await?;
         let coarse = native(&known, "compressed", EntryFormat::Q16, 100)?.entries.len();
-        fill(&page, "Largest error", "100 us").await?;
+        fill(&page, "Max error", "100 us").await?;
         page.until(&format!(
             "[...document.querySelectorAll('#study-tables tr')].some((row) => row.innerText.includes('Compressed') && row.cells[2].textContent === '{coarse}')"
         ))

@@ -62,7 +62,7 @@ fn a_driver_and_rules_of_ones_own_are_chosen_and_taken_back() -> Result<()> {
         page.open("").await?;
         page.until_digest(&known.digest).await?;
         page.choose(&field("driver_timing#kind"), "a4988").await?;
-        page.until("document.getElementById('health').textContent === 'driver timing met'").await?;
+        page.until("document.getElementById('health').textContent === 'driver timing OK'").await?;
         page.until_digest(&known.digest).await?;
         page.choose(&field("driver_timing#kind"), "rules").await?;
         page.ready().await?;
@@ -82,7 +82,7 @@ fn a_driver_and_rules_of_ones_own_are_chosen_and_taken_back() -> Result<()> {
         for _ in 0..2 {
             page.click("#undo").await?;
         }
-        page.until("document.getElementById('health').textContent === 'driver timing met'").await?;
+        page.until("document.getElementById('health').textContent === 'driver timing OK'").await?;
         page.click("#undo").await?;
         page.until("document.getElementById('health').textContent === ''").await?;
         ensure!(!page.visible("#view-timing").await?, "the check goes with its driver");

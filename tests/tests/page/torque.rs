@@ -116,7 +116,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
             ))
             .await
         };
-        says("No motor is driven here: choose one").await?;
+        says("There is no motor: choose one").await?;
         page.until("document.querySelectorAll('#study-torque select option').length > 5").await?;
         page.choose("#study-torque select", "song-2021").await?;
         // A driver's choice is a change, and no input as a visitor's is.
@@ -128,7 +128,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
         let shown = async || {
             let facts = cells(&page, "The motor").await?;
             let of = |name: &str| facts.iter().find(|row| row[0] == name).map(|row| row[1].clone());
-            anyhow::Ok((of("Least margin"), of("Greatest jump of speed")))
+            anyhow::Ok((of("Smallest margin"), of("Maximum jump of speed")))
         };
         let least = demand.least.expect("it moves").margin_mn_m();
         let expected = (Some(least), demand.jump);
@@ -142,15 +142,15 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
         assert_eq!(jump, Some("50000 steps/s".to_owned()), "{expected:?}");
         let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
         assert_eq!(outcome.contains("Too little torque"), demand.total > 0, "{outcome}");
-        says("The acceleration of steps is taken over the rotor's natural period, 3.54").await?;
+        says("The acceleration of steps is averaged over the natural period of the rotor, 3.54").await?;
         page.picture("torque-of-steps").await?;
         // The other channel has no list.
         page.choose("#study-axis", "1").await?;
-        says("Channel 1 makes no step, so nothing is asked of its motor.").await?;
+        says("Channel 1 has no steps, so it needs no torque.").await?;
         // A plant has a motor of its own, and nothing is left to choose.
         page.choose("#study-axis", "0").await?;
         page.click("[data-path='plant#kind']").await?;
-        says("Channel 0: what its motor has, and what the steps need; no plan is known.").await?;
+        says("Channel 0: torque of its motor and torque needed by the steps; there is no plan.").await?;
         ensure!(!page.visible("#study-torque select").await?);
         Ok(())
     })

@@ -1,4 +1,4 @@
-//! Files of logic analysers, for a worker of their own: read as a stream, mapped, looked at, and handed on as records.
+//! Recordings: read as a stream, mapped, previewed, and returned as records.
 
 use crate::convert::{field, object, records};
 use js_sys::{Error, Function, Object, Uint8Array};
@@ -7,6 +7,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
+        capture::Format,
         read::{Limits, Reading, Wanted, read, read_wanted},
         samples,
     },
@@ -28,14 +29,14 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Most columns of an overview.
+/// Maximum columns of an overview.
 const MAX_COLUMNS: u32 = 10_000;
-/// Differences from a plan that are listed in words.
+/// Maximum listed differences from a plan.
 const MAX_DIFFERENCES: usize = 10;
-/// Bytes that are asked for at a time.
+/// Bytes per read.
 const PIECE: usize = 1 << 20;
 
-/// A file that is read by a function of where and how much, as a worker can read it at once.
+/// A file that is read with a function of position and length.
 struct Pieces {
     read: Function,
     at: u64,
@@ -66,27 +67,27 @@ impl Seek for Pieces {
             SeekFrom::End(by) => (self.size, by),
         };
         let at = base.checked_add_signed(by);
-        self.at = at.ok_or_else(|| io::Error::other("before the file's beginning"))?;
+        self.at = at.ok_or_else(|| io::Error::other("before the start of the file"))?;
         Ok(self.at)
     }
 }
 
-/// A recording that was read.
+/// A recording.
 #[wasm_bindgen]
 pub struct CaptureFile {
     capture: Capture,
     error: Option<String>,
-    /// The map that it was read for, where one was given.
+    /// The given map.
     map: Option<String>,
-    opened: Option<LoadedCapture>,
-    /// What was said of it, where it stands where it was recorded.
-    asked: Option<OpenOptions>,
+    loaded: Option<LoadedCapture>,
+    /// Options of `loaded`, unless it is aligned with a run.
+    options: Option<OpenOptions>,
 }
 
-/// The file's name of a sample, and the scenario that it was to follow: `{file, scenario}`.
+/// File name and scenario of a sample: `{file, scenario}`.
 ///
 /// # Errors
-/// If there is no such sample.
+/// For an unknown sample.
 #[wasm_bindgen]
 pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
     #[derive(Serialize)]
@@ -94,33 +95,35 @@ pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
         file: &'static str,
         scenario: &'static str,
     }
-    let found = samples::sample(id).ok_or_else(|| JsError::new("there is no such recording"))?;
+    let found = samples::sample(id).ok_or_else(|| JsError::new("no such recording"))?;
     object(&SampleFacts { file: found.file, scenario: found.scenario })
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Serialize)]
 struct Facts<'a> {
     format: String,
     channels: Vec<&'a str>,
     count: usize,
-    /// The map that it was read for, or a proposed one; empty where there are no levels, or nothing says what a channel is.
+    /// The given or proposed map; empty if there is none.
     map: String,
-    /// Why it could not be read for that map.
+    /// Why the given map is wrong.
     map_error: Option<String>,
     /// Channels beyond the first 64.
     left_out: u64,
     has_levels: bool,
     has_bytes: bool,
     has_times: bool,
+    /// Whether bytes are written as numbers in some base.
+    has_base: bool,
     notes: &'a [String],
-    /// Why that is not all of it.
+    /// Why it is truncated.
     error: Option<&'a str>,
 }
 
-/// What is said of it.
+/// Options of a preview.
 #[derive(Deserialize)]
-struct Asked {
+struct PreviewOptions {
     map: Option<String>,
     clock_hz: Option<u32>,
     sample_rate_hz: Option<u64>,
@@ -128,20 +131,20 @@ struct Asked {
     uart: Option<String>,
     /// Whether drivers step on both edges.
     both_edges: Option<bool>,
-    /// When one of its steps, or bytes, is to come, in s.
+    /// Time of the aligned step or byte, in s.
     at_s: Option<f64>,
-    /// Of this channel.
+    /// Its channel.
     channel: Option<u8>,
-    /// Which of them, from 0.
+    /// Its index.
     aligned: Option<usize>,
-    /// Most records that the views take.
+    /// Maximum records in the views.
     most: Option<usize>,
-    /// The part of it that they show, in s.
+    /// Visible part, in s.
     from_s: Option<f64>,
     to_s: Option<f64>,
 }
 
-/// A map as text: the given one, or, without it or where it is wrong, the proposed one; and what is wrong.
+/// The given map, or the proposed one without a valid map; and the error.
 fn map_of(capture: &Capture, given: Option<&str>) -> (String, Option<String>) {
     let found = given.map(|map| ChannelMap::parse(map, capture)).transpose();
     let error = found.as_ref().err().map(ToString::to_string);
@@ -149,7 +152,7 @@ fn map_of(capture: &Capture, given: Option<&str>) -> (String, Option<String>) {
     (map.to_text(capture), error)
 }
 
-/// The option of `look` that has to be changed.
+/// The option of `preview` that has to change.
 const fn field_of(error: &OpenError) -> &'static str {
     match error {
         OpenError::Map(_) | OpenError::NoMap { .. } => "map",
@@ -161,7 +164,7 @@ const fn field_of(error: &OpenError) -> &'static str {
     }
 }
 
-/// The end of a sentence that says what would help, by the fields of the page's dialog.
+/// A remedy, with the fields of the dialog.
 fn in_fields(remedy: &Remedy) -> String {
     match remedy {
         Remedy::BothEdges { .. } => "; for such a driver choose the signal “STEP, both edges”".to_owned(),
@@ -177,38 +180,38 @@ fn in_fields(remedy: &Remedy) -> String {
     }
 }
 
-/// A note with what would help.
+/// A note with its remedy.
 fn note(Note { text, remedy }: &Note) -> String {
     text.clone() + &remedy.as_ref().map(in_fields).unwrap_or_default()
 }
 
-/// A line with what would help.
+/// A line with its remedies.
 fn line(line: &LineReport) -> String {
     line.to_text() + &line.remedies.iter().map(in_fields).collect::<String>()
 }
 
-/// An `Error` with the option that has to be changed as its `field`.
+/// An `Error` with the option that has to change as its `field`.
 fn refused(error: &OpenError) -> JsValue {
     let by = match error {
         OpenError::NoMap { .. } => "; choose the signals of the channels".to_owned(),
         OpenError::NoRate(_, remedies) => remedies.iter().map(in_fields).collect(),
         _ => String::new(),
     };
-    let thrown = Error::new(&format!("{error}{by}"));
-    field(&thrown, "field", &field_of(error).into());
-    thrown.into()
+    let js_error = Error::new(&format!("{error}{by}"));
+    field(&js_error, "field", &field_of(error).into());
+    js_error.into()
 }
 
-/// What it comes to.
+/// A preview.
 #[derive(Serialize)]
-struct Looked<'a> {
+struct Preview<'a> {
     map: &'a str,
     clock_hz: u32,
     rounding: &'a str,
     end_s: f64,
     records: usize,
-    /// The part that is shown; null where it is all.
-    kept: Option<LoadedPart>,
+    /// The visible part; null if it is all.
+    part: Option<LoadedPart>,
     notes: Vec<String>,
     steps: &'a [ChannelReport],
     lines: Vec<String>,
@@ -216,22 +219,29 @@ struct Looked<'a> {
 
 #[wasm_bindgen]
 impl CaptureFile {
-    /// Reads a file of `size` bytes. `read(at, length)` gives its bytes; `watch(bytes)` hears how far it is. At most `most`
-    /// changes, bytes or positions are kept. Of more than 64 channels those that a map names are read before all others.
+    /// Reads a file of `size` bytes with `read(at, length)` and reports progress to `watch(bytes)`. Saves at most `most`
+    /// changes, bytes or positions. Of more than 64 channels those of `map` are read first. `base` is that of written bytes.
     #[wasm_bindgen(constructor)]
     #[must_use]
-    pub fn new(read_piece: Function, size: f64, watch: &Function, most: u32, map: Option<String>) -> Self {
+    pub fn new(
+        read_piece: Function,
+        size: f64,
+        watch: &Function,
+        most: u32,
+        map: Option<String>,
+        base: Option<String>,
+    ) -> Self {
         let pieces = Pieces { read: read_piece, at: 0, size: size.max(0.0) as u64 };
-        let mut tell = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
+        let mut report = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
         let limits = Limits { most: most as usize };
         let channels = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
-        let wanted = Wanted { channels, ..Wanted::default() };
+        let wanted = Wanted { channels, base: base.and_then(|name| name.parse().ok()) };
         let input = BufReader::with_capacity(PIECE, pieces);
-        let Reading { capture, error } = read_wanted(input, &limits, &wanted, &mut tell);
-        Self { capture, error: error.map(|error| error.to_string()), map, opened: None, asked: None }
+        let Reading { capture, error } = read_wanted(input, &limits, &wanted, &mut report);
+        Self { capture, error: error.map(|error| error.to_string()), map, loaded: None, options: None }
     }
 
-    /// One of the samples; none of another name.
+    /// A sample, by its name.
     #[must_use]
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
@@ -240,15 +250,12 @@ impl CaptureFile {
             capture,
             error: error.map(|error| error.to_string()),
             map: None,
-            opened: None,
-            asked: None,
+            loaded: None,
+            options: None,
         })
     }
 
-    /// What it holds: `{format, channels, count, map, map_error, left_out, has_levels, has_bytes, has_times, notes, error}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Its contents ([`Facts`]).
     pub fn facts(&self) -> Result<JsValue, JsError> {
         let capture = &self.capture;
         let (map, map_error) = map_of(capture, self.map.as_deref());
@@ -262,18 +269,18 @@ impl CaptureFile {
             has_levels: !capture.changes.is_empty(),
             has_bytes: !capture.bytes.is_empty(),
             has_times: capture.timebase.is_some(),
+            has_base: matches!(capture.format, Format::Annotations | Format::HexBytes | Format::SerialLog),
             notes: &capture.left_out,
             error: self.error.as_deref(),
         })
     }
 
-    /// Looks at it by what is said of it, `{map, clock_hz, sample_rate_hz, baud, uart, both_edges, at_s, channel, aligned, most, from_s, to_s}`,
-    /// each of which may be left out: `{map, clock_hz, rounding, end_s, records, kept, notes, steps, lines}`.
+    /// A preview with some of [`PreviewOptions`].
     ///
     /// # Errors
-    /// With what is missing, or wrong; its `field` is the option that has to be changed.
-    pub fn look(&mut self, asked: JsValue) -> Result<JsValue, JsValue> {
-        let Asked {
+    /// Its `field` is the option that has to change.
+    pub fn preview(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
+        let PreviewOptions {
             map,
             clock_hz,
             sample_rate_hz,
@@ -286,7 +293,7 @@ impl CaptureFile {
             most,
             from_s,
             to_s,
-        } = serde_wasm_bindgen::from_value(asked).map_err(JsError::from)?;
+        } = serde_wasm_bindgen::from_value(options).map_err(JsError::from)?;
         let options = OpenOptions {
             map,
             clock_hz,
@@ -296,38 +303,38 @@ impl CaptureFile {
             both_edges: both_edges.unwrap_or(false),
         };
         let part = Part { max_records: most.unwrap_or(usize::MAX), from_s, to_s };
-        let known = self.opened.take().filter(|_| self.asked.take().as_ref() == Some(&options));
-        let mut opened = match known {
+        let known = self.loaded.take().filter(|_| self.options.take().as_ref() == Some(&options));
+        let mut loaded = match known {
             Some(known) => known.with_part(&self.capture, &options, &part),
             None => LoadedCapture::of_part(&self.capture, &options, &part),
         }
         .map_err(|error| refused(&error))?;
         match at_s {
             Some(at_s) => {
-                opened.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s).map_err(JsError::from)?
+                loaded.align(channel.unwrap_or(0), aligned.unwrap_or(0), at_s).map_err(JsError::from)?
             }
-            None => self.asked = Some(options),
+            None => self.options = Some(options),
         }
-        let opened = self.opened.insert(opened);
-        object(&Looked {
-            map: &opened.map,
-            clock_hz: opened.clock_hz,
-            rounding: &opened.rounding,
-            end_s: opened.end_s,
-            records: opened.records.len(),
-            kept: opened.part,
-            notes: opened.notes.iter().map(note).collect(),
-            steps: &opened.report.channels,
-            lines: opened.report.lines.iter().map(line).collect(),
+        let loaded = self.loaded.insert(loaded);
+        object(&Preview {
+            map: &loaded.map,
+            clock_hz: loaded.clock_hz,
+            rounding: &loaded.rounding,
+            end_s: loaded.end_s,
+            records: loaded.records.len(),
+            part: loaded.part,
+            notes: loaded.notes.iter().map(note).collect(),
+            steps: &loaded.report.channels,
+            lines: loaded.report.lines.iter().map(line).collect(),
         })
         .map_err(JsValue::from)
     }
 
-    /// All of a channel at a glance: `{position_min, position_max, speed_min, speed_max}` of each column, in steps and steps/s; null
-    /// before it was looked at where it was recorded, and where no levels were.
+    /// A channel in columns: `{position_min, position_max, speed_min, speed_max}`, in steps and steps/s; null before a
+    /// preview and without levels.
     ///
     /// # Errors
-    /// As of `look`.
+    /// As `preview`.
     pub fn overview(&self, channel: u8, columns: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
         struct Columns {
@@ -336,7 +343,7 @@ impl CaptureFile {
             speed_min: Vec<f64>,
             speed_max: Vec<f64>,
         }
-        let Some(options) = &self.asked else { return Ok(JsValue::NULL) };
+        let Some(options) = &self.options else { return Ok(JsValue::NULL) };
         let found =
             LoadedCapture::overview(&self.capture, options, channel, columns.min(MAX_COLUMNS) as usize)?;
         object(&found.map(|Actual { position, speed }| Columns {
@@ -347,70 +354,60 @@ impl CaptureFile {
         }))
     }
 
-    /// The scenario that it is shown with, as JSON: the one that gives it again, or, where that is too long, one that has
-    /// only its clock and its channels.
+    /// The scenario that reproduces it, as JSON, or if that is too long, one with its clock and channels.
     #[must_use]
     pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
-        Some(self.opened.as_ref()?.shown_scenario(file, steps).to_json())
+        Some(self.loaded.as_ref()?.shown_scenario(file, steps).to_json())
     }
 
-    /// What its lines say, packet by packet: `{total, replies, rows, csv}`, the first `most` rows, and all of them as a table.
-    /// `addressed` says whether raw packets begin with an address.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Its packets: `{total, replies, rows, csv}`, with the first `most` rows. `addressed`: raw packets begin with an address.
     pub fn packets(&self, addressed: bool, most: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
-        struct Told<'a> {
+        struct PacketPage<'a> {
             total: usize,
             replies: usize,
             rows: &'a [LinePacket],
             csv: String,
         }
-        let told = self
-            .opened
+        let packets = self
+            .loaded
             .as_ref()
-            .map(|opened| Packets::of(&opened.report, opened.clock_hz, opened.channels, addressed));
-        let Some(packets) = told else { return Ok(JsValue::NULL) };
+            .map(|loaded| Packets::of(&loaded.report, loaded.clock_hz, loaded.channels, addressed));
+        let Some(packets) = packets else { return Ok(JsValue::NULL) };
         let mut csv = String::new();
         packets.write_csv(&mut csv)?;
         let rows = packets.rows.get(..packets.rows.len().min(most as usize)).unwrap_or_default();
-        object(&Told { total: packets.rows.len(), replies: packets.replies(), rows, csv })
+        object(&PacketPage { total: packets.rows.len(), replies: packets.replies(), rows, csv })
     }
 
-    /// What TX says in the part that is shown, dealt to controllers of these addresses, for the page's table of packets:
-    /// [`replies::Dealt`], `{bytes, unknown}`. None where TX was not recorded.
+    /// Replies on TX in the visible part, by the addresses of controllers ([`replies::Dealt`]): `{bytes, unknown}`. `None`
+    /// without TX.
     #[must_use]
     pub fn replies(&self, addresses: &[u8]) -> Option<Object> {
-        let opened = self.opened.as_ref()?;
-        let map = ChannelMap::parse(&opened.map, &self.capture).ok()?;
+        let loaded = self.loaded.as_ref()?;
+        let map = ChannelMap::parse(&loaded.map, &self.capture).ok()?;
         if !map.has(Levels::TX.trailing_zeros()) {
             return None;
         }
-        let cycle = |at_s: f64| (at_s * f64::from(opened.clock_hz)) as u64;
-        let shown = opened.part.map_or(0..u64::MAX, |part| cycle(part.from_s)..cycle(part.to_s));
-        let Dealt { bytes, unknown } = replies::to_bytes(&opened.report, opened.clock_hz, shown, addresses);
+        let cycle = |at_s: f64| (at_s * f64::from(loaded.clock_hz)) as u64;
+        let shown = loaded.part.map_or(0..u64::MAX, |part| cycle(part.from_s)..cycle(part.to_s));
+        let Dealt { bytes, unknown } = replies::to_bytes(&loaded.report, loaded.clock_hz, shown, addresses);
         let dealt = Object::new();
         field(&dealt, "bytes", &Uint8Array::from(bytes.as_slice()).into());
         field(&dealt, "unknown", &unknown.into());
         Some(dealt)
     }
 
-    /// When step `aligned` of a channel, from 0, or, where this steps nowhere, that byte of RX comes in a run, in s: its
-    /// records, as the run gives them, in cycles of `clock_hz`. None where there is no such step or byte.
+    /// Time of step `aligned` of a channel in a run, or of that byte of RX if the recording has no steps, in s.
     #[must_use]
     pub fn time_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32, aligned: usize) -> Option<f64> {
-        let kind = self.opened.as_ref()?.events(channel).kind;
+        let kind = self.loaded.as_ref()?.events(channel).kind;
         Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).at_s(aligned)
     }
 
-    /// How it compares with such a run, the run's step, or byte, `aligned` and the recorded one that it is taken for the same
-    /// instant: the core's `Beside`, and in `rows` the first 10 differences in words, with their times; null where one of
-    /// both has none.
-    ///
-    /// # Errors
-    /// Never in practice.
-    pub fn beside(
+    /// Comparison with a run, aligned by that step or byte: the core's [`Beside`], and in `rows` the first differences as
+    /// text with their times.
+    pub fn comparison(
         &self,
         run: &[u8],
         clock_hz: u32,
@@ -424,7 +421,7 @@ impl CaptureFile {
             recorded_s: f64,
         }
         #[derive(Serialize)]
-        struct Told {
+        struct Comparison {
             rows: Vec<Row>,
             #[serde(flatten)]
             beside: Beside,
@@ -437,28 +434,27 @@ impl CaptureFile {
             };
             listed.map(row).collect()
         };
-        let found = self.opened.as_ref().and_then(|opened| {
-            let own = opened.events(channel);
+        let found = self.loaded.as_ref().and_then(|loaded| {
+            let own = loaded.events(channel);
             let model =
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
             let within = Tolerance::cycle(own.clock_hz, model.clock_hz);
-            // A step that is missing in the recording cannot be aligned: then the first that both have is.
+            // If the recording lacks that step, the first common one is aligned.
             let aligned = own.beside(&model, Some(aligned), within);
             let mut found = aligned.or_else(|| own.beside(&model, None, within))?;
             found.differences.listed.truncate(MAX_DIFFERENCES);
-            Some(Told { rows: rows(&found), beside: found })
+            Some(Comparison { rows: rows(&found), beside: found })
         });
         object(&found)
     }
 
-    /// Its records from one on, at most so many: 16 bytes each, cycle and levels, little-endian. None where no levels were
-    /// recorded.
+    /// At most `most` records of 16 bytes: cycle and levels, little-endian. Empty without levels.
     #[must_use]
     pub fn records(&self, from: u32, most: u32) -> Vec<u8> {
-        let Some(opened) = self.opened.as_ref().filter(|opened| opened.has_levels()) else {
+        let Some(loaded) = self.loaded.as_ref().filter(|loaded| loaded.has_levels()) else {
             return Vec::new();
         };
-        let rest = opened.records.get(from as usize..).unwrap_or_default();
+        let rest = loaded.records.get(from as usize..).unwrap_or_default();
         let taken = rest.get(..rest.len().min(most as usize)).unwrap_or_default();
         let mut bytes = Vec::with_capacity(16 * taken.len());
         for record in taken {
@@ -478,7 +474,7 @@ mod tests {
     };
 
     #[test]
-    fn of_many_channels_those_of_the_typed_map_are_read() {
+    fn channels_of_the_given_map_are_read_first() {
         let names: Vec<String> = (0..100).map(|at| format!("top.W{at}")).collect();
         let table = format!("Time [s],{}\n0{}\n", names.join(","), ",1".repeat(100));
         let typed = "STEP0=W98,DIR0=!top.W99";
@@ -494,14 +490,14 @@ mod tests {
     }
 
     #[test]
-    fn notes_name_the_fields_of_the_dialog_whatever_the_names_of_the_channels() {
+    fn notes_name_the_fields_of_the_dialog() {
         let mut capture = Capture::new(Format::LevelsCsv);
         capture.channels.push(Channel { name: "Channel 0".into() });
         capture.timebase = Timebase::new(1, 1_000_000);
         capture.changes = (0..40).map(|k| Change { tick: 10 * k, levels: k % 2 }).collect();
         let options = OpenOptions { map: Some("STEP0=Channel 0".into()), ..OpenOptions::default() };
-        let opened = LoadedCapture::new(capture, &options).expect("steps");
-        let notes: Vec<String> = opened.notes.iter().map(note).collect();
+        let loaded = LoadedCapture::new(capture, &options).expect("steps");
+        let notes: Vec<String> = loaded.notes.iter().map(note).collect();
         let expected = "makes 39 steps of it; for such a driver choose the signal “STEP, both edges”";
         assert!(notes.iter().any(|note| note.ends_with(expected)), "{notes:?}");
         assert_eq!(

@@ -1,8 +1,8 @@
-//! So many steps in so much time, by every kind of motion side by side (DESIGN B4).
+//! Compares all kinds of motion for the same steps and time (DESIGN B4).
 
 use crate::{
     convert::{field, numbers, object},
-    judged::Judged,
+    scenario::ValidatedScenario,
 };
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
@@ -20,7 +20,7 @@ use wasm_bindgen::prelude::*;
 #[derive(Default, Serialize)]
 struct Shown {
     name: &'static str,
-    /// Why it cannot be.
+    /// Why it is impossible.
     why: Option<String>,
     /// Peaks in steps and s.
     speed: f64,
@@ -64,11 +64,9 @@ impl Shown {
 }
 
 #[wasm_bindgen]
-impl Judged {
-    /// What a move of an axis does, by every kind of motion with ramps of `ramp_s`, a row each: its `name`, its `move` as
-    /// a scenario has it, `why` it cannot be or its peaks, time error, last step and `torque`, and its curve as columns
-    /// `at_speed` and `at_acceleration`, at `points` times evenly over the time that was asked for. No rows for a move
-    /// that ends where it begins.
+impl ValidatedScenario {
+    /// A move of an axis as every kind of motion with ramps of `ramp_s`, one row each ([`Shown`]): with its `move` in JSON and
+    /// its curve as columns `at_speed` and `at_acceleration` at `points` times. Empty for a move without distance.
     ///
     /// # Errors
     /// If the scenario has problems, or no such axis.
@@ -81,23 +79,24 @@ impl Judged {
         points: u32,
     ) -> Result<Array, JsError> {
         let selected = self.axis(controller, axis)?;
-        let made = Array::new();
-        let Some(request) = Request::of(selected.axis, selected.plan, index, ramp_s) else { return Ok(made) };
+        let rows = Array::new();
+        let Some(request) = Request::of(selected.axis, selected.plan, index, ramp_s) else { return Ok(rows) };
         for row in compare(&request) {
             let shown: Object = object(&Shown::of(&row))?.into();
-            let wanted = JSON::parse(&to_json(&row.wanted)).map_err(|_| JsError::new("a move is no JSON"))?;
+            let wanted =
+                JSON::parse(&to_json(&row.wanted)).map_err(|_| JsError::new("a move is not JSON"))?;
             field(&shown, "move", &wanted);
             let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
-                let time = |look| request.duration_s * f64::from(look) / f64::from(points.max(2) - 1);
-                (0..points).map(|look| of(time(look))).collect()
+                let time = |index| request.duration_s * f64::from(index) / f64::from(points.max(2) - 1);
+                (0..points).map(|index| of(time(index))).collect()
             };
             if let Some([PlannedMove { profile: curve, .. }]) = row.plan.as_ref().map(|plan| plan.moves()) {
                 let within = |t| t <= curve.duration_s();
                 numbers(&shown, "at_speed", &sampled(&|t| if within(t) { curve.speed(t) } else { 0.0 }));
                 numbers(&shown, "at_acceleration", &sampled(&|t| curve.acceleration(t)));
             }
-            made.push(&shown);
+            rows.push(&shown);
         }
-        Ok(made)
+        Ok(rows)
     }
 }

@@ -1,7 +1,5 @@
-//! Real lines, for a worker that has their ports: the host of a device ([`LiveHost`], [`LiveRawHost`]), and the device of a host
-//! ([`LiveDevice`]). Bytes and times come in, bytes and times go out; what is said and when, the core decides (LIVE H1, H3, H4).
-//!
-//! Times are in ms since the beginning, as `performance.now()` gives them.
+//! Real serial lines (LIVE H1, H3, H4): the host of a device ([`LiveHost`], [`LiveRawHost`]) and the device of a host
+//! ([`LiveDevice`]). Times are in ms since the start.
 
 mod device;
 mod host;
@@ -17,12 +15,11 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Why there is nothing to send.
-const SEGMENTS: &str = "segments run a controller by itself: there is nothing to send; in the form choose ticks as the engine of the motion";
-/// Why a script is not sent.
-const SCRIPT: &str = "a line script is sent as it stands, and nobody knows what is to be answered; in the form choose a motion or packets as the source";
+const SEGMENTS: &str = "segments send nothing; choose ticks as the step generation in the form";
+const SCRIPT: &str =
+    "the replies to a line script are unknown; choose a motion or packets as the source in the form";
 
-/// Whether a scenario's host sends raw packets, which nobody answers.
+/// Whether the host of a scenario sends raw packets, without replies.
 ///
 /// # Errors
 /// If it cannot be read.

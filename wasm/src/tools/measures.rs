@@ -1,8 +1,8 @@
-//! The measures of an axis, as the page shows them.
+//! The measures of an axis.
 
 use crate::{
     convert::{object, records},
-    judged::{Judged, config, listed},
+    scenario::{ValidatedScenario, config, listed},
 };
 use stepscope_core::{
     inspect::{
@@ -19,11 +19,11 @@ use stepscope_core::{
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
-impl Judged {
-    /// All measures of an axis in a run of the scenario, an object with the core's names; `null` where it has no motion.
+impl ValidatedScenario {
+    /// All measures of an axis ([`Measures`]); null without a motion.
     ///
     /// # Errors
-    /// If the scenario has problems; more steps than are measured ([`within_bounds`]).
+    /// If the scenario has problems, or too many steps ([`within_bounds`]).
     pub fn measures(&self, controller: usize, axis: u8) -> Result<JsValue, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let Some(plan) = experiment.plans_of(controller).get(usize::from(axis)) else {
@@ -34,10 +34,10 @@ impl Judged {
             record_run(experiment, controller + 1).map_err(|why| JsError::new(&why.to_string()))?;
         let Some(recording) = recordings.get_mut(controller) else { return Ok(JsValue::NULL) };
         recording.packets.finish();
-        let made = steps(&recording.trace, axis);
+        let actual = steps(&recording.trace, axis);
         let pulses = Pulses::of_run(
             axis,
-            &made,
+            &actual,
             &recording.packets,
             experiment.segments().and_then(|all| all.lists().get(usize::from(axis))),
             config(experiment, controller),
@@ -47,11 +47,8 @@ impl Judged {
     }
 }
 
-/// What the steps of a channel come to by themselves, where no plan is known, an object with the core's names; `null` where it
-/// makes none. `run` is what the views show of it: records as `Simulation::records_of` gives them, in cycles of `clock_hz`.
-///
-/// # Errors
-/// Never in practice.
+/// Figures of the steps of a channel without a plan ([`StepFigures`]); null without steps. `run` has the records of
+/// `Simulation::records_of`, in cycles of `clock_hz`.
 #[wasm_bindgen]
 pub fn step_figures(run: &[u8], channel: u8, clock_hz: u32) -> Result<JsValue, JsError> {
     let trace: Vec<_> = records(run).collect();

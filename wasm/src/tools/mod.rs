@@ -1,4 +1,4 @@
-//! Everything that the first screen can do without: the study, recordings, exports, real serial lines.
+//! The study, recordings, exports and real serial lines.
 
 mod capture;
 mod compare;

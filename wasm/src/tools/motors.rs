@@ -1,9 +1,8 @@
-//! What the motors of a scenario's plant can do: searches of seconds, each a piece of a longer question, which workers share;
-//! and the motors and drivers that one may choose from.
+//! Limits of the motors of a plant, searched in pieces by several workers; and lists of motors and drivers.
 
 use crate::{
     convert::{field, numbers, object},
-    judged::{Judged, listed},
+    scenario::{ValidatedScenario, listed},
 };
 use js_sys::Object;
 use serde::Serialize;
@@ -30,7 +29,7 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// A motor or a driver, without its figures.
+/// A motor or a driver.
 #[derive(Serialize)]
 struct Sheet {
     id: &'static str,
@@ -45,10 +44,7 @@ struct Sheets {
     drives: Vec<Sheet>,
 }
 
-/// Motors and drivers to choose from: `{motors, drives}`, each `{id, name, source, typical}`.
-///
-/// # Errors
-/// Never in practice.
+/// Listed motors and drivers.
 #[wasm_bindgen]
 pub fn sheets() -> Result<JsValue, JsError> {
     let motors =
@@ -58,8 +54,7 @@ pub fn sheets() -> Result<JsValue, JsError> {
     object(&Sheets { motors: motors.collect(), drives: drives.collect() })
 }
 
-/// The scenario with a motor and a driver of the lists in the place of each of its own, and with a plant; what is not listed
-/// changes nothing.
+/// The scenario with a plant and a listed motor and driver. Unknown names change nothing.
 #[wasm_bindgen]
 #[must_use]
 pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
@@ -75,8 +70,8 @@ pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
 }
 
 #[wasm_bindgen]
-impl Judged {
-    /// The highest rate in steps/s at which a motor starts, turns once and stops; undefined where not even 500 is one.
+impl ValidatedScenario {
+    /// Start-stop rate of a motor in steps/s, for one turn; undefined below 500.
     ///
     /// # Errors
     /// If the scenario has problems, or no such motor.
@@ -86,7 +81,7 @@ impl Judged {
         search(|rate| starts(&setup, rate, steps)).map_err(refused)
     }
 
-    /// The highest rate in steps/s to which a ramp of so many steps/s^2 brings a motor.
+    /// Pull-out rate in steps/s with a ramp of `ramp` steps/s^2.
     ///
     /// # Errors
     /// If the scenario has problems, or no such motor.
@@ -95,8 +90,8 @@ impl Judged {
         search(|rate| pulls(&setup, rate, ramp)).map_err(refused)
     }
 
-    /// What a motor of the plant has at each rate up to `most` steps/s, and what the plan of its axis asks: `{rate, available,
-    /// needed}`, torques in mN*m; needed is empty where the channel has no plan.
+    /// Available and needed torque at each rate up to `most` steps/s, in mN*m: `{rate, available, needed}`; `needed` is empty
+    /// without a plan.
     ///
     /// # Errors
     /// If the scenario has problems, or no such motor.
@@ -113,7 +108,7 @@ impl Judged {
         Ok(result)
     }
 
-    /// How far a motor swings at so many rates in full steps/s: `{swing, loses}`, 1 where it loses steps.
+    /// Oscillation at each rate in full steps/s: `{swing, loses}`; `loses` is 1 if it loses steps.
     ///
     /// # Errors
     /// If the scenario has problems, or no such motor.
@@ -122,12 +117,12 @@ impl Judged {
         controller: usize,
         channel: usize,
         from: f64,
-        rung: f64,
+        step: f64,
         count: u32,
     ) -> Result<Object, JsError> {
         let setup = self.motor(controller, channel)?;
         let microsteps = f64::from(setup.motors[0].microsteps);
-        let rates = (0..count).map(|index| (from + f64::from(index) * rung) * microsteps);
+        let rates = (0..count).map(|index| (from + f64::from(index) * step) * microsteps);
         let found: Vec<_> =
             rates.map(|rate| resonance(&setup, rate)).collect::<Result<_, _>>().map_err(refused)?;
         let result = Object::new();
@@ -140,7 +135,7 @@ impl Judged {
         Ok(result)
     }
 
-    /// The supply current around one step of a motor that rested (the patent's figure 1), looked at for a slot of the bus, at least 2 ms:
+    /// The supply current around one step (RU 2704486, figure 1), for a slot of the bus or 2 ms:
     /// `{rest_a, least_a, greatest_a, reached_cycles, settled_cycles, slot_cycles, x, y}`, x in s after the step.
     ///
     /// # Errors
@@ -148,8 +143,7 @@ impl Judged {
     pub fn settling(&self, controller: usize, channel: usize) -> Result<Object, JsError> {
         let setup = self.motor(controller, channel)?;
         let experiment = self.0.experiment().map_err(listed)?;
-        let config = crate::judged::config(experiment, controller);
-        // Where steps are denser it is looked at for 2 ms.
+        let config = crate::scenario::config(experiment, controller);
         let slot = (config.tick().0 / u64::from(config.slots())).max(u64::from(config.clock_hz()) / 500);
         let (found, samples) = settling_with(&setup, 0, slot, SHARE).map_err(refused)?;
         let hz = f64::from(config.clock_hz());
@@ -170,8 +164,8 @@ impl Judged {
         Ok(result)
     }
 
-    /// What the sensor of the supply current says over a whole run (the patent's figure 2): `{x, min, max, above_a, below_a}`,
-    /// x in s; the deviations null where too few steps are made.
+    /// The measured supply current of a run (RU 2704486, figure 2): `{x, min, max, above_a, below_a}`, x in s; the deviations
+    /// are null with too few steps.
     ///
     /// # Errors
     /// If the scenario has problems, or no plant.
@@ -192,10 +186,10 @@ impl Judged {
             return Err(JsError::new("the scenario has no plant"));
         };
         let hz = f64::from(experiment.config().clock_hz());
-        let stretch = CycleWindow { from: 0, to: run.cycles().0, columns };
+        let window = CycleWindow { from: 0, to: run.cycles().0, columns };
         let result = Object::new();
-        // The sensor is the last value of the supply.
-        for band in log.curves(&recording.trace, stretch, &[2]) {
+        // Value 2 of the supply is the sensor.
+        for band in log.curves(&recording.trace, window, &[2]) {
             numbers(&result, "x", &band.cycle.iter().map(|cycle| cycle / hz).collect::<Vec<_>>());
             numbers(&result, "min", &band.min);
             numbers(&result, "max", &band.max);
@@ -209,8 +203,8 @@ impl Judged {
     }
 }
 
-impl Judged {
-    /// A motor alone on its supply.
+impl ValidatedScenario {
+    /// One motor with its supply.
     fn motor(&self, controller: usize, channel: usize) -> Result<Setup, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let setup = experiment.plants().and_then(|plants| plants.setups.get(controller)?.alone(channel));
@@ -218,7 +212,7 @@ impl Judged {
     }
 }
 
-/// All refusals, a line each.
+/// All refusals, one per line.
 fn refused(all: Vec<Refused>) -> JsError {
     JsError::new(&all.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
 }

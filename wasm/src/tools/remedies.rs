@@ -1,16 +1,12 @@
-//! What a refused scenario could be changed to.
+//! Remedies of an invalid scenario.
 
-use crate::{convert::object, judged::Judged};
+use crate::{convert::object, scenario::ValidatedScenario};
 use stepscope_core::inspect::validation::remedies::Remedies;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
-impl Judged {
-    /// What would let a motion run that its bus is too slow for: `{wrong, offers: [{change, scenario}]}`; null where
-    /// that is not what is wrong.
-    ///
-    /// # Errors
-    /// Never in practice.
+impl ValidatedScenario {
+    /// Changes for a motion that is too fast for its bus ([`Remedies`]); null for other problems.
     pub fn remedies(&self) -> Result<JsValue, JsError> {
         object(&Remedies::of(&self.0))
     }

@@ -1,4 +1,4 @@
-//! Packets of a table, to be sent again.
+//! Sends the packets of a table again.
 
 use stepscope_core::{
     scenario::{LineScript, Scenario},
@@ -6,17 +6,16 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// The scenario that sends the packets of a table, as a run exports it, to the controllers of the scenario
-/// `json`.
+/// A scenario that sends the packets of an exported table to the controllers of `json`.
 ///
 /// # Errors
-/// With the first line of the table that cannot be used.
+/// With the first invalid line of the table.
 #[wasm_bindgen]
 pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
     let (scenario, _) = Scenario::from_json_lenient(json);
     let script = LineScript::recorded(table, scenario.clock_hz)?;
     let mut again = replayed(scenario, script);
-    // The bytes are those that were heard: what struck them faults only once.
+    // The bytes already contain the effect of glitches.
     again.line.glitches.clear();
     Ok(again.to_json())
 }

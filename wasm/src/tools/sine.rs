@@ -1,9 +1,8 @@
-//! Which segments make a sine with least distortion (DESIGN B5, figure 4): rows of a sweep, the best d1 of a range, the
-//! best vertices. Each call is a piece of a longer question, which workers share.
+//! Segments of a sine with minimum distortion (DESIGN B5): a sweep, the best d1 of a range, and the best vertices.
 
 use crate::{
     convert::{field, numbers},
-    judged::Judged,
+    scenario::ValidatedScenario,
 };
 use js_sys::Object;
 use std::ops::Range;
@@ -22,9 +21,9 @@ use wasm_bindgen::prelude::*;
 
 /// Columns of rows.
 fn columns(rows: &[Row]) -> Object {
-    let made = Object::new();
+    let result = Object::new();
     let put = |name: &str, of: &dyn Fn(&Row) -> f64| {
-        numbers(&made, name, &rows.iter().map(of).collect::<Vec<f64>>());
+        numbers(&result, name, &rows.iter().map(of).collect::<Vec<f64>>());
     };
     put("d1", &|row| row.d1);
     put("segments", &|row| row.segments as f64);
@@ -33,12 +32,11 @@ fn columns(rows: &[Row]) -> Object {
     put("acceleration", &|row| row.distortion.acceleration);
     put("filtered", &|row| row.distortion.acceleration_filtered.unwrap_or(f64::NAN));
     put("euclidean", &|row| row.euclidean);
-    made
+    result
 }
 
-/// Rows `first` to before `end` of the sweep over `count` values of d1, as columns `d1`, `segments`, `position`, `speed`,
-/// `acceleration` (THD as ratios), `filtered` (that of the acceleration through a sensor whose bandwidth is `sensor` times the
-/// fundamental, NaN without one) and `euclidean`.
+/// Rows `first..end` of a sweep over `count` values of d1, as columns. `sensor` is the bandwidth of a sensor relative to the
+/// fundamental; without one `filtered` is NaN.
 #[wasm_bindgen]
 #[must_use]
 pub fn sine_rows(
@@ -56,38 +54,36 @@ pub fn sine_rows(
     columns(&rows)
 }
 
-/// For each number of segments the d1 with least distortion of the position, of all polylines that a range has: columns
-/// as [`sine_rows`].
+/// The d1 with minimum distortion of position for each number of segments in a range, as [`sine_rows`].
 #[wasm_bindgen]
 #[must_use]
 pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object {
     columns(&best_of_each(Distinct::new(from, to, Bounds { order, sensor })))
 }
 
-/// The vertices of `segments` a quarter with least distortion of the position, on the curve or free: `angle_deg` and
-/// `height` of each, and `thd`; undefined for another number of segments than 1 to 32.
+/// The vertices of `segments` per quarter with minimum distortion of position, on the curve or free: `{angle_deg, height,
+/// thd}`; undefined outside of 1 to 32 segments.
 #[wasm_bindgen]
 #[must_use]
 pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> {
     let freedom = if free { Freedom::Free } else { Freedom::OnCurve };
     let found = optimum(segments, freedom, order)?;
-    let made = Object::new();
+    let result = Object::new();
     let angles: Vec<f64> = found.vertices.iter().map(|vertex| vertex.angle.to_degrees()).collect();
     let heights: Vec<f64> = found.vertices.iter().map(|vertex| vertex.height).collect();
-    numbers(&made, "angle_deg", &angles);
-    numbers(&made, "height", &heights);
-    field(&made, "thd", &found.distortion.position.into());
-    Some(made)
+    numbers(&result, "angle_deg", &angles);
+    numbers(&result, "height", &heights);
+    field(&result, "thd", &found.distortion.position.into());
+    Some(result)
 }
 
 #[wasm_bindgen]
-impl Judged {
-    /// The segments of a quarter of the first sine in segments that an axis has: columns `from_deg`, `to_deg`, `steps`,
-    /// `rate` (steps/s) and `duration_s`, and the bytes of a quarter as segments (`segment_bytes`) and with one interval a
-    /// step (`interval_bytes`); undefined where the axis has none.
+impl ValidatedScenario {
+    /// A quarter of the first sine in segments of an axis: columns `from_deg`, `to_deg`, `steps`, `rate` and `duration_s`,
+    /// and its bytes as segments and as intervals; undefined without one.
     ///
     /// # Errors
-    /// If the axis has problems, or is not there.
+    /// If the scenario has problems, or no such axis.
     pub fn sine_segments(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
         let SelectedAxis { plan, .. } = self.axis(controller, axis)?;
         let found = plan.moves().iter().find_map(|planned| match &planned.profile {
@@ -95,9 +91,9 @@ impl Judged {
             _ => None,
         });
         let Some(sine) = found else { return Ok(None) };
-        let made = Object::new();
+        let result = Object::new();
         let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
-            numbers(&made, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
+            numbers(&result, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());
         };
         put("from_deg", &|segment| segment.from_deg);
         put("to_deg", &|segment| segment.to_deg);
@@ -105,8 +101,8 @@ impl Judged {
         put("rate", &|segment| segment.rate);
         put("duration_s", &|segment| segment.duration_s);
         let Memory { segments, intervals } = sine.memory();
-        field(&made, "segment_bytes", &(segments as f64).into());
-        field(&made, "interval_bytes", &(intervals as f64).into());
-        Ok(Some(made))
+        field(&result, "segment_bytes", &(segments as f64).into());
+        field(&result, "interval_bytes", &(intervals as f64).into());
+        Ok(Some(result))
     }
 }

@@ -1,19 +1,18 @@
-//! The step times of an axis, or of a run, as tables for a firmware ([`StepTables`]).
+//! Step tables of an axis or a run for firmware ([`StepTables`]).
 
 use crate::{
     convert::{object, records},
-    judged::{Judged, listed},
+    scenario::{ValidatedScenario, listed},
 };
 use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps, sim::bus_of};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
-impl Judged {
-    /// What a table of an axis costs, `form` being `exact`, `document` or `compressed` with no step off by more than
-    /// `error_us`, `widths` those of its entries: `{steps, entries, bytes, document_bytes, largest_s, rms_s, why}`.
+impl ValidatedScenario {
+    /// Size and error of a table. `form` is `exact`, `document` or `compressed`, with at most `error_us`.
     ///
     /// # Errors
-    /// If the scenario has problems, or no such axis; why an axis has no such table is in the result.
+    /// If the scenario has problems, or no such axis. The result has other reasons in `why`.
     pub fn step_table(
         &self,
         controller: usize,
@@ -25,11 +24,11 @@ impl Judged {
         object(&self.tables(controller, axis)?.cost(form, widths, error_us))
     }
 
-    /// A table as source code, `language` being `c`, `avr`, `rust` or `csv`; the rest as [`Judged::step_table`].
+    /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`.
     ///
     /// # Errors
-    /// As [`Judged::step_table`], and if there is no such table.
-    #[allow(clippy::too_many_arguments, reason = "JavaScript gives them one by one")]
+    /// As [`ValidatedScenario::step_table`], or if the table is impossible.
+    #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_source(
         &self,
         controller: usize,
@@ -43,12 +42,11 @@ impl Judged {
         source.map_err(|why| JsError::new(&why))
     }
 
-    /// The same of a channel that has no plan: `run` is what the views show of it, records as `Simulation::records_of` gives
-    /// them.
+    /// Size and error of a table of a channel without a plan, from the records of `Simulation::records_of`.
     ///
     /// # Errors
     /// If the scenario has problems, or the bus cannot run segments.
-    #[allow(clippy::too_many_arguments, reason = "JavaScript gives them one by one")]
+    #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_table_of_run(
         &self,
         controller: usize,
@@ -61,11 +59,11 @@ impl Judged {
         object(&self.tables_of_run(controller, channel, run)?.cost(form, widths, error_us))
     }
 
-    /// A table of that as source code, `language` as in [`Judged::step_source`].
+    /// That table as source code, as [`ValidatedScenario::step_source`].
     ///
     /// # Errors
-    /// As [`Judged::step_table_of_run`], and if there is no such table.
-    #[allow(clippy::too_many_arguments, reason = "JavaScript gives them one by one")]
+    /// As [`ValidatedScenario::step_table_of_run`], or if the table is impossible.
+    #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_source_of_run(
         &self,
         controller: usize,
@@ -82,7 +80,7 @@ impl Judged {
     }
 }
 
-impl Judged {
+impl ValidatedScenario {
     fn tables(&self, controller: usize, axis: usize) -> Result<StepTables<'_>, JsError> {
         StepTables::new(self.axis(controller, axis)?).map_err(|problems| listed(&problems))
     }

@@ -1,8 +1,8 @@
-//! Torque-speed curve of an axis' motor, what its plan needs, and which ramps it can follow.
+//! Available and needed torque of an axis.
 
 use crate::{
     convert::{field, numbers, object, records},
-    judged::{Judged, listed},
+    scenario::{ValidatedScenario, listed},
 };
 use js_sys::Object;
 use stepscope_core::{
@@ -15,10 +15,9 @@ use stepscope_core::{
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
-impl Judged {
-    /// What an axis' motor has and what its plan asks: `report` with the numbers ([`TorqueReport`]), `rate`, `available`
-    /// and `needed` (the most at each rate, NaN at rates that the plan has not), torques in mN*m; undefined where the
-    /// axis has no motor.
+impl ValidatedScenario {
+    /// The torque of an axis: `report` ([`TorqueReport`]), `rate`, `available` and `needed` (NaN at unused rates), in mN*m;
+    /// undefined without a motor.
     ///
     /// # Errors
     /// If the scenario has problems, or no such axis.
@@ -28,9 +27,8 @@ impl Judged {
         shown(&report).map(Some)
     }
 
-    /// The same of the steps of a channel that has no plan: `run` is what the views show of it, records as
-    /// `Simulation::records_of` gives them. The motor is that of the scenario's plant, or, where it has none, the one of the
-    /// list with the word `motor`; undefined where there is neither.
+    /// The same for a channel without a plan, from the records of `Simulation::records_of`. The motor is that of the plant, or
+    /// the listed `motor`; undefined without one.
     ///
     /// # Errors
     /// If the scenario has problems.

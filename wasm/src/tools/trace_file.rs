@@ -1,8 +1,8 @@
-//! A run held against a trace that was saved.
+//! Compares a run with a saved trace.
 
 use crate::{
     convert::object,
-    judged::{Judged, config, listed},
+    scenario::{ValidatedScenario, config, listed},
 };
 use serde::Serialize;
 use stepscope_core::inspect::trace::stored_run::Recording;
@@ -12,10 +12,10 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// How the run stands to a file.
+/// The comparison.
 #[derive(Serialize)]
-struct Held {
-    /// Rows that are the run's own.
+struct TraceComparison {
+    /// Equal rows.
     same: u64,
     start_cycle: u64,
     end_cycle: u64,
@@ -27,11 +27,11 @@ struct Held {
 struct Differs {
     line: u64,
     cycle: u64,
-    /// Of each signal that differs its name, and its level in the file and in the run.
+    /// Name, level in the file and level in the run of each different signal.
     signals: Vec<(String, u8, u8)>,
 }
 
-/// A controller's trace, and a file that is held against it piece by piece.
+/// The trace of a controller, compared with a file in pieces.
 #[wasm_bindgen]
 pub struct TraceFile {
     recording: Recording,
@@ -39,8 +39,8 @@ pub struct TraceFile {
 }
 
 #[wasm_bindgen]
-impl Judged {
-    /// Runs the scenario, and begins to hold the trace of a controller against a file.
+impl ValidatedScenario {
+    /// Runs the scenario for the comparison.
     ///
     /// # Errors
     /// If the scenario has problems.
@@ -56,22 +56,21 @@ impl Judged {
 
 #[wasm_bindgen]
 impl TraceFile {
-    /// Takes a piece of the file; true if the rest is not needed.
+    /// Compares a piece of the file; true if the rest is not needed.
     ///
     /// # Errors
-    /// With the first line that cannot be read.
+    /// With the first invalid line.
     pub fn feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
         Ok(self.diff.feed(&self.recording.trace, piece)?)
     }
 
-    /// The file is over: `{same, start_cycle, end_cycle, goes_on, difference: {line, cycle, signals: [[name,
-    /// level in the file, level in the run]]} | null}`.
+    /// The result after the last piece.
     ///
     /// # Errors
-    /// If there was nothing in it, or its last line cannot be read.
+    /// If the file is empty, or its last line is invalid.
     pub fn end(self) -> Result<JsValue, JsError> {
         let outcome = self.diff.finish(&self.recording.trace)?;
-        object(&Held {
+        object(&TraceComparison {
             same: outcome.same,
             start_cycle: outcome.range.0.0,
             end_cycle: outcome.range.1.0,

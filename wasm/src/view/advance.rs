@@ -1,4 +1,4 @@
-//! Runs made in slices, as a worker makes them: between two of them it reads its messages.
+//! Runs in slices; the worker reads messages between them.
 
 use crate::convert::object;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Most records that a page keeps of all controllers together; 16 bytes each.
+/// Maximum records of all controllers, of 16 bytes each.
 const MAX_RECORDS: u64 = 40_000_000;
 
 #[derive(Serialize)]
@@ -20,8 +20,7 @@ struct Progress {
     records: u64,
 }
 
-/// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid; true at
-/// the end. There are a sink and a log of its plant for each controller.
+/// Runs for about `max_records` more records of a controller, or grid steps of its plant. Returns true at the end.
 pub(crate) fn advance<S: Sink>(
     experiment: &Experiment,
     run: &mut Run,
@@ -40,10 +39,10 @@ pub(crate) fn advance<S: Sink>(
     }
 }
 
-/// How far a run is: `{done, cycle, end_cycle, records}`, the records those of all controllers.
+/// Progress, with the records of all controllers.
 ///
 /// # Errors
-/// If these are more than a page can keep.
+/// For more than [`MAX_RECORDS`].
 pub(crate) fn progress(
     experiment: &Experiment,
     run: &Run,
@@ -52,7 +51,7 @@ pub(crate) fn progress(
 ) -> Result<JsValue, JsError> {
     if records > MAX_RECORDS {
         return Err(JsError::new(&format!(
-            "the run makes more than {MAX_RECORDS} edges, which is more than a page can keep; shorten the motion, or run it with the stepscope command"
+            "the run has more than {MAX_RECORDS} edges, the maximum of the page; shorten the motion, or use the stepscope command"
         )));
     }
     let cycle = run.cycles().0;

@@ -1,15 +1,11 @@
-//! The page's charts: one chart on one canvas, described by plain numbers (DESIGN Part D).
+//! The page's charts: one chart per canvas (DESIGN Part D).
 //!
-//! Axes, grid and labels are drawn through plotters' `DrawingBackend`, so the same code draws on a canvas in
-//! the page and as SVG in a native test. plotters-canvas knows no device-pixel ratio: the canvas
-//! has CSS size times ratio, and every length here is multiplied by the ratio. Nor does plotters know
-//! fractions of a pixel: the curves over its axes are strokes of our own.
+//! plotters draws axes, grid and labels on a canvas or as SVG. It has no device-pixel ratio, so all lengths are multiplied
+//! by it, and no fractions of a pixel, so curves are separate strokes.
 //!
-//! A `band` is a curve that was decimated to the least and greatest value of each pixel column.
-//! It is drawn as an oscilloscope draws it, as one line that visits both values of every column;
-//! so a smooth curve looks like a line and a dense one like a filled block.
+//! A `band` is a curve with the minimum and maximum of each pixel column, drawn as one line through both.
 
-// Natively there is nothing to draw on but the tests' SVG.
+// Native builds only draw SVG in tests.
 #![cfg(any(test, target_arch = "wasm32"))]
 
 mod axis;
@@ -32,31 +28,28 @@ use stroke::Stroke;
 use surface::Surface;
 use ticks::Ticks;
 
-/// What to draw, and with which colours.
+/// A chart.
 #[derive(Deserialize)]
 pub(crate) struct Spec {
-    /// Device pixels to a CSS pixel.
+    /// Device pixels per CSS pixel.
     pub(crate) ratio: f64,
     /// Font family of all labels.
     pub(crate) font: String,
-    /// Size of the labels in CSS pixels.
+    /// In CSS pixels.
     pub(crate) font_px: f64,
     /// The time or frequency axis.
     pub(crate) x: Axis,
     /// The axis of values.
     pub(crate) y: Axis,
-    /// Colours of the page, as `#rrggbb`.
     pub(crate) colors: Colors,
     /// From the back to the front.
     pub(crate) series: Vec<Series>,
 }
 
-/// Colours of what is no series, as `#rrggbb`.
+/// Colors as `#rrggbb`.
 #[derive(Deserialize)]
 pub(crate) struct Colors {
-    /// Labels.
     pub(crate) label: String,
-    /// Axes.
     pub(crate) axis: String,
     /// Grid at the tick labels.
     pub(crate) grid: String,
@@ -65,13 +58,13 @@ pub(crate) struct Colors {
 /// One series.
 #[derive(Deserialize)]
 pub(crate) struct Series {
-    /// Colour as `#rrggbb`.
+    /// Color as `#rrggbb`.
     pub(crate) color: String,
     /// From 0 (invisible) to 1.
     pub(crate) opacity: f64,
     /// Width of the stroke in CSS pixels.
     pub(crate) width: f64,
-    /// Length of the dashes and of the gaps between them in CSS pixels; 0 for a whole line.
+    /// Length of dashes and gaps in CSS pixels; 0 for a solid line.
     #[serde(default)]
     pub(crate) dash: f64,
     /// Positions on the x axis.
@@ -80,32 +73,23 @@ pub(crate) struct Series {
     pub(crate) shape: Shape,
 }
 
-/// The values of a series, one or two at each x. A value that is no number leaves a gap.
+/// The values of a series. NaN leaves a gap.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Shape {
     /// A line through all points.
-    Line {
-        /// Values.
-        y: Vec<f64>,
-    },
-    /// Least and greatest value of each pixel column.
-    Band {
-        /// Least values.
-        min: Vec<f64>,
-        /// Greatest values.
-        max: Vec<f64>,
-    },
+    Line { y: Vec<f64> },
+    /// Minimum and maximum of each pixel column.
+    Band { min: Vec<f64>, max: Vec<f64> },
     /// A stem from the bottom of the chart to each value.
     Stems {
-        /// Values.
         y: Vec<f64>,
-        /// Shift to the right in CSS pixels, so that two series stand side by side.
+        /// Shift to the right in CSS pixels.
         shift: f64,
     },
 }
 
-/// Where the plotting area lies in its canvas, in CSS pixels.
+/// The plotting area, in CSS pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Plot {
     /// Left edge, at `x.min`.
@@ -118,10 +102,7 @@ pub(crate) struct Plot {
     pub(crate) bottom: f64,
 }
 
-/// One chart as the text of an SVG file of this size in pixels, and where its plotting area lies.
-///
-/// # Errors
-/// The backend's own message, or that an axis has no length.
+/// A chart as SVG, and its plotting area.
 pub(crate) fn svg(size: (u32, u32), spec: &Spec) -> Result<(String, Plot), String> {
     let mut text = String::new();
     let (plot, strokes) = draw(Surface::Svg(SVGBackend::with_string(&mut text, size)), spec)?;
@@ -131,14 +112,11 @@ pub(crate) fn svg(size: (u32, u32), spec: &Spec) -> Result<(String, Plot), Strin
     Ok((text, plot))
 }
 
-/// Draws the axes of a chart and tells where its plotting area lies, and what is drawn over them.
-///
-/// # Errors
-/// The backend's own message, or that an axis has no length.
+/// Draws the axes of a chart; returns its plotting area and the strokes of its series.
 fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String> {
     let root = surface.into_drawing_area();
     for (name, axis) in [("x", &spec.x), ("y", &spec.y)] {
-        // Also refuses what is not a number.
+        // Also true for NaN.
         if !(axis.max - axis.min).is_normal() || axis.max < axis.min {
             return Err(format!("axis {name} from {} to {} has no length", axis.min, axis.max));
         }
@@ -165,7 +143,7 @@ fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String
         )
         .map_err(|error| error.to_string())?;
 
-    // By its name: to look for the generic families plotters would bring in the tables of all letters' cases.
+    // Generic families would add tables of letter cases to the binary.
     let font = (FontFamily::Name(&spec.font), spec.font_px * spec.ratio, FontStyle::Normal);
     let ink = color(&spec.colors.label);
     let label: TextStyle<'_> = TextStyle::from(font).color(&ink);
@@ -237,7 +215,7 @@ impl Ranged for Ruled {
     }
 }
 
-/// Reads `#rrggbb`; what it cannot read is a middle grey, visible on light and dark.
+/// Reads `#rrggbb`; gray if invalid.
 fn color(text: &str) -> RGBColor {
     let part = |from| text.get(from..from + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
     match (part(1), part(3), part(5)) {
@@ -254,13 +232,12 @@ mod page {
     use wasm_bindgen::{JsCast as _, JsError, JsValue, prelude::wasm_bindgen};
     use web_sys::{CanvasRenderingContext2d, HtmlCanvasElement};
 
-    /// Draws one chart on a canvas that has its device size already, and gives the plotting area
-    /// in CSS pixels: `{left, top, right, bottom}`.
+    /// Draws a chart on a canvas of the right device size; returns its [`Plot`](super::Plot).
     ///
     /// # Errors
-    /// A spec that cannot be read, an axis without length, or a canvas without a 2D context.
+    /// For an invalid spec, an axis without length, or a canvas without a 2D context.
     #[wasm_bindgen]
-    #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
+    #[allow(unreachable_pub, reason = "wasm-bindgen only exports public functions")]
     pub fn draw_chart(canvas: HtmlCanvasElement, spec: JsValue) -> Result<JsValue, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
         let none = || JsError::new("this canvas has no 2D context");
@@ -273,12 +250,9 @@ mod page {
         Ok(plot.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?)
     }
 
-    /// The same chart as the text of an SVG file, in device pixels.
-    ///
-    /// # Errors
-    /// A spec that cannot be read, or an axis without length.
+    /// The same chart as SVG, in device pixels.
     #[wasm_bindgen]
-    #[allow(unreachable_pub, reason = "wasm-bindgen exports public functions only")]
+    #[allow(unreachable_pub, reason = "wasm-bindgen only exports public functions")]
     pub fn chart_svg(width: u32, height: u32, spec: JsValue) -> Result<String, JsError> {
         let spec: Spec = serde_wasm_bindgen::from_value(spec)?;
         svg((width, height), &spec).map(|(text, _)| text).map_err(|message| JsError::new(&message))

@@ -1,9 +1,8 @@
-//! The motion view's questions: curves in columns, what lies between two cursors, and another run
-//! beside this one.
+//! Data of the motion view: curves in columns, readings between cursors, and comparison with another run.
 
 use crate::{
     convert::{field, numbers, object},
-    judged::config,
+    scenario::config,
     view::simulation::Simulation,
 };
 use js_sys::Object;
@@ -20,8 +19,7 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// What is read at two cursors and between them: position, speed, acceleration; an acceleration that
-/// there is not is left out.
+/// Position, speed and acceleration (if any) at two cursors and between them.
 #[derive(Serialize)]
 struct Readings {
     at_a: Vec<f64>,
@@ -37,7 +35,7 @@ struct BothReadings {
 }
 
 #[derive(Serialize)]
-struct Compared {
+struct Deviation {
     common_s: f64,
     largest: f64,
     at_s: f64,
@@ -60,14 +58,14 @@ impl Readings {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Position, speed and acceleration of an axis over a stretch of time: least and greatest values of each column,
-    /// and the points of the ideal curve's line. The pulses have an acceleration where no plan is known.
+    /// Position, speed and acceleration of an axis: minimum and maximum of each column, and points of the ideal curve. The
+    /// pulses have an acceleration only without a plan.
     #[must_use]
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = window(t0_s, t1_s, columns);
         let result = Object::new();
-        let centres: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
-        numbers(&result, "x", &centres);
+        let centers: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
+        numbers(&result, "x", &centers);
         let plan = self.plan(axis);
         let plan_is_none = plan.is_none();
         field(&result, "has_ideal", &plan.is_some().into());
@@ -92,7 +90,6 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let curves::Actual { position, speed } = curves::actual(&pulses, window);
-        // Where a plan is known its acceleration is shown.
         let acceleration = plan_is_none.then(|| curves::actual_acceleration(&pulses, window));
         let bands = [
             ("actual_position", Some(position)),
@@ -106,7 +103,7 @@ impl Simulation {
         result
     }
 
-    /// What a recording of this run would have of an axis and of RX: records as [`Simulation::record`] takes them.
+    /// Records of one axis and RX, as for [`Simulation::record`].
     #[must_use]
     pub fn records_of(&self, axis: u8) -> Vec<u8> {
         let axis = axis % 16;
@@ -123,16 +120,12 @@ impl Simulation {
         bytes
     }
 
-    /// What is read at two cursors, given in cycles, and the mean and root mean square between them:
-    /// `{ideal: {at_a, at_b, mean, rms} | null, actual: {…}}`, each of position, speed and acceleration in
-    /// steps and s. The pulses have an acceleration where no plan is known, NaN at a cursor where it is not known.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Readings at two cursors and between them ([`BothReadings`]), in steps and s. The pulses have an acceleration only
+    /// without a plan; it may be NaN at a cursor.
     pub fn between(&mut self, axis: u8, a_cycle: f64, b_cycle: f64) -> Result<JsValue, JsError> {
         let hz = f64::from(self.experiment.config().clock_hz());
         let at = [a_cycle / hz, b_cycle / hz];
-        // One cycle at least: nothing lies between a cursor and itself.
+        // At least one cycle.
         let (from, to) = (at[0].min(at[1]), at[0].max(at[1]).max(at[0].min(at[1]) + 1.0 / hz));
         let zero_s = self.zero_s();
         let ideal = self.plan(axis).map(|plan| {
@@ -148,7 +141,6 @@ impl Simulation {
             Vec::from([f64::from(pulses.position_at(t)), pulses.speed_at(t), acceleration])
         };
         let mut stats = cursor_stats::actual(&pulses, from, to);
-        // Where a plan is known its acceleration is told.
         if ideal.is_none() {
             stats.acceleration = cursor_stats::actual_acceleration(&pulses, from, to);
         }
@@ -156,8 +148,8 @@ impl Simulation {
         object(&BothReadings { ideal, actual })
     }
 
-    /// The difference of this run's position and another's in columns, `{min, max}`, over a stretch of
-    /// start and end in s; `units` are what a step of this run and of the other is in the answer's unit.
+    /// Difference of the positions of this and another run in columns, `{min, max}`. `units` has the length of a step in each
+    /// run, `span_s` the start and end.
     #[must_use]
     pub fn difference(
         &mut self,
@@ -178,10 +170,7 @@ impl Simulation {
         result
     }
 
-    /// How far this run's position is from another's: `{common_s, largest, at_s, rms}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Deviation of the position from another run ([`Deviation`]).
     pub fn apart(
         &mut self,
         other: &mut Simulation,
@@ -192,7 +181,7 @@ impl Simulation {
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
         let position_error::Apart { largest, at_s, rms } = position_error::apart(first, second, common_s);
-        object(&Compared { common_s, largest, at_s, rms })
+        object(&Deviation { common_s, largest, at_s, rms })
     }
 }
 
@@ -201,7 +190,7 @@ impl Simulation {
         self.experiment.plans_of(self.selected).get(usize::from(axis))
     }
 
-    /// When the motions begin, in s.
+    /// Start of the motions, in s.
     fn zero_s(&self) -> f64 {
         let first = self.selected().recording.first_tick();
         first.map_or(0.0, |start| start.seconds(self.experiment.config().clock_hz()))
@@ -215,7 +204,7 @@ impl Simulation {
         self.recordings[self.selected].count_steps(channel);
     }
 
-    /// What the run made of a channel whose steps are counted.
+    /// Pulses of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
         let recorded = self.selected();
         if self.recorded.is_some() && self.selected == 0 {

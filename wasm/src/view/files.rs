@@ -1,9 +1,6 @@
-//! A run as files, in pieces: so ten million edges neither stop the worker nor fill its memory.
-//!
-//! A piece is asked for by where it begins. Nothing is kept between two pieces, so leaving off is nothing
-//! but not asking for the next one.
+//! Exports a run as files in pieces, so that long runs neither block the worker nor fill its memory.
 
-use crate::{convert::field, judged::config, view::simulation::Simulation};
+use crate::{convert::field, scenario::config, view::simulation::Simulation};
 use js_sys::{Object, Uint8Array};
 use std::{fmt, io};
 use stepscope_core::{
@@ -23,18 +20,16 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Rows of a piece: about a megabyte.
+/// Rows per piece: about 1 MB.
 const ROWS: usize = 1 << 14;
 
 #[wasm_bindgen]
 impl Simulation {
-    /// A piece of a file of controller `controller`, from cycle `start` to cycle `end`, both in it: `{bytes,
-    /// next, rows}`, `next` what to give for `from` (first 0) to get the piece after it, null at the end;
-    /// `rows` are those of the whole file. Kinds are `vcd`, `edges`, `trace`, `ticks` and
-    /// `segments` (the lists of the whole run).
+    /// A piece of a file for cycles `start..=end`: `{bytes, next, rows}`. `next` is the value of `from` for the next piece,
+    /// null at the end; `rows` counts the whole file. Kinds are `vcd`, `edges`, `trace`, `ticks` and `segments`.
     ///
     /// # Errors
-    /// If there is no such controller or kind.
+    /// For an unknown controller or kind.
     pub fn file_piece(
         &self,
         kind: &str,
@@ -43,11 +38,10 @@ impl Simulation {
         end: f64,
         from: u32,
     ) -> Result<Object, JsError> {
-        // Nothing of a file lies behind the run.
         let last = self.run.cycles().0.saturating_sub(1);
         let (start, end) = ((start.max(0.0) as u64).min(last), (end.max(0.0) as u64).min(last));
         let index = controller as usize;
-        let none = || JsError::new("there is no such controller");
+        let none = || JsError::new("no such controller");
         let recording = &self.recordings.get(index).ok_or_else(none)?.recording;
         let config = config(&self.experiment, index);
         let from = from as usize;
@@ -86,7 +80,7 @@ impl Simulation {
                 let rows = self.segments(&mut text, from)?;
                 (text.into_bytes(), rows)
             }
-            _ => return Err(JsError::new("there is no such kind of file")),
+            _ => return Err(JsError::new("unknown kind of file")),
         };
         let result = Object::new();
         field(&result, "bytes", &Uint8Array::from(bytes.as_slice()).into());
@@ -96,10 +90,10 @@ impl Simulation {
         Ok(result)
     }
 
-    /// What was done to the line, or the lists of segments, as a scenario of its own.
+    /// The sent bytes, or the segments, as a scenario.
     ///
     /// # Errors
-    /// If there is more of it than a scenario may hold.
+    /// If that exceeds a scenario.
     pub fn line_script(&self) -> Result<String, JsError> {
         let scripted = scripted(Scenario::clone(&self.scenario), &self.experiment, &self.run);
         if let Err(problems) = scripted.check() {
@@ -107,9 +101,7 @@ impl Simulation {
             return Err(JsError::new(&lines.join("; ")));
         }
         scripted.to_file_json().ok_or_else(|| {
-            JsError::new(
-                "the scenario takes more bytes than can be read again: end the run sooner with run_cycles, or give a shorter motion",
-            )
+            JsError::new("the scenario would be too long to open; shorten the run length or the motion")
         })
     }
 }
@@ -132,7 +124,7 @@ impl Simulation {
         Ok(bytes)
     }
 
-    /// The segments that run the scenario; gives how many there are.
+    /// Writes the segments; returns their number.
     fn segments(&self, text: &mut String, from: usize) -> Result<usize, fmt::Error> {
         if from == 0 {
             text.push_str(SEGMENTS_HEAD);

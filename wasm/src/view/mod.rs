@@ -1,4 +1,4 @@
-//! The first screen: scenarios validated and run, the views' data, charts, links.
+//! The first screen: validation, runs, data of the views, charts and links.
 
 mod advance;
 mod charts;

@@ -1,4 +1,4 @@
-//! The packet table, the ticks and the line's decoder of the controller that is selected, as JavaScript values.
+//! The packet table, the ticks and the line decoder of the selected controller.
 
 use crate::{
     convert::{field, object},
@@ -23,7 +23,7 @@ struct Rows<T> {
 }
 
 impl<T> Rows<T> {
-    /// None of them where there are more than `limit`.
+    /// Empty if there are more than `limit`.
     fn within(limit: u32, rows: impl Iterator<Item = T>) -> Self {
         let limit = limit as usize;
         let mut rows: Vec<T> = rows.take(limit + 1).collect();
@@ -41,22 +41,17 @@ fn cycle(at: f64) -> Instant {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// What the table shows from now on ([`Request::new`]); nothing is judged before `filter_on`. What has to be said of
-    /// the text comes back, empty for nothing.
+    /// Sets the filter ([`Request::new`]) for `filter_on`; returns a note about the text, or an empty one.
     pub fn filter(&mut self, text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> String {
         let (request, note) = Request::new(text, kind, address, mark, only);
         self.filter = Filter::new(request);
         note
     }
 
-    /// Judges up to `count` more rows: `{done, total, shown, matches}`, the numbers of all rows, of those on
-    /// show and of those that the text finds, so far.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Filters up to `count` more rows: `{done, total, shown, matches}`.
     pub fn filter_on(&mut self, count: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
-        struct Judged {
+        struct FilterProgress {
             done: bool,
             total: usize,
             shown: usize,
@@ -65,16 +60,12 @@ impl Simulation {
         let mut filter = take(&mut self.filter);
         let done = filter.advance(&self.table(), count as usize);
         let total = self.table().len();
-        let judged = Judged { done, total, shown: filter.shown(total), matches: filter.matches() };
+        let progress = FilterProgress { done, total, shown: filter.shown(total), matches: filter.matches() };
         self.filter = filter;
-        object(&judged)
+        object(&progress)
     }
 
-    /// The rows on show at positions `from..from + count`: `{total, shown, matches, unit, rows}`, a row
-    /// with its `position` and, where the text finds it, its `rank` among the matches. Times are in `unit`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The visible rows at positions `from..from + count` ([`Page`]), with the `rank` of matches. Times are in `unit`.
     pub fn packets(&self, from: u32, count: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
         struct Placed {
@@ -105,51 +96,34 @@ impl Simulation {
         })
     }
 
-    /// Where row `index` stands among those on show, if it is one of them.
+    /// Position of row `index` among the visible rows.
     #[must_use]
     pub fn packet_position(&self, index: u32) -> Option<u32> {
         self.filter.position(index as usize).map(|position| position as u32)
     }
 
-    /// Position of the next row after a position, or of the last before it, that the text finds; past the
-    /// end it goes on at the beginning.
+    /// Position of the next or previous match, with wraparound.
     #[must_use]
     pub fn next_match(&self, position: Option<u32>, forward: bool) -> Option<u32> {
         self.filter.next_match(position.map(|at| at as usize), forward).map(|at| at as u32)
     }
 
-    /// What there is to choose from: `{addresses, kinds}`, rising, each of them on some row.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// All addresses and kinds: `{addresses, kinds}`.
     pub fn packet_choices(&self) -> Result<JsValue, JsError> {
         object(&self.table().choices())
     }
 
-    /// Row `index` with its fields, its check and the times around it; null where there is none. A row as
-    /// in `packets`, and `{layout: [{name, from, until, value}], check, check_found, check_expected,
-    /// byte_cycles, byte_length, gap_cycles, drive_cycles, turnaround_cycles, answers}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Row `index` with its fields, CRC and times; null without one.
     pub fn packet(&self, index: u32) -> Result<JsValue, JsError> {
         object(&self.table().detail(index as usize))
     }
 
-    /// The fault flags that were raised, in the order of their bits: `[{name, times, cycle, row}]`, with the cycle and the
-    /// row (null where none did) that raised it first.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Raised fault flags in the order of their bits: `[{name, times, cycle, row}]`, with their first cycle and row.
     pub fn fault_places(&self) -> Result<JsValue, JsError> {
         object(&self.table().fault_places())
     }
 
-    /// The rows whose time on the line touches a stretch of cycles, none of them where there are more than `limit`:
-    /// `{rows, more}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Rows on the line in a range of cycles: `{rows, more}`; no rows above `limit`.
     pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
         let table = self.table();
         let touching = table.touching(cycle(start_cycle), cycle(end_cycle));
@@ -157,21 +131,12 @@ impl Simulation {
         object(&Rows { rows: rows.into_iter().filter_map(|index| table.row(index)).collect(), more })
     }
 
-    /// The ticks that touch a stretch of cycles, none of them where there are more than `limit`, each with the row that brought it:
-    /// `{rows: [{start_cycle, end_cycle, row, fields}], more}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Ticks in a range of cycles: `{rows: [{start_cycle, end_cycle, row, fields}], more}`; no rows above `limit`.
     pub fn ticks_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
         object(&Rows::within(limit, self.table().ticks_touching(cycle(start_cycle), cycle(end_cycle))))
     }
 
-    /// What is on the line in a stretch of cycles, unless that is more than `most_bytes` bytes; their bits only
-    /// where there are at most `most_bits` bytes: `{rx: {bits, bytes, fields}, tx: {…}, more}`, each of spans
-    /// `{start, end, texts, bad, packet, sample}` in cycles.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Decoded bytes in a range of cycles, for at most `most_bytes` bytes, with bits for at most `most_bits` bytes.
     pub fn decoded(
         &self,
         start_cycle: f64,
@@ -184,13 +149,9 @@ impl Simulation {
         object(&decoder.decode(start.0, end.0, most_bytes as usize, most_bits as usize))
     }
 
-    /// A part of a file of packets: `{part, rows, next}`. `format` is `csv` (the table that the command writes), `hex` (a
-    /// line of text a row) or `bin` (the bytes alone); the part is a text, of `bin` bytes. It holds up to `count` rows
-    /// from position `from` on, `next` is where to go on, undefined at the end. With `shown` only rows on show, with two
-    /// cycles only rows whose time on the line touches what lies between.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// A part of a packet file: `{part, rows, next}`. `format` is `csv`, `hex` (one row per line) or `bin`. It has up to
+    /// `count` rows from position `from`; `next` is undefined at the end. `shown`: only visible rows; with cycles, only rows
+    /// on the line between them.
     pub fn packet_file(
         &self,
         format: &str,

@@ -1,5 +1,4 @@
-//! The panels of stand-alone controllers as the view Panel shows them (CONTROLLER.md G8): what each showed
-//! when, what was switched, and its state in any cycle.
+//! Panels of stand-alone controllers (CONTROLLER.md G8).
 
 use crate::{convert::numbers, view::simulation::Simulation};
 use js_sys::Object;
@@ -21,9 +20,8 @@ impl Sink for Nowhere {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// What became of a panel: `records` (cycle, word, position, display of each), `inputs` (cycle, number, raw level of each
-    /// change), `ignored` (cycle, number, state of each press that did nothing), `writes` (of each cell of its memory);
-    /// undefined where there is no such controller.
+    /// History of a panel: `records` (cycle, word, position, display), `inputs` (cycle, number, raw level), `ignored` presses
+    /// (cycle, number, state), `writes` per memory cell; undefined for an unknown controller.
     #[must_use]
     pub fn panel(&self, controller: usize) -> Option<Object> {
         let machine = self.run.stand_alone().filter(|machine| controller < machine.controllers())?;
@@ -50,8 +48,8 @@ impl Simulation {
         Some(result)
     }
 
-    /// How a controller stands at the beginning of a cycle: word, position, display, place and error
-    /// of its axis, pulses a unit, decimals, whether its windings are powered, loops and groups of its program.
+    /// State of a controller at the start of a cycle: word, position, display, position and error of its axis, pulses per
+    /// unit, decimals, power of the windings, loops and groups.
     #[must_use]
     pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
         let cycle = Instant(cycle.max(0.0) as u64);

@@ -1,20 +1,20 @@
-//! What is saved of the panels of stand-alone controllers during a run.
+//! History of the panels of stand-alone controllers during a run.
 
 use stepscope_core::{
     controller::StandAlone,
     peripheral::{signal::Event, units::Instant},
 };
 
-/// Maximum number of saved states, so that few questions have to begin at cycle 0.
+/// Maximum saved states.
 const STOPS: usize = 64;
 
-/// What is saved of the panels during a run.
+/// History of the panels.
 pub(crate) struct PanelLog {
-    /// What was switched at the panels.
+    /// Changes of inputs.
     pub(crate) inputs: Vec<(Instant, Event)>,
-    /// The controllers at some cycles of the run, at equal numbers of slices.
+    /// States of the controllers at regular intervals.
     stops: Vec<StandAlone>,
-    /// Slices from one of them to the next, and those since the last one.
+    /// Slices between states, and since the last one.
     apart: usize,
     since: usize,
 }
@@ -26,12 +26,11 @@ impl Default for PanelLog {
 }
 
 impl PanelLog {
-    /// The last saved state up to a cycle.
     pub(crate) fn last_stop(&self, cycle: Instant) -> Option<&StandAlone> {
         self.stops.iter().rfind(|stop| stop.now() <= cycle)
     }
 
-    /// Saves the controllers' state if the run has come far enough since the last one.
+    /// Saves the state if it is due.
     pub(crate) fn save_stop(&mut self, machine: Option<&StandAlone>) {
         let Some(machine) = machine else { return };
         self.since += 1;
@@ -40,13 +39,13 @@ impl PanelLog {
         }
         self.since = 0;
         let mut stop = machine.clone();
-        // The run itself has what its panel has shown.
+        // The run has the panel history.
         for index in 0..stop.controllers() {
             stop.take_panel(index);
         }
         self.stops.push(stop);
         if self.stops.len() > STOPS {
-            // Every other one goes, and new ones are half as frequent.
+            // Keep every second one.
             let mut index = 0;
             self.stops.retain(|_| {
                 index += 1;

@@ -1,4 +1,4 @@
-//! What a run's motors, supply and sensors did, as the view Motor shows it.
+//! Motors, supply and sensors of a run.
 
 use crate::{
     convert::{field, numbers, object},
@@ -13,23 +13,20 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 impl Simulation {
-    /// The report of the selected controller's plant ([`PlantReport`]); null where it has none.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The report of the selected controller ([`PlantReport`]); null without a plant.
     pub fn plant(&self) -> Result<JsValue, JsError> {
         object(&PlantReport::of(&self.experiment, &self.run, self.selected))
     }
 
-    /// Values of the supply and of a motor over a range of cycles, by their names ([`SUPPLY`], [`MOTOR`]): `x` in s, `min`
-    /// and `max`; undefined where there is no such motor.
+    /// Curves of the supply and a motor by name ([`SUPPLY`], [`MOTOR`]): `x` in s, `min` and `max`; undefined for an unknown
+    /// motor.
     #[must_use]
     pub fn plant_curves(&self, channel: usize, from: f64, to: f64, columns: usize) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
-        let stretch = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
+        let window = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
         let hz = f64::from(self.experiment.config().clock_hz());
         let result = Object::new();
-        let bands = log.curves(&self.selected().recording.trace, stretch, &values);
+        let bands = log.curves(&self.selected().recording.trace, window, &values);
         for (name, band) in names.zip(bands) {
             let one = Object::new();
             let seconds: Vec<f64> = band.cycle.iter().map(|cycle| cycle / hz).collect();
@@ -41,7 +38,7 @@ impl Simulation {
         Some(result)
     }
 
-    /// The same values at the last point of the plant's grid up to a cycle.
+    /// The same values at a cycle.
     #[must_use]
     pub fn plant_at(&self, channel: usize, cycle: f64) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
@@ -55,7 +52,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// The log, and indices and names of the values of its supply and of one motor.
+    /// The log, and indices and names of the values.
     fn plant_values(
         &self,
         channel: usize,

@@ -1,4 +1,4 @@
-//! The presets of the page's menu.
+//! The presets.
 
 use crate::convert::object;
 use serde::Serialize;
@@ -15,10 +15,7 @@ struct Listed {
     scenario: String,
 }
 
-/// All presets: `{id, document, title, scenario}`, the scenario as JSON with every field written.
-///
-/// # Errors
-/// Never in practice: the presets are tested.
+/// All presets, with all fields of the scenario as JSON.
 #[wasm_bindgen]
 pub fn presets() -> Result<JsValue, JsError> {
     let listed = |preset: &Preset| {

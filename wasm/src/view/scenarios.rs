@@ -1,6 +1,6 @@
-//! Scenarios on their way into the form and the run: what is to be said of one that was judged.
+//! Validation of scenarios.
 
-use crate::{convert::object, judged::Judged};
+use crate::{convert::object, scenario::ValidatedScenario};
 use stepscope_core::{inspect::validation::Validation, scenario::Scenario};
 use wasm_bindgen::prelude::*;
 
@@ -11,7 +11,7 @@ pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
-/// The default scenario as JSON, every field written.
+/// The default scenario as JSON, with all fields.
 #[wasm_bindgen]
 #[must_use]
 pub fn default_scenario() -> String {
@@ -19,12 +19,8 @@ pub fn default_scenario() -> String {
 }
 
 #[wasm_bindgen]
-impl Judged {
-    /// All problems with their paths, the scenario as far as it could be read, what follows from it, and what a run
-    /// will cost: `{problems, scenario, derived, cost}`.
-    ///
-    /// # Errors
-    /// Never for any text: what is wrong with it is in the result.
+impl ValidatedScenario {
+    /// Problems, the scenario as far as it could be read, derived values, and the cost of a run ([`Validation`]).
     pub fn check(&self) -> Result<JsValue, JsError> {
         object(&Validation::of(&self.0))
     }

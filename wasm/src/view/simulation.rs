@@ -1,9 +1,8 @@
-//! A run in the worker: made in slices, kept for the views' questions. The views look at one
-//! controller at a time.
+//! A run in the worker. The views show one controller at a time.
 
 use crate::{
     convert::records,
-    judged::{Judged, listed},
+    scenario::{ValidatedScenario, listed},
     view::{
         advance::{advance, progress},
         panel_log::PanelLog,
@@ -28,34 +27,32 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Violations of the driver's timing that the page gets in full.
-const MAX_KEPT: usize = 1000;
+/// Maximum timing violations with details.
+const MAX_VIOLATIONS: usize = 1000;
 
-/// One scenario's run.
+/// The run of a scenario.
 #[wasm_bindgen]
 pub struct Simulation {
     pub(crate) scenario: Rc<Scenario>,
     pub(crate) experiment: Rc<Experiment>,
     pub(crate) run: Run,
-    /// Of each controller, in the order of the scenario; never empty.
+    /// One per controller; never empty.
     pub(crate) recordings: Vec<ControllerRecording>,
-    /// Index in `recordings` of the controller that the views look at.
+    /// Index of the visible controller.
     pub(crate) selected: usize,
-    /// Which rows of its packets the table shows.
+    /// Filter of its packet table.
     pub(crate) filter: Filter,
-    /// What was recorded, to be looked at in place of what the first controller makes; empty once that is done.
+    /// Records shown instead of the first controller's; empty once they are used.
     pub(crate) recorded: Option<Vec<Record>>,
-    /// How many records of it are taken in.
-    taken_in: usize,
-    /// The panels of stand-alone controllers.
+    /// Number of used records.
+    processed: usize,
     pub(crate) panels: PanelLog,
-    /// Replies that were recorded, as [`replies::put`] takes them; none of them left once they are in their place.
+    /// Recorded replies for [`replies::put`]; empty once they are used.
     pub(crate) replies: Option<Vec<u8>>,
-    /// The run is at its end; what was recorded is taken in, or has been.
-    is_made: bool,
+    is_simulated: bool,
 }
 
-/// Records a run, and what is switched at the panels of stand-alone controllers.
+/// Records a run and the inputs of panels.
 struct Watched {
     run: RunSink,
     inputs: Vec<(Instant, Event)>,
@@ -75,30 +72,29 @@ impl Sink for Watched {
     }
 }
 
-/// What is kept of one controller.
+/// The recording of one controller.
 #[derive(Default)]
 pub(crate) struct ControllerRecording {
     pub(crate) recording: Recording,
-    /// Where its signals change.
     pub(crate) changes: Changes,
-    /// The pulses against the scenario's driver, if it names one.
+    /// Timing check, if the scenario has a driver.
     pub(crate) timing: Option<TimingCheck>,
-    /// What its motors did, if the scenario has a plant.
+    /// Log of its plant, if any.
     pub(crate) plant: Option<PlantLog>,
-    /// Steps of each channel, as far as they were asked for after the end.
+    /// Counted steps of each channel.
     steps: Vec<Option<Vec<Step>>>,
 }
 
 impl ControllerRecording {
     pub(crate) fn count_steps(&mut self, channel: u8) {
-        if let Some(place) = self.steps.get_mut(usize::from(channel))
-            && place.is_none()
+        if let Some(counted) = self.steps.get_mut(usize::from(channel))
+            && counted.is_none()
         {
-            *place = Some(steps(&self.recording.trace, channel));
+            *counted = Some(steps(&self.recording.trace, channel));
         }
     }
 
-    /// Where its motors stand at the end, by their steps in the trace.
+    /// Final positions, from the steps in the trace.
     pub(crate) fn positions(&self) -> Vec<i32> {
         let mut positions = vec![0_i32; self.steps.len()];
         let mut before = Levels(0);
@@ -117,14 +113,14 @@ impl ControllerRecording {
         positions
     }
 
-    /// Shows what was recorded in place of what was made, once it is taken in.
+    /// Replaces the trace by a recording.
     fn show(&mut self, recorded: Vec<Record>, timing: Option<TimingCheck>) {
         (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
         (self.timing, self.changes) = (timing, Changes::default());
     }
 
-    /// Takes in the records from one place to another of what is shown.
-    fn take_in(&mut self, from: usize, to: usize) {
+    /// Processes records `from..to` of the recording.
+    fn process(&mut self, from: usize, to: usize) {
         let Some(known) = self.recording.trace.get(..to) else { return };
         for record in known.iter().skip(from) {
             self.recording.digest.record(*record);
@@ -133,14 +129,14 @@ impl ControllerRecording {
         self.changes.extend(known);
     }
 
-    /// Steps of a channel, once they are counted.
+    /// Counted steps of a channel.
     pub(crate) fn steps_of(&self, channel: u8) -> &[Step] {
         self.steps.get(usize::from(channel)).and_then(Option::as_deref).unwrap_or_default()
     }
 }
 
 #[wasm_bindgen]
-impl Judged {
+impl ValidatedScenario {
     /// A run before its first cycle.
     ///
     /// # Errors
@@ -153,18 +149,17 @@ impl Judged {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Runs on until one controller has made about `max_records` more records, or its plant as many steps of its grid; then takes
-    /// in as many of what was recorded: `{done, cycle, end_cycle, records}`, the records those of all controllers.
+    /// Runs for about `max_records` more records ([`advance`]), then processes as many of a recording. Returns the progress.
     ///
     /// # Errors
-    /// If the run makes more records than a page can keep.
+    /// If the run has too many records.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
-        if self.is_made {
-            self.take_in(max_records as usize);
+        if self.is_simulated {
+            self.process(max_records as usize);
         } else {
-            self.make(max_records);
+            self.run_slice(max_records);
         }
-        let done = self.is_made && self.taken_in == self.to_take_in();
+        let done = self.is_simulated && self.processed == self.recorded_count();
         if done {
             self.finish();
         }
@@ -172,23 +167,20 @@ impl Simulation {
         progress(&self.experiment, &self.run, done, records)
     }
 
-    /// Records of a recording, which are looked at in place of what the run makes: 16 bytes each, cycle and levels,
-    /// little-endian; piece after piece, before the run. `room` says how many come at most, these among them: a vector that grows
-    /// by itself takes twice the memory.
+    /// Adds records of 16 bytes (cycle and levels, little-endian) to show instead of the run. `room` is the maximum of all
+    /// records, since a growing vector needs twice the memory.
     pub fn record(&mut self, bytes: &[u8], room: u32) {
         let recorded = self.recorded.get_or_insert_default();
         recorded.reserve_exact(room as usize);
         recorded.extend(records(bytes));
     }
 
-    /// What was recorded on TX, in the place of what the controllers reply ([`replies::put`]), nothing where they were silent;
-    /// before the run.
-    pub fn answer(&mut self, bytes: Vec<u8>) {
+    /// Sets recorded replies ([`replies::put`]) to show instead of those of the run.
+    pub fn set_replies(&mut self, bytes: Vec<u8>) {
         self.replies = Some(bytes);
     }
 
-    /// The views look at this controller from now on, 0 the first; one that there is not leaves it as it
-    /// is.
+    /// Selects a controller, if it exists.
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.recordings.len() {
             self.selected = controller as usize;
@@ -198,8 +190,7 @@ impl Simulation {
 }
 
 impl Simulation {
-    /// Runs on.
-    fn make(&mut self, max_records: u32) {
+    fn run_slice(&mut self, max_records: u32) {
         self.panels.save_stop(self.run.stand_alone());
         let watched = |one: &mut ControllerRecording| Watched {
             run: RunSink { recording: take(&mut one.recording), timing: one.timing.take() },
@@ -220,27 +211,27 @@ impl Simulation {
             }
         }
         if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
-            first.show(take(recorded), drivers::check(&self.scenario, MAX_KEPT));
+            first.show(take(recorded), drivers::check(&self.scenario, MAX_VIOLATIONS));
         }
-        self.is_made = done;
+        self.is_simulated = done;
     }
 
-    /// How many records were recorded.
-    fn to_take_in(&self) -> usize {
+    /// Number of records in the recording.
+    fn recorded_count(&self) -> usize {
         let first = self.recordings.first().filter(|_| self.recorded.is_some());
         first.map_or(0, |first| first.recording.trace.len())
     }
 
-    /// Takes in so many more of what was recorded.
-    fn take_in(&mut self, count: usize) {
-        let (from, until) = (self.taken_in, self.taken_in.saturating_add(count).min(self.to_take_in()));
+    /// Processes `count` more records of the recording.
+    fn process(&mut self, count: usize) {
+        let (from, until) = (self.processed, self.processed.saturating_add(count).min(self.recorded_count()));
         if let Some(first) = self.recordings.first_mut() {
-            first.take_in(from, until);
+            first.process(from, until);
         }
-        self.taken_in = until;
+        self.processed = until;
     }
 
-    /// Everything is there: packets are in their order, and the replies are those that were recorded.
+    /// Sorts packets and sets recorded replies.
     fn finish(&mut self) {
         let recorded = self.replies.as_mut().map(take);
         for (index, one) in self.recordings.iter_mut().enumerate() {
@@ -252,13 +243,13 @@ impl Simulation {
         }
     }
 
-    /// A run of what was judged, before its first cycle.
+    /// A run before its first cycle.
     pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
         let run = experiment.start();
         let recording = |(index, config): (usize, &Config)| ControllerRecording {
             recording: Recording::default(),
             changes: Changes::default(),
-            timing: drivers::check(scenario, MAX_KEPT),
+            timing: drivers::check(scenario, MAX_VIOLATIONS),
             plant: run.plant(index).map(PlantLog::new),
             steps: vec![None; usize::from(config.channels())],
         };
@@ -271,14 +262,14 @@ impl Simulation {
             selected: 0,
             filter: Filter::default(),
             recorded: None,
-            taken_in: 0,
+            processed: 0,
             panels: PanelLog::default(),
             replies: None,
-            is_made: false,
+            is_simulated: false,
         }
     }
 
-    /// The controller that the views look at.
+    /// The selected controller.
     pub(crate) fn selected(&self) -> &ControllerRecording {
         &self.recordings[self.selected]
     }

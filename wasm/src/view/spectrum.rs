@@ -1,4 +1,4 @@
-//! Spectra as the page shows them.
+//! Spectra.
 
 use crate::{
     convert::{field, numbers, object},
@@ -14,11 +14,7 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Spectra of the ideal motion and of the pulses, for the axis that the scenario's analysis names: `{axis, ideal,
-    /// pulses, note}`; `acceleration_filtered` is there where the analysis has a sensor.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Spectra of the ideal and the actual motion of the analyzed axis: `{axis, ideal, pulses, note}`.
     pub fn spectrum(&mut self) -> Result<Object, JsError> {
         let axis = self.scenario.analysis.axis;
         self.count_steps(axis);

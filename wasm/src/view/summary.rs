@@ -1,4 +1,4 @@
-//! What a run came to ([`RunSummary`]), as the page has it.
+//! The summary of a run.
 
 use crate::{
     convert::object,
@@ -16,7 +16,7 @@ use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]
 struct Summary {
-    /// What was recorded is on show, be it replies alone, not what the run makes.
+    /// Whether records or replies are recorded.
     recorded: bool,
     framed: bool,
     end_cycle: u64,
@@ -37,11 +37,11 @@ struct Controller {
     positions: Vec<i32>,
     faults: Faults,
     ticks_done: u32,
-    /// On a framed line.
+    /// Only on a framed line.
     state: Option<&'static str>,
-    /// Bits of the signals that change at all.
+    /// Bits of the signals with edges.
     changing: Vec<u8>,
-    /// Of the scenario's driver, if it names one.
+    /// Timing violations, if the scenario has a driver.
     violations: Option<u64>,
 }
 
@@ -64,27 +64,17 @@ struct Host {
 
 #[derive(Serialize)]
 struct Job {
-    /// Index of the controller.
     controller: usize,
     ticks: usize,
     acknowledged: u32,
     progress: &'static str,
-    /// Why the host gave up, if it did.
+    /// Why the host gave up.
     why: Option<String>,
 }
 
 #[wasm_bindgen]
 impl Simulation {
-    /// What the run came to: `{recorded, framed, end_cycle, end_s, clock_hz, line_load, host, controllers}`. The
-    /// controllers are in the order of the scenario, each with its address (or null), digest, records, edges,
-    /// channels, positions, faults `{bits, names}`, ticks_done, state (null on a raw line), changing (the
-    /// bits of the signals that change at all) and violations (null without a driver). The host is null
-    /// where nobody waits for replies, else `{frames, repeated, replies, rejected, crashes, jobs}`, with a job
-    /// `{controller, ticks, acknowledged, progress, why}` for each controller that has something to do;
-    /// progress is a name of [`Progress`]: `opening`, `filling`, `done`, `given_up` and others.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The summary. `host` is null without replies; `progress` is a name of [`Progress`].
     pub fn summary(&self) -> Result<JsValue, JsError> {
         let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
         let run = RunSummary::new(&self.experiment, &self.run, digests);

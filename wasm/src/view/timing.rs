@@ -1,6 +1,6 @@
-//! The timing check of a run, as the page shows it, and the drivers that it may choose from.
+//! The timing check of a run, and the known drivers.
 
-use crate::{convert::object, judged::config, view::simulation::Simulation};
+use crate::{convert::object, scenario::config, view::simulation::Simulation};
 use serde::Serialize;
 use stepscope_core::{
     inspect::trace::{
@@ -20,7 +20,7 @@ struct Listed {
     rules: Rules,
 }
 
-/// Rules as a scenario names them.
+/// Rules with the names of a scenario.
 #[derive(Serialize)]
 struct Rules {
     step_high_ns: u32,
@@ -37,10 +37,7 @@ impl From<&TimingRules> for Rules {
     }
 }
 
-/// All drivers whose figures are known: `{id, name, source, rules}`, the rules as in a scenario.
-///
-/// # Errors
-/// Never in practice.
+/// All known drivers.
 #[wasm_bindgen]
 pub fn drivers() -> Result<JsValue, JsError> {
     let listed: Vec<Listed> = DRIVERS
@@ -57,7 +54,7 @@ pub fn drivers() -> Result<JsValue, JsError> {
 
 #[derive(Serialize)]
 struct Timing {
-    /// Id of the driver; none for rules of the scenario's own.
+    /// Null for custom rules.
     driver: Option<&'static str>,
     total: u64,
     rules: Vec<RuleRow>,
@@ -92,15 +89,7 @@ struct ViolationRow {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// The pulses so far of the controller that is looked at, against the scenario's driver; null without a driver. Of each rule what is
-    /// required (0: nothing), the least that was measured, and the violations in all and of each
-    /// channel: `{driver, total, rules: [{rule, required_ns, required_cycles, least:
-    /// {measured_cycles, cycle, channel} | null, violations, by_channel}], violations: [{cycle,
-    /// channel, rule, measured_cycles, required_cycles}]}`, the violations the first 1000 in the order
-    /// of their cycles.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Timing check of the selected controller, with the first 1000 violations; null without a driver.
     pub fn timing(&self) -> Result<JsValue, JsError> {
         let Some(check) = &self.selected().timing else { return Ok(JsValue::NULL) };
         let channels = usize::from(config(&self.experiment, self.selected).channels());
@@ -115,11 +104,9 @@ impl Simulation {
         })
     }
 
-    /// Index in `timing().violations` of the first violation after `cycle`, or with `forward` false of
-    /// the last one before.
+    /// Index of the next or previous violation in `timing().violations`.
     #[must_use]
     pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
-        // A cycle before reset has reset's violations, of which there are none, before it.
         let at = Instant(cycle.max(0.0) as u64);
         self.selected().timing.as_ref()?.next(at, forward).map(|index| index as u32)
     }

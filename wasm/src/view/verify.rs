@@ -1,4 +1,4 @@
-//! A run held against another one: what a link's sender saw.
+//! Compares a run with that of the sender of a link.
 
 use crate::{convert::object, view::simulation::Simulation};
 use serde::Serialize;
@@ -9,7 +9,7 @@ use stepscope_core::inspect::trace::{
 use stepscope_core::peripheral::signal::Sink;
 use wasm_bindgen::prelude::*;
 
-/// A place in a run.
+/// A position in a run.
 #[derive(Serialize)]
 struct Place {
     edge: u64,
@@ -22,15 +22,15 @@ impl From<Mark> for Place {
     }
 }
 
-/// How the run stands to the sender's.
+/// The result.
 #[derive(Serialize, Default)]
-struct Judged {
-    /// Why it cannot be told.
+struct Verdict {
+    /// Why it cannot be compared.
     error: Option<String>,
     same: bool,
     /// Of all controllers.
     edges: u64,
-    /// The sender's version, where it is another.
+    /// The version of the sender, if different.
     version: Option<String>,
     own_version: &'static str,
     /// The controller that differs.
@@ -52,47 +52,42 @@ impl Simulation {
         .emit()
     }
 
-    /// Holds the run against the part `d` of a link: `{error, same, edges, version, own_version,
-    /// controller, after, until, shorter}`. `after` and `until` are places `{edge, cycle}` that the first
-    /// difference lies between, `version` is the sender's where it is another than this.
-    ///
-    /// # Errors
-    /// Never for any text.
+    /// Compares the run with part `d` of a link. The first difference is between `after` and `until`.
     pub fn verify(&self, text: &str) -> Result<JsValue, JsError> {
-        object(&self.judged(text))
+        object(&self.verdict(text))
     }
 }
 
 impl Simulation {
-    fn judged(&self, text: &str) -> Judged {
-        let proof = match RunFingerprint::parse(text) {
-            Ok(proof) => proof,
-            Err(error) => return Judged { error: Some(error.to_string()), ..Judged::default() },
+    fn verdict(&self, text: &str) -> Verdict {
+        let sent = match RunFingerprint::parse(text) {
+            Ok(fingerprint) => fingerprint,
+            Err(error) => return Verdict { error: Some(error.to_string()), ..Verdict::default() },
         };
-        let version = proof.other_version().map(str::to_owned);
-        let judged = Judged { version, own_version: VERSION, ..Judged::default() };
+        let version = sent.other_version().map(str::to_owned);
+        let verdict = Verdict { version, own_version: VERSION, ..Verdict::default() };
         let own = self.recordings.len();
-        let mut checks = match proof.checks(own) {
+        let mut checks = match sent.checks(own) {
             Ok(checks) => checks,
-            Err(sent) => {
+            Err(controllers) => {
                 let error = format!(
-                    "the sender's digests are of {sent} controllers, this experiment has {own}; they are left out"
+                    "the link has digests of {controllers} controllers, but this experiment has {own}; they are ignored"
                 );
-                return Judged { same: true, error: Some(error), ..judged };
+                return Verdict { same: true, error: Some(error), ..verdict };
             }
         };
         for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
             recorded.recording.trace.iter().for_each(|record| check.record(*record));
         }
         match Verification::of(checks) {
-            Verification::Same { edges } => Judged { same: true, edges, ..judged },
+            Verification::Same { edges } => Verdict { same: true, edges, ..verdict },
             Verification::Differs { controller, after, until, shorter } => {
                 let shorter = shorter.map(|shorter| match shorter {
                     Shorter::This => "this",
                     Shorter::Other => "other",
                 });
                 let (after, until) = (Some(after.into()), Some(until.into()));
-                Judged { controller, after, until, shorter, ..judged }
+                Verdict { controller, after, until, shorter, ..verdict }
             }
         }
     }

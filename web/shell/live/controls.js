@@ -39,22 +39,22 @@ export function controlsOf(session, { role, scenario, noPort, isInFront }) {
       hidden: isButtonHidden,
     },
     isEndHidden: running !== "serve",
-    aside: { text: isInFront ? "Put aside" : "Bring to front", hidden: isInFront && isIdle },
+    aside: { text: isInFront ? "Move aside" : "Bring to front", hidden: isInFront && isIdle },
     stop: {
       hidden: running === "serve" || (role === "serve" && unsettled === null),
       disabled: isIdle && !mayMove && (why !== "" || port === null || isRaw),
       title: stopTitle(isRaw, running === "stream" || (mayMove && isInFront)),
     },
-    close: { disabled: !isIdle, title: isIdle ? "" : "First STOP, or end" },
+    close: { disabled: !isIdle, title: isIdle ? "" : "Press STOP or end first" },
   };
 }
 
 /** What is reported when a role begins. @param {Role} role @param {boolean} isStop */
-export const beginText = (role, isStop) => (isStop ? "STOP is sent…" : role === "serve" ? "Answering…" : "Sending…");
+export const beginText = (role, isStop) => (isStop ? "Sending STOP…" : role === "serve" ? "Replying…" : "Sending…");
 
 /** What the dialog says first while it is not known whether a device has ended. @param {import("./session.js").Device} device */
 export function unsettledText({ port, unsettled }) {
   if (!unsettled) return "";
-  const where = port ? "" : "choose its port, then ";
-  return `It is not known whether what was sent has ended: ${where}STOP goes as it went, at ${unsettled.baud} baud.`;
+  const where = port ? "" : "choose its port, then press STOP. ";
+  return `The last transfer may not have ended: ${where}STOP is sent at ${unsettled.baud} baud.`;
 }

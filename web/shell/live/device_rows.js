@@ -5,7 +5,7 @@ import { count } from "../../state/number.js";
 /** @typedef {import("../../engine/live.js").Exchange} Exchange */
 
 /** Rows of replies that stay on show. */
-const MOST_ROWS = 300;
+const MAX_ROWS = 300;
 const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", "differs"];
 const NUMBERS = [0, 1, 5, 6, 7];
 
@@ -26,7 +26,7 @@ function create() {
   const body = element("tbody");
   const table = element(
     "table",
-    { "aria-label": "Replies of the device, the newest first" },
+    { "aria-label": "Replies of the device, newest first" },
     element("thead", {}, element("tr", {}, ...head)),
     body,
   );
@@ -41,14 +41,14 @@ function create() {
       { type: "button", id: device ? "packets-of-device" : "packets-of-model" },
       device ? "Device" : "Model",
     );
-    side.title = device ? "The device's replies, the newest first" : "The packets of the model's run";
+    side.title = device ? "Replies of the device, newest first" : "Packets of the simulated run";
     side.addEventListener("click", () => show(device));
     return side;
   });
   byId("device").after(
     element("span", { class: "group live-sides", role: "group", "aria-label": "Packets of" }, ...sides),
   );
-  const unanswered = element("p", { class: "note" }, "Raw packets were sent, which nobody answers.");
+  const unanswered = element("p", { class: "note" }, "Raw packets get no reply.");
   unanswered.hidden = true;
   rows.append(unanswered);
   view.append(rows);
@@ -70,8 +70,8 @@ function create() {
     },
     /** @param {Exchange[]} exchanges */
     add(exchanges) {
-      body.prepend(...exchanges.slice(-MOST_ROWS).reverse().map(rowOf));
-      while (body.rows.length > MOST_ROWS) body.lastElementChild?.remove();
+      body.prepend(...exchanges.slice(-MAX_ROWS).reverse().map(rowOf));
+      while (body.rows.length > MAX_ROWS) body.lastElementChild?.remove();
     },
   };
 }

@@ -17,7 +17,7 @@ export function createLayout() {
   const aside = element("button", { type: "button", id: "live-aside" });
   const stop = element("button", { type: "button", id: "live-stop", class: "live-stop" }, "STOP");
   const actions = element("div", { class: "live-actions" }, choose, allowed, start, end, aside, stop);
-  const status = element("p", { id: "live-said", class: "live-said", role: "status" });
+  const status = element("p", { id: "live-status", class: "live-status", role: "status" });
   const standing = element("p", { id: "live-standing", class: "live-standing" });
   const progress = element("progress", { max: "1", value: "0" });
   const curves = positionCurves();
@@ -37,7 +37,7 @@ export function createLayout() {
   copy.textContent = "Copy the report";
   const reported = element("div", { id: "live-reported" }, report, copy);
   /** Of a session that could not be recorded. */
-  const times = element("button", { type: "button", id: "live-times" }, "Save its wall-clock times");
+  const times = element("button", { type: "button", id: "live-times" }, "Save wall-clock times");
   for (const part of [progress, curves.node, reported, times]) part.hidden = true;
   const close = element("button", { type: "button", id: "live-close" }, "Close");
   const dialog = element(
@@ -47,7 +47,7 @@ export function createLayout() {
       "div",
       {},
       element("h2", { id: "live-title" }, "Device"),
-      element("fieldset", {}, element("legend", {}, "This page is to"), ...roles.map(({ label }) => label)),
+      element("fieldset", {}, element("legend", {}, "Mode"), ...roles.map(({ label }) => label)),
       about,
       actions,
       status,
@@ -60,7 +60,7 @@ export function createLayout() {
       element(
         "p",
         { class: "note" },
-        "Leaving the page, or losing the port, ends the sending: the device does what is in its queue, and then it runs dry (UNDERRUN).",
+        "If you leave the page or the port is lost, sending ends. The device then executes its queue and stops with UNDERRUN.",
       ),
       element("p", { class: "named" }, close),
     ),

@@ -17,14 +17,14 @@ import { reportText, servedText, twinOf } from "./report.js";
 import { whyNoPort } from "./roles.js";
 import { LiveSession, RUNS_DRY } from "./session.js";
 
-/** @typedef {import("../../engine/live.js").Told} Told */
+/** @typedef {import("../../engine/live.js").LiveEvent} LiveEvent */
 
 /** @type {import("./session.js").Device} */
 const device = { port: null, unsettled: null };
 /** Brings the open dialog to the front. @type {(() => void) | null} */
 let bring = null;
 
-/** @param {import("../opened.js").Given} page */
+/** @param {import("../open_file.js").Given} page */
 export async function openDevice(page) {
   if (bring) return bring();
   bring = () => {};
@@ -33,14 +33,14 @@ export async function openDevice(page) {
   return bring();
 }
 
-/** Returns how to bring it to the front. @param {import("../opened.js").Given} page */
+/** Returns how to bring it to the front. @param {import("../open_file.js").Given} page */
 function createDialog(page) {
   const { dispatch, now } = page;
   const session = new LiveSession(device);
   const view = createLayout();
   const { dialog, start, stop } = view;
   const rows = deviceRows();
-  const live = openLive(hear);
+  const live = openLive(receive);
   const noPort = whyNoPort();
   let { scenario } = now();
   /** When the stream began. */
@@ -111,7 +111,7 @@ function createDialog(page) {
     session.json = json;
     session.facts = null;
     session.broken = "";
-    live.judge(json);
+    live.validate(json);
     show();
   }
 
@@ -146,7 +146,7 @@ function createDialog(page) {
   async function begin(isStop) {
     if (!isStop && JSON.stringify(now().scenario) !== session.json) {
       validate();
-      return report("The experiment has changed: this is about the new one now. Start it if it is meant.");
+      return report("The experiment has changed. Press start again to use the new one.");
     }
     const warning = isStop ? "" : session.warning();
     if (warning) return report(warning, true);
@@ -172,7 +172,8 @@ function createDialog(page) {
       await (name === "serve" ? live.serve(port, baud, json) : live.stream(port, baud, json, isStop));
     } catch (error) {
       session.running = null;
-      if (!session.ended) report(`The port cannot be opened: ${message(error)} Is it taken by another program?`, true);
+      if (!session.ended)
+        report(`The port cannot be opened: ${message(error)} Close other programs that use it.`, true);
       show();
       if (stopAgain()) return;
       front();
@@ -194,8 +195,8 @@ function createDialog(page) {
     report(text, true);
   }
 
-  /** @param {Told} event  Of the worker. */
-  function hear(event) {
+  /** @param {LiveEvent} event  From the worker. */
+  function receive(event) {
     if (event.error) {
       const text = session.failed(event.error);
       if (text) report(text, true);
@@ -227,9 +228,9 @@ function createDialog(page) {
 
   /** @param {import("../../engine/live.js").Reported} reported */
   function showReport(reported) {
-    const { said: text, good } = session.reported(reported);
+    const { text, good } = session.reported(reported);
     report(text, !good);
-    if (!dialog.open) notify(good ? "info" : "error", `The dialog of devices was closed while it was sending. ${text}`);
+    if (!dialog.open) notify(good ? "info" : "error", `The device dialog was closed while sending. ${text}`);
     fill(view.twin, ...(reported.raw ? [] : twinOf(reported)));
     view.report.value = reportText(session.sent.title, began, reported, session.delays);
     view.reported.hidden = false;
@@ -250,10 +251,10 @@ function createDialog(page) {
 
   /** @param {import("../../engine/live.js").Recorded} recorded */
   function showRecorded(recorded) {
-    const { why, lost, heard, times } = recorded;
+    const { why, lost, received, times } = recorded;
     session.ended = true;
     const gone = lost ? ` The port is lost: ${lost}.` : "";
-    if (heard === 0) return report(`Nothing was heard: there is nothing to record.${gone}`, lost !== "");
+    if (received === 0) return report(`Nothing was received, so there is no recording.${gone}`, lost !== "");
     if (why !== null) {
       view.times.onclick = () => saveTimes(now(), times);
       view.times.hidden = false;
@@ -270,7 +271,7 @@ function createDialog(page) {
     } catch {
       view.report.focus();
       view.report.select();
-      say(view.copy, "Selected: copy it with Ctrl+C");
+      say(view.copy, "Selected: copy with Ctrl+C");
     }
   }
 }

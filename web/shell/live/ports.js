@@ -5,7 +5,7 @@ import { message } from "../link.js";
 import { usbOf } from "./roles.js";
 
 /** Of a port that the browser does not give back. */
-export const STUCK = "The port could not be closed: load this page again before it is used by anyone.";
+export const STUCK = "The port could not be closed: reload this page before you use it again.";
 
 /** @type {WeakSet<any>} */
 const stuck = new WeakSet();
@@ -19,7 +19,7 @@ export function createPorts(device, allowed, { report, chosen, focus }) {
   function take(port) {
     if (stuck.has(port)) return report(STUCK, true);
     device.port = port;
-    report(`A port is chosen${usbOf(port)}. It is not open yet.`);
+    report(`Port selected${usbOf(port)}. It is not open yet.`);
     chosen();
     return focus();
   }
@@ -30,7 +30,7 @@ export function createPorts(device, allowed, { report, chosen, focus }) {
     } catch (error) {
       // No port was chosen, or this page may have none.
       const isNone = error instanceof DOMException && error.name === "NotFoundError";
-      report(isNone ? "No port was chosen." : `No port: ${message(error)}.`, !isNone);
+      report(isNone ? "No port was selected." : `No port: ${message(error)}.`, !isNone);
       if (device.port) focus();
     }
   }
@@ -46,7 +46,7 @@ export function createPorts(device, allowed, { report, chosen, focus }) {
       .filter((each) => !stuck.has(each))
       .map((each, index) => {
         const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
-        const press = element("button", { type: "button", title: "Take it without the browser's list of ports" }, name);
+        const press = element("button", { type: "button", title: "Use it without the port list of the browser" }, name);
         press.addEventListener("click", () => take(each));
         return press;
       });

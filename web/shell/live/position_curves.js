@@ -6,8 +6,8 @@ import { count } from "../../state/number.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const [WIDTH, HEIGHT] = [1000, 100];
-/** Lines that have a colour of their own; further ones begin again. */
-const COLOURS = 4;
+/** Lines with different colors; the following lines repeat them. */
+const COLORS = 4;
 
 /** @param {string} tag @param {{[name: string]: string}} attributes */
 function drawn(tag, attributes) {
@@ -36,7 +36,7 @@ export function positionCurves() {
       const shapes = lines.map((line, index) => {
         const at = (/** @type {number} */ value, /** @type {number} */ point) =>
           `${((point * WIDTH) / (line.length - 1)).toFixed(1)},${(HEIGHT - ((value - least) * HEIGHT) / span).toFixed(1)}`;
-        return drawn("polyline", { points: line.map(at).join(" "), class: `line-${index % COLOURS}` });
+        return drawn("polyline", { points: line.map(at).join(" "), class: `line-${index % COLORS}` });
       });
       fill(svg, ...shapes);
       say(

@@ -4,7 +4,7 @@ import { readJson } from "../../state/json.js";
 import { counted } from "../../state/number.js";
 import { baseName } from "../offers.js";
 import { save } from "../save.js";
-import { ownIsKept } from "../storage.js";
+import { undoHint } from "../storage.js";
 
 /** @typedef {import("../../state/types.js").Page} Page */
 
@@ -15,19 +15,19 @@ const LOOK_MS = 100;
 /** @param {Page} page @param {import("../../engine/live.js").Recorded} session @param {string} gone  That its port is lost, if it is. */
 export async function openRecorded({ dispatch, now }, { scenario, digests, whole, set_backs, times }, gone) {
   dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-  const part = whole ? "" : " It holds as much as a recording may.";
-  const paced = set_backs > 0 ? ` It was not in real time: set back ${counted(set_backs, "time")}.` : "";
+  const part = whole ? "" : " It has the maximum length of a recording.";
+  const paced = set_backs > 0 ? ` It was not in real time: its clock was set back ${counted(set_backs, "time")}.` : "";
   const found = await digestOf(now, now().revision);
   const same = found === digests[now().result?.controller ?? 0];
   const verdict = same
-    ? `Recorded: run again, the session has the digest ${found}, as it had live.`
+    ? `Recorded. The simulation reproduces the digest ${found} of the session.`
     : found
-      ? `The session had the digest ${digests[0]}, and as a scenario it has ${found}.`
+      ? `The session had the digest ${digests[0]}, but the scenario has ${found}.`
       : `Recorded with the digest ${digests[0]}.`;
-  const text = `${verdict}${part}${paced}${gone}${ownIsKept()}`;
+  const text = `${verdict}${part}${paced}${gone}${undoHint()}`;
   dispatch({ type: "notice", notice: { kind: same ? "info" : "error", text, place: null } });
   // The notice's line stands by now, and has the button until another one comes.
-  const again = button("Save its wall-clock times", "Save its wall-clock times", () => saveTimes(now(), times));
+  const again = button("Save wall-clock times", "Save wall-clock times", () => saveTimes(now(), times));
   byId("link-message").querySelector(".close")?.before(again);
 }
 

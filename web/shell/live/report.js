@@ -1,4 +1,4 @@
-/** What became of a stream to a device, or of a session with a host, in words. Nothing is said to be done that is not known. */
+/** Reports of a stream to a device or a session with a host. */
 import { element } from "../../dom.js";
 import { count, counted, time } from "../../state/number.js";
 
@@ -12,41 +12,40 @@ import { count, counted, time } from "../../state/number.js";
 
 const ms = (/** @type {number | null} */ value) => (value === null ? "–" : `${value.toFixed(2)} ms`);
 
-/** What is known, in a sentence, and whether it is good. @param {Reported} reported @returns {{said: string, good: boolean}} */
+/** The outcome as text, and whether it is good. @param {Reported} reported @returns {{text: string, good: boolean}} */
 export function outcome(reported) {
   if (reported.raw) return outcomeOfRaw(reported.raw, reported);
   const { verified, why, stop_acknowledged, stopped, lost } = reported;
   if (stopped) {
     const confirmed = stop_acknowledged
-      ? "STOP is confirmed: the device has acknowledged it."
-      : "STOP is not confirmed: nobody knows whether the device has stopped. Cut its power if it must not move.";
+      ? "STOP is confirmed by the device."
+      : "STOP is not confirmed: the device may still move. Switch off its power if it must not move.";
     return {
-      said: lost ? `${confirmed} The port is lost: ${lost.replace(/\.$/, "")}.` : confirmed,
+      text: lost ? `${confirmed} The port is lost: ${lost.replace(/\.$/, "")}.` : confirmed,
       good: stop_acknowledged,
     };
   }
-  if (verified)
-    return { said: "Verified: READY, every tick is done, the positions are their sums, and no new fault.", good: true };
-  return { said: `Not verified: ${why?.replace(/\.$/, "")}.`, good: false };
+  if (verified) return { text: "Verified: READY, all ticks done, positions correct, no new fault.", good: true };
+  return { text: `Not verified: ${why?.replace(/\.$/, "")}.`, good: false };
 }
 
-/** Of packets that nobody answers. @param {RawReport} raw @param {Ended} ended @returns {{said: string, good: boolean}} */
+/** The same for raw packets. @param {RawReport} raw @param {Ended} ended @returns {{text: string, good: boolean}} */
 function outcomeOfRaw({ sent, packets, stood, left_ms }, { stopped, lost }) {
-  const queued = `the device does what is in its queue, about ${left_ms.toFixed(0)} ms more`;
-  if (lost) return { said: `Not verified: the port is lost: ${lost.replace(/\.$/, "")}; ${queued}.`, good: false };
+  const queued = `the device still executes its queue, about ${left_ms.toFixed(0)} ms`;
+  if (lost) return { text: `Not verified: the port is lost: ${lost.replace(/\.$/, "")}; ${queued}.`, good: false };
   if (stopped)
     return {
-      said: `Stopped sending after ${count(sent)} of ${counted(packets, "packet")}: a raw line has no STOP, and ${queued}. Cut its power if it must not move.`,
+      text: `Stopped sending after ${count(sent)} of ${counted(packets, "packet")}: a raw line has no STOP, and ${queued}. Switch off its power if it must not move.`,
       good: false,
     };
-  const dry = stood > 0 ? ` The motor must have stood before ${counted(stood, "tick")}.` : "";
+  const dry = stood > 0 ? ` The motor stopped before ${counted(stood, "tick")}.` : "";
   return {
-    said: `Not verified: raw packets are not answered. All ${counted(packets, "packet")} are sent.${dry}`,
+    text: `Not verified: raw packets get no reply. All ${counted(packets, "packet")} are sent.${dry}`,
     good: stood === 0,
   };
 }
 
-/** Of all delays. @param {number[]} delays */
+/** Median of all delays. @param {number[]} delays */
 function median(delays) {
   const sorted = delays.toSorted((a, b) => a - b);
   return sorted[Math.floor(sorted.length / 2)] ?? 0;
@@ -56,59 +55,58 @@ function median(delays) {
 export function reportText(title, began, reported, { own, model }) {
   const lines = [
     `Stepscope: ${title || "an experiment"} to a device, ${began}, ${time(reported.ms / 1000)}`,
-    outcome(reported).said,
+    outcome(reported).text,
   ];
   if (reported.raw) return `${[...lines, reported.raw.text].join("\n")}`;
   const { text, difference } = reported;
   lines.push(
     text.trimEnd(),
-    difference ? `first difference to the model: ${difference}` : "no reply differs from the model's",
+    difference ? `first difference from the model: ${difference}` : "all replies match the model",
   );
   if (own.length > 0)
     lines.push(
-      `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, longest ${ms(own.reduce((most, each) => Math.max(most, each), 0))}; the model's median ${ms(median(model))}`,
+      `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, maximum ${ms(own.reduce((most, each) => Math.max(most, each), 0))}; median of the model ${ms(median(model))}`,
     );
   return `${lines.join("\n")}\n`;
 }
 
 /** @param {End | null} end */
 const endTexts = (end) => [
-  end?.state ?? "not told",
-  end === null || end.ticks_done === null ? "not told" : count(end.ticks_done),
-  end?.went?.map((steps) => count(steps)).join("  ") ?? "not told",
+  end?.state ?? "unknown",
+  end === null || end.ticks_done === null ? "unknown" : count(end.ticks_done),
+  end?.went?.map((steps) => count(steps)).join("  ") ?? "unknown",
 ];
 
-/** The device's end beside the model's. @param {ReportedFramed} reported @returns {Node[]} */
-export function twinOf({ beside, difference, stopped, verified }) {
-  const rows = beside.flatMap(({ controller, device, model }) =>
-    ["state", "ticks done", "steps gone"].map((name, index) => {
+/** Final states of device and model. @param {ReportedFramed} reported @returns {Node[]} */
+export function twinOf({ ends, difference, stopped, verified }) {
+  const rows = ends.flatMap(({ controller, device, model }) =>
+    ["state", "ticks done", "steps moved"].map((name, index) => {
       const [own, its] = [endTexts(device)[index], endTexts(model)[index]];
       return element(
         "tr",
         own === its || device === null || (stopped && index > 0) ? {} : { class: "differs" },
-        element("th", { scope: "row" }, beside.length > 1 ? `controller ${controller}, ${name}` : name),
+        element("th", { scope: "row" }, ends.length > 1 ? `controller ${controller}, ${name}` : name),
         element("td", {}, own),
         element("td", {}, its),
       );
     }),
   );
-  const heads = ["since it was opened", "device", "model"].map((name) => element("th", { scope: "col" }, name));
-  const first = difference ? `The first difference to the model: ${difference}.` : "No reply differs from the model's.";
-  const why =
-    stopped || !verified ? " How far a tick came that was cut short depends on when each heard what it was told." : "";
+  const heads = ["since opening", "device", "model"].map((name) => element("th", { scope: "col" }, name));
+  const first = difference ? `The first difference from the model: ${difference}.` : "All replies match the model.";
+  const why = stopped || !verified ? " The progress of an interrupted tick depends on when STOP arrived." : "";
   return [
     element("p", {}, `${first}${why}`),
     element(
       "table",
-      { "aria-label": "The device beside the model" },
+      { "aria-label": "Device and model" },
       element("thead", {}, element("tr", {}, ...heads)),
       element("tbody", {}, ...rows),
     ),
   ];
 }
 
-/** How a soft device stands. @param {Served} served */
-export function servedText({ seconds, heard, replies, latest_ms, set_backs, set_back_ms, missed, controllers }) {
+/** The state of a soft device. @param {Served} served */
+export function servedText({ seconds, received, replies, latest_ms, set_backs, set_back_ms, missed, controllers }) {
   const each = controllers.map(({ state, queued, queue_depth, positions, faults }) =>
     [
       state ?? "raw",
@@ -121,8 +119,8 @@ export function servedText({ seconds, heard, replies, latest_ms, set_backs, set_
   );
   const lag =
     set_backs > 0
-      ? ` Not real time: set back ${counted(set_backs, "time")}, ${set_back_ms.toFixed(0)} ms in all.`
+      ? ` Not in real time: the clock was set back ${counted(set_backs, "time")}, ${set_back_ms.toFixed(0)} ms in total.`
       : ` Replies at most ${ms(latest_ms)} late.`;
   const lost = missed > 0 ? ` ${counted(missed, "byte")} of replies not read.` : "";
-  return `${seconds.toFixed(1)} s: ${counted(heard, "byte")} heard, ${counted(replies, "reply").replace("replys", "replies")}; ${each.join("; ")}.${lag}${lost}`;
+  return `${seconds.toFixed(1)} s: ${counted(received, "byte")} received, ${counted(replies, "reply").replace("replys", "replies")}; ${each.join("; ")}.${lag}${lost}`;
 }

@@ -12,30 +12,29 @@ const LATE_MS = 50;
 export const ROLES = {
   stream: {
     label: "Stream to a device",
-    about: "Sends the ticks of this experiment, each frame confirmed, and verifies the end. The motors move.",
-    raw: "Sends the packets of this experiment, each at its time. Nobody answers them: nothing is verified, and STOP only ends the sending. The motors move.",
+    about: "Sends the ticks of this experiment in confirmed frames and verifies the result. The motors move.",
+    raw: "Sends the packets of this experiment at their times. They get no reply, so nothing is verified, and STOP only ends the sending. The motors move.",
     start: "Start: the motors move",
   },
   serve: {
     label: "Be a soft device",
     about:
-      "Answers a host on the port as the controllers of this experiment would, in real time. At the end the session opens as a scenario.",
-    start: "Start answering",
+      "Replies to a host on the port like the controllers of this experiment, in real time. At the end the session opens as a scenario.",
+    start: "Start replying",
   },
 };
 /** @type {Role[]} */
 export const NAMES = ["stream", "serve"];
 
 const OTHERS =
-  "take Chrome or Edge 89 or newer, or Firefox 151 or newer, on a desktop; or the command, stepscope send.";
+  "use Chrome or Edge 89 or later, or Firefox 151 or later, on a desktop; or use the command stepscope send.";
 
 /** Why this page gets no port; empty where it may. */
 export function whyNoPort() {
   if (!globalThis.isSecureContext)
-    return "The browser gives ports to secure pages alone: open this page by https, or from http://localhost.";
-  if (!serial()) return `This browser has no Web Serial: ${OTHERS}`;
-  if (!movesStreams())
-    return `This browser cannot hand a port's streams to a worker, where this page uses them: ${OTHERS}`;
+    return "The browser allows ports only on secure pages: open this page with https, or from http://localhost.";
+  if (!serial()) return `This browser does not support Web Serial: ${OTHERS}`;
+  if (!movesStreams()) return `This browser cannot transfer the streams of a port to a worker: ${OTHERS}`;
   return "";
 }
 
@@ -54,7 +53,7 @@ export function about(name, { baud, margin_ms, state }) {
     return `${ROLES.stream.raw} ${counted(ticks, "packet")}, ${counted(lead, "packet")} (${lead_ms.toFixed(0)} ms) ahead, ${baud} baud.`;
   const tight =
     margin_ms < LATE_MS
-      ? ` The queue gives the page ${margin_ms.toFixed(0)} ms: a busy desktop is later at times, and then it runs dry (UNDERRUN); longer ticks give more.`
+      ? ` The queue covers only ${margin_ms.toFixed(0)} ms: on a busy desktop it may run empty (UNDERRUN). Use longer ticks.`
       : "";
   return `${ROLES.stream.about} ${counted(ticks, "tick")}, ${baud} baud.${tight}`;
 }
@@ -62,15 +61,15 @@ export function about(name, { baud, margin_ms, state }) {
 /** Why there is nothing to do with an experiment, as it was found; empty where there is. @param {import("../../state/types.js").Scenario} scenario @param {Found | undefined} found */
 export function whyNone({ source }, found) {
   if (source?.standalone)
-    return "Not with this experiment: a stand-alone controller has no line; its buttons are in the view Panel, or served by the command, stepscope serve.";
+    return "Not available: a stand-alone controller has no line. Use its buttons in the view Panel, or the command stepscope serve.";
   if (!found) return "Loading…";
-  return found.why ? `Not with this experiment: ${found.why}.` : "";
+  return found.why ? `Not available: ${found.why}.` : "";
 }
 
 /** @param {boolean} raw @param {boolean} byKey  Whether Escape does it, too. */
 export function stopTitle(raw, byKey) {
   const key = byKey ? " (Esc)" : "";
   return raw
-    ? `Sends no more: the device does what is in its queue${key}; a raw line has no STOP`
-    : `STOP: no further ticks, the device stops at once${key}`;
+    ? `Stop sending; the device still executes its queue${key}. A raw line has no STOP`
+    : `STOP: the device stops at once${key}`;
 }

@@ -15,7 +15,7 @@ import { outcome } from "./report.js";
 
 /** The end of a device that nobody sends to. */
 export const RUNS_DRY =
-  "The device does what is in its queue, and then it runs dry (UNDERRUN). Cut its power if it must not move.";
+  "The device executes its queue and stops with UNDERRUN. Switch off its power if it must not move.";
 
 export class LiveSession {
   /** What can be done with the experiment; null until that is known. @type {Facts | null} */
@@ -65,7 +65,7 @@ export class LiveSession {
   warning() {
     if (!this.device.unsettled || this.#warned) return "";
     this.#warned = true;
-    return "It is not known whether what was sent has ended: press STOP first, or start once more.";
+    return "The last transfer may not have ended: press STOP first, or start again.";
   }
 
   /** @param {Role} role @param {boolean} isStop  Whether STOP is all that is sent. @param {string} title */
@@ -90,12 +90,12 @@ export class LiveSession {
     if (this.running === null) return { action: "begin", text: "" };
     if (this.sent.raw) {
       if (this.ended) return none;
-      return { action: "end", text: "Nothing more is sent; the device does what is in its queue…" };
+      return { action: "end", text: "Sending has ended; the device executes its queue…" };
     }
     this.stopPressed = true;
     const text = this.ended
-      ? "STOP goes as soon as the port is given back…"
-      : "STOP: no further ticks. It is sent until the device confirms it…";
+      ? "STOP is sent as soon as the port is free…"
+      : "STOP is sent until the device confirms it…";
     return { action: "stop", text };
   }
 

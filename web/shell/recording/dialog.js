@@ -11,7 +11,7 @@ export function openDialog(release) {
     dialog.remove();
   };
   const body = element("div", {});
-  const cancel = button("Cancel", "Cancel: leave the file; the experiment stays", () => close());
+  const cancel = button("Cancel", "Cancel: do not open the file", () => close());
   const foot = element("p", { class: "named" }, cancel);
   const dialog = element("dialog", { class: "recording", "aria-label": "Recording" }, body, foot);
   dialog.addEventListener("cancel", () => close());

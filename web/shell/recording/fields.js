@@ -1,6 +1,6 @@
 /** The fields of a recording's dialog, each with its error under it. */
 import { element } from "../../dom.js";
-import { parseNumber } from "../../state/number.js";
+import { parseNumber } from "../../state/parse_number.js";
 
 /** Largest number that a field takes: what the core has room for. */
 const MAX = 2 ** 32 - 1;

@@ -1,13 +1,13 @@
 /** Puts a recording in place of the experiment: its scenario, its records, and the comparison with the run before. */
 import { readJson } from "../../state/json.js";
 import { count } from "../../state/number.js";
-import { ownIsKept } from "../storage.js";
+import { undoHint } from "../storage.js";
 import { offerDifferences } from "./differences.js";
-import { whileShown } from "./open_file.js";
+import { whileShown } from "./partial_recording.js";
 import { saveRecording } from "./saved_recordings.js";
 import { comparisonText, extendedNote, importedText, withControllers, worstPlace } from "./texts.js";
 
-/** @typedef {import("../../engine/capture.js").Looked} Preview */
+/** @typedef {import("../../engine/capture.js").Preview} Preview */
 /** @typedef {ReturnType<typeof import("../../engine/capture.js").openCapture>} Capture */
 /** @typedef {import("../../state/types.js").Result} Result */
 /** @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page */
@@ -43,7 +43,7 @@ export async function alignment(capture, baseline, preview) {
   if (typeof at_s === "number") return { at_s, channel, aligned };
   if (aligned === 0) return {};
   const one = preview?.steps.length === 0 ? "byte" : "step";
-  throw new Error(`the experiment has no ${one} ${count(aligned)}, from 0; align by one that both have`);
+  throw new Error(`the experiment has no ${one} ${count(aligned)} (the first is 0); align by one that both have`);
 }
 
 /**
@@ -78,7 +78,7 @@ async function takeBaseline({ engine, dispatch, now }, { summary, controller }) 
  */
 export async function importRecording(page, file, capture, preview, compared, dialog) {
   const { engine, dispatch } = page;
-  const comparison = compared && (await capture.beside(compared.baseline));
+  const comparison = compared && (await capture.comparison(compared.baseline));
   const difference = comparison ? comparisonText(comparison, compared.baseline.aligned) : "";
   // Without steps the model's view of the bytes shows more.
   const pieces = preview.steps.length > 0 ? await capture.records(preview.records) : [];
@@ -92,12 +92,12 @@ export async function importRecording(page, file, capture, preview, compared, di
   const hasRecords = isRecorded || replies !== undefined;
   if (hasRecords) engine.record(scenario, pieces, replies?.bytes);
   dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-  dialog.close(isRecorded && preview.kept !== null);
+  dialog.close(isRecorded && preview.part !== null);
   const run = resultOf(page);
   const notSaved = hasRecords ? await saveRecording(page, file, scenario, pieces, replies?.bytes) : "";
   const isShort = window.matchMedia(PHONE).matches;
-  const imported = { file, kept: preview.kept, isRecorded, hasBaseline: compared !== null, replies, isShort };
-  const text = importedText({ ...imported, own: ownIsKept() }) + notSaved;
+  const imported = { file, part: preview.part, isRecorded, hasBaseline: compared !== null, replies, isShort };
+  const text = importedText({ ...imported, own: undoHint() }) + notSaved;
   dispatch({ type: "notice", notice: { kind: "info", text, place: null } });
   if (!comparison) return "";
   whileShown(page, offerDifferences(page, comparison));

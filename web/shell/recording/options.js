@@ -6,7 +6,7 @@ import { createOverview } from "./overview.js";
 import { emptyBaud, FORMATS, hasMap, needsRate, requestOf, shownFields } from "./request.js";
 
 /** @typedef {import("../../engine/capture.js").Facts} Facts */
-/** @typedef {import("../../engine/capture.js").Looked} Preview */
+/** @typedef {import("../../engine/capture.js").Preview} Preview */
 /** @typedef {import("./request.js").Values} Values */
 
 /**
@@ -21,14 +21,14 @@ export function createOptions(facts, capture, hasPlan, changed) {
   const uart = choiceField("Serial format", FORMATS);
   const clock = numberField("Clock", "Hz", "from the file");
   const from = timeField("Show from", "its beginning");
-  const to = timeField("Show up to", "as far as there is room");
+  const to = timeField("Show up to", "maximum length");
   const align = numberField("Aligned by step", "", "0, the first", 0);
   const fields = [rate, baud, uart, clock];
   rate.label.hidden = !needsRate(facts);
-  const compares = element("input", { id: "recording-beside", type: "checkbox", ...(hasPlan ? { checked: "" } : {}) });
+  const compares = element("input", { id: "recording-compare", type: "checkbox", ...(hasPlan ? { checked: "" } : {}) });
   const compare = element("label", { class: "check" }, compares, ` Compare with this experiment`);
   let choosesPart = false;
-  const choosePart = button("Show a part…", "Show a part of it: by its times", () => {
+  const choosePart = button("Show a part…", "Show a part, from one time to another", () => {
     choosesPart = true;
     show();
     from.label.querySelector("input")?.focus();
@@ -50,7 +50,7 @@ export function createOptions(facts, capture, hasPlan, changed) {
   let preview = null;
 
   function show() {
-    const isPart = Boolean(preview?.kept) || from.value() !== null || to.value() !== null;
+    const isPart = Boolean(preview?.part) || from.value() !== null || to.value() !== null;
     const hasLine = table.has("RX", "TX");
     const shown = shownFields(facts, { hasLine, hasPlan, isPart, choosesPart, isCompared: compares.checked });
     for (const { label } of [from, to]) label.hidden = !shown.part;

@@ -6,7 +6,7 @@ import { element, fill } from "../../dom.js";
 import { plain, time } from "../../state/number.js";
 import { message } from "../link.js";
 
-/** @typedef {import("../../engine/capture.js").Looked} Looked */
+/** @typedef {import("../../engine/capture.js").Preview} Preview */
 /** @typedef {import("../../engine/capture.js").Columns} Columns */
 
 /** Heights of the position's and the speed's band and of what is between, in CSS pixels. */
@@ -27,10 +27,10 @@ export function createOverview(capture, choose) {
   Object.assign(canvas.style, { display: "block", width: "100%", cursor: "col-resize", touchAction: "pan-y" });
   canvas.style.height = `${POSITION_PX + BETWEEN_PX + SPEED_PX}px`;
   const caption = element("p", {});
-  const channel = element("select", { "aria-label": "Channel at a glance" });
+  const channel = element("select", { "aria-label": "Channel overview" });
   const node = element("div", { class: "whole" }, channel, canvas, caption);
   node.hidden = true;
-  /** What was looked at. @type {Looked | null} */
+  /** What was looked at. @type {Preview | null} */
   let preview = null;
   /** What the columns are of, and how many were asked for. */
   let [shown, askedColumns] = ["", 0];
@@ -40,7 +40,7 @@ export function createOverview(capture, choose) {
   /** Where a drag began and where it is, in s. @type {[number, number] | null} */
   let drag = null;
 
-  const end = () => preview?.kept?.end_s ?? preview?.end_s ?? 0;
+  const end = () => preview?.part?.end_s ?? preview?.end_s ?? 0;
   /** The time under a pointer, to a pixel's digits. @param {PointerEvent} event */
   const at = ({ clientX }) => {
     const { left, width } = canvas.getBoundingClientRect();
@@ -101,7 +101,7 @@ export function createOverview(capture, choose) {
       if (!isOwn()) return;
       [columns, shown] = [null, ""];
       draw();
-      say(`All of channel ${channel.value} cannot be shown: ${message(error)}.`, true);
+      say(`The overview of channel ${channel.value} cannot be shown: ${message(error)}.`, true);
     }
   }
 
@@ -109,14 +109,14 @@ export function createOverview(capture, choose) {
   function say(what, isWrong) {
     canvas.setAttribute("aria-label", what);
     caption.classList.toggle("error", isWrong);
-    caption.textContent = isWrong ? what : `${what} Drag over it to show a part.`;
+    caption.textContent = isWrong ? what : `${what} Drag to select a part.`;
   }
 
   function describe() {
     if (!columns) return;
     const [low, high] = rangeOf([columns.position_min, columns.position_max]);
     const speeds = rangeOf([columns.speed_min, columns.speed_max]).map(Math.abs);
-    const what = `All of channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, at most ${plain(Math.max(...speeds), "steps/s")}.`;
+    const what = `Channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, at most ${plain(Math.max(...speeds), "steps/s")}.`;
     say(what, false);
   }
 
@@ -134,7 +134,7 @@ export function createOverview(capture, choose) {
     band(pen, columns.speed_min, columns.speed_max, { width, top, high: SPEED_PX, ink: ink("--ideal") });
     const part = drag
       ? [Math.min(...drag), Math.max(...drag)]
-      : preview?.kept && [preview.kept.from_s, preview.kept.to_s];
+      : preview?.part && [preview.part.from_s, preview.part.to_s];
     if (!part) return;
     const [from, to] = part.map((at_s) => (at_s / end()) * width);
     pen.globalAlpha = LEFT_OUT;
@@ -148,7 +148,7 @@ export function createOverview(capture, choose) {
 
   return {
     node,
-    /** @param {Looked | null} found  What was looked at; none, or no step in it, leaves nothing to see. */
+    /** @param {Preview | null} found  What was looked at; none, or no step in it, leaves nothing to see. */
     render(found) {
       preview = found;
       node.hidden = !found || found.steps.length === 0;

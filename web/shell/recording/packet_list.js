@@ -9,7 +9,7 @@ import { MAX_PACKETS, packetCells, packetsFile, packetsText } from "./texts.js";
  * @param {(error: unknown) => void} refuse
  */
 export function createPacketList(file, load, refuse) {
-  const node = element("details", { class: "packets-said" });
+  const node = element("details", { class: "packet-list" });
   node.hidden = true;
   node.addEventListener("toggle", () => {
     if (node.open) void list().catch(refuse);
@@ -26,7 +26,7 @@ export function createPacketList(file, load, refuse) {
       element("summary", {}, "Packets"),
       element("p", {}, packetsText(packets), all),
       grid(
-        ["Line", "from", "bytes", "what it says"],
+        ["Line", "from", "bytes", "meaning"],
         packets.rows.map((row) => packetCells(row, clock_hz)),
       ),
     );

@@ -1,7 +1,4 @@
-/**
- * The dialog of a recording: what its file holds, which channel is which signal, and the resulting figures. Importing it puts it
- * in place of the experiment. The dialog requests what the file does not say, and never guesses it.
- */
+/** The dialog of a recording: its contents, the signals of its channels, and the resulting figures. */
 import { button, element, fill } from "../../dom.js";
 import { openCapture } from "../../engine/capture.js";
 import { readJson } from "../../state/json.js";
@@ -11,11 +8,11 @@ import { message } from "../link.js";
 import { savedMap, saveMap } from "./channel_maps.js";
 import { openDialog } from "./dialog.js";
 import { alignment, baselineOf, importRecording, resultOf } from "./import_recording.js";
-import { closeOpenFile, keepOpen } from "./open_file.js";
 import { createOptions } from "./options.js";
 import { createPacketList } from "./packet_list.js";
+import { closeOpenFile, holdOpen } from "./partial_recording.js";
+import { readOptions } from "./read_options.js";
 import { hasMap } from "./request.js";
-import { rereadParts } from "./reread.js";
 import { formatText, lengthText, partText, sentence, stepsText } from "./texts.js";
 
 /** @typedef {import("./import_recording.js").Page} Page */
@@ -28,8 +25,8 @@ const REST_MS = 200;
 /** From this many changes on a preview takes a moment. */
 const MANY = 2_000_000;
 
-/** @param {Page} page @param {File | string} source  Or the name of a sample. @param {string} [map]  Its channels are read first. */
-export async function openRecording(page, source, map) {
+/** @param {Page} page @param {File | string} source  Or the name of a sample. @param {import("../../engine/capture.js").ReadOptions} [options] */
+export async function openRecording(page, source, options) {
   const what = typeof source === "string" ? "" : ` ${source.name}, ${si(source.size, "B", 3)}`;
   const about = element("p", { "aria-live": "polite" }, `Reading${what}…`);
   const bar = element("progress", { max: "1", value: "0", "aria-label": "Read" });
@@ -38,13 +35,14 @@ export async function openRecording(page, source, map) {
     bar.value = part;
     percent.textContent = `${Math.floor(100 * part)} %`;
   };
-  const capture = openCapture(source, report, map);
+  const capture = openCapture(source, report, options);
   const dialog = openDialog(() => capture.close());
   dialog.body.append(about, bar, percent);
   try {
     const facts = await capture.facts;
     if (!dialog.isOpen()) return;
-    if (facts.count === 0) throw new Error(facts.error ?? "it holds nothing that was recorded");
+    // With another base the file may be readable.
+    if (facts.count === 0 && !facts.has_base) throw new Error(facts.error ?? "it contains no recording");
     const sample = capture.sample();
     if (sample) {
       const { scenario } = await page.engine.ask("check", sample.scenario);
@@ -52,11 +50,12 @@ export async function openRecording(page, source, map) {
       await resultOf(page);
     }
     if (!dialog.isOpen()) return;
-    const again = (/** @type {string} */ map) => {
+    const again = (/** @type {import("../../engine/capture.js").ReadOptions} */ options) => {
       dialog.close();
-      return openRecording(page, source, map);
+      return openRecording(page, source, options);
     };
-    show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, dialog, null, { map, again });
+    const reading = sample ? {} : { ...options, again };
+    show(page, sample?.file ?? /** @type {File} */ (source).name, capture, facts, dialog, null, reading);
   } catch (error) {
     dialog.close();
     throw error;
@@ -66,7 +65,7 @@ export async function openRecording(page, source, map) {
 /**
  * @param {Page} page @param {string} file  Its name. @param {Capture} capture @param {Facts} facts
  * @param {import("./dialog.js").Dialog} dialog @param {import("./request.js").Values | null} [earlier]  The options of its last import.
- * @param {import("./reread.js").Reading} [reading]
+ * @param {import("./read_options.js").Reading} [reading]
  */
 function show(page, file, capture, facts, { body, foot, close }, earlier = null, reading = {}) {
   const { dispatch, now } = page;
@@ -94,13 +93,16 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
   let request = 0;
   if (hasMap(facts)) options.setMap((reading.map === undefined && savedMap(facts.channels)) || facts.map);
   options.show();
-  const notes = [...(facts.error ? [`Read in part: ${facts.error}`] : []), ...facts.notes];
+  const notes = [
+    ...(facts.error && facts.count > 0 ? [`The recording is truncated: ${facts.error}`] : []),
+    ...facts.notes,
+  ];
   fill(
     body,
     element("h2", {}, file),
     element("p", {}, formatText(facts)),
     ...notes.map((note) => element("p", { class: "note" }, sentence(note))),
-    ...rereadParts(facts, reading, (error) => {
+    ...readOptions(facts, reading, (error) => {
       const text = `${file} cannot be opened: ${message(error)}`;
       dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
     }),
@@ -115,9 +117,9 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     // The preview is of other options than these.
     request += 1;
     take.disabled = true;
-    timer = window.setTimeout(() => void look(), REST_MS);
+    timer = window.setTimeout(() => void updatePreview(), REST_MS);
   });
-  void look().then(() => {
+  void updatePreview().then(() => {
     const first = take.disabled ? options.missing(body) : take;
     if (foot.contains(document.activeElement)) (first ?? take).focus();
   });
@@ -128,16 +130,17 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     return result && !isStale(now()) ? result : null;
   }
 
-  /** Previews the file by the options. @param {import("../../engine/capture.js").Asked} aligned */
-  async function look(aligned = {}) {
+  /** Previews the file by the options. @param {import("../../engine/capture.js").OpenRequest} aligned */
+  async function updatePreview(aligned = {}) {
     const own = ++request;
     take.disabled = true;
     if (options.isWrong()) return;
     if (facts.count > MANY) fill(result, element("p", {}, `Reading ${counted(facts.count, "change")}…`));
     try {
+      if (facts.count === 0) throw new Error(facts.error ?? "it contains no recording");
       if (options.needsMap())
         throw Object.assign(new Error("choose which channel is STEP, DIR, RX or TX"), { field: "map" });
-      const found = await capture.look({ ...aligned, ...options.request() });
+      const found = await capture.preview({ ...aligned, ...options.request() });
       if (own !== request) return;
       showPreview(found);
       take.disabled = false;
@@ -163,13 +166,14 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     preview = found;
     options.clearErrors();
     options.render(found);
-    const { kept, steps, lines, notes } = found;
-    const part = kept && `${partText(kept)}; the figures are of all of it. A part is not laid beside the experiment.`;
+    const { part, steps, lines, notes } = found;
+    const partNote =
+      part && `${partText(part)}; the figures cover the whole recording. Only a whole recording can be compared.`;
     const own = notes.filter((note) => !facts.notes.includes(note)).map(sentence);
     fill(
       result,
       ...[lengthText(found), ...steps.map(stepsText), ...lines].map((text) => element("p", {}, text)),
-      ...[...(part ? [part] : []), ...own].map((note) => element("p", { class: "note" }, note)),
+      ...[...(partNote ? [partNote] : []), ...own].map((note) => element("p", { class: "note" }, note)),
     );
     packets.reset(lines.length > 0);
   }
@@ -185,7 +189,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     const compared = plan && { plan, baseline: await baselineOf(page, plan, aligned ?? 0) };
     const alignedBy = compared ? await alignment(capture, compared.baseline, preview) : {};
     // Of very many changes a preview takes a moment.
-    if (isReclocked || compared) await look(alignedBy);
+    if (isReclocked || compared) await updatePreview(alignedBy);
     if (!preview) return;
     const { map } = options.values();
     if (hasMap(facts) && map !== "") saveMap(facts.channels, map);
@@ -195,7 +199,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
         close(isPart);
         if (!isPart || !earlier) closeOpenFile();
         const own = options.values();
-        if (isPart) keepOpen(page, file, capture, (again) => show(page, file, capture, facts, again, own));
+        if (isPart) holdOpen(page, file, capture, (again) => show(page, file, capture, facts, again, own));
       },
     });
     if (problem) fill(result, element("p", { class: "error" }, problem));

@@ -1,9 +1,9 @@
-/** Which options a recording's dialog offers, and the request that they make. */
+/** The options of the dialog of a recording, and their request. */
 
 /** @typedef {import("../../engine/capture.js").Facts} Facts */
-/** @typedef {import("../../engine/capture.js").Asked} Request */
-/** @typedef {{map: string, clock: number, rate: number, baud: number, uart: string, from_s: number | null, to_s: number | null}} Values  Of the fields; 0 and "" where one is empty. */
-/** @typedef {{hasLine: boolean, hasPlan: boolean, isPart: boolean, choosesPart: boolean, isCompared: boolean}} Situation  `hasPlan` says that a run can be the baseline. */
+/** @typedef {import("../../engine/capture.js").OpenRequest} Request */
+/** @typedef {{map: string, clock: number, rate: number, baud: number, uart: string, from_s: number | null, to_s: number | null}} Values  Of the fields; 0 and "" if empty. */
+/** @typedef {{hasLine: boolean, hasPlan: boolean, isPart: boolean, choosesPart: boolean, isCompared: boolean}} Situation  `hasPlan`: a run can be the baseline. */
 
 /** Formats of a serial line: data bits, parity, stop bits. @type {[string, string][]} */
 export const FORMATS = [
@@ -21,10 +21,19 @@ export const FORMATS = [
   ["7O2", "7O2"],
 ];
 
+/** Bases of written bytes, as of the command's `--base`. @type {[string, string][]} */
+export const BASES = [
+  ["", "detected from the digits"],
+  ["hex", "hexadecimal"],
+  ["dec", "decimal"],
+  ["oct", "octal"],
+  ["bin", "binary"],
+];
+
 /** Whether channels are mapped to signals: levels, and decoded bytes of several lines. @param {Facts} facts */
 export const hasMap = ({ has_levels, channels }) => has_levels || channels.length > 1;
 
-/** Whether the sample rate is asked for at first: bytes without times follow each other at the bit rate. @param {Facts} facts */
+/** Whether the sample rate is required. Bytes without times follow each other at the bit rate. @param {Facts} facts */
 export const needsRate = ({ has_times, has_bytes }) => !has_times && !has_bytes;
 
 /** The text of an empty bit rate. @param {Facts} facts */
@@ -43,7 +52,7 @@ export function shownFields({ has_levels, has_bytes }, { hasLine, hasPlan, isPar
   };
 }
 
-/** The request of the fields on show. @param {Values} values @param {{map: boolean, rate: boolean, baud: boolean, uart: boolean}} shown @returns {Request} */
+/** The request of the visible fields. @param {Values} values @param {{map: boolean, rate: boolean, baud: boolean, uart: boolean}} shown @returns {Request} */
 export function requestOf({ map, clock, rate, baud, uart, from_s, to_s }, shown) {
   return {
     ...(shown.map && map !== "" ? { map } : {}),

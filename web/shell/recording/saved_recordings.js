@@ -53,20 +53,21 @@ export async function saveRecording(page, file, scenario, pieces, replies) {
   if (lost) listRecordings(JSON.stringify(listed()));
   known.push({ id, file, scenario, lost });
   watch(page);
-  return lost && ` It is there until this page is left: ${lost}.`;
+  return lost && ` It is available until you leave this page: ${lost}.`;
 }
 
 /** @param {Saved} recording */
 const tooLarge = (recording) =>
-  `${count(sizeOf(recording) / RECORD_BYTES)} changes are more than the ${count(MAX_BYTES / RECORD_BYTES)} that are kept on this device`;
+  `${count(sizeOf(recording) / RECORD_BYTES)} changes are more than the ${count(MAX_BYTES / RECORD_BYTES)} that can be saved on this device`;
 
 /** Stores it; returns why it is not stored, or "". @param {Saved} recording @param {Uint8Array[]} pieces */
 async function stored(recording, pieces) {
   try {
-    if (!listRecordings(JSON.stringify(await store(recording, pieces)))) throw new Error("no list of it can be kept");
+    if (!listRecordings(JSON.stringify(await store(recording, pieces))))
+      throw new Error("the list of recordings cannot be saved");
     return "";
   } catch (error) {
-    return `this browser does not keep it (${message(error)})`;
+    return `the browser cannot save it (${message(error)})`;
   }
 }
 
@@ -85,14 +86,14 @@ export async function restore(page) {
   let lost = shown?.lost ?? "";
   try {
     lost ||= await withDatabase((database) => restoreFrom(page, database, before, shown));
-    if (!lost && shown && !known.some(({ id }) => id === shown.id)) lost = "it was not kept";
+    if (!lost && shown && !known.some(({ id }) => id === shown.id)) lost = "it was not saved";
   } catch (error) {
-    lost ||= `this browser does not give it (${message(error)})`;
+    lost ||= `the browser cannot read it (${message(error)})`;
     listRecordings("[]");
   }
   if (!lost) return;
-  const name = shown ? `The recording ${shown.file}` : "A recording that was opened before";
-  const text = `${name} is not there any more: ${lost}. The views show what the model makes of the experiment; open the file again.`;
+  const name = shown ? `The recording ${shown.file}` : "An earlier recording";
+  const text = `${name} is no longer available: ${lost}. The views show the simulation; open the file again.`;
   void firstResult(page).then(() => page.dispatch({ type: "notice", notice: { kind: "error", text, place: null } }));
 }
 
@@ -115,7 +116,7 @@ async function restoreFrom(page, database, before, shown) {
   if (addressed !== null) wanted.add(addressed);
   const all = await list(database);
   const there = new Set(all.map(({ id }) => id));
-  let lost = before.some((id) => !there.has(id)) ? "what was kept of it is gone" : "";
+  let lost = before.some((id) => !there.has(id)) ? "its saved copy is gone" : "";
   for (const { id, file, scenario, sizes, replies } of all) {
     const isShown = shown?.id === id;
     // An earlier version may have saved it, so the core upgrades it.
@@ -124,7 +125,7 @@ async function restoreFrom(page, database, before, shown) {
     if (!isShown && !wanted.has(scenarioKey(read))) continue;
     const pieces = own.problems.length === 0 && Array.isArray(sizes) ? await load(database, id, sizes) : null;
     if (!pieces) {
-      lost ||= `what was kept of ${file} is damaged`;
+      lost ||= `the saved copy of ${file} is damaged`;
       await remove(database, id);
       there.delete(id);
       continue;

@@ -4,7 +4,7 @@ import { count, counted, plain, si, time } from "../../state/number.js";
 import { around } from "../verdict.js";
 
 /** @typedef {import("../../engine/capture.js").Facts} Facts */
-/** @typedef {import("../../engine/capture.js").Looked} Looked */
+/** @typedef {import("../../engine/capture.js").Preview} Preview */
 /** @typedef {import("../../engine/capture.js").LinePacket} LinePacket */
 /** @typedef {import("../../engine/capture.js").LinePackets} LinePackets */
 /** @typedef {import("../../engine/capture.js").Replies} Replies */
@@ -36,14 +36,14 @@ export function formatText({ format, count, has_levels, has_bytes }) {
   return `${format}, ${counted(count, has_levels ? "change" : has_bytes ? "byte" : "row")}`;
 }
 
-/** The part on show of a recording that is not shown whole. @param {NonNullable<Looked["kept"]>} kept */
+/** The part on show of a recording that is not shown whole. @param {NonNullable<Preview["part"]>} part */
 export function partText({ from_s, to_s, end_s, records, of }) {
   return `Shown: ${time(from_s)} to ${time(to_s)} of ${time(end_s)}, ${count(records)} of ${counted(of, "change")}`;
 }
 
-/** @param {Looked} found */
-export function lengthText({ clock_hz, rounding, end_s, kept }) {
-  return `${time(kept?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`;
+/** @param {Preview} found */
+export function lengthText({ clock_hz, rounding, end_s, part }) {
+  return `${time(part?.end_s ?? end_s)} at ${si(clock_hz, "Hz", 6)}: ${rounding}.`;
 }
 
 /** @param {import("../../engine/capture.js").ChannelSteps} channel */
@@ -61,7 +61,7 @@ export const packetsFile = (file) => `${file.replace(/\.[^.]*$/, "")}-packets.cs
 /** @param {LinePackets} packets */
 export function packetsText({ total, replies, rows }) {
   const more = total > rows.length ? `; the first ${count(rows.length)} of them:` : ":";
-  return `${counted(total, "packet")}, ${count(replies)} whole frames of the device${more} `;
+  return `${counted(total, "packet")}, ${count(replies)} complete frames of the device${more} `;
 }
 
 /** @param {LinePacket} packet @param {number} clock_hz */
@@ -80,10 +80,10 @@ export function comparisonText(comparison, aligned) {
   const { step, late_s } = largest;
   const late =
     late_s === 0
-      ? "none is off"
-      : `${one} ${count(step)} (the first is 0) is off most, ${time(Math.abs(late_s))} ${late_s > 0 ? "late" : "early"}`;
-  const values = other_values > 0 ? `, ${count(other_values)} have another value` : "";
-  return `Compared with the baseline${by}: ${comparedCounts(comparison)} compared, ${count(differing)} off by more than a cycle of the clock; ${late}${values}; RMS ${time(rms_s)}.${listedDifferences(comparison)}${driftText(comparison)}`;
+      ? "no deviation"
+      : `${one} ${count(step)} (the first is 0) has the largest deviation, ${time(Math.abs(late_s))} ${late_s > 0 ? "late" : "early"}`;
+  const values = other_values > 0 ? `, ${count(other_values)} with another value` : "";
+  return `Compared with the baseline${by}: ${comparedCounts(comparison)} compared, ${count(differing)} differ by more than one clock cycle; ${late}${values}; RMS ${time(rms_s)}.${listedDifferences(comparison)}${driftText(comparison)}`;
 }
 
 /** @param {Comparison} comparison */
@@ -96,7 +96,7 @@ function comparedCounts({ kind, recorded, model, missing, extra }) {
 function listedDifferences({ rows, differences }) {
   if (differences.count === 0) return "";
   const listed = rows.slice(0, MAX_DIFFERENCES).map(({ text }) => text);
-  const more = differences.count > listed.length ? `; ${count(differences.count)} differences in all` : "";
+  const more = differences.count > listed.length ? `; ${count(differences.count)} differences in total` : "";
   return ` ${listed.join("; ")}${more}.`;
 }
 
@@ -105,7 +105,7 @@ function driftText({ drift_ppm, largest_jitter_s, rms_jitter_s, outliers }) {
   if (Math.abs(drift_ppm) > MAX_DRIFT_PPM) return "";
   const excluded = outliers > 0 ? `, ${counted(outliers, "outlier")} excluded` : "";
   const drift = drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1");
-  return ` Drift ${drift} ppm; without it ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${excluded}.`;
+  return ` Drift ${drift} ppm; without drift ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${excluded}.`;
 }
 
 /** Wide enough to show the worst step, where it should be, and some neighbors. @param {Comparison} comparison @param {import("../../state/types.js").Result} result */
@@ -118,23 +118,23 @@ export function worstPlace({ largest, recorded }, { summary, controller }) {
 
 /**
  * The message of an imported recording.
- * @param {{file: string, kept: Looked["kept"], isRecorded: boolean, hasBaseline: boolean, replies: Replies | undefined, isShort: boolean, own: string}} import_
+ * @param {{file: string, part: Preview["part"], isRecorded: boolean, hasBaseline: boolean, replies: Replies | undefined, isShort: boolean, own: string}} import_
  *   `own` says where the visitor's own work is.
  */
-export function importedText({ file, kept, isRecorded, hasBaseline, replies, isShort, own }) {
-  const part = isRecorded && kept ? ` ${partText(kept)}; its position begins with 0 there.` : "";
+export function importedText({ file, part: visible, isRecorded, hasBaseline, replies, isShort, own }) {
+  const part = isRecorded && visible ? ` ${partText(visible)}; its position begins at 0.` : "";
   const unknown = replies?.unknown
-    ? ` Of ${counted(replies.unknown, "packet")} on TX nothing says which controller's: the first one's table has them.`
+    ? ` ${counted(replies.unknown, "packet")} on TX have no known controller; they are in the table of the first one.`
     : "";
   if (isShort) return `Opened ${file}.${part}${unknown}${own}`;
-  const shown = isRecorded ? "The views show what was recorded." : "The views show what the model makes of it.";
+  const shown = isRecorded ? "The views show the recording." : "The views show the simulation.";
   const table =
     replies === undefined
       ? ""
       : replies.bytes.length > 0
-        ? " The table of packets has the replies as they were recorded."
-        : " Nothing came on TX, and the table of packets has no replies.";
-  const baseline = hasBaseline ? " The experiment before stands beside it as the baseline." : "";
+        ? " The packets show the recorded replies."
+        : " TX has no bytes, so the packets show no replies.";
+  const baseline = hasBaseline ? " The previous experiment is the baseline." : "";
   return `Opened ${file}. ${shown}${part}${table}${unknown}${baseline}${own}`;
 }
 

@@ -120,7 +120,7 @@ export function chartOf(state, seen, quantity) {
     unit: unitFor(state, quantity),
     caption:
       quantity === "position" && seen.apart
-        ? "position less the baseline’s, by the pulses"
+        ? "actual position minus the baseline’s"
         : quantity + (seen.columns.has_ideal || quantity !== "acceleration" ? "" : ", over 8 steps"),
     chart: {
       x: { min: start / clock, max: end / clock, unit: "s", prefix: true, label_px },
@@ -149,11 +149,11 @@ export function withoutAcceleration({
   if (!has_ideal)
     return own?.some(Number.isFinite)
       ? ""
-      : "No motion is planned for this channel, and no acceleration can be told of these steps.";
+      : "There is no plan for this channel, and the acceleration of these steps is undefined.";
   const still = (/** @type {number} */ value) => !(Math.abs(value) > 0);
   if (!acceleration_min.every(still) || !acceleration_max.every(still)) return "";
   const [low, high] = [Math.min(...speed_min), Math.max(...speed_max)];
   return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high))
-    ? "The speed is stepwise here: acceleration undefined."
-    : "The speed does not change here; no acceleration.";
+    ? "The speed is stepwise, so the acceleration is undefined."
+    : "The speed is constant, so the acceleration is 0.";
 }

@@ -8,19 +8,19 @@ import { QUANTITIES, unitFor, unitOf } from "./bands.js";
 
 /** What the acceleration of steps is that no plan is known of (step_acceleration.rs). */
 const OF_STEPS =
-  "Acceleration of the pulses: the rate of the eight steps from here less that of the eight before, by the time between their middles. Where there are no eight in one direction it is not known; mean and RMS are those of the rest.";
+  "Acceleration of the pulses: rate of the next eight steps minus rate of the eight steps before, divided by the time between their centers. It is undefined without eight steps in one direction; mean and RMS leave that out.";
 
 /** @param {{engine: import("../../engine/engine.js").Engine}} page */
 export function createBetween({ engine }) {
   const place = byId("between");
-  let said = "";
+  let text_ = "";
 
   /** @param {State} state */
   async function render(state) {
     const { a, b } = state.cursors;
     if (a === null || b === null || !state.result) {
       place.hidden = true;
-      said = "";
+      text_ = "";
       return;
     }
     const reply = /** @type {import("../../state/types.js").Between | null} */ (
@@ -48,11 +48,11 @@ export function createBetween({ engine }) {
         : [`${quantity} ${short(from.mean[index] * unitOf(state).scale)} ${unitFor(state, quantity)}`];
     });
     byId("between-tables").append(...(reply.ideal ? [] : [element("p", { class: "note" }, OF_STEPS)]));
-    said = `Between the cursors: ${span}; means of ${reply.ideal ? "the ideal curve" : "the pulses"}: ${mean.join(", ")}.`;
+    text_ = `Between the cursors: ${span}; means of the ${reply.ideal ? "ideal curve" : "pulses"}: ${mean.join(", ")}.`;
     place.hidden = false;
   }
 
-  return { render, sentence: () => said };
+  return { render, sentence: () => text_ };
 }
 
 /** @param {State} state @param {string} name @param {Readings} readings @param {boolean} hasPlan */
@@ -65,7 +65,7 @@ function table(state, name, { at_a, at_b, mean, rms }, hasPlan) {
     const values =
       mean[index] === undefined ? [] : [at_a[index], at_b[index], at_b[index] - at_a[index], mean[index], rms[index]];
     const cells = values.map((value) => element("td", { class: "number" }, short(value * scale, 6)));
-    const why = hasPlan ? "speed is stepwise, acceleration undefined" : "no eight steps before and after";
+    const why = hasPlan ? "acceleration undefined (stepwise speed)" : "undefined (needs eight steps before and after)";
     const none = element("td", { class: "none", colspan: "5" }, `– ${why}`);
     return element("tr", {}, element("th", { scope: "row" }, quantity), ...(cells.length ? cells : [none]));
   });

@@ -9,7 +9,7 @@ export function createCompare({ engine, dispatch, now }) {
   const place = byId("compared");
   const keepButton = /** @type {HTMLButtonElement} */ (byId("keep-run"));
   const change = /** @type {HTMLInputElement} */ (byId("show-difference"));
-  const drop = button("Drop", "Drop the baseline", () => {
+  const drop = button("Clear baseline", "Clear the baseline", () => {
     dispatch({ type: "baseline", baseline: null });
     keepButton.focus();
   });
@@ -55,7 +55,7 @@ export function createCompare({ engine, dispatch, now }) {
       if (before?.baseline && !baseline) engine.ask("baseline", false).catch(unlessDropped);
       for (const node of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".with-baseline")))
         node.hidden = !baseline;
-      keepButton.textContent = baseline ? "Keep this instead" : "Keep to compare";
+      keepButton.textContent = baseline ? "Set as new baseline" : "Set as baseline";
     }
     change.checked = state.difference;
     if (

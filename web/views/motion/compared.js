@@ -44,15 +44,15 @@ export async function tellCompared(engine, state) {
     ? [
         [
           "position",
-          `differs by ${short(apart.largest)} ${apart.largest === 1 ? unit.replace(/s$/, "") : unit} at most, at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common ${si(apart.common_s, "s")}`,
+          `maximum difference ${short(apart.largest)} ${apart.largest === 1 ? unit.replace(/s$/, "") : unit} at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common time of ${si(apart.common_s, "s")}`,
         ],
       ]
     : [];
   say(
     byId("compared-title"),
     same
-      ? `Baseline: ${baseline.title}. Change the experiment or choose a preset; the baseline stays as dashed curves.`
-      : `Against the baseline: ${baseline.title}`,
+      ? `Baseline: ${baseline.title}. Change the experiment or choose a preset. Dashed curves show the baseline.`
+      : `Compared with the baseline: ${baseline.title}`,
   );
   fill(
     byId("compared-facts"),
@@ -66,6 +66,6 @@ function row(name, own, baseline, print) {
   const by = own - baseline;
   return [
     name,
-    `${print(own)}, baseline ${print(baseline)}, ${by === 0 ? "the same" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
+    `${print(own)}, baseline ${print(baseline)}, ${by === 0 ? "equal" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
   ];
 }

@@ -60,17 +60,17 @@ export function createMotion({ engine, dispatch, now }) {
       record ??= createRecord({ engine, now });
       record.render(now());
     } catch {
-      say(byId("record-page"), "The table could not be loaded; open it again when the network is there.");
+      say(byId("record-page"), "The table could not be loaded. Check the network and open it again.");
     }
   });
   onTimeAxis(stack, () => plot, { dispatch, now });
-  /** When the charts were asked for last, and the timer that will ask again. */
-  let [asked, later] = [0, 0];
+  /** Time of the last request, and the timer of the next one. */
+  let [requested, later] = [0, 0];
   watch(stack, () => refresh(now()));
 
   /** @param {State} state */
   async function refresh(state) {
-    asked = performance.now();
+    requested = performance.now();
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round(plot.right - plot.left));
@@ -90,7 +90,7 @@ export function createMotion({ engine, dispatch, now }) {
       const { bands, caption, range, unit, chart } = drawn[index];
       say(byId(`caption-${quantity}`), `${caption}, ${unit}`);
       draw(canvas, chart);
-      const text = bands.length === 0 ? "nothing to show" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
+      const text = bands.length === 0 ? "no data" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
       canvas.setAttribute("aria-label", `${caption} over time: ${text}`);
     }
     const note = withoutAcceleration(seen.columns);
@@ -114,7 +114,7 @@ export function createMotion({ engine, dispatch, now }) {
   function sentence(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
-    const baseline = state.baseline ? ` Beside it, dashed, the baseline ${state.baseline.title}.` : "";
+    const baseline = state.baseline ? ` Dashed: the baseline ${state.baseline.title}.` : "";
     return `Axis ${state.axis}, ${si(start / clock, "s")} to ${si(end / clock, "s")}.${baseline} ${between?.sentence() ?? ""}`.trim();
   }
 
@@ -126,10 +126,7 @@ export function createMotion({ engine, dispatch, now }) {
       between ??= createBetween({ engine });
     } catch {
       byId("between").hidden = false;
-      return say(
-        byId("between-span"),
-        "This part of the page could not be loaded; try again when the network is there.",
-      );
+      return say(byId("between-span"), "This part of the page could not be loaded. Check the network and try again.");
     }
     await between.render(now());
     say(byId("motion-sentence"), sentence(now()));
@@ -137,7 +134,7 @@ export function createMotion({ engine, dispatch, now }) {
 
   /** Follows the shown time, but leaves the frames between to the pulses. */
   function follow() {
-    const wait = asked + FOLLOW_MS - performance.now();
+    const wait = requested + FOLLOW_MS - performance.now();
     if (wait <= 0) return refresh(now());
     if (later === 0) {
       later = window.setTimeout(() => {

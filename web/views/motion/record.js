@@ -61,7 +61,7 @@ export function createRecord({ engine, now }) {
     );
     say(
       byId("record-page"),
-      `Rows ${at * ROWS + 1} to ${(at + 1) * ROWS} of ${ROWS * PAGES}; each is a 500th of what the charts show, with its least and greatest values.`,
+      `Rows ${at * ROWS + 1} to ${(at + 1) * ROWS} of ${ROWS * PAGES}; each row is a 500th of the visible time, with its minimum and maximum.`,
     );
     previous.disabled = at === 0;
     next.disabled = at === PAGES - 1;

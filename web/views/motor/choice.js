@@ -7,8 +7,7 @@ import { readJson } from "../../state/json.js";
 /** @typedef {{id: string, name: string, source: string, typical: string[]}} Sheet */
 
 /** Why there is nothing to show. */
-const NONE =
-  "This experiment ends at the bus: its pulses drive nothing. Take the usual motor, or choose one, and see what they do to it.";
+const NONE = "This experiment has no motor. Use the default motor, or choose one, to simulate it.";
 
 /** @param {import("./pane.js").Page} page @param {HTMLDetailsElement} fold */
 export function createChoice({ engine, dispatch, now }, fold) {
@@ -17,8 +16,8 @@ export function createChoice({ engine, dispatch, now }, fold) {
   const about = element("p", { class: "note", "aria-live": "polite" });
   const press = element(
     "button",
-    { type: "button", title: "Puts this motor and driver in the place of every motor of the experiment" },
-    "Put it in",
+    { type: "button", title: "Replaces every motor and driver of the experiment" },
+    "Use this motor",
   );
   press.addEventListener("click", take);
   fill(/** @type {Element} */ (fold.lastElementChild), motor, drive, about, press);
@@ -74,7 +73,7 @@ export function createChoice({ engine, dispatch, now }, fold) {
   function show(state, isDriven) {
     const was = driven;
     driven = isDriven || Boolean(state.scenario.plant);
-    say(press, driven ? "Put it in" : "Drive a motor");
+    say(press, driven ? "Use this motor" : "Simulate a motor");
     press.classList.toggle("main", !driven);
     // There is nothing else to see where nothing is driven.
     if (state.result && was !== driven) fold.open = !driven;

@@ -16,15 +16,15 @@ const seconds = (/** @type {number | null} */ value) => (value === null ? "–" 
 
 /** @type {[string, string, (value: any) => string][]} */
 const ROWS = [
-  ["Commanded at the end", "command_full_steps", steps],
-  ["Rotor at the end", "rotor_full_steps", steps],
+  ["Final commanded position", "command_full_steps", steps],
+  ["Final rotor position", "rotor_full_steps", steps],
   ["Lost", "lost_full_steps", steps],
   ["Slips of four full steps", "slips", String],
-  ["Largest following error", "following_error_full_steps", steps],
+  ["Maximum following error", "following_error_full_steps", steps],
   ["at", "following_error_at_s", seconds],
-  ["Greatest speed", "fastest_full_steps_s", (value) => `${short(value, 5)} full steps/s`],
+  ["Maximum speed", "fastest_full_steps_s", (value) => `${short(value, 5)} full steps/s`],
   ["Overshoot after the last step", "overshoot_full_steps", steps],
-  ["Settled within 0.05 full steps after", "settling_s", seconds],
+  ["Settling time (0.05 full steps)", "settling_s", seconds],
   ["Phase current, peak", "phase_peak_a", amperes],
   ["Phase current, r.m.s.", "phase_rms_a", amperes],
   ["Energy from the bus", "bus_j", joules],
@@ -72,7 +72,7 @@ export function showNumbers(place, { plant, motors, self_test }, clock) {
       ...(plant.deviation_above_a === null
         ? []
         : [
-            row("Supply current above its rest, behind the sensor", [amperes(plant.deviation_above_a)]),
+            row("Supply current above idle, at the sensor", [amperes(plant.deviation_above_a)]),
             row("below it", [amperes(plant.deviation_below_a ?? 0)]),
           ]),
     ),

@@ -24,7 +24,7 @@ export const QUANTITIES = [
     name: "error",
     title: "Following error",
     unit: "full steps",
-    lines: [{ of: "error", label: "behind; red: 4 full steps lost", ink: "--actual" }],
+    lines: [{ of: "error", label: "lag; red: 4 full steps lost", ink: "--actual" }],
   },
   { name: "speed", title: "Speed", unit: "full steps/s", lines: [{ of: "speed", label: "rotor", ink: "--actual" }] },
   {
@@ -41,8 +41,8 @@ export const QUANTITIES = [
     title: "Supply current",
     unit: "A",
     lines: [
-      { of: "load_a", label: "of all motors", ink: "--ideal", dash: 3, width: 1 },
-      { of: "sensor_a", label: "behind the sensor", ink: "--actual", width: 1.8 },
+      { of: "load_a", label: "all motors", ink: "--ideal", dash: 3, width: 1 },
+      { of: "sensor_a", label: "at the sensor", ink: "--actual", width: 1.8 },
     ],
   },
   { name: "bus", title: "Bus voltage", unit: "V", lines: [{ of: "bus_v", label: "at the drivers", ink: "--actual" }] },

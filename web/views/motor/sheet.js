@@ -19,7 +19,7 @@ async function seen(state, engine, columns) {
     engine.ask("plant"),
     engine.latest("motor file", "plant_curves", channel, start, end, columns).catch(unlessDropped),
   ]);
-  if (!curves || !report) throw new Error("no motor is driven, so there is nothing to save");
+  if (!curves || !report) throw new Error("no motor is simulated, so there is nothing to save");
   const clock = state.result?.summary.clock_hz ?? 1;
   return {
     curves,

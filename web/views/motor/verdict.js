@@ -26,9 +26,7 @@ export function createVerdict({ engine, now, node }) {
     say(rest, [...coarse, others(report, channel), supply(report)].filter(Boolean).join(" "));
     if (!loses) return;
     const why = await reason(state, channel).catch((error) =>
-      error instanceof Dropped
-        ? ""
-        : ` (why could not be looked up: ${error instanceof Error ? error.message : error})`,
+      error instanceof Dropped ? "" : ` (the cause is unknown: ${error instanceof Error ? error.message : error})`,
     );
     if (why && own === request) say(first, `⚠ Motor ${channel} ${motor.verdict}${why}.`);
   }
@@ -42,11 +40,11 @@ export function createVerdict({ engine, now, node }) {
     const rate = of.summary.clock_hz / (rises[1].cycle - rises[0].cycle);
     const found = await engine.considerRun("start rate", "start_stop", of.controller, channel);
     if (now().result !== of) return "";
-    if (found === undefined) return ": it does not even start at 500 steps/s";
+    if (found === undefined) return ": it does not start at 500 steps/s";
     const [own, most] = [plain(Math.round(rate), "steps/s"), plain(Math.floor(found), "steps/s")];
     return rate > found
       ? `: it starts at ${own}, above its start-stop rate of ${most}`
-      : `; it starts at ${own}, within its start-stop rate of ${most}, so it is lost on the way`;
+      : `; it starts at ${own}, within its start-stop rate of ${most}, so it stalls during the move`;
   }
 
   return { show };
@@ -56,12 +54,12 @@ export function createVerdict({ engine, now, node }) {
 function others({ motors }, channel) {
   const lost = motors.filter(({ slips }, at) => at !== channel && slips > 0).map(({ channel: at }) => at);
   if (motors.length < 2) return "";
-  return lost.length > 0 ? `Steps are lost by motor ${lost.join(", ")}, too.` : "All others follow.";
+  return lost.length > 0 ? `Motor ${lost.join(", ")} also loses steps.` : "All other motors follow.";
 }
 
 /** @param {Report} report @param {State} state */
 function overload({ plant }, { result }) {
-  return `⚠ Overload at ${si((plant.overload_cycle ?? 0) / (result?.summary.clock_hz ?? 1), "s")}: the drivers are off from then on.`;
+  return `⚠ Overload at ${si((plant.overload_cycle ?? 0) / (result?.summary.clock_hz ?? 1), "s")}: the drivers are then off.`;
 }
 
 /** @param {Report} report */
@@ -74,6 +72,6 @@ function supply({ plant }) {
   const collapse =
     plant.collapsed_at_s === null
       ? ""
-      : `⚠ The supply collapses at ${si(plant.collapsed_at_s, "s")}: give a stronger source or less load.`;
+      : `⚠ The supply collapses at ${si(plant.collapsed_at_s, "s")}: use a stronger source or less load.`;
   return `${parts.join(", ")}. ${collapse}`.trim();
 }

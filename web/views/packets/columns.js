@@ -7,9 +7,9 @@ import { count } from "../../state/number.js";
 /** Room for a few bytes: the most that they get of a frame whose words need the rest. */
 const FEW_BYTES_PX = 104;
 /** Of the columns of bytes and of the outcome there is always so much. */
-const [LEAST_BYTES_PX, LEAST_OUTCOME_PX] = [80, 52];
+const [MIN_BYTES_PX, MIN_OUTCOME_PX] = [80, 52];
 /** Of the meaning there is so much while the bytes can give way, and then at least the other. */
-const [MEANING_PX, LEAST_MEANING_PX] = [64, 30];
+const [MEANING_PX, MIN_MEANING_PX] = [64, 30];
 /** Texts of a row's cells, each with its tooltip where that says more. @type {((row: PacketRow) => [string, string?])[]} */
 export const COLUMNS = [
   ({ index }) => [count(index)],
@@ -45,7 +45,7 @@ export function columnWidths(widest, room, isFramed) {
   const wanted = Math.min(widest.bytes, Math.max(isFramed ? both - widest.meaning : both / 2, FEW_BYTES_PX));
   const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
   const left = all - (tight ? 0 : widest.gap);
-  const bytes = Math.max(Math.min(LEAST_BYTES_PX, wanted), Math.min(wanted, left - widest.outcome - MEANING_PX));
-  const outcome = Math.min(widest.outcome, Math.max(LEAST_OUTCOME_PX, left - bytes - LEAST_MEANING_PX));
+  const bytes = Math.max(Math.min(MIN_BYTES_PX, wanted), Math.min(wanted, left - widest.outcome - MEANING_PX));
+  const outcome = Math.min(widest.outcome, Math.max(MIN_OUTCOME_PX, left - bytes - MIN_MEANING_PX));
   return { tight, bytes, outcome };
 }

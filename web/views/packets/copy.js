@@ -5,7 +5,7 @@ import { count } from "../../state/number.js";
 
 /** More than this is for a file, in characters. */
 const MOST = 8_000_000;
-/** Rows that are asked for at a time. */
+/** Rows per request. */
 const ROWS = 20_000;
 
 byId("packets-copied-close").addEventListener("click", () => {
@@ -32,13 +32,13 @@ export async function copyAll(engine) {
   let hex = "";
   for (let from = 0; from !== undefined; ) {
     const reply = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
-    if (!reply) return say(byId("packets-note"), "Nothing was copied: the engine was started again; copy once more.");
+    if (!reply) return say(byId("packets-note"), "Nothing was copied: the engine was restarted; copy again.");
     hex += reply.part;
     from = reply.next;
     if (hex.length > MOST)
       return say(
         byId("packets-note"),
-        "That is more than a clipboard is for: save a file of the packets, or filter them first.",
+        "This is too much for the clipboard: save the packets as a file, or filter them first.",
       );
   }
   return copyHex(hex, `${count(hex.split("\n").length - 1)} rows`);

@@ -4,12 +4,12 @@ import { isFiltering } from "../../state/queries.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} PacketFile */
 
-/** Rows that are asked for at a time. */
+/** Rows per request. */
 const ROWS = 20_000;
 const FORMATS = [
-  { ending: "csv", format: "csv", type: "text/csv", said: "table (CSV)" },
-  { ending: "txt", format: "hex", type: "text/plain", said: "bytes as hex, a line each" },
-  { ending: "bin", format: "bin", type: "application/octet-stream", said: "bytes (binary)" },
+  { ending: "csv", format: "csv", type: "text/csv", about: "table (CSV)" },
+  { ending: "txt", format: "hex", type: "text/plain", about: "bytes as hex, one packet per line" },
+  { ending: "bin", format: "bin", type: "application/octet-stream", about: "bytes (binary)" },
 ];
 
 /**
@@ -22,22 +22,22 @@ const FORMATS = [
 export function packetFiles(state, engine) {
   if (!state.result) return [];
   const { a, b } = state.cursors;
-  const scopes = [{ name: "packets", said: "Packets, all", shown: false, between: /** @type {number[]} */ ([]) }];
+  const scopes = [{ name: "packets", label: "Packets, all", shown: false, between: /** @type {number[]} */ ([]) }];
   if (isFiltering(state.filter))
-    scopes.push({ name: "packets-shown", said: "Packets, the rows on show", shown: true, between: [] });
+    scopes.push({ name: "packets-shown", label: "Packets, visible rows", shown: true, between: [] });
   if (a !== null && b !== null) {
     scopes.push({
       name: "packets-a-b",
-      said: "Packets between the cursors",
+      label: "Packets between the cursors",
       shown: false,
       between: [Math.min(a, b), Math.max(a, b)],
     });
   }
   return scopes.flatMap((scope) =>
-    FORMATS.map(({ ending, format, type, said }) => ({
+    FORMATS.map(({ ending, format, type, about }) => ({
       name: `stepscope-${scope.name}.${ending}`,
       type,
-      label: `${scope.said}: ${said}`,
+      label: `${scope.label}: ${about}`,
       make: async (/** @type {(part: number) => void} */ pace) => {
         const parts = [];
         for (let from = 0; from !== undefined; ) {

@@ -20,11 +20,11 @@ export function createInspector(page) {
 
   for (const list of [bytes, fields]) {
     listen(list, "Bytes and fields of a packet", [
-      { keys: ["ArrowLeft", "ArrowUp"], text: "the one before", run: () => unfolded?.step(list, -1) },
-      { keys: ["ArrowRight", "ArrowDown"], text: "the next one", run: () => unfolded?.step(list, 1) },
-      { keys: ["Home"], text: "the first one", run: () => unfolded?.step(list, -Infinity) },
-      { keys: ["End"], text: "the last one", run: () => unfolded?.step(list, Infinity) },
-      { keys: ["Escape"], text: "point at nothing", run: () => unfolded?.point(list, -1) },
+      { keys: ["ArrowLeft", "ArrowUp"], text: "previous", run: () => unfolded?.step(list, -1) },
+      { keys: ["ArrowRight", "ArrowDown"], text: "next", run: () => unfolded?.step(list, 1) },
+      { keys: ["Home"], text: "first", run: () => unfolded?.step(list, -Infinity) },
+      { keys: ["End"], text: "last", run: () => unfolded?.step(list, Infinity) },
+      { keys: ["Escape"], text: "clear the selection", run: () => unfolded?.point(list, -1) },
     ]);
   }
   details.addEventListener("toggle", () => void paint());
@@ -37,10 +37,7 @@ export function createInspector(page) {
       unfolded ??= createUnfolded(page, bytes, fields);
       unfolded.show(row);
     } catch {
-      say(
-        byId("packet-reading"),
-        "This part of the page could not be loaded; unfold it again when the network is there.",
-      );
+      say(byId("packet-reading"), "This part of the page could not be loaded. Check the network and unfold it again.");
     }
   }
 

@@ -27,7 +27,7 @@ export function createPackets(page) {
     dispatch({ type: "packet", packet: row.index });
     say(
       byId("packet-sentence"),
-      `Row ${row.index} is chosen and shown in the pulses: ${row.kind}, ${row.fields}, ${row.outcome}.`,
+      `Row ${row.index} is selected and shown in the pulses: ${row.kind}, ${row.fields}, ${row.outcome}.`,
     );
     reveal(row);
     if (go && byId("tab-pulses").checkVisibility()) dispatch({ type: "view", view: "pulses" });
@@ -71,7 +71,7 @@ export function createPackets(page) {
   /** @param {(loaded: typeof import("./copy.js")) => any} work */
   const copy = (work) =>
     import("./copy.js").then(work, () =>
-      say(byId("packets-note"), "This part of the page could not be loaded; try again when the network is there."),
+      say(byId("packets-note"), "This part of the page could not be loaded. Check the network and try again."),
     );
   byId("packets-copy-all").addEventListener("click", () => copy(({ copyAll }) => copyAll(engine)));
   /** @param {PacketRow | null} row */
@@ -80,22 +80,22 @@ export function createPackets(page) {
   }
 
   listen(byId("packets"), "Packets", [
-    { keys: ["ArrowUp"], text: "the row before", run: () => table.move(-1) },
-    { keys: ["ArrowDown"], text: "the next row", run: () => table.move(1) },
-    { keys: ["PageUp"], text: "a page of rows back", run: () => table.move(-table.page()) },
-    { keys: ["PageDown"], text: "a page of rows on", run: () => table.move(table.page()) },
-    { keys: ["Home"], text: "the first row", run: () => table.move(-Infinity) },
-    { keys: ["End"], text: "the last row", run: () => table.move(Infinity) },
+    { keys: ["ArrowUp"], text: "previous row", run: () => table.move(-1) },
+    { keys: ["ArrowDown"], text: "next row", run: () => table.move(1) },
+    { keys: ["PageUp"], text: "page up", run: () => table.move(-table.page()) },
+    { keys: ["PageDown"], text: "page down", run: () => table.move(table.page()) },
+    { keys: ["Home"], text: "first row", run: () => table.move(-Infinity) },
+    { keys: ["End"], text: "last row", run: () => table.move(Infinity) },
     {
       keys: ["Enter", "Space"],
-      text: "choose the row and show it in the pulses",
+      text: "select the row and show it in the pulses",
       run: () => {
         table.current().then((row) => row && choose(row, true));
       },
     },
     {
       keys: ["c"],
-      text: "copy the row's bytes as hex",
+      text: "copy the bytes of the row as hex",
       run: () => {
         table.current().then(copyRow);
       },
@@ -146,8 +146,8 @@ export function createPackets(page) {
 /** Why nothing went over the line. @param {State} state */
 function whyNone({ scenario: { source } }) {
   if ("segments" in source || source.motion?.engine === "segments")
-    return "Segments come from the controller itself: nothing is on the line.";
+    return "The controller runs segments: nothing is on the line.";
   if ("standalone" in source) return "A stand-alone controller has no line.";
-  if ("line" in source) return "The line script sends nothing that this controller hears.";
-  return "Nothing was sent: there is nothing to do.";
+  if ("line" in source) return "The line script sends nothing to this controller.";
+  return "Nothing was sent: there are no ticks.";
 }

@@ -74,10 +74,10 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
   /** @param {PacketDetail} row @param {State} state */
   function paint(row, state) {
     const clock = state.result?.summary.clock_hz ?? 1;
-    const said = (/** @type {number} */ cycles) => time(cycles / clock);
+    const timeOf = (/** @type {number} */ cycles) => time(cycles / clock);
     fill(
       byId("packet-facts"),
-      ...facts(row, said).map(([name, value, bad]) =>
+      ...facts(row, timeOf).map(([name, value, bad]) =>
         element("div", bad ? { class: "bad" } : {}, element("dt", {}, name), element("dd", {}, value)),
       ),
     );
@@ -132,7 +132,7 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
       highlighted && shown && (highlighted.packet === null || highlighted.packet === shown.index)
         ? shown.byte_cycles.map((start) => start < highlighted.end && start + shown.byte_length > highlighted.start)
         : [];
-    // All of a row is said by the row itself.
+    // All of a row is timeOf by the row itself.
     const some = over.includes(false) || over.length === 1 ? over : [];
     for (const [place, cell] of [...bytes.children].entries())
       cell.classList.toggle("highlighted", some[place] === true);
@@ -165,27 +165,27 @@ function reading(row, first, last, clock) {
     .join(" · ");
 }
 
-/** @param {PacketDetail} row @param {(cycles: number) => string} said @returns {[string, string, boolean?][]} */
-function facts(row, said) {
+/** @param {PacketDetail} row @param {(cycles: number) => string} timeOf @returns {[string, string, boolean?][]} */
+function facts(row, timeOf) {
   const { check, check_found: found, check_expected: expected } = row;
   const cobs = row.layout.filter(({ name }) => name === "COBS" || name === "end mark").length;
   const size = row.byte_cycles.length;
   /** @type {[string, string, boolean?]} */
   const checked =
     check === "holds"
-      ? ["CRC-32/ISCSI", `${found}, holds`]
+      ? ["CRC-32/ISCSI", `${found} ✓`]
       : check === "fails"
-        ? ["CRC-32/ISCSI", `✕ ${found} found, ${expected} expected`, true]
+        ? ["CRC-32/ISCSI", `✕ ${found}, expected ${expected}`, true]
         : check === "none"
-          ? ["check", "none: raw packets carry none"]
-          : ["check", "none: not a whole frame"];
+          ? ["check", "none: raw packets have no CRC"]
+          : ["check", "none: incomplete frame"];
   const tick =
     row.tick_start_cycle === null
       ? []
       : [
           [
             "tick",
-            `${said(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${said(row.tick_end_cycle)}`}`,
+            `${timeOf(row.tick_start_cycle)}${row.tick_end_cycle === null ? ", not ended" : ` to ${timeOf(row.tick_end_cycle)}`}`,
           ],
         ];
   const turnaround =
@@ -194,11 +194,11 @@ function facts(row, said) {
       : [
           [
             "turnaround",
-            `${said(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}${row.drive_cycles === null ? "" : `; DE rises after ${said(row.drive_cycles)}`}`,
+            `${timeOf(row.turnaround_cycles)} after the end of #${count(row.answers ?? 0)}${row.drive_cycles === null ? "" : `; DE rises after ${timeOf(row.drive_cycles)}`}`,
           ],
         ];
   const all = [
-    ["gap before", row.gap_cycles === null ? "–" : said(row.gap_cycles)],
+    ["gap before", row.gap_cycles === null ? "–" : timeOf(row.gap_cycles)],
     ...turnaround,
     ...tick,
     ...(row.kind === "collision"

@@ -12,13 +12,13 @@ export function createAxis(place, push) {
     type: "number",
     value: "100",
     step: "1",
-    "aria-label": "Steps that the hand pushes the axis by",
+    "aria-label": "Steps of the push",
   });
   const hand = element(
     "button",
     {
       type: "button",
-      title: "A hand pushes the axis by so many steps at the cursor; it moves while its windings are without current",
+      title: "Pushes the axis by hand at the cursor. It moves only while the windings have no current",
     },
     "Push",
   );
@@ -84,7 +84,7 @@ export function createAxis(place, push) {
     say(
       text,
       `Nut at ${count(at)} steps (${units(at)} units); position ${count(position)}${
-        error === 0 ? ", which agrees" : `: ${count(Math.abs(error))} ${Math.abs(error) === 1 ? "step" : "steps"} off`
+        error === 0 ? " ✓" : `: ${count(Math.abs(error))} ${Math.abs(error) === 1 ? "step" : "steps"} off`
       }`,
     );
     text.classList.toggle("error", error !== 0);

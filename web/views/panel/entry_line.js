@@ -1,6 +1,6 @@
 /** The line under the rows for the chosen entry of the script: its name, its time, and how to remove it. */
 import { element, say } from "../../dom.js";
-import { parseNumber } from "../../state/number.js";
+import { parseNumber } from "../../state/parse_number.js";
 import { nameOf } from "./script.js";
 
 /** @typedef {import("./script.js").Placed} Placed */
@@ -13,7 +13,7 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
   const name = element("span", { "aria-live": "polite" });
   const cycle = element("input", {
     class: "time",
-    "aria-label": "Time of the chosen input, in cycles or as a time",
+    "aria-label": "Time of the selected input, in cycles or as a time",
     spellcheck: "false",
   });
   const removeButton = element("button", { type: "button" }, "Remove");
@@ -22,7 +22,7 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
   const idle = element(
     "p",
     { class: "entry-line quiet" },
-    "Diamonds are inputs: drag one, or choose it with ",
+    "Diamonds are inputs: drag one, or select it with ",
     ...[key("N"), " and ", key("P"), " and move it with ", key(","), " and ", key(".")],
   );
   /** @type {Placed | null} */

@@ -17,17 +17,17 @@ const BUTTONS = [
 const FACES = { jog_minus: "◀ jog", jog_plus: "jog ▶" };
 /** What each does. @type {{[input: string]: string}} */
 const ABOUT = {
-  start: "starts the program, or goes on after a pause",
-  pause: "pauses a move, a delay or a wait",
-  clear: "clears an alarm, gives up after a pause, empties the entry",
-  jog_minus: "jogs to the left while it is held",
-  jog_plus: "jogs to the right while it is held",
-  zero: "returns to zero",
-  home: "looks for the switch",
-  debug: "fine jog and setting the zero, and back",
-  system: "the numbers, one after another",
-  ok: "takes the entry; in DEBUG makes this place the zero",
-  back: "leaves the numbers",
+  start: "start the program, or continue after a pause",
+  pause: "pause a move, a delay or a wait",
+  clear: "clear an alarm or the entry; cancel after a pause",
+  jog_minus: "jog left while held",
+  jog_plus: "jog right while held",
+  zero: "return to zero",
+  home: "start homing",
+  debug: "fine jog and setting of zero, and back",
+  system: "show the numbers, one by one",
+  ok: "confirm the entry; in DEBUG set zero here",
+  back: "leave the numbers",
 };
 const LEDS = { quick: "blinks quickly", on: "is on", slow: "blinks slowly" };
 
@@ -74,16 +74,11 @@ export function createFront(place, hand) {
     return made;
   }
 
-  const estop = lever("estop", 1, "E-STOP", "Presses the emergency stop at the cursor: motors off at once");
+  const estop = lever("estop", 1, "E-STOP", "Press the emergency stop at the cursor: motors off at once");
   estop.classList.add("estop");
-  const release = lever(
-    "estop",
-    0,
-    "Release",
-    "Releases the emergency stop at the cursor; clear brings the panel back",
-  );
-  const cut = lever("power", 0, "Cut power here", "The power goes away at the cursor");
-  const back = lever("power", 1, "Power back", "The power is back at the cursor");
+  const release = lever("estop", 0, "Release", "Release the emergency stop at the cursor; then press clear");
+  const cut = lever("power", 0, "Cut power here", "Switch the power off at the cursor");
+  const back = lever("power", 1, "Power back", "Switch the power on at the cursor");
   const switches = SWITCHES.map((input) => {
     const made = element(
       "button",
@@ -97,16 +92,14 @@ export function createFront(place, hand) {
     place,
     element("div", { class: "glass" }, display, element("span", { class: "lamp" }, lamp, lampText), outputs),
     words,
-    element("div", { class: "panel-told" }, next),
+    element("div", { class: "panel-advice" }, next),
     ...BUTTONS.map((row) =>
       element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, ABOUT[input]))),
     ),
     element(
       "div",
       { class: "pad digits", role: "group", "aria-label": "Digits" },
-      ...[1, 2, 3, 4, 5, 6, 7, 8, 9, 0].map((digit) =>
-        momentary(`key_${digit}`, String(digit), "a digit of the entry"),
-      ),
+      ...[1, 2, 3, 4, 5, 6, 7, 8, 9, 0].map((digit) => momentary(`key_${digit}`, String(digit), "digit of the entry")),
     ),
     element(
       "div",
@@ -134,7 +127,7 @@ export function createFront(place, hand) {
     say(next, advice(word, Boolean(parameters?.home)));
     const home = buttons.get("home");
     if (home)
-      home.title = `home: ${ABOUT.home}${parameters?.home ? "" : "; nothing here, for homing is not set up in the form"}`;
+      home.title = `home: ${ABOUT.home}${parameters?.home ? "" : "; no effect: homing is not set up in the form"}`;
     say(outputs, word.outputs ? `out ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "");
     for (const [input, made] of buttons) made.classList.toggle("down", level(input));
     estop.classList.toggle("down", level("estop"));
@@ -154,7 +147,7 @@ export function createFront(place, hand) {
       const input = /** @type {string} */ (made.dataset.input);
       made.setAttribute("aria-pressed", String(level(input)));
       made.classList.toggle("driven", input in by);
-      made.title = by[input] ? `${input}: driven by ${by[input]}` : `${input}: switches it over at the cursor`;
+      made.title = by[input] ? `${input}: driven by ${by[input]}` : `${input}: toggle it at the cursor`;
     }
   }
   return { show };

@@ -19,35 +19,30 @@ export function createHead(title, { panel, clock, report, select, play, toEnd })
   const controller = element("select", {});
   const controllerLabel = element("label", {}, "controller ", controller);
   const at = element("output", { class: "panel-at", "aria-live": "off" });
-  const hold = element("input", { class: "time", size: "8", spellcheck: "false", "aria-describedby": "panel-said" });
+  const hold = element("input", { class: "time", size: "8", spellcheck: "false", "aria-describedby": "panel-status" });
   const playButton = element(
     "button",
     {
       type: "button",
       "aria-pressed": "false",
-      title: "The cursor goes on with the clock; a button is pressed as long as it is held",
+      title: "The cursor moves with the clock; buttons react while you hold them",
     },
     "▶ Live",
   );
-  const speed = element("select", { "aria-label": "Speed of live" });
+  const speed = element("select", { "aria-label": "Speed of live mode" });
   options(speed, SPEEDS, "1");
   const end = element(
     "button",
     {
       type: "button",
       hidden: "",
-      title: "Lets cursor A go: the panel is as it is at the end, and presses come after it",
+      title: "Remove cursor A: the panel shows the end, and presses are added there",
     },
     "To the end",
   );
   title.after(
     controllerLabel,
-    element(
-      "label",
-      { title: "How long a press lasts; it has to stand through the debouncing to count" },
-      "hold ",
-      hold,
-    ),
+    element("label", { title: "Length of a press. It must be longer than the debounce time" }, "hold ", hold),
     element("span", { class: "group", role: "group", "aria-label": "Live" }, playButton, speed),
     at,
     end,

@@ -45,22 +45,24 @@ export const STATES = [
 ];
 const ALARMS = ["", "ESTOP", "LIMIT", "SOFT_LIMIT", "HOMING", "TRUST", "TIMEOUT", "MEMORY"];
 export const TRUST = ["LOST", "HELD", "SURE"];
-/** What EDIT goes through; after these five of each move. */
+/** The same for a reader. @type {{[trust: string]: string}} */
+const POSITION = { LOST: "lost", HELD: "restored", SURE: "confirmed" };
+/** The numbers of EDIT, followed by five numbers per move. */
 const NUMBERS = [
-  "pulses_per_unit",
+  "pulses per unit",
   "decimals",
-  "jog.speed_hz",
-  "jog.fine_hz",
-  "return.speed_hz",
-  "return.level",
+  "jog speed",
+  "fine jog speed",
+  "return speed",
+  "return level",
   "loops",
   "used groups",
 ];
-const OF_MOVE = ["length", "speed_hz", "direction", "level", "delay_ms"];
+const OF_MOVE = ["length", "speed", "direction", "level", "delay"];
 
 /** @typedef {{state: string, alarm: string, trust: string, outputs: number, group: number, loop: number}} Word */
 
-/** What stands in a panel's word; it has 48 bits. @param {number} word @returns {Word} */
+/** The fields of a panel word of 48 bits. @param {number} word @returns {Word} */
 export function read(word) {
   const [low, high] = [word % 2 ** 32, Math.floor(word / 2 ** 32)];
   return {
@@ -94,26 +96,26 @@ export function numberName(number) {
   return `${OF_MOVE[at % OF_MOVE.length]} of move ${Math.floor(at / OF_MOVE.length) + 1}`;
 }
 
-/** What each alarm asks for, and a trust that is not sure; @ is how the place becomes known. @type {{[of: string]: string}} */
+/** Advice for each alarm and each unconfirmed position; @ is how to set the position. @type {{[of: string]: string}} */
 const ADVICE = {
   ESTOP: "Release the emergency stop, then clear.",
   LIMIT: "Clear, then jog off the switch.",
-  SOFT_LIMIT: "Clear; the move would have left the soft limits.",
-  HOMING: "Clear; the switch was not found where homing looks.",
-  TRUST: "Clear. The place is not known: @.",
-  TIMEOUT: "Clear; the input did not come in time.",
-  MEMORY: "Clear. Nothing is remembered: @.",
-  LOST: "The place is not known: @.",
-  HELD: "The place that was kept. Debug, ok makes where it stands the zero, and sure.",
+  SOFT_LIMIT: "Clear. The move would exceed the soft limits.",
+  HOMING: "Clear. Homing did not find the switch.",
+  TRUST: "Clear. The position is lost: @.",
+  TIMEOUT: "Clear. The input timed out.",
+  MEMORY: "Clear. The memory is invalid: @.",
+  LOST: "The position is lost: @.",
+  HELD: "The position is restored. Debug, ok sets zero here and confirms it.",
 };
 
-/** What to do next, where something is to be done. @param {Word} word @param {boolean} hasHome  Whether homing is set up. */
+/** What to do next, if anything. @param {Word} word @param {boolean} hasHome  Whether homing is set up. */
 export function advice({ state, alarm, trust }, hasHome) {
-  const known = `${hasHome ? "home, or " : ""}jog to a known place, then debug, ok`;
+  const known = `${hasHome ? "home, or " : ""}jog to a known position, then debug, ok`;
   return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "").replace("@", known);
 }
 
-/** What a panel says, in words. @param {Word} word @param {{groups: number, loops: number}} program  As its numbers rule it. */
+/** The state of a panel as text. @param {Word} word @param {{groups: number, loops: number}} program */
 export function sentence({ state, alarm, trust, group, loop }, { groups, loops }) {
   const where =
     state === "EDIT"
@@ -121,5 +123,5 @@ export function sentence({ state, alarm, trust, group, loop }, { groups, loops }
       : group > 0
         ? `group ${group}/${groups}, loop ${loop}/${loops}`
         : "not running";
-  return `${state}${alarm ? ` ${alarm}` : ""} · trust ${trust} · ${where}`;
+  return `${state}${alarm ? ` ${alarm}` : ""} · position ${POSITION[trust] ?? trust} · ${where}`;
 }

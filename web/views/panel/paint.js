@@ -189,7 +189,7 @@ export function paintCurve(ground, curve, tall, print) {
   context.stroke();
   context.restore();
   context.fillStyle = color("--quiet");
-  context.fillText("way made, in units", plot.left + 4, 6);
+  context.fillText("travel, units", plot.left + 4, 6);
   for (const value of new Set([low, high])) paintName(context, print(value), plot.left, y(value) - ROW_PX / 2, false);
 }
 

@@ -39,7 +39,7 @@ export async function createPanel({ engine, dispatch, now }) {
     toEnd: () => dispatch({ type: "cursor", which: "a", cycle: null }),
   });
   const front = element("div", { class: "front", role: "group", "aria-label": "Front panel" });
-  const status = element("p", { id: "panel-said", class: "panel-said", role: "status" });
+  const status = element("p", { id: "panel-status", class: "panel-status", role: "status" });
   const axisPlace = element("div", { class: "axis", role: "group", "aria-label": "Virtual axis" });
   const stripPlace = element("div", { class: "strip" });
   const line = createEntryLine({
@@ -59,7 +59,7 @@ export async function createPanel({ engine, dispatch, now }) {
   const keys = element(
     "p",
     { id: "panel-keys", class: "unseen" },
-    "N and P choose the next and the previous input, comma and full stop move it, Delete removes it.",
+    "N and P select the next and previous input, comma and period move it, Delete removes it.",
   );
   const body = element("div", { class: "panel-body" });
   view.append(body);
@@ -102,7 +102,7 @@ export async function createPanel({ engine, dispatch, now }) {
     set: editor.set,
   });
   // Over the buttons, where it stays in sight, in place of the advice.
-  front.querySelector(".panel-told")?.prepend(status);
+  front.querySelector(".panel-advice")?.prepend(status);
   const axis = createAxis(axisPlace, editor.push);
   const strip = createStrip(stripPlace, {
     ...{ engine, dispatch, now, remove },
@@ -138,7 +138,7 @@ export async function createPanel({ engine, dispatch, now }) {
 
   function showLive() {
     head.showLive(live.isOn());
-    report(live.isOn() ? "Live: hold a button as long as it is to be pressed." : "");
+    report(live.isOn() ? "Live: buttons react while you hold them." : "");
   }
 
   /** @param {Placed} placed */
@@ -155,7 +155,7 @@ export async function createPanel({ engine, dispatch, now }) {
     storyOf = of;
     story = reply && storyFrom(reply);
     body.hidden = story === null;
-    say(byId("panel-note"), !story && state.result ? "No stand-alone controller runs this." : "");
+    say(byId("panel-note"), !story && state.result ? "This experiment has no stand-alone controller." : "");
     if (!story) return;
     const drawn = strip.show(story, storyLabel(story, of.index));
     showIgnored(story);

@@ -1,5 +1,6 @@
 /** When a press goes into the script and how long it lasts, and what is reported of it. */
-import { count, parseNumber, si } from "../../state/number.js";
+import { count, si } from "../../state/number.js";
+import { parseNumber } from "../../state/parse_number.js";
 import { endOf } from "../../state/time_window.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -41,16 +42,17 @@ export function parseHold(text, panel, clock) {
   if (text.trim() === "") return { cycles: null, warning: "" };
   const given = parseNumber(text, "s");
   if ("message" in given) return given;
-  if (!(given.value > 0)) return { message: "A press lasts longer than 0 s." };
+  if (!(given.value > 0)) return { message: "A press of 0 s has no effect; enter a longer time." };
   const cycles = Math.max(1, Math.round(given.value * clock));
   const isSeen = cycles > shortestPress(panel, clock) - beyond(clock);
-  return { cycles, warning: isSeen ? "" : "Not longer than the debouncing: such a press is not seen." };
+  return { cycles, warning: isSeen ? "" : "Not longer than the debounce time: the press has no effect." };
 }
 
 /** Why a push cannot be; empty where it can. @param {number} steps */
 export function whyNoPush(steps) {
-  if (steps === 0) return "A push of 0 steps moves nothing.";
-  if (Math.abs(steps) > MAX_PUSH) return `A push has at most ${count(MAX_PUSH)} steps either way; push several times.`;
+  if (steps === 0) return "A push of 0 steps has no effect; enter another number.";
+  if (Math.abs(steps) > MAX_PUSH)
+    return `A push has at most ${count(MAX_PUSH)} steps in either direction; push several times.`;
   return "";
 }
 
@@ -60,4 +62,4 @@ export const pressText = (input, at, seconds) => `${input} is pressed at ${at}, 
 export const levelText = (input, level, at) => `${input} is ${level} from ${at} on.`;
 /** @param {number} steps @param {string} at */
 export const pushText = (steps, at) =>
-  `The axis is pushed by ${count(steps)} steps at ${at}; it moves if its windings are without current.`;
+  `The axis is pushed by ${count(steps)} steps at ${at}. It moves if the windings have no current.`;

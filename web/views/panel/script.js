@@ -30,13 +30,13 @@ export const ownerOf = (controller, input) => (input !== null && SHARED.includes
  */
 export function put(inputs, { cycle, input, level, push_steps }, axis, timeOf) {
   const by = input && driven(axis)[input];
-  if (by)
-    return { refused: `${input} is driven by the axis (${by}); take that away in the form to switch it by hand.` };
-  if (inputs.length >= MAX_INPUTS) return { refused: `There are ${MAX_INPUTS} inputs already; no more fit.` };
+  if (by) return { refused: `${input} is driven by the axis (${by}); remove that in the form to switch it by hand.` };
+  if (inputs.length >= MAX_INPUTS)
+    return { refused: `The maximum of ${MAX_INPUTS} inputs is reached; remove one first.` };
   const at = Math.max(1, Math.round(cycle));
   if (inputs.some((each) => each.cycle === at && each.input === input))
     return {
-      refused: `${input ?? "A push"} is changed at ${timeOf(at)} already; set the cursor to another time, or drag that diamond away.`,
+      refused: `${input ?? "A push"} already changes at ${timeOf(at)}; move the cursor or that diamond.`,
     };
   const behind = inputs.findLastIndex((each) => each.cycle <= at) + 1;
   return { inputs: inputs.toSpliced(behind, 0, { cycle: at, input, level, push_steps: push_steps ?? null }) };
@@ -47,12 +47,12 @@ export function press(inputs, input, from, until, axis, timeOf) {
   const before = inputs.findLast((each) => each.input === input && each.cycle < from);
   if (before?.level === 1)
     return {
-      refused: `${input} is pressed at ${timeOf(from)} already, since ${timeOf(before.cycle)}; set the cursor behind that press.`,
+      refused: `${input} is already pressed at ${timeOf(from)}, since ${timeOf(before.cycle)}; move the cursor past that press.`,
     };
   const next = inputs.find((each) => each.input === input && each.cycle > from);
   if (next && next.cycle <= until)
     return {
-      refused: `${input} is pressed again at ${timeOf(next.cycle)}, before this press would end; set the cursor elsewhere, or a shorter hold.`,
+      refused: `${input} is pressed again at ${timeOf(next.cycle)}, before this press ends; move the cursor, or use a shorter hold.`,
     };
   const down = put(inputs, { cycle: from, input, level: 1 }, axis, timeOf);
   return "refused" in down ? down : put(down.inputs, { cycle: until, input, level: 0 }, axis, timeOf);
@@ -65,7 +65,7 @@ export function moved(inputs, index, cycle, timeOf) {
   if (at === entry.cycle) return { inputs, index };
   const others = inputs.toSpliced(index, 1);
   if (others.some((each) => each.cycle === at && each.input === entry.input))
-    return { refused: `${entry.input ?? "A push"} would be changed twice at ${timeOf(at)}; it stays where it is.` };
+    return { refused: `${entry.input ?? "A push"} would change twice at ${timeOf(at)}; it is not moved.` };
   const behind = others.findLastIndex((each) => each.cycle <= at) + 1;
   return { inputs: others.toSpliced(behind, 0, { ...entry, cycle: at }), index: behind };
 }

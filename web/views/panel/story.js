@@ -57,7 +57,7 @@ export function momentFrom(reply) {
 /** The presses that meant nothing, as far as they are listed. @param {Story} story @param {boolean} hasHome @param {(cycle: number) => string} timeOf */
 export function ignoredPresses({ ignored }, hasHome, timeOf) {
   return {
-    title: `${count(ignored.length)} ${ignored.length === 1 ? "press" : "presses"} meant nothing`,
+    title: `${count(ignored.length)} ${ignored.length === 1 ? "press" : "presses"} ignored`,
     items: ignored.slice(0, MAX_LISTED).map(({ cycle, input, state }) => ({
       cycle,
       text: `${input} at ${timeOf(cycle)} in ${state}${input === "home" && !hasHome ? ": homing is not set up" : ""}`,
@@ -69,9 +69,9 @@ export function ignoredPresses({ ignored }, hasHome, timeOf) {
 /** @param {Story} story */
 export function wearText({ writes }) {
   const most = writes.reduce((a, b) => Math.max(a, b), 0);
-  return `Memory: its most worn cell was written ${count(most)} ${most === 1 ? "time" : "times"}.`;
+  return `Memory: the most-written cell was written ${count(most)} ${most === 1 ? "time" : "times"}.`;
 }
 
 /** @param {Story} story @param {number} panel */
 export const storyLabel = ({ inputs, records }, panel) =>
-  `Rows of panel ${panel}: ${inputs.size} inputs, ${count(records.length / 4)} changes of what it shows`;
+  `Rows of panel ${panel}: ${inputs.size} inputs, ${count(records.length / 4)} changes of the display`;

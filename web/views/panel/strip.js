@@ -139,18 +139,18 @@ export function createStrip(place, page) {
   listen(canvas, "Rows of the panel", [
     { keys: ["n"], text: "next input", run: () => step(1) },
     { keys: ["p"], text: "previous input", run: () => step(-1) },
-    { keys: ["ArrowDown"], text: "an input of the row below", run: () => stepRow(1) },
-    { keys: ["ArrowUp"], text: "an input of the row above", run: () => stepRow(-1) },
-    { keys: [","], text: "the chosen input earlier", run: () => nudge(-1) },
-    { keys: ["."], text: "the chosen input later", run: () => nudge(1) },
+    { keys: ["ArrowDown"], text: "input of the row below", run: () => stepRow(1) },
+    { keys: ["ArrowUp"], text: "input of the row above", run: () => stepRow(-1) },
+    { keys: [","], text: "move the selected input earlier", run: () => nudge(-1) },
+    { keys: ["."], text: "move the selected input later", run: () => nudge(1) },
     { keys: ["<"], text: "much earlier", run: () => nudge(-FAST) },
     { keys: [">"], text: "much later", run: () => nudge(FAST) },
     {
       keys: ["Enter"],
-      text: "cursor A to the chosen input",
+      text: "move cursor A to the selected input",
       run: () => (chosen ? dispatch({ type: "cursor", which: "a", cycle: chosen.entry.cycle }) : false),
     },
-    { keys: ["Delete"], text: "remove the chosen input", run: () => (chosen ? page.remove(chosen) : false) },
+    { keys: ["Delete"], text: "remove the selected input", run: () => (chosen ? page.remove(chosen) : false) },
   ]);
 
   /** @param {State} state @returns {import("./paint.js").Ground | null} */

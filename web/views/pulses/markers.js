@@ -39,7 +39,7 @@ export function createMarkers({ dispatch, now, speak }) {
       const cell = element(
         "td",
         {},
-        "The table could not be loaded; it comes with the next change when the network is there.",
+        "The table could not be loaded. Check the network; the next change loads it again.",
       );
       return fill(body, element("tr", {}, cell));
     }

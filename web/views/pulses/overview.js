@@ -63,13 +63,13 @@ export function createOverview({ engine, dispatch, now }) {
     const part = shown(now());
     move(what, part[what] + (sign * (part.end - part.start)) / 10);
   };
-  listen(canvas, "Whole run (the strip over the pulses)", [
-    { keys: ["ArrowLeft"], text: "the shown part earlier", run: () => pan(page, -0.1) },
-    { keys: ["ArrowRight"], text: "the shown part later", run: () => pan(page, 0.1) },
+  listen(canvas, "Overview (strip above the pulses)", [
+    { keys: ["ArrowLeft"], text: "move the visible part earlier", run: () => pan(page, -0.1) },
+    { keys: ["ArrowRight"], text: "move the visible part later", run: () => pan(page, 0.1) },
     { keys: ["Shift+ArrowLeft"], text: "its end earlier", run: nudge("end", -1) },
     { keys: ["Shift+ArrowRight"], text: "its end later", run: nudge("end", 1) },
-    { keys: ["Alt+ArrowLeft"], text: "its beginning earlier", run: nudge("start", -1) },
-    { keys: ["Alt+ArrowRight"], text: "its beginning later", run: nudge("start", 1) },
+    { keys: ["Alt+ArrowLeft"], text: "its start earlier", run: nudge("start", -1) },
+    { keys: ["Alt+ArrowRight"], text: "its start later", run: nudge("start", 1) },
     { keys: ["+", "="], text: "zoom in", run: () => zoom(page, 0.5) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
@@ -133,7 +133,7 @@ export function createOverview({ engine, dispatch, now }) {
     const clock = state.result?.summary.clock_hz ?? 1;
     canvas.setAttribute(
       "aria-label",
-      `The whole run, ${time(endOf(state) / clock)}; shown are ${time(start / clock)} to ${time(end / clock)}`,
+      `The whole run, ${time(endOf(state) / clock)}; visible: ${time(start / clock)} to ${time(end / clock)}`,
     );
     const { width, height, ratio: scale } = fit(canvas);
     const context = canvas.getContext("2d");

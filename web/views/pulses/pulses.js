@@ -63,7 +63,7 @@ export function createPulses({ engine, dispatch, now }) {
       content.inert = false;
       edges.fromShown();
     } catch {
-      say(byId("edges-count"), "The table could not be loaded; unfold it again when the network is there.");
+      say(byId("edges-count"), "The table could not be loaded. Check the network and unfold it again.");
     }
   });
 
@@ -75,11 +75,11 @@ export function createPulses({ engine, dispatch, now }) {
   foldAll.addEventListener("click", () => dispatch({ type: "fold-all", folded: !allFolded(now()) }));
   allSignals.addEventListener("change", () => dispatch({ type: "all-signals", on: allSignals.checked }));
   listen(canvas, "Pulses", [
-    { keys: ["n"], text: "next edge of the chosen row", run: () => void jump(true) },
-    { keys: ["p"], text: "previous edge of the chosen row", run: () => void jump(false) },
-    { keys: ["ArrowUp"], text: "choose the row above", run: () => step(-1) },
-    { keys: ["ArrowDown"], text: "choose the row below", run: () => step(1) },
-    { keys: ["Enter"], text: "fold or unfold the chosen row's channel", run: () => fold(channelOf(now().row)) },
+    { keys: ["n"], text: "next edge of the selected row", run: () => void jump(true) },
+    { keys: ["p"], text: "previous edge of the selected row", run: () => void jump(false) },
+    { keys: ["ArrowUp"], text: "select the row above", run: () => step(-1) },
+    { keys: ["ArrowDown"], text: "select the row below", run: () => step(1) },
+    { keys: ["Enter"], text: "fold or unfold the channel of the selected row", run: () => fold(channelOf(now().row)) },
   ]);
   /** @param {number} by */
   function step(by) {
@@ -93,7 +93,7 @@ export function createPulses({ engine, dispatch, now }) {
     const folded = !isFolded(now(), channel);
     dispatch({ type: "fold", channel, folded });
     reading.speak(
-      `${channel < 16 ? `Channel ${channel}` : `What ${nameOf(now(), channel)} carries`} ${folded ? "folded" : "unfolded"}.`,
+      `${channel < 16 ? `Channel ${channel}` : `Decoded bytes of ${nameOf(now(), channel)}`} ${folded ? "folded" : "unfolded"}.`,
     );
   }
 
@@ -166,7 +166,7 @@ export function createPulses({ engine, dispatch, now }) {
     const clock = state.result?.summary.clock_hz ?? 1;
     canvas.setAttribute(
       "aria-label",
-      `Logic analyser, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`,
+      `Logic analyzer, ${rowsOf(state).length} rows, ${time(start / clock)} to ${time(end / clock)}, row ${nameOf(state, state.row)}`,
     );
   }
 

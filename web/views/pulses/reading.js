@@ -15,10 +15,10 @@ const coarse = () => matchMedia("(pointer: coarse)").matches;
 export function createReading({ engine, now }) {
   /** What is under the pointer, in words. */
   let pointed = "";
-  /** What was said last, shown until the pointer moves. */
-  let said = "";
+  /** What was announced last, shown until the pointer moves. */
+  let announced = "";
   let timer = 0;
-  /** Counts the sentences: what comes to be known after a newer one is not said. */
+  /** Counts the sentences: what comes to be known after a newer one is not announced. */
   let sentences = 0;
 
   /** @param {State} state */
@@ -51,7 +51,7 @@ export function createReading({ engine, now }) {
   /** A span, or nothing, is under the pointer. @param {string} text @returns {undefined} */
   function span(text) {
     pointed = text;
-    said = "";
+    announced = "";
     foot(now());
   }
 
@@ -59,20 +59,20 @@ export function createReading({ engine, now }) {
   function foot(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const under = state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
-    const text = said || under.filter(Boolean).join(" · ");
+    const text = announced || under.filter(Boolean).join(" · ");
     say(
       byId("hover-reading"),
       text ||
         (coarse()
-          ? "two fingers zoom, dragging moves, a double tap shows the whole run"
-          : "wheel zooms, dragging moves, double click shows the whole run"),
+          ? "two fingers zoom, dragging moves, double-tap shows the whole run"
+          : "wheel zooms, dragging moves, double-click shows the whole run"),
     );
-    byId("hover-reading").classList.toggle("said", said !== "");
+    byId("hover-reading").classList.toggle("said", announced !== "");
   }
 
   /** Shows a sentence at once and lets it be spoken. @param {string} text */
   function speak(text) {
-    said = text;
+    announced = text;
     sentences++;
     foot(now());
     clearTimeout(timer);
@@ -94,12 +94,12 @@ export function createReading({ engine, now }) {
     if (reply) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, reply)}.`);
   }
 
-  /** What `said` is about. @type {State["result"]} */
+  /** What `announced` is about. @type {State["result"]} */
   let about = null;
 
   /** @param {State} state */
   function render(state) {
-    if (about !== state.result) said = "";
+    if (about !== state.result) announced = "";
     about = state.result;
     foot(state);
     cursors(state);
@@ -111,7 +111,7 @@ export function createReading({ engine, now }) {
 function measured(state, bit, { high, begin, end, next }) {
   const clock = state.result?.summary.clock_hz ?? 1;
   const level = `${nameOf(state, bit)} ${high ? "high" : "low"}`;
-  if (begin === null) return end === null ? `${level}, never changes` : `${level}, first edge at ${time(end / clock)}`;
+  if (begin === null) return end === null ? `${level}, no edges` : `${level}, first edge at ${time(end / clock)}`;
   if (end === null) return `${level} from ${time(begin / clock)} to the end`;
   const width = `${level} for ${time((end - begin) / clock)} (${count(end - begin)} cycles)`;
   if (next === null) return width;

@@ -3,9 +3,9 @@ import { button, byId, element, fill, say } from "../../dom.js";
 import {
   AS_THEY_ARE,
   hidden,
-  LEAST_PX,
-  MOST_LETTERS,
-  MOST_PX,
+  MAX_LETTERS,
+  MAX_PX,
+  MIN_PX,
   moved,
   named,
   rowPx,
@@ -33,11 +33,11 @@ export function createRowList({ speak, dispatch, now }) {
   /** @param {Partial<import("../../state/row_choices.js").RowChoices>} rows */
   const choose = (rows) => dispatch({ type: "rows", rows });
 
-  [height.min, height.max] = [String(LEAST_PX), String(MOST_PX)];
+  [height.min, height.max] = [String(MIN_PX), String(MAX_PX)];
   height.addEventListener("input", () => choose(taller(choices(), Number(height.value) - rowPx(choices()))));
   byId("rows-reset").addEventListener("click", () => {
     choose(AS_THEY_ARE);
-    speak("The rows are as at first.");
+    speak("The rows are reset.");
   });
 
   /** The group of the chosen signal. */
@@ -48,7 +48,7 @@ export function createRowList({ speak, dispatch, now }) {
   /** @param {number} by */
   function stretch(by) {
     choose(taller(choices(), by));
-    speak(`Rows of ${rowPx(choices())} pixels.`);
+    speak(`Row height: ${rowPx(choices())} pixels.`);
   }
 
   /** By one among some groups; those between stay where they are. @param {Group | undefined} what @param {number} by @param {Group[]} among */
@@ -76,12 +76,12 @@ export function createRowList({ speak, dispatch, now }) {
       const [next] = others.sort((one, other) => one.far - other.far);
       if (!next) {
         paint(now());
-        return speak("One signal stays on show.");
+        return speak("At least one signal must be visible.");
       }
       dispatch({ type: "row", row: next.bit });
     }
     choose(hidden(choices(), what.group, away));
-    speak(`${nameOf(what)} is ${away ? "hidden; the list of rows shows it again" : "on show"}.`);
+    speak(`${nameOf(what)} is ${away ? "hidden; use the list of rows to show it" : "visible"}.`);
   }
 
   /** @param {Group} what */
@@ -92,11 +92,11 @@ export function createRowList({ speak, dispatch, now }) {
   /** Opens the panel for the keyboard. */
   function open() {
     byKey = true;
-    if (panel.matches(":popover-open")) opened();
+    if (panel.matches(":popover-open")) onOpen();
     else panel.showPopover({ source: byId("rows-open") });
   }
 
-  function opened() {
+  function onOpen() {
     paint(now());
     if (byKey) lines.get(chosen()?.group ?? "")?.field.focus();
     byKey = false;
@@ -106,7 +106,7 @@ export function createRowList({ speak, dispatch, now }) {
   function lineOf(first) {
     let what = first;
     const box = element("input", { type: "checkbox" });
-    const field = element("input", { type: "text", maxlength: String(MOST_LETTERS), spellcheck: "false" });
+    const field = element("input", { type: "text", maxlength: String(MAX_LETTERS), spellcheck: "false" });
     box.addEventListener("change", () => hide(what, !box.checked));
     field.addEventListener("input", () => choose(named(choices(), what.group, field.value, what.own)));
     const press = (/** @type {number} */ by) => {
@@ -172,7 +172,7 @@ export function createRowList({ speak, dispatch, now }) {
     if (!same) paint(state);
   }
   return {
-    opened,
+    onOpen,
     render,
     open,
     /** By one among those on show. @param {number} by */

@@ -18,10 +18,10 @@ export function createRowPanel({ canvas, ...page }) {
     });
     return loading;
   };
-  const missing = () => page.speak("This part of the page could not be loaded; try again when the network is there.");
+  const missing = () => page.speak("This part of the page could not be loaded. Check the network and try again.");
   const key = (/** @type {(list: RowList) => void} */ work) => () => void load().then(work, missing);
   listen(canvas, "Pulses", [
-    { keys: ["Shift+ArrowUp"], text: "move the chosen row up", run: key(({ move }) => move(-1)) },
+    { keys: ["Shift+ArrowUp"], text: "move the selected row up", run: key(({ move }) => move(-1)) },
     { keys: ["Shift+ArrowDown"], text: "move it down", run: key(({ move }) => move(1)) },
     { keys: ["h"], text: "hide it", run: key(({ hide }) => hide()) },
     { keys: ["Alt+ArrowDown"], text: "taller rows", run: key(({ stretch }) => stretch(1)) },

@@ -5,7 +5,7 @@
  */
 
 import { selected } from "../../state/queries.js";
-import { ordered } from "../../state/row_choices.js";
+import { inOrder } from "../../state/row_choices.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
@@ -106,7 +106,7 @@ export function groupsOf(state) {
   if (selected(state)?.violations) add("timing", (name) => [{ kind: "violations", name, ink: "--error" }]);
   for (let channel = 0; channel < channelsOf(state); channel++)
     add(`ch ${channel}`, () => channelRows(state, channel), `${channel}`);
-  return ordered(state.panes.pulses, groups, ({ group }) => group);
+  return inOrder(state.panes.pulses, groups, ({ group }) => group);
 }
 
 /** @param {State} state @param {number} channel @returns {Row[]} */

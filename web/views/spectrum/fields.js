@@ -1,6 +1,7 @@
 /** The frequencies on show in fields and buttons: from, to, zoom in, zoom out, all of it, back, logarithmic. */
 import { button, byId, element, say } from "../../dom.js";
-import { parseNumber, si } from "../../state/number.js";
+import { si } from "../../state/number.js";
+import { parseNumber } from "../../state/parse_number.js";
 import { frequency } from "./frequency.js";
 
 /**
@@ -14,7 +15,7 @@ export function createFields(place, { zoom, fit, back, log, changed }) {
   );
   const press = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
     button(text, label, run);
-  const backButton = press("Back", "Back to what was shown before (Backspace)", back);
+  const backButton = press("Back", "Back to the previous view (Backspace)", back);
   const logButton = press("log", "log: logarithmic frequencies (L)", log);
   logButton.id = "spectrum-log";
   byId("spectrum-scale").parentElement?.after(logButton);
@@ -22,7 +23,7 @@ export function createFields(place, { zoom, fit, back, log, changed }) {
     ...inputs.map((input, at) => element("label", {}, `${["from", "to"][at]} `, input)),
     press("+", "Zoom in (+)", () => zoom(0.5)),
     press("−", "Zoom out (−)", () => zoom(2)),
-    press("Fit", "Fit: the whole spectrum (0 or double click)", fit),
+    press("Fit", "Fit: the whole spectrum (0 or double-click)", fit),
     backButton,
     wrong,
   );
@@ -36,8 +37,8 @@ export function createFields(place, { zoom, fit, back, log, changed }) {
     });
     const message = "message" in from ? from.message : "message" in to ? to.message : "";
     if (message || "message" in from || "message" in to) return say(wrong, message);
-    if (from.value < 0) return say(wrong, "Frequencies begin at 0 Hz; give that or more for “from”.");
-    if (to.value <= from.value) return say(wrong, "“to” is to lie above “from”.");
+    if (from.value < 0) return say(wrong, "“from” is out of range; use 0 Hz or more.");
+    if (to.value <= from.value) return say(wrong, "“to” must be above “from”.");
     say(wrong, "");
     frequency.showHertz(from.value, to.value);
     changed();

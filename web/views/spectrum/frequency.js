@@ -9,7 +9,7 @@ import { DEPTH } from "../../state/history.js";
 /** Beyond the fundamental and the highest line, as ratios on a logarithmic axis. */
 const AIR = 1.25;
 /** Least part of the whole axis that is shown is so many lines, or this ratio. */
-const [LEAST_LINES, LEAST_RATIO] = [2, 1.05];
+const [MIN_LINES, MIN_RATIO] = [2, 1.05];
 
 let fundamental_hz = 1;
 let order = 1;
@@ -98,7 +98,7 @@ function hertz() {
 function clamp({ start, end }) {
   const whole = all();
   const most = whole.end - whole.start;
-  const few = Math.min(most, log ? Math.log10(LEAST_RATIO) : LEAST_LINES * fundamental_hz);
+  const few = Math.min(most, log ? Math.log10(MIN_RATIO) : MIN_LINES * fundamental_hz);
   const length = Math.min(most, Math.max(few, end - start));
   const from = Math.max(whole.start, Math.min(whole.end - length, (start + end - length) / 2));
   return { start: from, end: from + length };

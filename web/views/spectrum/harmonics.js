@@ -112,7 +112,7 @@ export function overFrequency({ fundamental_hz, periodic }) {
 /** How the distortion is defined. @param {Spectrum} some */
 export function method(some) {
   if (!some.periodic)
-    return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}, the run taken as one period (not coherent), no window.`;
+    return `Lines at multiples of ${si(some.fundamental_hz, "Hz", 5)}; the whole run is one period (not coherent), no window.`;
   const periods = some.periods === 1 ? "one whole period" : `${some.periods} whole periods`;
   return `THD is the root of the sum of squares of harmonics 2 to ${some.order} over the fundamental of ${si(some.fundamental_hz, "Hz", 5)}; coherent: ${periods}, no window.`;
 }

@@ -49,7 +49,7 @@ export function createSpectrum({ engine, dispatch, now }) {
     }
     if (!spectra || spectra === drawn || !split.checkVisibility()) return;
     const loaded = await load().catch(() => null);
-    if (!loaded) return say(note, "The spectrum could not be loaded; fold and unfold it when the network is there.");
+    if (!loaded) return say(note, "The spectrum could not be loaded. Check the network, then fold and unfold it.");
     drawn = spectra;
     await loaded.take(spectra);
   }

@@ -61,7 +61,7 @@ export function createSpectrumView({ dispatch, now }) {
     changed: soon,
   };
   const fields = createFields(byId("spectrum-tools"), actions);
-  const tableButton = button("Table", "Table of the harmonics in place of the chart", () => {
+  const tableButton = button("Table", "Show the harmonics as a table", () => {
     tableButton.setAttribute("aria-pressed", String(view.classList.toggle("tabled")));
   });
   const [amplitudes, frequencies] = ["of-amplitudes", "of-frequencies"].map((name) =>
@@ -113,11 +113,11 @@ export function createSpectrumView({ dispatch, now }) {
   for (const target of [slider, byId("harmonics-scroll")]) {
     const upright = target === slider;
     listen(target, "Spectrum", [
-      { keys: upright ? ["ArrowRight", "ArrowUp"] : ["ArrowRight"], text: "the next harmonic", run: () => step(1) },
-      { keys: upright ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"], text: "the harmonic before", run: () => step(-1) },
+      { keys: upright ? ["ArrowRight", "ArrowUp"] : ["ArrowRight"], text: "next harmonic", run: () => step(1) },
+      { keys: upright ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"], text: "previous harmonic", run: () => step(-1) },
       { keys: ["Home"], text: "the fundamental", run: () => go(1) },
-      { keys: ["End"], text: "the highest harmonic", run: () => go(rows.length) },
-      { keys: ["+", "="], text: "zoom in, around the chosen harmonic", run: () => actions.zoom(0.5) },
+      { keys: ["End"], text: "highest harmonic", run: () => go(rows.length) },
+      { keys: ["+", "="], text: "zoom in around the selected harmonic", run: () => actions.zoom(0.5) },
       { keys: ["-", "−"], text: "zoom out", run: () => actions.zoom(2) },
       {
         keys: ["Shift+ArrowLeft"],
@@ -130,9 +130,9 @@ export function createSpectrumView({ dispatch, now }) {
         run: () => show(moved(frequency.shown(), 0.1), "pan"),
       },
       { keys: ["0"], text: "show the whole spectrum", run: actions.fit },
-      { keys: ["Backspace"], text: "back to what was shown before", run: actions.back },
+      { keys: ["Backspace"], text: "back to the previous view", run: actions.back },
       { keys: ["l"], text: "logarithmic or linear frequencies", run: actions.log },
-      { keys: ["b"], text: "drag a box to zoom, or no longer", run: () => dispatch({ type: "box", on: !now().box }) },
+      { keys: ["b"], text: "turn box zoom on or off", run: () => dispatch({ type: "box", on: !now().box }) },
       { keys: ["Escape"], text: "no harmonic", run: () => point(null) },
     ]);
   }
@@ -198,7 +198,7 @@ export function createSpectrumView({ dispatch, now }) {
     say(byId("spectrum-pulses"), reading("pulses"));
     slider.setAttribute("aria-valuemax", String(Math.max(1, rows.length)));
     slider.setAttribute("aria-valuenow", String(row?.n ?? 1));
-    slider.setAttribute("aria-valuetext", text || "no harmonic chosen");
+    slider.setAttribute("aria-valuetext", text || "no harmonic selected");
     table.mark(row?.n ?? null);
     const layer = cleared(overlay);
     if (!layer || !plot) return;

@@ -58,8 +58,8 @@ export const ownRamp = ({ ramp_s, duration_s }) => ramp_s ?? Number(short(durati
 /** @param {Subject} subject @param {number} axis */
 export function aboutText({ index, steps, duration_s, ramp_s }, axis) {
   if (steps === 0)
-    return `Move ${index + 1} of axis ${axis} ends where it begins: choose one that goes somewhere to compare motions for it. Sines are compared under Sine.`;
-  const noRamp = ramp_s === undefined ? "; it has no ramp of its own, so give one" : "";
+    return `Move ${index + 1} of axis ${axis} ends where it starts; select a move with a distance. Compare sines under Sine.`;
+  const noRamp = ramp_s === undefined ? "; it has no ramp, so enter one" : "";
   return `Axis ${axis}, move ${index + 1}: ${count(steps)} steps in ${si(duration_s, "s")}${noRamp}.`;
 }
 

@@ -1,9 +1,9 @@
-/** The rows of the tab Measures: each number of an axis with its text and its meaning. */
+/** The rows of the tab Measures: numbers of an axis with their meaning. */
 import { count, counted, plain, short, si, time } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
 /**
- * The core's names; times in s.
+ * Names of the core; times in s.
  * @typedef {{largest_steps: number, largest_at_s: number, rms_steps: number, area_steps_s: number, area_difference_steps_s: number,
  *   points: number, sum_of_squares_steps2: number, euclidean_steps: number, correlation: number | null, uncorrelated: number | null}} Comparison
  * @typedef {{pulses: number, largest_s: number, largest_at_s: number, mean_s: number, rms_s: number, largest_steps: number, rms_steps: number}} Errors
@@ -26,108 +26,104 @@ const percent = (value) => (value === null ? "–" : `${short(100 * value, 5)} %
 /** @param {number | null} value @param {string} name */
 const unit = (value, name) => (value === null ? "–" : plain(value, name));
 
-/** The sine document's list. @type {[string, (of: Comparison) => string, string][]} */
+/** The list of SWorldJournal 2022. @type {[string, (of: Comparison) => string, string][]} */
 const COMPARED = [
   [
     "largest deviation, steps",
     (of) => digits(of.largest_steps),
-    "How far the second is ahead of the first where they are farthest apart.",
+    "Maximum difference between both curves; positive if the second is ahead.",
   ],
-  ["at", (of) => si(of.largest_at_s, "s", 5), "When that first is so."],
+  ["at", (of) => si(of.largest_at_s, "s", 5), "Time of the maximum."],
   [
     "r.m.s. deviation, steps",
     (of) => digits(of.rms_steps),
-    "Root of the mean square over the time; 1/√12 = 0.2887 for whole steps at an even rate.",
+    "Root mean square over time; 1/√12 = 0.2887 for whole steps at a constant rate.",
   ],
-  ["area between, steps·s", (of) => digits(of.area_steps_s), "Integral of the deviation's magnitude."],
-  [
-    "difference of areas, steps·s",
-    (of) => digits(of.area_difference_steps_s),
-    "Integral of the deviation with its sign: what is ahead and what is behind cancel.",
-  ],
-  ["sum of squares, steps²", (of) => digits(of.sum_of_squares_steps2), "Of the deviations at the points."],
+  ["area between, steps·s", (of) => digits(of.area_steps_s), "Integral of the absolute deviation."],
+  ["difference of areas, steps·s", (of) => digits(of.area_difference_steps_s), "Integral of the signed deviation."],
+  ["sum of squares, steps²", (of) => digits(of.sum_of_squares_steps2), "Sum of squared deviations at the points."],
   [
     "Euclidean distance, steps",
     (of) => digits(of.euclidean_steps),
-    "Root of that sum, the sine document's Ev; it grows with the root of the number of points.",
+    "Root of that sum, Ev in SWorldJournal 2022. It grows with the root of the number of points.",
   ],
   [
     "correlation",
     (of) => (of.correlation === null ? "–" : short(of.correlation, 7)),
-    "1 where one follows the other in all it does.",
+    "1 if both curves are proportional.",
   ],
-  ["1 − correlation", (of) => digits(of.uncorrelated), "The same with digits, where the correlation is all nines."],
+  ["1 − correlation", (of) => digits(of.uncorrelated), "The same with more digits."],
 ];
 /** @type {[string, (of: Errors) => string, string][]} */
 const ERRORS = [
   [
     "largest time error",
     (of) => seconds(of.largest_s),
-    "Of a pulse; late is above 0. Whole cycles are off by half a cycle at most.",
+    "Maximum time error of a pulse; positive if late. Rounding to cycles adds at most half a cycle.",
   ],
-  ["at", (of) => si(of.largest_at_s, "s", 5), "When that pulse comes."],
+  ["at", (of) => si(of.largest_at_s, "s", 5), "Time of that pulse."],
   [
     "mean time error",
     (of) => seconds(Math.abs(of.mean_s) < 1e-6 * of.rms_s ? 0 : of.mean_s),
-    "A delay of all pulses alike.",
+    "Common delay of all pulses.",
   ],
-  ["r.m.s. time error", (of) => seconds(of.rms_s), "Root of the mean square of the pulses' time errors."],
+  ["r.m.s. time error", (of) => seconds(of.rms_s), "Root mean square of the time errors."],
   [
     "largest position error, steps",
     (of) => digits(of.largest_steps),
-    "How far the ideal motion goes within a pulse's time error.",
+    "Travel of the ideal motion during the time error of a pulse.",
   ],
-  ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root of the mean square of those."],
+  ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root mean square of these errors."],
 ];
 /** @type {[string, string, string, string][]} Name, key, unit, meaning. */
 const PEAKS = [
-  ["speed", "speed_steps_s", "steps/s", "The highest rate."],
-  ["acceleration", "acceleration_steps_s2", "steps/s²", "Where the speed has no jump."],
-  ["jerk", "jerk_steps_s3", "steps/s³", "Where the acceleration has no jump."],
-  ["jump of speed", "speed_jump_steps_s", "steps/s", "The greatest that the motor has to follow at once."],
-  ["jump of acceleration", "acceleration_jump_steps_s2", "steps/s²", "There the jerk has no bound."],
+  ["speed", "speed_steps_s", "steps/s", "Maximum rate."],
+  ["acceleration", "acceleration_steps_s2", "steps/s²", "Without jumps of speed."],
+  ["jerk", "jerk_steps_s3", "steps/s³", "Without jumps of acceleration."],
+  ["jump of speed", "speed_jump_steps_s", "steps/s", "Maximum step of speed without a ramp."],
+  ["jump of acceleration", "acceleration_jump_steps_s2", "steps/s²", "The jerk is infinite there."],
   [
     "start-stop rate",
     "start_stop_steps_s",
     "steps/s",
-    "The greatest rate that is taken up from rest, or left for rest, at once; a turn is both.",
+    "Maximum rate at which the motion starts or stops without a ramp. A reversal does both.",
   ],
 ];
-/** What steps come to by themselves. @type {[string, (of: Figures) => string, string][]} */
+/** Figures of steps without a plan. @type {[string, (of: Figures) => string, string][]} */
 const FIGURES = [
   ["steps", (of) => count(of.steps), "Pulses on STEP."],
-  ["of them right", (of) => count(of.right), "With DIR high."],
-  ["of them left", (of) => count(of.left), "With DIR low."],
-  ["turns", (of) => count(of.turns), "Steps in another direction than the one before."],
-  ["position", (of) => count(of.position), "After the last step, from 0 before the first."],
-  ["least position", (of) => count(of.least_position), "Farthest to the left."],
-  ["greatest position", (of) => count(of.greatest_position), "Farthest to the right."],
-  ["first step", (of) => time(of.first_s), "When it comes."],
-  ["last step", (of) => time(of.last_s), "When it comes."],
-  ["shortest interval", (of) => seconds(of.shortest_interval_s), "From one step to the next."],
-  ["at", (of) => (of.shortest_at_s === null ? "–" : si(of.shortest_at_s, "s", 5)), "When it ends."],
-  ["longest interval", (of) => seconds(of.longest_interval_s), "A rest is one, too."],
-  ["greatest rate", (of) => unit(of.greatest_rate_steps_s, "steps/s"), "1 by the shortest interval."],
-  ["mean rate", (of) => unit(of.mean_rate_steps_s, "steps/s"), "From the first step to the last, rests among them."],
+  ["right", (of) => count(of.right), "With DIR high."],
+  ["left", (of) => count(of.left), "With DIR low."],
+  ["reversals", (of) => count(of.turns), "Steps with another direction than the step before."],
+  ["position", (of) => count(of.position), "Final position, relative to the start."],
+  ["minimum position", (of) => count(of.least_position), "Leftmost position."],
+  ["maximum position", (of) => count(of.greatest_position), "Rightmost position."],
+  ["first step", (of) => time(of.first_s), "Its time."],
+  ["last step", (of) => time(of.last_s), "Its time."],
+  ["shortest interval", (of) => seconds(of.shortest_interval_s), "Shortest time between two steps."],
+  ["at", (of) => (of.shortest_at_s === null ? "–" : si(of.shortest_at_s, "s", 5)), "Time of its end."],
+  ["longest interval", (of) => seconds(of.longest_interval_s), "Includes pauses."],
+  ["maximum rate", (of) => unit(of.greatest_rate_steps_s, "steps/s"), "Reciprocal of the shortest interval."],
+  ["mean rate", (of) => unit(of.mean_rate_steps_s, "steps/s"), "From the first to the last step, including pauses."],
   [
-    "greatest acceleration",
+    "maximum acceleration",
     (of) => unit(of.greatest_acceleration_steps_s2, "steps/s²"),
-    "From each eight steps in one direction to the next eight: from step to step the rounding alone would make it.",
+    "Between groups of eight steps, because rounding dominates between single steps.",
   ],
   [
-    "greatest change of interval",
+    "maximum change of interval",
     (of) => percent(of.greatest_interval_change),
-    "Between neighbours in one direction: what a timer's jitter makes, and a start.",
+    "Between neighboring intervals in one direction, for example because of timer jitter or a start.",
   ],
 ];
 /** @type {[string, string, string][]} */
 const DURATION = [
-  ["requested", "requested_s", "Sum of the times that the moves name; moves that name none count as planned."],
-  ["planned", "planned_s", "Time of the ideal curve."],
-  ["planned minus requested", "plan_error_s", "The plan's time error."],
-  ["last step due", "last_due_s", "From the motion's start."],
-  ["last pulse", "last_pulse_s", "From the start of the first tick, or of the segments."],
-  ["last pulse late by", "end_error_s", "The run's time error at the end."],
+  ["requested", "requested_s", "Sum of the given durations; other moves count as planned."],
+  ["planned", "planned_s", "Duration of the ideal curve."],
+  ["planned minus requested", "plan_error_s", "Time error of the plan."],
+  ["last step due", "last_due_s", "From the start of the motion."],
+  ["last pulse", "last_pulse_s", "From the start of the first tick or the segments."],
+  ["delay of the last pulse", "end_error_s", "Time error at the end of the run."],
 ];
 
 /** @param {Measures} measures @returns {string[][]} */
@@ -140,7 +136,7 @@ export function comparedRows({ steps, ticks, pulses, step_errors, tick_errors })
 
 /** @param {Measures} measures */
 export const comparedNote = ({ length_s, pulses }) =>
-  `Over ${si(length_s, "s", 6)}. Ideal → steps: whole steps at whole cycles, step quantisation. Steps → pulses: what ticks, queue and line add. Sums are over ${counted(pulses.points, "point")}, all else over the curves themselves.`;
+  `Over ${si(length_s, "s", 6)}. Ideal → steps: rounding to whole steps and cycles. Steps → pulses: effect of ticks, queue and line. Sums use ${counted(pulses.points, "point")}, all other figures the curves.`;
 
 /** @param {Measures} measures @returns {string[][]} */
 export function durationRows({ duration, counts }) {
@@ -150,9 +146,9 @@ export function durationRows({ duration, counts }) {
       key === "end_error_s" || duration[key] === null ? seconds(duration[key]) : time(Number(duration[key])),
       text,
     ]),
-    ["steps due", count(counts.due), "There and back."],
-    ["actual pulses", count(counts.actual), "Steps to and fro within one tick cancel and are not made."],
-    ["pulses without a step", count(counts.stray), "At a place, or in a direction, in which no step was due."],
+    ["steps due", count(counts.due), "In both directions."],
+    ["actual pulses", count(counts.actual), "Opposite steps in one tick cancel."],
+    ["pulses without a step", count(counts.stray), "Pulses at a position or in a direction without a planned step."],
   ];
 }
 
@@ -162,15 +158,15 @@ export const peakRows = ({ peaks }) => PEAKS.map(([name, key, unit, text]) => [n
 /** @param {NonNullable<Measures["sine"]>} sine @returns {string[][]} */
 export function sineRows({ segments, euclidean, quarter }) {
   return [
-    ["segments", count(segments), "Of a quarter of the period."],
-    ["Ev", short(euclidean, 5), "The document's Euclidean distance, in parts of the amplitude."],
+    ["segments", count(segments), "Segments per quarter of the period."],
+    ["Ev", short(euclidean, 5), "Euclidean distance of SWorldJournal 2022, relative to the amplitude."],
     ...COMPARED.map(([name, of, text]) => [name, of(quarter), text]),
   ];
 }
 
 /** @param {NonNullable<Measures["sine"]>} sine */
 export const sineNote = ({ quarter }) =>
-  `The document's polyline against the exact sine, at the ${counted(quarter.points, "point")} of a quarter; all figures are of these points.`;
+  `Polyline of SWorldJournal 2022 compared with the exact sine, at ${counted(quarter.points, "point")} of a quarter.`;
 
 /** @param {Figures} figures @returns {string[][]} */
 export const figureRows = (figures) => FIGURES.map(([name, of, text]) => [name, of(figures), text]);
@@ -182,25 +178,25 @@ export const figureRows = (figures) => FIGURES.map(([name, of, text]) => [name, 
 export function distortion(spectra, axis) {
   const { ideal = null, pulses = null } = spectra?.axis === axis ? spectra : {};
   if (!pulses || !(ideal ?? pulses).periodic) return null;
-  // Without a plan only the pulses are known.
+  // Without a plan there are only the pulses.
   const { order, fundamental_hz } = ideal ?? pulses;
   const both = (
     /** @type {"thd_position" | "thd_speed" | "thd_acceleration" | "thd_acceleration_filtered"} */ name,
   ) => [percent(ideal?.[name] ?? null), percent(pulses[name])];
   const rows = [
-    ["position", ...both("thd_position"), "Root of the sum of squares of all harmonics but the first, over the first."],
-    ["speed", ...both("thd_speed"), "Harmonic k counts k times."],
+    ["position", ...both("thd_position"), "Root of the sum of squares of harmonics from 2, divided by the first."],
+    ["speed", ...both("thd_speed"), "Harmonic k is weighted with k."],
     [
       "acceleration",
       ...both("thd_acceleration"),
-      "Harmonic k counts k² times: of segments of fixed rate it grows with the order.",
+      "Harmonic k is weighted with k². For segments of constant rate it grows with the order.",
     ],
   ];
   if (pulses.thd_acceleration_filtered !== null)
     rows.push([
       "acceleration filtered",
       ...both("thd_acceleration_filtered"),
-      "Behind the sensor's low pass, which the form sets.",
+      "After the low-pass filter of the sensor.",
     ]);
   return { note: `To harmonic ${order} of ${si(fundamental_hz, "Hz", 5)}, in whole periods.`, rows };
 }

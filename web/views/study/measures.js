@@ -25,7 +25,7 @@ export function createMeasures({ engine, panel }) {
   const rest = element("div");
   /** @param {string} title @param {string} note @param {string[]} head */
   const group = (title, note, head) => {
-    const list = table(title, ["measure", ...head.map((text) => `#${text}`), "~what it means"]);
+    const list = table(title, ["measure", ...head.map((text) => `#${text}`), "~meaning"]);
     const root = element(
       "section",
       { class: "measures-group" },
@@ -41,11 +41,9 @@ export function createMeasures({ engine, panel }) {
   const peaks = group("Peaks of the ideal curve", "", ["value"]);
   const thd = group("Distortion", "", ["ideal", "pulses"]);
   const sine = group("Sine by segments", "", ["sine → segments"]);
-  const own = group(
-    "Steps",
-    "No plan is known here, so the steps that the views show are measured by themselves: those of the run, or as they were recorded.",
-    ["value"],
-  );
+  const own = group("Steps", "There is no plan, so the steps of the run or the recording are measured alone.", [
+    "value",
+  ]);
   fill(panel, about, rest);
 
   /** @param {import("./measure_rows.js").Measures} measures */
@@ -97,12 +95,12 @@ export function createMeasures({ engine, panel }) {
     own.root.hidden = !steps;
     for (const { root } of [compared, duration, peaks, sine]) root.hidden = !found;
     if (steps) {
-      say(about, `Channel ${axis}, as the views show it.`);
+      say(about, `Channel ${axis} of the visible run.`);
       own.show(figureRows(steps));
     } else if (found) {
-      say(about, `Axis ${axis} of the run that the views show.`);
+      say(about, `Axis ${axis} of the visible run.`);
       show(found);
-    } else say(about, `Axis ${axis} has no motion, so there is no curve to measure the pulses by.`);
+    } else say(about, `Axis ${axis} has no motion, so there is no curve to compare with.`);
     showDistortion(spectra, axis);
   }
 

@@ -35,10 +35,10 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   const pairJob = createJob("Supply current of the run");
   const findings = noFindings();
   const charts = createMotorCharts(() => (body.hidden ? null : findings));
-  const limits = table("What the motor can do", ["of the motor", "#value"]);
+  const limits = table("Motor limits", ["of the motor", "#value"]);
   const settled = element("p", { class: "study-note" });
   const pair = element("p", { class: "study-note" });
-  const take = button("Take as settling time", "Take as settling time of the driver bus", takeSettling, true);
+  const take = button("Use as settling time", "Use as settling time of the driver bus", takeSettling, true);
   const body = element(
     "div",
     { class: "study-split" },
@@ -90,10 +90,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     body.hidden = ramp.root.hidden = !state.scenario.plant;
     if (!state.scenario.plant) {
       subjectKey = "";
-      return say(
-        about,
-        "No motor is driven here: choose one in the view Motor, or under Motors and supply in the form.",
-      );
+      return say(about, "There is no motor: choose one in the view Motor, or under Motors and supply in the form.");
     }
     const next = subjectOf(state);
     if (!next) return;
@@ -171,7 +168,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
       );
     return pairJob.run(
       async (signal, report) => {
-        report(0, "supply current of the run, at once and one after another");
+        report(0, "supply current of the run, simultaneous and staggered");
         return engine.distribute("supply_current", pairPieces(subject, settle_cycles), signal);
       },
       (answer) => show({ pair: /** @type {typeof findings.pair} */ (answer) }),

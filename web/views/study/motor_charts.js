@@ -41,8 +41,8 @@ const key = (ink, text, dashed = false) => element("span", {}, swatch(ink, dashe
 export function createMotorCharts(shown) {
   const torque = chart("Torque over rate, mN·m over steps/s: ", "Torque over rate");
   const map = chart("Swing at each rate, full steps over full steps/s: ", "Resonance");
-  const step = chart("Supply current of one step behind the sensor, A over s: ", "Supply current of one step");
-  const pair = chart("Supply current of the run behind the sensor, A over s: ", "Supply current of the run");
+  const step = chart("Supply current of one step at the sensor, A over s: ", "Supply current of one step");
+  const pair = chart("Supply current of the run at the sensor, A over s: ", "Supply current of the run");
   for (const { root } of [torque, map, step, pair]) watch(root, paint);
 
   function paint() {
@@ -77,7 +77,7 @@ function paintTorque({ root, canvas, keys }, { torque, start, pull }) {
   fill(
     keys,
     key("--ideal", "static curve"),
-    ...(needs.length > 0 ? [key("--actual", "the plan's own path")] : []),
+    ...(needs.length > 0 ? [key("--actual", "path of the plan")] : []),
     ...(start === undefined ? [] : [key("--enable", "start-stop")]),
     ...(pull === undefined ? [] : [key("--error", "pull-out", true)]),
   );
@@ -132,5 +132,5 @@ function paintPair({ root, canvas, keys }, { pair }) {
       shape: shapeOf(curve),
     })),
   });
-  fill(keys, key("--ideal", "all at once"), key("--actual", "one after another"));
+  fill(keys, key("--ideal", "all at once"), key("--actual", "staggered"));
 }

@@ -44,7 +44,7 @@ export function subjectOf({ scenario, validation, result, axis }) {
 
 /** @param {Subject} subject */
 export const subjectText = ({ controller, channel }) =>
-  `Motor of channel ${channel}${controller > 0 ? ` of controller ${controller + 1}` : ""}, alone on its supply.`;
+  `Motor of channel ${channel}${controller > 0 ? ` of controller ${controller + 1}` : ""} alone on its supply.`;
 
 /** @param {Subject} subject @returns {any[][]} */
 export function resonancePieces({ json, controller, channel }) {
@@ -79,18 +79,21 @@ export function extent(all) {
 /** Rows of the table of limits. @param {Findings} findings @returns {string[][]} */
 export function limitRows({ start, pull, swing, loses }) {
   const rate = (/** @type {number | undefined} */ value) =>
-    value === undefined ? "not even 500 steps/s" : plain(Math.floor(value), "steps/s");
+    value === undefined ? "below 500 steps/s" : plain(Math.floor(value), "steps/s");
   const rows = [
-    ["Start-stop rate, a turn from rest to rest", rate(start)],
-    ["Pull-out rate by this ramp", rate(pull)],
+    ["Start-stop rate, one turn from rest to rest", rate(start)],
+    ["Pull-out rate with this ramp", rate(pull)],
   ];
   if (swing.length === 0) return rows;
   const peak = swing.reduce((best, value, at) => (value > swing[best] ? at : best), 0);
   const isAtEdge = peak === 0 || peak === swing.length - 1;
   return [
     ...rows,
-    [isAtEdge ? "Swings most at the map's edge" : "Swings most at", plain(MAP.from + peak * MAP.rung, "full steps/s")],
-    ["by, peak to peak", `${short(swing[peak], 3)} full steps`],
+    [
+      isAtEdge ? "Largest oscillation at the edge of the map" : "Largest oscillation at",
+      plain(MAP.from + peak * MAP.rung, "full steps/s"),
+    ],
+    ["peak to peak", `${short(swing[peak], 3)} full steps`],
     ["Rates that lose steps", `${loses.filter((value) => value > 0).length} of ${loses.length}`],
   ];
 }
@@ -101,7 +104,7 @@ export function settlingText({ reached_cycles, settled_cycles, slot_cycles }, cl
     cycles === null
       ? `not within ${si(slot_cycles / clock, "s")}`
       : `after ${si(cycles / clock, "s")} (${cycles} cycles)`;
-  return `One step: it falls to a fifth of its peak ${time(reached_cycles)}; it stays within that ${time(settled_cycles)}.`;
+  return `One step: the current falls to a fifth of its peak ${time(reached_cycles)} and stays below ${time(settled_cycles)}.`;
 }
 
 /** The edit that makes the measured time the bus' settling time; null where none was measured. @param {Findings} findings @param {number} controller */
@@ -112,10 +115,10 @@ export function settleEdit({ step }, controller) {
 
 /** Why pulses at once and one after another are not compared; empty where they are. @param {State} state @param {number} channels */
 export function whyNoPair({ validation, approved, revision, scenario }, channels) {
-  if (channels < 2) return "Of one motor nothing can be staggered.";
-  if (hasNoLine(scenario)) return "What runs by itself has no ticks: its pulses are not staggered.";
-  if (validation?.cost?.over_budget && approved !== revision)
-    return "The run is not made here before it is approved: it is much work.";
+  if (channels < 2) return "Staggering needs more than one motor.";
+  if (hasNoLine(scenario))
+    return "Segments and stand-alone controllers have no ticks, so their pulses are not staggered.";
+  if (validation?.cost?.over_budget && approved !== revision) return "The run takes long; start it first.";
   return "";
 }
 
@@ -137,9 +140,8 @@ export function pairText([together, apart]) {
   const worst = (/** @type {Supply} */ { above_a, below_a }) =>
     above_a === null ? null : Math.max(above_a, below_a ?? 0);
   const [most, least] = [worst(together), worst(apart)];
-  if (most === null || least === null)
-    return "Each motor has to make at least eight steps for the deviations to count.";
+  if (most === null || least === null) return "Each motor needs at least eight steps.";
   const range = (/** @type {Supply} */ { above_a, below_a }) =>
     `+${short(above_a ?? 0, 3)} A, −${short(below_a ?? 0, 3)} A`;
-  return `From its rest the current is pulled by ${range(together)} all at once, by ${range(apart)} one after another: ${short(most / least, 3)} times less.`;
+  return `Deviation of the supply current: ${range(together)} simultaneous, ${range(apart)} staggered, ${short(most / least, 3)} times less.`;
 }

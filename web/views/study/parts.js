@@ -1,7 +1,7 @@
 /** What the tabs of the study are built with: fields, tables, and long work that tells how far it is. */
 import { element, fill, say } from "../../dom.js";
 import { Dropped } from "../../engine/engine.js";
-import { parseNumber } from "../../state/number.js";
+import { parseNumber } from "../../state/parse_number.js";
 
 /** Work that is done within this time, in ms, says nothing of its progress. */
 const PATIENCE_MS = 100;
@@ -43,7 +43,11 @@ export function field(label, unit, start, { least, most, integer = false }, chan
   input.addEventListener("change", () => {
     const read = parseNumber(input.value, unit, { integer, least, most });
     wrong =
-      "message" in read ? read.message : read.value >= least && read.value <= most ? "" : `Give ${least} to ${most}.`;
+      "message" in read
+        ? read.message
+        : read.value >= least && read.value <= most
+          ? ""
+          : `Out of range; use ${least} to ${most}.`;
     showError();
     if (wrong || !("value" in read) || read.value === value) return;
     value = read.value;
@@ -157,7 +161,7 @@ export function createJob(label, left = () => "") {
     going.abort();
     going = null;
     bar.hidden = true;
-    say(text, `Left off: ${text.textContent}.${left()}`);
+    say(text, `Canceled: ${text.textContent}.${left()}`);
     say(press, "Start again");
   });
 
@@ -180,10 +184,10 @@ export function createJob(label, left = () => "") {
       say(press, "Cancel");
     }, PATIENCE_MS);
     try {
-      const result = await work(own.signal, (part, said) => {
+      const result = await work(own.signal, (part, status) => {
         if (going !== own) return;
         bar.value = part;
-        say(text, said);
+        say(text, status);
       });
       if (going !== own) return;
       going = null;

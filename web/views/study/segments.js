@@ -8,9 +8,9 @@ import { table } from "./parts.js";
 
 /** @param {{engine: import("../../engine/engine.js").Engine}} page */
 export function createSegments({ engine }) {
-  const list = table("Segments of the scenario's sine", ["from", "#to", "#steps", "#rate, steps/s", "~#time"]);
+  const list = table("Segments of the current sine", ["from", "#to", "#steps", "#rate, steps/s", "~#time"]);
   const note = element("p", { class: "study-note" });
-  const root = element("div", {}, element("h3", {}, "The scenario's segments"), note, list.root);
+  const root = element("div", {}, element("h3", {}, "Current segments"), note, list.root);
   root.hidden = true;
   let axisKey = "";
 
@@ -28,7 +28,7 @@ export function createSegments({ engine }) {
     if (!made) return;
     say(
       note,
-      `Of a quarter, the others follow by symmetry: ${count(made.segment_bytes)} bytes, against ${count(made.interval_bytes)} with an interval for each step.`,
+      `One quarter; the others are symmetric. It takes ${count(made.segment_bytes)} bytes, or ${count(made.interval_bytes)} with one interval per step.`,
     );
     list.show(
       Array.from(made.steps, (steps, i) => [

@@ -13,7 +13,7 @@ export function selectedAxis(state) {
   if (validated !== revision || !validation) return null;
   if (validation.problems.length > 0) return "";
   const found = place(state);
-  if (!found.path) return "There is no axis with moves here: choose a motion of axes as the source in the form.";
+  if (!found.path) return "There is no axis with moves: choose “Motion profile” as the source in the form.";
   return { json: validation.scenario, ...found };
 }
 

@@ -42,8 +42,8 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     { position: "position", speed: "speed", acceleration: "acceleration", filtered: "acceleration, filtered" },
     paint,
   );
-  const job = createJob("Sweep", () => (rows ? " The charts show the sweep before." : ""));
-  const list = table("What a d1 gives", [
+  const job = createJob("Sweep", () => (rows ? " The charts show the previous sweep." : ""));
+  const list = table("Results by d1", [
     "of",
     "#d1",
     "#segments",
@@ -113,7 +113,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function sweep() {
     const [low, high, number, highest] = [from, to, points, order].map((each) => each.value());
     isSwept = true;
-    to.fail(low >= high ? `Give more than ${low}, where the range begins.` : "");
+    to.fail(low >= high ? `Out of range; use more than ${low}.` : "");
     if (low >= high) return undefined;
     const work = pieces({ low, high, points: number, order: highest, sensor });
     job.run(
@@ -138,7 +138,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
             short(row.d1, 6),
             percent(row.position),
             short(row.euclidean, 4),
-            useButton(row, `${counted(row.segments, "segment")}, the best d1`),
+            useButton(row, `${counted(row.segments, "segment")}, best d1`),
           ]),
         );
         best = bestRow(sorted);
@@ -165,11 +165,15 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
       /** @type {string} */ none,
       isUsable = true,
     ) => [...cellsOf(name, row, none), isUsable && row ? useButton(row, name) : ""];
-    list.root.classList.toggle("unfelt", sensor === undefined);
+    list.root.classList.toggle("unfiltered", sensor === undefined);
     list.show([
-      cells("pointed at", rowOf(rows, at), "–"),
-      cells("the scenario", own, "none", false),
-      cells(`best by position${best && rows && isAtEnd(best.d1, rows.d1) ? ": the range's end" : ""}`, best, "–"),
+      cells("selected", rowOf(rows, at), "–"),
+      cells("current", own, "none", false),
+      cells(
+        `best by position${best && rows && isAtEnd(best.d1, rows.d1) ? ": at the end of the range" : ""}`,
+        best,
+        "–",
+      ),
     ]);
   }
 

@@ -47,13 +47,13 @@ export function createSineCharts({ shown, point, take }) {
   });
   const move = (/** @type {number} */ by) => point(movedBy(shown().rows, shown().at, by));
   listen(root, "Sine: figure 4", [
-    { keys: ["ArrowRight", "ArrowUp"], text: "the next d1", run: () => move(1) },
-    { keys: ["ArrowLeft", "ArrowDown"], text: "the d1 before", run: () => move(-1) },
-    { keys: ["PageUp"], text: "twenty further", run: () => move(20) },
+    { keys: ["ArrowRight", "ArrowUp"], text: "next d1", run: () => move(1) },
+    { keys: ["ArrowLeft", "ArrowDown"], text: "previous d1", run: () => move(-1) },
+    { keys: ["PageUp"], text: "twenty forward", run: () => move(20) },
     { keys: ["PageDown"], text: "twenty back", run: () => move(-20) },
-    { keys: ["Home"], text: "the least d1", run: () => point(0) },
-    { keys: ["End"], text: "the greatest d1", run: () => move(1e9) },
-    { keys: ["Enter", "Space"], text: "take this d1 into the scenario", run: take },
+    { keys: ["Home"], text: "minimum d1", run: () => point(0) },
+    { keys: ["End"], text: "maximum d1", run: () => move(1e9) },
+    { keys: ["Enter", "Space"], text: "use this d1", run: take },
   ]);
 
   /** @param {PointerEvent | MouseEvent} event */

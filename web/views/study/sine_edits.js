@@ -7,7 +7,7 @@ import { rounded } from "./sine_sweep.js";
 /** @typedef {{axis: SelectedAxis | null, move: number}} Target  The selected axis and its first sine in segments; -1 where it has none. */
 /** @typedef {{path: string, value: any, message: string}} Edit */
 
-const NOT_NOW = "Not while the form has a problem, or is being looked at.";
+const NOT_NOW = "Not available while the form has errors or is being checked.";
 
 /** @param {State} state @returns {Target} */
 export function targetOf(state) {
@@ -17,20 +17,20 @@ export function targetOf(state) {
 }
 
 /** Why a state has no axis to edit. @param {State} state */
-export const whyNoAxis = (state) => (selectedAxis(state) ? "The scenario has no axis that could take it." : NOT_NOW);
+export const whyNoAxis = (state) => (selectedAxis(state) ? "The scenario has no suitable axis." : NOT_NOW);
 
 /** Gives the axis' sine a d1. @param {SelectedAxis} axis @param {number} move @param {number} d1 @returns {Edit} */
 export const deviationEdit = (axis, move, d1) => ({
   path: `${axis.path}.moves[${move}].sine_segments.max_deviation`,
   value: rounded(d1),
-  message: `Move ${move + 1} of axis ${axis.axis} has d1 = ${rounded(d1)} now; undo brings the one before back.`,
+  message: `Move ${move + 1} of axis ${axis.axis} now has d1 = ${rounded(d1)}; Undo restores the previous value.`,
 });
 
 /** Adds a sine with a d1 to an axis without one. @param {SelectedAxis} axis @param {any} sample @param {number} d1 @returns {Edit} */
 export const addedSine = (axis, sample, d1) => ({
   path: `${axis.path}.moves`,
   value: [...axis.moves, { sine_segments: { ...sample, max_deviation: rounded(d1) } }],
-  message: `Axis ${axis.axis} ends with a sine in segments now; undo takes it away.`,
+  message: `Axis ${axis.axis} now ends with a sine in segments; Undo removes it.`,
 });
 
 /** Puts a move through vertices in place of the axis' sine, or after its moves. @param {Target} target @param {any} sample @param {(sine: any) => object | string} make  Of the sine; a string says why not. @returns {Edit | string} */
@@ -42,12 +42,12 @@ export function vertexEdit({ axis, move }, sample, make) {
     return {
       path: `${axis.path}.moves`,
       value: [...axis.moves, value],
-      message: `Axis ${axis.axis} ends with a curve through these vertices now; undo takes it away.`,
+      message: `Axis ${axis.axis} now ends with a curve through these vertices; Undo removes it.`,
     };
   return {
     path: `${axis.path}.moves[${move}]`,
     value,
-    message: `Move ${move + 1} of axis ${axis.axis} goes through these vertices now; undo brings the sine back.`,
+    message: `Move ${move + 1} of axis ${axis.axis} now goes through these vertices; Undo restores the sine.`,
   };
 }
 

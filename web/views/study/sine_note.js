@@ -25,7 +25,7 @@ export function createSineNote({ samples, dispatch, now }) {
     if (move >= 0) return apply(deviationEdit(axis, move, d1));
     const press = element("button", { type: "button" }, `Add one with d1 = ${rounded(d1)}`);
     press.addEventListener("click", () => add(d1));
-    return fill(root, `Axis ${axis.axis} has no sine in segments that could take it. `, press);
+    return fill(root, `Axis ${axis.axis} has no sine in segments. `, press);
   }
 
   /** The axis may have changed since the offer. @param {number} d1 */

@@ -51,7 +51,7 @@ export function progressOf(done, points) {
   const rows = Math.ceil(points / PIECE);
   return {
     part: done / (rows + PARTS),
-    text: done < rows ? `${Math.min(points, done * PIECE)} of ${points} points` : "the best d1 of the range",
+    text: done < rows ? `${Math.min(points, done * PIECE)} of ${points} points` : "best d1 of the range",
   };
 }
 
@@ -111,8 +111,8 @@ export function cellsOf(name, row, none) {
 
 /** The chosen row as a slider's text. @param {Row | null} row @param {Quantity} quantity */
 export function valueText(row, quantity) {
-  if (!row) return "no d1 chosen";
-  return `d1 ${short(row.d1)}, ${row.segments} segments, THD of ${quantity} ${percent(row[quantity])}, Ev ${short(row.euclidean)}; Enter takes it`;
+  if (!row) return "no d1 selected";
+  return `d1 ${short(row.d1)}, ${row.segments} segments, THD of ${quantity} ${percent(row[quantity])}, Ev ${short(row.euclidean)}; Enter uses it`;
 }
 
 /** @param {Quantity} quantity @param {number | undefined} sensor @param {number} order */
@@ -122,7 +122,7 @@ export function captionOf(quantity, sensor, order) {
       ? quantity
       : sensor === undefined
         ? "acceleration, filtered"
-        : `the acceleration that a sensor of ${short(sensor, 4)} harmonics feels`;
+        : `acceleration filtered by a sensor of ${short(sensor, 4)} harmonics`;
   return `THD of ${what}, against d1, harmonics 2 to ${order}, %`;
 }
 
@@ -130,6 +130,6 @@ export function captionOf(quantity, sensor, order) {
 export function whyNoChart(rows, quantity, sensor) {
   if (rows === null || rows[quantity].some(Number.isFinite)) return "";
   return sensor === undefined
-    ? "What a sensor feels: give its bandwidth in the form, under Spectrum, and the axis a sine in segments, which has the period."
-    : "The sweep with the sensor is not made yet.";
+    ? "For filtered acceleration, enter a sensor bandwidth under Spectrum in the form, and use a sine in segments."
+    : "The sweep with the sensor has not run.";
 }

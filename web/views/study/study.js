@@ -74,7 +74,7 @@ export function createStudy(page) {
     key,
     {
       keys: ["Escape"],
-      text: "in the study: show the views again",
+      text: "in the study: back to the views",
       run: ({ target }) => (target instanceof HTMLInputElement ? false : toggle(false)),
     },
   ]);
@@ -100,7 +100,7 @@ export function createStudy(page) {
         element(
           "p",
           { class: "study-note" },
-          "The study could not be loaded; try again when the network is there. ",
+          "The study could not be loaded. Check the network and try again. ",
           press,
         ),
       );

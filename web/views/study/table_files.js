@@ -9,7 +9,7 @@ import { selectedSteps } from "./selected_steps.js";
 /** @typedef {{form: string, widths: string, us: number}} Choice */
 
 /** @type {{[form: string]: string}} */
-export const FORMS = { exact: "Exact list", document: "Document's table", compressed: "Compressed" };
+export const FORMS = { exact: "Exact list", document: "Table of the paper", compressed: "Compressed" };
 /** @type {{[language: string]: [string, string, string]}} Label, ending of the file and its type. */
 export const LANGUAGES = {
   c: ["C", ".c", "text/x-c"],

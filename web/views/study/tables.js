@@ -1,7 +1,4 @@
-/**
- * The tab Tables of the study: how the step times of the selected axis, or, where no plan is known, those that the views show
- * can be stored, what each form costs, how good it is, and each as a file for a firmware. What a tab is, says study.js.
- */
+/** The tab Tables of the study: step tables of the selected axis or of the visible steps, with their size and error. */
 import { element, fill, say } from "../../dom.js";
 import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
@@ -18,7 +15,7 @@ const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((width
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {
-  const error = field("Largest error of compressed", "µs", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
+  const error = field("Max error of compressed list", "µs", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
@@ -27,13 +24,13 @@ export function createTables({ engine, now, panel }) {
     "widths",
     "#entries",
     "#bytes",
-    "~#steps an entry",
-    "#largest error",
+    "~#steps per entry",
+    "#max error",
     "#r.m.s. error",
     "~#steps",
   ]);
-  const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the chosen table" });
-  const said = element("span", { "aria-live": "polite" });
+  const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the selected table" });
+  const status = element("span", { "aria-live": "polite" });
   fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
   /** What the table shows, and what it was made of. @type {Form[]} */
   let forms = [];
@@ -60,7 +57,7 @@ export function createTables({ engine, now, panel }) {
     if (!of || typeof of === "string") return fill(saves);
     const none =
       forms[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
-    say(said, "");
+    say(status, "");
     fill(
       saves,
       element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`),
@@ -73,17 +70,17 @@ export function createTables({ engine, now, panel }) {
               LANGUAGES[language][0],
             );
             press.addEventListener("click", async () => {
-              say(said, `Making ${name}…`);
+              say(status, `Writing ${name}…`);
               try {
                 save(name, type, await make());
-                say(said, `Saved ${name}.`);
+                say(status, `Saved ${name}.`);
               } catch (failed) {
-                say(said, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
+                say(status, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
               }
             });
             return press;
           })),
-      said,
+      status,
     );
   }
 
@@ -95,11 +92,11 @@ export function createTables({ engine, now, panel }) {
         ({ form }, other) =>
           form !== ROWS[at].form || (forms[other].why !== null && forms[other].why === forms[at].why),
       );
-    const kept = forms.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
+    const distinct = forms.map((_, at) => at).filter((at) => !alike(at) || ROWS[at].widths === "q16");
     const fewest = Math.min(...forms.filter(({ why }) => why === null).map(({ bytes }) => bytes));
     const best = forms.findIndex(({ why, bytes }) => why === null && bytes === fewest);
     list.show(
-      kept.map((at) => {
+      distinct.map((at) => {
         const { entries, bytes, document_bytes, largest_s, rms_s, why } = forms[at];
         const { form, widths } = ROWS[at];
         const pick = element("input", { type: "radio", name: "study-table", value: `${form}-${widths}` });
@@ -128,7 +125,7 @@ export function createTables({ engine, now, panel }) {
         ];
       }),
     );
-    kept.forEach((at, row) => {
+    distinct.forEach((at, row) => {
       const cell = list.body.children[row].children[2];
       if (forms[at].why === null) return;
       cell.setAttribute("colspan", "6");
@@ -137,7 +134,7 @@ export function createTables({ engine, now, panel }) {
     const own = forms.find(({ document_bytes }) => document_bytes !== null);
     say(
       note,
-      `${best < 0 ? "" : `Fewest bytes, in bold: ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The exact list takes the next step into an entry only where the entry foretells its interval, the compressed one searches for the longest entry: so the exact list can be longer even than a compressed one with error 0. One interval of 4 bytes for each step would take ${count(4 * steps)} bytes.${own ? " In brackets: bytes of the table as the motion's document keeps it." : ""} No step is ever lost or added: a list that has not all of them is refused.`,
+      `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The compressed list searches for the longest entry; the exact list only continues an entry while it fits, so it can be longer even for error 0. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${own ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
     );
     mark();
   }
@@ -174,7 +171,7 @@ export function createTables({ engine, now, panel }) {
         const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
         say(
           about,
-          `${of.run === null ? "Axis" : "Channel"} ${of.axis}: ${counted(made[0].steps, "step")}${of.run === null ? "" : ", as the views show them; no plan is known"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
+          `${of.run === null ? "Axis" : "Channel"} ${of.axis}: ${counted(made[0].steps, "step")}${of.run === null ? "" : ", as shown in the views; there is no plan"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
         );
         show();
       },

@@ -67,7 +67,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   }
 
   const addMotor = () =>
-    button("Add the document's motor", "Add the document's motor: Song, Han and Lu 2021", () => {
+    button("Add the motor of Song 2021", "Add the motor of Song 2021 to the axis", () => {
       // Another axis may be selected by now.
       const of = selectedAxis(now());
       if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
@@ -99,10 +99,10 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
         if (!found)
           return fill(
             about,
-            `Axis ${of.axis} has no motor yet: the form has its data under the axis' mechanics. `,
+            `Axis ${of.axis} has no motor. Add one in the form, under the mechanics of the axis. `,
             addMotor(),
           );
-        say(about, `Axis ${of.axis}: what its motor has, and what its plan needs. Its data are in the form.`);
+        say(about, `Axis ${of.axis}: available torque and torque needed by the plan. The form has the motor data.`);
         return show(found);
       },
     );
@@ -120,7 +120,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     subjectKey = next;
     if (!state.scenario.plant && named === "") {
       body.hidden = true;
-      say(about, "No motor is driven here: choose one to judge the steps for, or drive one in the view Motor.");
+      say(about, "There is no motor: choose one for these steps, or simulate one in the view Motor.");
       return;
     }
     job.run(

@@ -42,15 +42,15 @@ export function motorRows({ standing_mn_m, load_mn_m, corner_rate, torque_rate, 
   return [
     ...standing,
     ["Load", torqueText(load_mn_m)],
-    ["torque for it up to", upTo(torque_rate)],
+    ["enough torque for the load up to", upTo(torque_rate)],
     ...(working_rate === null ? [] : [["Stated working rate", rateText(working_rate)]]),
     ...(least
       ? [
-          ["Least margin", torqueText(least.available_mn_m - Math.abs(least.needed_mn_m))],
+          ["Smallest margin", torqueText(least.available_mn_m - Math.abs(least.needed_mn_m))],
           ["at", `${si(least.at_s, "s")}, ${rateText(least.rate)}`],
         ]
       : []),
-    ...(jump > 0 ? [["Greatest jump of speed", rateText(jump)]] : []),
+    ...(jump > 0 ? [["Maximum jump of speed", rateText(jump)]] : []),
   ];
 }
 
@@ -59,11 +59,11 @@ export function shortageText({ over_working_rate, total }) {
   const fast =
     over_working_rate === null
       ? ""
-      : `⚠ ${rateText(over_working_rate)} are above the stated working rate: give more time, or shorter ramps. `;
+      : `⚠ ${rateText(over_working_rate)} exceed the stated working rate: allow more time, or use shorter ramps. `;
   const lack =
     total === 0
       ? ""
-      : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: give more time, gentler ramps, less load or a higher supply voltage.`;
+      : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: allow more time, or use gentler ramps, less load or a higher supply voltage.`;
   return fast + lack;
 }
 
@@ -96,18 +96,18 @@ export function modelNote({ window_s, ramps, jump }) {
   const window =
     window_s === null
       ? ""
-      : `The acceleration of steps is taken over the rotor's natural period, ${si(window_s, "s")}: what comes and goes faster moves it little. `;
+      : `The acceleration of steps is averaged over the natural period of the rotor, ${si(window_s, "s")}. `;
   const ramp = ramps.length
-    ? "Enough torque: ramps with which it suffices throughout. Longest ramp for the rate limit: T − n/f_s (for ramps of area 1/2), with the motor's greatest rate for its load as f_s; the longest ramp possible is T/2. "
+    ? "Enough torque: ramps for which the torque suffices. Longest ramp for the rate limit: T − n/f_s (ramps of area 1/2), where f_s is the maximum rate with the load; the longest possible ramp is T/2. "
     : "";
   const jumps =
-    jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which these data do not tell. " : "";
-  return `${window}${ramp}${jumps}The model: fundamental waves only, no saturation, no losses of iron and friction in the motor, no resonance.`;
+    jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which is not part of these data. " : "";
+  return `${window}${ramp}${jumps}The model has fundamental waves only: no saturation, no iron or friction losses, no resonance.`;
 }
 
 /** @param {number} channel @param {string} motor  Name of a motor of the list; empty for the channel's own. @param {Report} report */
 export function stepsText(channel, motor, { least }) {
-  if (!least) return `Channel ${channel} makes no step, so nothing is asked of its motor.`;
-  const which = motor === "" ? "its motor" : "this motor at 16 microsteps, on 24 V without a load,";
-  return `Channel ${channel}: what ${which} has, and what the steps need; no plan is known.`;
+  if (!least) return `Channel ${channel} has no steps, so it needs no torque.`;
+  const which = motor === "" ? "its motor" : "this motor (16 microsteps, 24 V, no load)";
+  return `Channel ${channel}: torque of ${which} and torque needed by the steps; there is no plan.`;
 }

@@ -18,7 +18,7 @@ const DIGITS = 12;
  *   The highest harmonic that counts, and who puts a move into the scenario in place of its sine.
  */
 export function createVertices({ engine, order, take }) {
-  const segments = field("segments of a quarter", "", 6, { least: 1, most: 32, integer: true }, find);
+  const segments = field("segments per quarter", "", 6, { least: 1, most: 32, integer: true }, find);
   const job = createJob("Vertices");
   const note = element("p", { class: "study-note", id: "sine-vertices" });
   const list = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
@@ -45,7 +45,7 @@ export function createVertices({ engine, order, take }) {
           );
         fill(
           note,
-          `Least THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve `,
+          `Minimum THD of position with ${counted(number, "segment")}: ${percent(onCurve.thd)} with vertices on the curve `,
           use(onCurve, "on the curve"),
           `, ${percent(free.thd)} with free ones `,
           use(free, "free"),
@@ -73,7 +73,7 @@ function through({ angle_deg, height }, { amplitude, period_s, periods }) {
   const most = mostOf("Points", "points");
   const quarter = angle_deg.length - 1;
   if (4 * quarter * periods + 1 > most)
-    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices are more than the ${count(most)} points of a move; give at most ${count(Math.floor((most - 1) / (4 * quarter)))} periods.`;
+    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(most)} points of a move; use at most ${count(Math.floor((most - 1) / (4 * quarter)))} periods.`;
   const half = [...angle_deg.keys()].map((i) => [angle_deg[i], height[i]]);
   const down = [
     ...half,

@@ -7,94 +7,94 @@ use crate::schema::{
 use stepscope_peripheral::config::{Bus, DirLine, Distribution, PulsePhasing, limits};
 
 fields! {
-    /// The rules that join the times of a slot, with L = W + max(D + H, 1): simultaneous pulses need L <= Ts, on a
-    /// common DIR line 2*L <= Ts; staggered ones L <= floor(Ts/channels), on a common DIR line also dp >= L.
+    /// Rules for the times of a slot, with L = W + max(D + H, 1): simultaneous pulses need L <= Ts, with a common DIR line
+    /// 2*L <= Ts. Staggered pulses need L <= floor(Ts/channels), with a common DIR line also dp >= L.
     Bus {
-        /// Channels in use; a packet has one byte for each.
+        /// Channels in use. A packet has one byte per channel.
         channels: u8 => label("Channels")
             .whole(limits::CHANNELS)
-            .term("Channel", "One motor's driver with its STEP and DIR lines. EN is one line for all of them.")
+            .term("Channel", "One motor driver with its STEP and DIR lines. All channels share EN.")
             .from(PATENT),
-        /// M: the most steps that a channel makes in one tick.
-        slots: u8 => label("Slots in a tick")
+        /// M: maximum steps per channel and tick.
+        slots: u8 => label("Slots per tick")
             .whole(limits::SLOTS)
-            .term("Slot", "A tick is divided into slots. A channel makes at most one step in each, so the number of slots limits the steps of a tick.")
+            .term("Slot", "A tick is divided into slots. A channel makes at most one step per slot.")
             .from(PATENT),
         /// Ts, length of a slot; a tick lasts M*Ts.
         step_period_cycles: u32 => label("Slot")
             .unit("cycles")
             .whole(limits::STEP_PERIOD_CYCLES)
-            .term("Length of a slot", "Step period T_s: no channel steps faster than once in it.")
+            .term("Length of a slot", "Step period T_s. A channel makes at most one step per slot.")
             .from(PATENT),
-        /// W, how long STEP is high.
+        /// W: how long STEP is high.
         pulse_width_cycles: u32 => label("STEP high")
             .unit("cycles")
             .whole(limits::PULSE_WIDTH_CYCLES)
-            .term("STEP high", "How long a step pulse lasts. A driver overlooks pulses shorter than its data sheet asks for.")
+            .term("STEP high", "Width of a step pulse. A driver can miss pulses that are shorter than its data sheet requires.")
             .from(SHEETS),
-        /// D, from the slot's start to the rise of STEP; DIR has changed by then.
+        /// D: from the start of the slot, where DIR changes, to the rise of STEP.
         dir_setup_cycles: u32 => label("DIR set-up")
             .unit("cycles")
             .whole(limits::DIR_SETUP_CYCLES)
-            .term("DIR set-up", "DIR has to stand for some time before STEP rises, or the driver may step the old way.")
+            .term("DIR set-up", "DIR must be stable for this time before STEP rises. Otherwise the driver may step in the old direction.")
             .from(SHEETS),
-        /// H, from the fall of STEP to DIR's change.
+        /// H: from the fall of STEP to the change of DIR.
         dir_hold_cycles: u32 => label("DIR hold")
             .unit("cycles")
             .whole(limits::DIR_HOLD_CYCLES)
-            .term("DIR hold", "DIR has to stand for some time after a step, too.")
+            .term("DIR hold", "DIR must be stable for this time after STEP falls.")
             .from(SHEETS),
-        /// Where in a tick the steps go.
+        /// Position of the steps in a tick.
         distribution: Distribution => label("Steps in a tick")
-            .term("Burst and spread", "Burst: the steps of a tick are made in its first slots, then there is a pause, as in the patent. Spread: they are spaced evenly over the tick, which the motor feels as a smoother speed.")
+            .term("Burst and spread", "Burst: the steps use the first slots of the tick, then there is a pause (RU 2704486). Spread: they are spaced evenly over the tick, so the speed is smoother.")
             .from(PATENT),
-        /// How many DIR lines the controller has.
+        /// Number of DIR lines.
         dir_line: DirLine => label("DIR lines")
-            .term("DIR lines", "One DIR line for all motors saves wires: within each slot DIR goes low, the ones to the left step, DIR goes high, the others step. Five cycles are enough.")
+            .term("DIR lines", "One DIR line for all motors saves wires. In each slot DIR goes low and motors step left, then DIR goes high and motors step right. This takes at least five cycles.")
             .from(PATENT),
-        /// When the pulses of a slot come.
-        pulse_phasing: PulsePhasing => label("Pulses of a slot")
-            .term("Pulses of a slot", "Motors that step in the same instant all draw their peak of current at once. One after another the supply's peaks fall to a half or a third.")
+        /// Timing of the pulses of a slot.
+        pulse_phasing: PulsePhasing => label("Pulses in a slot")
+            .term("Pulses in a slot", "Motors that step at the same time draw their current peaks at the same time. Staggered pulses reduce the peaks of the supply current to a half or a third.")
             .from(PATENT),
-        /// dp, settling time of the drivers' supply current after a step: staggered pulses are min(dp, floor(Ts/firing
-        /// channels)) apart.
-        settle_cycles: u32 => label("Current settles")
+        /// dp: settling time of the supply current after a step. Staggered pulses are min(dp, floor(Ts/stepping channels))
+        /// apart.
+        settle_cycles: u32 => label("Settling time")
             .unit("cycles")
             .whole(limits::SETTLE_CYCLES)
-            .term("Current settles (dp)", "The patent's Δt_p: time that the supply current needs to settle after a step. Staggered pulses are this far apart, or as far as the slot has room for.")
+            .term("Settling time (dp)", "Time that the supply current needs to settle after a step, Δt_p in RU 2704486. Staggered pulses are this far apart, or closer if the slot is too short.")
             .from(PATENT)
             .when("pulse_phasing", "staggered"),
-        /// Ticks that the queue holds.
+        /// Capacity of the queue.
         queue_depth: u8 => label("Queue")
             .unit("ticks")
             .whole(limits::QUEUE_DEPTH)
-            .term("Queue", "Ticks that wait in the controller, so that motion goes on while the host is busy. When it is empty in the middle of a motion, that is an underrun.")
+            .term("Queue", "Ticks that wait in the controller, so motion continues while the host is busy. An empty queue during a motion is an underrun.")
             .from(PATENT),
-        /// Self-test after reset; packets that end in it are dropped, framed ticks answered with BUSY.
+        /// Self-test after reset. Packets that end during it are dropped; framed ticks get the reply BUSY.
         boot_cycles: u32 => label("Self-test")
             .unit("cycles")
-            .term("Self-test", "After reset the controller checks itself and is busy; what is sent meanwhile is dropped.")
+            .term("Self-test", "After reset the controller tests itself and drops what is sent.")
             .from(PATENT),
     }
 }
 
 words! {
     Distribution {
-        /// the first slots of the tick, as in RU 2704486
-        Burst = "burst", "burst at its start";
-        /// evenly over it
+        /// the first slots of the tick (RU 2704486)
+        Burst = "burst", "burst at the start";
+        /// evenly over the tick
         Spread = "spread", "spread evenly";
     }
     DirLine {
-        /// one a channel, changed when a tick starts
-        PerChannel = "per_channel", "one a channel";
-        /// one for all, changed within each slot that has a step
+        /// one per channel, changed at the start of a tick
+        PerChannel = "per_channel", "one per channel";
+        /// one for all, changed in each slot with a step
         Common = "common", "one for all";
     }
     PulsePhasing {
         /// all at once
         Simultaneous = "simultaneous", "all at once";
-        /// one channel after another, so that the drivers' current peaks do not meet
-        Staggered = "staggered", "one after another";
+        /// one channel after another, so that current peaks do not coincide
+        Staggered = "staggered", "staggered";
     }
 }

@@ -44,7 +44,7 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
         Type::Group(group) => {
             if !groups.contains_key(group.name) {
                 groups.insert(group.name.into(), Value::Null);
-                let described = of_group(group, groups);
+                let described = group_of(group, groups);
                 groups.insert(group.name.into(), described);
             }
             json!({ "group": group.name })
@@ -54,13 +54,13 @@ fn type_of(ty: &Type, groups: &mut Map<String, Value>) -> Value {
     }
 }
 
-fn of_group(group: &Group, groups: &mut Map<String, Value>) -> Value {
-    let fields: Vec<Value> = group.fields.iter().map(|field| of_field(field, groups)).collect();
+fn group_of(group: &Group, groups: &mut Map<String, Value>) -> Value {
+    let fields: Vec<Value> = group.fields.iter().map(|field| field_of(field, groups)).collect();
     let default = compact::value_of((group.blank)().parts(), compact::Fields::All);
     json!({ "doc": group.doc.trim(), "choice": group.is_choice, "default": default, "fields": fields })
 }
 
-fn of_field(field: &Field, groups: &mut Map<String, Value>) -> Value {
+fn field_of(field: &Field, groups: &mut Map<String, Value>) -> Value {
     let mut map = Map::new();
     let texts = [
         ("name", field.name),

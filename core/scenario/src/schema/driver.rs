@@ -1,67 +1,50 @@
-//! Limits of the driver for the timing check: a known model or custom rules. They do not affect a run.
-//! `inspect::trace::drivers` has the models' figures, `inspect::trace::timing` the check.
+//! Timing limits of a driver: a known model or custom rules. They do not affect a run.
 
 use crate::schema::{
     SHEETS, label,
-    rows::{choices, settings, words},
+    rows::{choices, settings, word_enums},
 };
 use core::ops::RangeInclusive;
 
 const NS: RangeInclusive<u64> = 0..=1_000_000_000;
 
 choices! {
-    /// A driver by name, `{ "preset": "drv8825" }`, or rules of your own:
+    /// A driver by name, `{ "preset": "drv8825" }`, or custom rules:
     ///
     /// ```json
     /// { "driver_timing": { "rules": { "step_high_ns": 2500, "step_low_ns": 2500, "dir_setup_ns": 5000 } } }
     /// ```
     ///
-    /// `stepscope drivers` prints each driver's times with what in its data sheet they rest on. A wake-up from a sleep
-    /// mode is longer (A4988 1 ms, DRV8825 1.7 ms): if SLEEP hangs on EN, give rules.
+    /// `stepscope drivers` prints the times of each driver with their source in the data sheet. Waking from sleep takes
+    /// longer (A4988 1 ms, DRV8825 1.7 ms): if SLEEP is connected to EN, use custom rules.
     pub enum DriverTiming {
-        /// A driver whose data sheet is known.
+        /// A driver with a known data sheet.
         Preset(DriverModel) = "preset" => label("a driver").from(SHEETS),
-        /// Rules of one's own.
-        Rules(TimingRules) = "rules" => label("rules of your own").from(SHEETS),
+        /// Custom rules.
+        Rules(TimingRules) = "rules" => label("custom rules").from(SHEETS),
     }
 }
 
-/// A driver whose data sheet is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DriverModel {
-    /// Allegro A4988.
-    A4988,
-    /// Allegro A4979.
-    A4979,
-    /// Texas Instruments DRV8825.
-    Drv8825,
-    /// Trinamic TMC2209.
-    Tmc2209,
-    /// Trinamic TMC262.
-    Tmc262,
-    /// Opto-isolated drivers in the class of the TB6600 boxes.
-    Tb6600Class,
-}
-
-words! {
-    DriverModel {
+word_enums! {
+    /// A driver with a known data sheet.
+    pub enum DriverModel {
         /// Allegro, data sheet 4988-DS
         A4988 = "a4988", "A4988";
-        /// Allegro; only STEP high is confirmed, the rest are the A4988's
+        /// Allegro; only STEP high is confirmed, the other times are those of the A4988
         A4979 = "a4979", "A4979";
         /// Texas Instruments, data sheet SLVSA73
         Drv8825 = "drv8825", "DRV8825";
-        /// Trinamic, data sheet rev. 1.09, at its own oscillator's least 11.5 MHz
+        /// Trinamic, data sheet rev. 1.09, at the minimum internal clock of 11.5 MHz
         Tmc2209 = "tmc2209", "TMC2209";
-        /// Trinamic; not confirmed by its own sheet: the TMC2100's formula at 10 MHz
+        /// Trinamic; unconfirmed: formula of the TMC2100 at 10 MHz
         Tmc262 = "tmc262", "TMC262";
-        /// opto-isolated, class of TB6600, DM542, AM882: class figures; check your driver's sheet
+        /// opto-isolated, like TB6600, DM542, AM882: typical figures; check the data sheet of your driver
         Tb6600Class = "tb6600_class", "TB6600 class";
     }
 }
 
 settings! {
-    /// The least times that a driver asks for; 0 asks for nothing.
+    /// Minimum times of a driver; 0 is not checked.
     pub struct TimingRules {
         /// From the rise of STEP to its fall.
         pub step_high_ns: u32 = 0 => label("STEP high")
@@ -75,7 +58,7 @@ settings! {
             .whole(NS)
             .term("STEP low", "From the fall of STEP to its next rise.")
             .from(SHEETS),
-        /// From the last change of DIR to every rise of STEP.
+        /// From the last change of DIR to the rise of STEP.
         pub dir_setup_ns: u32 = 0 => label("DIR set-up")
             .unit("ns")
             .whole(NS)
@@ -87,11 +70,11 @@ settings! {
             .whole(NS)
             .term("DIR hold", "From the rise of STEP to the next change of DIR.")
             .from(SHEETS),
-        /// From the rise of EN, or from reset, to a channel's first rise of STEP.
+        /// From the rise of EN, or from reset, to the first rise of STEP of a channel.
         pub enable_wake_ns: u32 = 0 => label("EN wake-up")
             .unit("ns")
             .whole(NS)
-            .term("EN wake-up", "From the rise of EN, or reset, to the first step.")
+            .term("EN wake-up", "From the rise of EN, or from reset, to the first step.")
             .from(SHEETS),
     }
 }

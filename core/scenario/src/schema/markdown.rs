@@ -217,7 +217,7 @@ fn quantity_of(ty: &Type) -> Option<&'static Group> {
 }
 
 fn quantities(out: &mut String, groups: &[&'static Group]) {
-    out.push_str("## Numbers with a unit\n\nA map of one key, the unit: `{ \"mm\": 250 }`.\n\n");
+    out.push_str("## Numbers with a unit\n\nAn object with one key, the unit: `{ \"mm\": 250 }`.\n\n");
     out.push_str("| | units | |\n| --- | --- | --- |\n");
     for group in groups.iter().filter(|group| is_quantity(group)) {
         let units = group.fields.iter().map(|kind| format!("`{}`", kind.name)).collect::<Vec<_>>();

@@ -1,31 +1,21 @@
 //! The schema: each field has one row, from which the following is derived.
 //!
 //! ```text
-//! /// Slots in a tick, M: the most steps a channel can make in one tick.      rustdoc, docs/scenario.md, the form's hint
-//! slots: u8 => label("Slots in a tick")                                       name in JSON, type, name in the form
-//!     .whole(limits::SLOTS)                                                   range: the owner's constant
-//!     .term("Slot", "A tick is divided into slots. …").from(PATENT),          the help's card, and where it comes from
+//! /// M: maximum steps per channel and tick.                           rustdoc, docs/scenario.md, hint in the form
+//! slots: u8 => label("Slots per tick")                                 name in JSON, type, label in the form
+//!     .whole(limits::SLOTS)                                            range
+//!     .term("Slot", "A tick is divided into slots. …").from(PATENT),   help card and its source
 //! ```
 //!
 //! | follows | where |
 //! | --- | --- |
 //! | reading and writing JSON ([`Read`](crate::Read), [`Compact`](crate::Compact)) | `rows`, the macros that declare rows |
-//! | judging each number and each length by itself | `judge` |
+//! | the range check of single fields | `ranges` |
 //! | docs/scenario.md | [`markdown`] |
-//! | what the page's form and help are made of | [`describe`] |
+//! | the page's form and help | [`describe`] |
 //!
-//! A struct of the scenario's own is declared together with its rows (`settings!`), an enum of its own with its kinds
-//! (`choices!`); what peripheral and motion own only gets names (`fields!`, `kinds!`), and they judge their numbers
-//! themselves, by the constants that the rows name. Words are choices without anything inside (`words!`).
-//!
-//! ```
-//! use stepscope_scenario::schema::{Limit, Type, Typed};
-//! use stepscope_peripheral::config::Bus;
-//!
-//! let Type::Group(bus) = Bus::TYPE else { panic!("a map of fields") };
-//! let slots = bus.fields.iter().find(|field| field.name == "slots").expect("it has a row");
-//! assert!(matches!(slots.limit, Limit::Whole(1, 127)), "{:?}", slots.limit);
-//! ```
+//! `settings!` declares a struct with its rows, `choices!` an enum with its kinds. Types of other crates get rows by
+//! `fields!` and `kinds!`; those crates check the ranges. `words!` declares choices without settings.
 
 pub(crate) mod rows;
 
@@ -34,13 +24,13 @@ mod controller;
 mod describe;
 mod driver;
 mod experiment;
-pub(crate) mod judge;
 mod line;
 mod markdown;
 mod mechanics;
 mod motor;
 mod moves;
 mod plant;
+pub(crate) mod ranges;
 mod segments;
 mod source;
 mod standalone;

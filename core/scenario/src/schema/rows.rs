@@ -202,7 +202,7 @@ macro_rules! words {
             fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
                 let found = reader.word(value, &[$($word),*]);
                 let kinds = [$(Self::$variant),*];
-                let found = found.and_then(|place| kinds.into_iter().nth(place));
+                let found = found.and_then(|index| kinds.into_iter().nth(index));
                 *self = found.unwrap_or(*self);
                 found.is_some()
             }
@@ -212,6 +212,23 @@ macro_rules! words {
                 first
             }
         }
+    )*};
+}
+
+/// The same for an enum of the scenario.
+macro_rules! word_enums {
+    ($($(#[doc = $doc:literal])* pub enum $name:ident {
+        $($(#[doc = $word_doc:literal])* $variant:ident = $word:literal, $label:literal;)*
+    })*) => {$(
+        $(#[doc = $doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[doc = $word_doc])* $variant,)*
+        }
+
+        $crate::schema::rows::words! { $name {
+            $($(#[doc = $word_doc])* $variant = $word, $label;)*
+        } }
     )*};
 }
 
@@ -244,4 +261,4 @@ pub(crate) const fn group<T: Typed>() -> &'static Group {
     }
 }
 
-pub(crate) use {choices, fields, kinds, last, rows, settings, words};
+pub(crate) use {choices, fields, kinds, last, rows, settings, word_enums, words};

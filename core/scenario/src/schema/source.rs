@@ -16,17 +16,17 @@ use stepscope_peripheral::{
 };
 
 choices! {
-    /// One of five kinds, with what is in it. At most 4 MiB of bytes in packets or sends.
+    /// One of five kinds. Packets and sends have at most 4 MiB of bytes.
     pub enum Source {
-        /// Moves in steps, mm or degrees, that the host divides into ticks or segments.
-        Motion(Motion) = "motion" => label("Motion of axes"),
-        /// The packets themselves, one a tick.
+        /// Moves in steps, mm or degrees, divided into ticks or segments.
+        Motion(Motion) = "motion" => label("Motion profile"),
+        /// The packets themselves, one per tick.
         Packets(Packets) = "packets" => label("Packets in hex").from(PATENT),
-        /// Bytes at cycles: what was recorded of a real line can be replayed.
+        /// Bytes at given cycles, for example to replay a recording.
         Line(LineScript) = "line" => label("Line script").from(OWN),
-        /// Controllers with buttons, a program and a memory; nothing is sent.
+        /// Controllers with buttons, a program and a memory. Nothing is sent.
         Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
-        /// Tables that a controller runs by itself; nothing is sent.
+        /// Tables of intervals that the controller runs. Nothing is sent.
         Segments(SegmentLists) = "segments" => label("Lists of segments").from(SONOBE),
     }
 }
@@ -38,19 +38,18 @@ impl Default for Source {
 }
 
 settings! {
-    /// Axis i drives channel i. With `"ticks"` the host sends one packet a tick, paced, so that tick follows tick without
-    /// a pause; on an addressed line it writes `line.address` before each. There are at most 2 000 000 ticks.
+    /// Axis i drives channel i. With `"ticks"` the host sends one packet per tick, so that ticks follow without a pause. On
+    /// an addressed line each packet begins with `line.address`. There are at most 2 000 000 ticks.
     ///
     /// With `"segments"` nothing is sent: the peripheral runs a list of segments, each step at cycle 1 +
-    /// floor(t*`clock_hz` + 1/2). Then all axes together have at most 4 000 000 steps, and no step may come sooner than
-    /// W + max(H + D, 1) cycles after the one before, the first after the start. A motion lasts at most 10^6 s;
-    /// docs/decisions.md has the other bounds on the work of one scenario.
+    /// floor(t*`clock_hz` + 1/2). All axes together then have at most 4 000 000 steps, and the interval before each step
+    /// is at least W + max(H + D, 1) cycles. A motion lasts at most 10^6 s.
     pub struct Motion {
-        /// The axes, each with its mechanics and its moves.
+        /// Axes, each with its mechanics and moves.
         pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").follows("1 to 16, no more than `bus.channels`"),
-        /// Who makes the steps.
+        /// How steps are generated.
         pub engine: MotionEngine = MotionEngine::Ticks => label("Step generation")
-            .term("Step generation", "With ticks the host says how many steps each tick has, as in the patent. With segments the controller runs the move alone, from a table of intervals, as in the other documents.")
+            .term("Step generation", "Ticks: the host sends the number of steps of each tick (RU 2704486). Segments: the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).")
             .from(PATENT),
     }
 }
@@ -67,68 +66,68 @@ pub enum MotionEngine {
 
 words! {
     MotionEngine {
-        /// the host sends the steps of each tick, in which they fall due
+        /// the host sends the number of steps of each tick
         Ticks = "ticks", "ticks";
-        /// nothing is sent; the peripheral makes each step in the cycle in which it falls due
+        /// nothing is sent; each step comes in its exact cycle
         Segments = "segments", "segments";
     }
 }
 
 settings! {
-    /// Each packet has `bus.channels` bytes, on an addressed raw line one more, first: the address. On a framed line they
-    /// go into frames of several ticks.
+    /// Each packet has `bus.channels` bytes. On an addressed raw line the address comes first. On a framed line packets are
+    /// sent in frames of several ticks.
     pub struct Packets {
-        /// In hex, one packet a tick, a byte a channel: bit 7 is the direction (1 right), bits 6 to 0 the steps.
-        pub packets: Vec<Hex> = Vec::new() => label("Packets, one a line")
-            .follows("`bus.channels` bytes each, one more with an address")
-            .term("Packet", "What the host sends for one tick: a byte a motor, bit 7 the direction, bits 6 to 0 the number of steps.")
+        /// In hex, one packet per tick, one byte per channel: bit 7 is the direction (1 right), bits 6 to 0 the steps.
+        pub packets: Vec<Hex> = Vec::new() => label("One packet per line")
+            .follows("`bus.channels` bytes each, plus the address")
+            .term("Packet", "What the host sends for one tick: one byte per motor, with the direction in bit 7 and the number of steps in bits 6 to 0.")
             .from(PATENT),
     }
 }
 
 settings! {
-    /// So a recorded byte stream can be replayed; `{ "start_cycle": 2000, "frame": "0505" }` stops controller 5 at once.
+    /// Replays bytes at given cycles. `{ "start_cycle": 2000, "frame": "0505" }` stops controller 5.
     pub struct LineScript {
-        /// Rising in time, not overlapping.
-        pub sends: Vec<ScriptedSend> = Vec::new() => label("Sends").follows("at most 4 MiB of bytes in all"),
+        /// In order of time, without overlap.
+        pub sends: Vec<ScriptedSend> = Vec::new() => label("Sends").follows("at most 4 MiB of bytes"),
     }
 }
 
 settings! {
-    /// Bytes that are sent back to back from a cycle on; or a frame in their place.
+    /// Bytes sent without pauses from a cycle on, or a frame.
     pub struct ScriptedSend {
-        /// Cycle in which the first start bit falls.
+        /// Cycle of the first start bit.
         pub start_cycle: u64 = 1 => label("Start")
             .unit("cycles")
             .whole(1..=END_OF_TIME - 1)
-            .term("Start", "Cycle of the controller's clock, counted from reset, in which this begins."),
-        /// Bytes in hex, sent back to back.
+            .term("Start", "First cycle, counted from reset."),
+        /// Bytes in hex, sent without pauses.
         pub bytes: Hex = Hex::default() => label("Bytes")
-            .term("Bytes", "What goes over the line, each byte as a start bit, eight data bits with the lowest first, and a stop bit."),
-        /// In place of bytes: address, kind and body in hex, such as `ff 05` (STOP for all); CRC, COBS and the delimiter
-        /// are added.
-        pub frame: Option<Hex> = None => label("Or a frame")
+            .term("Bytes", "Bytes on the line. Each has a start bit, eight data bits (lowest first) and a stop bit."),
+        /// Instead of bytes: address, kind and body in hex, such as `ff 05` (STOP for all). CRC, COBS and delimiters are
+        /// added.
+        pub frame: Option<Hex> = None => label("Frame")
             .empty("the bytes are sent")
-            .term("Frame", "Address, kind and body between two zero bytes, with a checksum. COBS takes the zeros out of the inside, so that an end can always be found again.")
+            .term("Frame", "Address, kind and body with a CRC, between two zero bytes. COBS removes the zeros from the content, so that the end of a frame is always found.")
             .from(OWN)
             .when_at("line.protocol", "framed"),
     }
 }
 
 impl Source {
-    /// Whether the host sends ticks of it.
+    /// Whether the host sends ticks.
     #[must_use]
     pub const fn is_ticks(&self) -> bool {
         !matches!(self, Self::Line(_)) && !self.runs_alone()
     }
 
-    /// Whether segments run it, and not ticks.
+    /// Whether segments run it instead of ticks.
     #[must_use]
     pub const fn runs_segments(&self) -> bool {
         matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
     }
 
-    /// Whether nothing is sent: segments run it, or controllers of their own.
+    /// Whether nothing is sent: segments or stand-alone controllers run it.
     #[must_use]
     pub const fn runs_alone(&self) -> bool {
         if let Self::Standalone(_) = self {
@@ -139,7 +138,7 @@ impl Source {
 }
 
 impl LineScript {
-    /// The host's schedule that the script is (A9).
+    /// The script as the host's schedule (A9).
     #[must_use]
     pub fn schedule(&self) -> Schedule {
         let mut schedule = Schedule::default();
@@ -151,7 +150,7 @@ impl LineScript {
 }
 
 impl ScriptedSend {
-    /// The bytes that go over the line.
+    /// The bytes on the line.
     #[must_use]
     pub fn wire(&self) -> Vec<u8> {
         self.frame.as_ref().map_or_else(|| self.bytes.0.clone(), |Hex(content)| encode_frame(content))

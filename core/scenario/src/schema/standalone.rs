@@ -2,7 +2,7 @@
 
 use crate::schema::{
     Field, OWN, SONG, ZHANG, label,
-    rows::{choices, settings, words},
+    rows::{choices, settings, word_enums, words},
 };
 use alloc::{vec, vec::Vec};
 use core::ops::RangeInclusive;
@@ -26,128 +26,82 @@ const fn length(range: &RangeInclusive<i128>) -> RangeInclusive<usize> {
 }
 
 settings! {
-    /// Nothing is sent: controller i drives channel i by buttons, a program and switches of its own. Of `bus` only
-    /// `channels` and the three times of a pulse count, of `line` nothing. The default is a controller that waits for
-    /// buttons. Lengths are the digits of its display: with one decimal 305 is 30.5.
+    /// Nothing is sent: controller i drives channel i with buttons, a program and switches. Of `bus` only `channels` and the
+    /// three pulse times are used, and nothing of `line`. The default controller waits for buttons. Lengths are the digits
+    /// of its display: with one decimal 305 is 30.5.
     ///
-    /// What EN does follows from its power, its emergency stop and its alarms. Of several controllers `power`, `estop` and
-    /// `clear` are the first one's for all.
+    /// EN follows power, emergency stop and alarms. With several controllers, `power`, `estop` and `clear` of the first
+    /// one apply to all.
     pub struct StandAlone {
-        /// Self-test after each power-up.
+        /// Self-test after power-up.
         pub self_test_cycles: u32 = 1600 => label("Self-test").unit("cycles").whole(whole(&limits::SELF_TEST_CYCLES)).from(ZHANG),
-        /// How long a button, a key or the release of the emergency stop has to stand to count.
-        pub debounce_cycles: u32 = 160_000 => label("Debounce, buttons").unit("cycles").whole(whole(&limits::DEBOUNCE_CYCLES))
-            .term("Debounce", "A contact bounces for some milliseconds. A level counts once it has stood for so long; a shorter one is not seen.")
+        /// Minimum time of a button, a key or the release of the emergency stop.
+        pub debounce_cycles: u32 = 160_000 => label("Button debounce").unit("cycles").whole(whole(&limits::DEBOUNCE_CYCLES))
+            .term("Debounce", "A contact bounces for some milliseconds. A level counts after it has been stable for this time.")
             .from(ZHANG),
-        /// The same of limit and home switches and of `in_0` to `in_3`.
-        pub sensor_debounce_cycles: u32 = 0 => label("Debounce, switches").unit("cycles").whole(whole(&limits::DEBOUNCE_CYCLES)).from(OWN),
-        /// Pulses a unit of length, as measured (`stepscope calibrate`).
-        pub pulses_per_unit: u32 = 100 => label("Pulses a unit").unit("pulses").whole(whole(&limits::PULSES_PER_UNIT))
-            .term("Pulses a unit", "How many pulses make one unit of length, centimetres in the document: measured with the table itself, so that the screw's and the gear's errors are in it.")
+        /// The same for limit and home switches and for `in_0` to `in_3`.
+        pub sensor_debounce_cycles: u32 = 0 => label("Switch debounce").unit("cycles").whole(whole(&limits::DEBOUNCE_CYCLES)).from(OWN),
+        /// Pulses per unit of length, as measured (`stepscope calibrate`).
+        pub pulses_per_unit: u32 = 100 => label("Pulses per unit").unit("pulses").whole(whole(&limits::PULSES_PER_UNIT))
+            .term("Pulses per unit", "Pulses per unit of length (cm in Zhang 2012). It is measured on the machine, so it includes the errors of screw and gear.")
             .from(ZHANG),
         /// Decimal places of lengths: with 1 the digits 305 are 30.5.
         pub decimals: u8 = 1 => label("Decimals").whole(whole(&limits::DECIMALS)).from(ZHANG),
-        /// Lowest rate of the table, f_1: a motor jumps to it from standing still.
+        /// Lowest rate of the table, f_1. The motor starts at it.
         pub start_speed_hz: u32 = 1000 => label("Start-stop rate").unit("Hz").follows("10 to `max_speed_hz`")
-            .term("Start-stop rate", "The motor can start and stop at this rate at once. Where it has to jump beyond it, steps may be lost, so the place is not trusted any more.")
+            .term("Start-stop rate", "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is then no longer trusted.")
             .from(ZHANG),
-        /// The fastest that may be asked for.
-        pub max_speed_hz: u32 = 20_000 => label("Greatest speed").unit("Hz").follows("10 to 10^7; a step no sooner than a pulse allows").from(ZHANG),
-        /// Acceleration of level 1; level n has n times as much.
+        /// Maximum rate of all moves.
+        pub max_speed_hz: u32 = 20_000 => label("Max speed").unit("Hz").follows("10 to 10^7, limited by the pulse times").from(ZHANG),
+        /// Acceleration of level 1. Level n has n times as much.
         pub level_hz_s: u32 = 1000 => label("Acceleration of level 1").unit("Hz/s").whole(whole(&limits::LEVEL_HZ_S)).from(ZHANG),
-        /// What becomes of a move that is too short for its speed.
+        /// Moves that are too short for their speed.
         pub short_move: ShortMove = ShortMove::Document => label("Short moves").from(ZHANG),
-        /// Trust that start asks for: 0 LOST, 1 HELD, 2 SURE.
-        pub least_trust: u8 = 1 => label("Trust to start").whole(whole(&limits::TRUST))
-            .term("Trust", "How sure the controller is of its place. SURE: a zero was set or found. HELD: it was sure, but the windings were without current since. LOST: after a power loss that memory did not outlive, or a jump beyond the start-stop rate.")
+        /// Minimum trust in the position to start: 0 lost, 1 restored, 2 confirmed.
+        pub least_trust: u8 = 1 => label("Minimum trust").whole(whole(&limits::TRUST))
+            .term("Trust", "How reliable the position is. Confirmed (2): zero was set or found. Restored (1): it was confirmed, but the windings have been without current since. Lost (0): memory did not survive a power loss, or the motor jumped beyond its start-stop rate.")
             .from(OWN),
-        /// Runs of the program.
+        /// How often the program runs.
         pub loops: u16 = 1 => label("Loops").whole(whole(&limits::LOOPS)).from(ZHANG),
-        /// The program: one group after another.
+        /// The program: groups in order.
         pub groups: Vec<ProgramGroup> = vec![ProgramGroup::Move(MoveGroup::default())] => label("Program").length(length(&limits::GROUPS), "groups")
-            .term("Group", "A step of the program: a move by a length with its speed, direction, acceleration and the pause after it, as in the document; or one of the kinds beyond it.")
+            .term("Group", "A step of the program: a move by a length with speed, direction, acceleration and delay (Zhang 2012), or one of the additional kinds.")
             .from(ZHANG),
-        /// Moving by a button.
+        /// Moves by button.
         pub jog: Jog = Jog::default() => label("Jog"),
-        /// Moving back to zero.
+        /// Moves back to zero.
         pub r#return: ReturnToZero = ReturnToZero::default() => label("Return to zero"),
-        /// Looking for a switch, which sets the zero.
-        pub home: Option<Homing> = None => label("Homing").empty("there is no homing").from(OWN),
-        /// Bounds of the positions that are ordered.
+        /// Search for a switch that sets the zero.
+        pub home: Option<Homing> = None => label("Homing").empty("no homing").from(OWN),
+        /// Limits of commanded positions.
         pub soft_limits: Option<SoftLimits> = None => label("Soft limits").empty("none").from(OWN),
-        /// A virtual axis with switches.
-        pub axis: Option<VirtualAxis> = None => label("Virtual axis").empty("one without switches").from(OWN),
-        /// The EEPROM, and what happens when power fails.
+        /// Virtual axis with switches.
+        pub axis: Option<VirtualAxis> = None => label("Virtual axis").empty("no switches").from(OWN),
+        /// EEPROM and power failure.
         pub memory: Eeprom = Eeprom::default() => label("Memory"),
-        /// What is pressed, switched and pushed, and when.
+        /// Button presses, switches and pushes, with their times.
         pub inputs: Vec<PanelInput> = Vec::new() => label("Inputs").length(length(&limits::INPUTS), "inputs"),
     }
 }
 
-/// A switch that homing can look for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Switch {
-    /// Limit switch to the left.
-    LimitMin,
-    /// Limit switch to the right.
-    LimitMax,
-    /// Home switch.
-    HomeSwitch,
-}
-
-/// A switch or an input, which a program can look at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sensor {
-    /// Limit switch to the left.
-    LimitMin,
-    /// Limit switch to the right.
-    LimitMax,
-    /// Home switch.
-    HomeSwitch,
-    /// Input 0.
-    In0,
-    /// Input 1.
-    In1,
-    /// Input 2.
-    In2,
-    /// Input 3.
-    In3,
-}
-
-words! {
-    ShortMove {
-        /// the whole of it at the start-stop rate
-        Document = "document", "start-stop rate";
-        /// up and down as far as it goes
-        TurnRound = "turn_round", "up and down";
-    }
-    Release {
-        /// stops at once, as in the document
-        AtOnce = "at_once", "at once";
-        /// slows down by the table
-        Ramp = "ramp", "by a ramp";
-    }
-    Policy {
-        /// the closing record is written while the supply's buffer holds
-        PowerLoss = "power_loss", "when power fails";
-        /// an opening record before each move, a closing one after it: no buffer is needed
-        WriteAhead = "write_ahead", "before each move";
-    }
-    Switch {
-        /// limit switch to the left
-        LimitMin = "limit_min", "limit_min";
-        /// limit switch to the right
-        LimitMax = "limit_max", "limit_max";
+word_enums! {
+    /// A switch for homing.
+    pub enum Switch {
+        /// left limit switch
+        LimitMin = "limit_min", "left limit switch";
+        /// right limit switch
+        LimitMax = "limit_max", "right limit switch";
         /// home switch
-        HomeSwitch = "home_switch", "home_switch";
+        HomeSwitch = "home_switch", "home switch";
     }
-    Sensor {
-        /// limit switch to the left
-        LimitMin = "limit_min", "limit_min";
-        /// limit switch to the right
-        LimitMax = "limit_max", "limit_max";
+    /// A switch or an input that a program can test.
+    pub enum Sensor {
+        /// left limit switch
+        LimitMin = "limit_min", "left limit switch";
+        /// right limit switch
+        LimitMax = "limit_max", "right limit switch";
         /// home switch
-        HomeSwitch = "home_switch", "home_switch";
+        HomeSwitch = "home_switch", "home switch";
         /// input 0
         In0 = "in_0", "in_0";
         /// input 1
@@ -157,28 +111,49 @@ words! {
         /// input 3
         In3 = "in_3", "in_3";
     }
+}
+
+words! {
+    ShortMove {
+        /// the whole move at the start-stop rate
+        Document = "document", "start-stop rate";
+        /// accelerate as far as possible, then decelerate
+        TurnRound = "turn_round", "up and down";
+    }
+    Release {
+        /// stops at once (Zhang 2012)
+        AtOnce = "at_once", "at once";
+        /// decelerates by the table
+        Ramp = "ramp", "by a ramp";
+    }
+    Policy {
+        /// the closing record is written during the hold-up time
+        PowerLoss = "power_loss", "when power fails";
+        /// one record before each move and one after it; no hold-up is needed
+        WriteAhead = "write_ahead", "before each move";
+    }
     Signal {
-        /// supply; 1 before its first entry
+        /// supply; 1 before the first entry
         Power = "power", "power";
         /// emergency stop
         Estop = "estop", "estop";
-        /// starts the program, or goes on after a pause
+        /// starts the program, or continues after a pause
         Start = "start", "start";
         /// pauses a move or a delay
         Pause = "pause", "pause";
-        /// jogs to the right while it is held
+        /// jogs right while held
         JogPlus = "jog_plus", "jog_plus";
-        /// jogs to the left while it is held
+        /// jogs left while held
         JogMinus = "jog_minus", "jog_minus";
         /// returns to zero
         Zero = "zero", "zero";
-        /// looks for the switch
+        /// starts homing
         Home = "home", "home";
-        /// fine jog, and setting the zero
+        /// fine jog and setting of zero
         Debug = "debug", "debug";
-        /// the numbers
+        /// opens the numbers
         System = "system", "system";
-        /// takes the entry; in fine jog sets the zero
+        /// confirms the entry; in fine jog sets the zero
         Ok = "ok", "ok";
         /// leaves the numbers
         Back = "back", "back";
@@ -204,12 +179,12 @@ words! {
         Key8 = "key_8", "key_8";
         /// digit 9
         Key9 = "key_9", "key_9";
-        /// limit switch to the left
-        LimitMin = "limit_min", "limit_min";
-        /// limit switch to the right
-        LimitMax = "limit_max", "limit_max";
+        /// left limit switch
+        LimitMin = "limit_min", "left limit switch";
+        /// right limit switch
+        LimitMax = "limit_max", "right limit switch";
         /// home switch
-        HomeSwitch = "home_switch", "home_switch";
+        HomeSwitch = "home_switch", "home switch";
         /// input 0
         In0 = "in_0", "in_0";
         /// input 1
@@ -221,51 +196,43 @@ words! {
     }
 }
 
-/// A length in digits of the display, forwards only.
 const LENGTH: Field = label("Length").unit("digits")
-    .term("Length", "As the display shows it, without its point: with one decimal 305 is 30.5 units. Steps follow by pulses a unit, rounded once from the program's start, so nothing adds up over loops.")
+    .term("Length", "Digits of the display without the decimal point: with one decimal 305 is 30.5 units. Positions are rounded to steps from the start of the program, so errors do not add up over loops.")
     .from(ZHANG);
-/// A place, by the digits of the display; the zero is 0.
-const PLACE_OF_GROUP: Field = label("Place").unit("digits").from(ZHANG);
-/// A plateau's rate.
+const POSITION_OF_GROUP: Field = label("Position").unit("digits").from(ZHANG);
 const SPEED: Field = speed("Speed");
-/// The same by another name.
 const fn speed(name: &'static str) -> Field {
     label(name).unit("Hz").follows("10 to `max_speed_hz`").from(ZHANG)
 }
-/// One of five accelerations.
 const LEVEL: Field = label("Acceleration level").whole(whole(&limits::LEVEL)).from(ZHANG);
-/// The pause after a group.
 const DELAY: Field = label("Delay").unit("ms").whole(whole(&limits::DELAY_MS)).from(ZHANG);
-/// A level of an input or an output.
 const ON: Field = label("Level").whole(0..=1);
-/// 1 right, 0 left.
 const DIRECTION: Field = label("Direction").whole(0..=1);
 
 choices! {
     /// A group of the program.
     pub enum ProgramGroup {
-        /// By a length.
+        /// Moves by a length.
         Move(MoveGroup) = "move" => label("Move by").from(ZHANG),
-        /// To a place.
+        /// Moves to a position.
         MoveTo(MoveToGroup) = "move_to" => label("Move to").from(OWN),
-        /// Along a motion or a list of intervals.
+        /// Runs a motion or a list of intervals.
         Profile(ProfileGroup) = "profile" => label("Profile").from(SONG),
-        /// Looks for the switch.
+        /// Runs homing.
         Home(HomeGroup) = "home" => label("Homing").from(OWN),
         /// Waits for an input.
         Wait(WaitGroup) = "wait" => label("Wait").from(OWN),
         /// Sets an output.
         Set(SetGroup) = "set" => label("Set output").from(OWN),
-        /// Goes back some times.
+        /// Repeats previous groups.
         Repeat(RepeatGroup) = "repeat" => label("Repeat").from(OWN),
-        /// Goes elsewhere.
+        /// Continues at another group.
         Jump(JumpGroup) = "jump" => label("Jump").from(OWN),
     }
 }
 
 settings! {
-    /// A move by a length, the document's group.
+    /// A move by a length (Zhang 2012).
     pub struct MoveGroup {
         /// Digits of the display.
         pub length: u32 = 1000 => LENGTH.whole(whole(&limits::LENGTH)),
@@ -275,68 +242,68 @@ settings! {
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
         pub level: u8 = 3 => LEVEL,
-        /// Pause after it.
+        /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
         /// An input that ends it early.
-        pub until: Option<Until> = None => label("Until").empty("it goes its whole way").from(OWN),
+        pub until: Option<Until> = None => label("Until").empty("full length").from(OWN),
     }
 }
 
 settings! {
-    /// The level of an input that ends a move.
+    /// Level of an input that ends a move.
     pub struct Until {
         /// `home_switch` or `in_0` to `in_3`.
-        pub input: Sensor = Sensor::In0 => label("Input").follows("not a limit").from(OWN),
+        pub input: Sensor = Sensor::In0 => label("Input").follows("not a limit switch").from(OWN),
         /// The level.
         pub level: u8 = 1 => ON,
     }
 }
 
 settings! {
-    /// A move to a place.
+    /// A move to a position.
     pub struct MoveToGroup {
-        /// Place in digits of the display.
-        pub length: i64 = 0 => PLACE_OF_GROUP.signed(signed(&limits::PLACE)),
+        /// Position in digits of the display.
+        pub length: i64 = 0 => POSITION_OF_GROUP.signed(signed(&limits::PLACE)),
         /// Rate of the plateau.
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
         pub level: u8 = 3 => LEVEL,
-        /// Pause after it.
+        /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
     }
 }
 
 settings! {
-    /// A motion of any kind, or a list of intervals, one way.
+    /// A motion of any kind or a list of intervals, in one direction.
     pub struct ProfileGroup {
-        /// One move of an axis (`source.motion`), in steps; it goes one way.
-        pub motion: Option<Move> = None => label("Motion").empty("the intervals"),
-        /// Interval of each step, up to 1 000 000 of them.
-        pub intervals_q16: Vec<u64> = Vec::new() => label("Intervals, one a line").unit("1/65536 cycle")
-            .follows("a pulse's least interval to 2^64 - 1; up to 1 000 000"),
-        /// 1 right, 0 left; of intervals.
+        /// One move of an axis (`source.motion`), in steps and one direction.
+        pub motion: Option<Move> = None => label("Motion").empty("use the intervals"),
+        /// Interval before each step, up to 1 000 000.
+        pub intervals_q16: Vec<u64> = Vec::new() => label("One interval per line").unit("1/65536 cycle")
+            .follows("at least the pulse times, at most 2^64 - 1; up to 1 000 000 lines"),
+        /// 1 right, 0 left; used with intervals.
         pub direction: u8 = 1 => DIRECTION,
-        /// Pause after it.
+        /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
     }
 }
 
 settings! {
-    /// Homing as a group of a program: `home` says how.
+    /// Homing as a group of a program; `home` has its settings.
     pub struct HomeGroup {
     }
 }
 
 settings! {
-    /// Waits until an input has a level.
+    /// Waits for the level of an input.
     pub struct WaitGroup {
-        /// Which.
+        /// Input.
         pub input: Sensor = Sensor::In0 => label("Input").from(OWN),
         /// The level.
         pub level: u8 = 1 => ON,
-        /// For how long at most; 0 is for ever.
-        pub timeout_ms: u32 = 0 => label("Time-out").unit("ms").whole(whole(&limits::TIMEOUT_MS)).from(OWN),
-        /// The group after a time-out.
+        /// Maximum wait; 0 waits forever.
+        pub timeout_ms: u32 = 0 => label("Timeout").unit("ms").whole(whole(&limits::TIMEOUT_MS)).from(OWN),
+        /// Next group after a timeout.
         pub then: Option<u8> = None => label("Then").follows("1 to the number of groups").empty("alarm TIMEOUT"),
     }
 }
@@ -344,7 +311,7 @@ settings! {
 settings! {
     /// Sets an output.
     pub struct SetGroup {
-        /// Which.
+        /// Output.
         pub output: u8 = 0 => label("Output").whole(whole(&limits::OUTPUT)).from(OWN),
         /// The level.
         pub level: u8 = 1 => ON,
@@ -352,19 +319,19 @@ settings! {
 }
 
 settings! {
-    /// Goes back to a group until it was reached so many times.
+    /// Continues at an earlier group until that has run a number of times.
     pub struct RepeatGroup {
-        /// The group that it goes back to.
+        /// First group to repeat.
         pub first: u8 = 1 => label("First").follows("1 to below this group's number").from(OWN),
-        /// How many times that one is reached.
+        /// Number of runs.
         pub times: u16 = 2 => label("Times").whole(whole(&limits::LOOPS)).from(OWN),
     }
 }
 
 settings! {
-    /// Goes on at another group.
+    /// Continues at another group.
     pub struct JumpGroup {
-        /// Which.
+        /// Next group.
         pub to: u8 = 1 => label("To").follows("1 to the number of groups").from(OWN),
         /// Only if this input has the level.
         pub input: Option<Sensor> = None => label("Input").empty("always"),
@@ -374,21 +341,21 @@ settings! {
 }
 
 settings! {
-    /// Moving by the buttons `jog_plus` and `jog_minus`.
+    /// Moves by the buttons `jog_plus` and `jog_minus`.
     pub struct Jog {
-        /// Coarse, from READY.
+        /// Coarse jog, in state READY.
         pub speed_hz: u32 = 1000 => SPEED,
-        /// Fine, from DEBUG.
+        /// Fine jog, in state DEBUG.
         pub fine_hz: u32 = 10 => speed("Fine speed"),
-        /// Acceleration, where a jog ends by a ramp.
+        /// Acceleration of the ramp at the end.
         pub level: u8 = 3 => LEVEL,
-        /// How it ends.
+        /// How a jog ends.
         pub release: Release = Release::AtOnce => label("Release").from(ZHANG),
     }
 }
 
 settings! {
-    /// Moving back to position 0.
+    /// Moves back to position 0.
     pub struct ReturnToZero {
         /// Rate of the plateau.
         pub speed_hz: u32 = 1000 => SPEED,
@@ -398,89 +365,88 @@ settings! {
 }
 
 settings! {
-    /// Towards a switch, away from it, and slowly back to it; there the position is known.
+    /// Moves to a switch, away from it, and slowly back to it. There the position is known.
     pub struct Homing {
-        /// What it looks for.
+        /// Switch to search for.
         pub switch: Switch = Switch::HomeSwitch => label("Switch").from(OWN),
         /// 1 right, 0 left.
         pub direction: u8 = 0 => DIRECTION,
-        /// Rate of the search.
+        /// Rate towards the switch.
         pub coarse_hz: u32 = 1000 => label("Coarse rate").unit("Hz").follows("10 to `start_speed_hz`").from(OWN),
-        /// Rate of the last approach.
+        /// Rate of the final approach.
         pub fine_hz: u32 = 10 => label("Fine rate").unit("Hz").follows("10 to `start_speed_hz`").from(OWN),
-        /// Steps away from the switch after it has opened.
+        /// Steps beyond the opening of the switch.
         pub pull_off_steps: u32 = 20 => label("Pull-off").unit("steps").whole(whole(&limits::PULL_OFF_STEPS)).from(OWN),
-        /// Most steps of each leg.
-        pub travel_steps: u32 = 100_000 => label("Travel").unit("steps").whole(whole(&limits::TRAVEL_STEPS)).from(OWN),
+        /// Maximum steps of each approach.
+        pub travel_steps: u32 = 100_000 => label("Max travel").unit("steps").whole(whole(&limits::TRAVEL_STEPS)).from(OWN),
         /// Position of the switch.
         pub position_steps: i64 = 0 => label("Position of the switch").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
     }
 }
 
 settings! {
-    /// Bounds of the positions that a group or a return may order.
+    /// Limits of the positions that a group or a return may command.
     pub struct SoftLimits {
-        /// Least.
-        pub min_steps: i64 = *limits::STEPS.start() as i64 => label("Least").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
-        /// Greatest, at least as much.
-        pub max_steps: i64 = *limits::STEPS.end() as i64 => label("Greatest").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
+        /// Minimum.
+        pub min_steps: i64 = *limits::STEPS.start() as i64 => label("Minimum").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
+        /// Maximum.
+        pub max_steps: i64 = *limits::STEPS.end() as i64 => label("Maximum").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
     }
 }
 
-/// A place on the virtual axis.
-const fn place(name: &'static str) -> Field {
+const fn axis_position(name: &'static str) -> Field {
     label(name).unit("steps").signed(signed(&limits::STEPS)).from(OWN)
 }
 
 settings! {
-    /// A nut that follows the steps while the windings are powered, between hard ends, with switches along its way.
+    /// A nut that follows the steps while the windings are powered, with hard ends and switches.
     pub struct VirtualAxis {
-        /// Where it stands at first.
-        pub start_steps: i64 = 0 => place("Start"),
-        /// limit_min is 1 from here to the left.
-        pub min_switch_at: Option<i64> = None => place("Left switch, up to").empty("limit_min is an input"),
-        /// limit_max is 1 from here to the right.
-        pub max_switch_at: Option<i64> = None => place("Right switch, from").empty("limit_max is an input"),
-        /// home_switch is 1 from here …
-        pub home_from: Option<i64> = None => place("Home switch, from").empty("home_switch is an input"),
-        /// … to here; both or neither.
-        pub home_to: Option<i64> = None => place("Home switch, to").empty("home_switch is an input"),
-        /// It cannot go further to the left: steps are lost there.
-        pub hard_min: Option<i64> = None => place("Left end").empty("there is no end"),
-        /// It cannot go further to the right.
-        pub hard_max: Option<i64> = None => place("Right end").empty("there is no end"),
+        /// Initial position.
+        pub start_steps: i64 = 0 => axis_position("Start"),
+        /// `limit_min` is 1 from here to the left.
+        pub min_switch_at: Option<i64> = None => axis_position("Left switch, up to").empty("the left limit switch is an input"),
+        /// `limit_max` is 1 from here to the right.
+        pub max_switch_at: Option<i64> = None => axis_position("Right switch, from").empty("the right limit switch is an input"),
+        /// `home_switch` is 1 from here …
+        pub home_from: Option<i64> = None => axis_position("Home switch, from").empty("the home switch is an input"),
+        /// … to here. Use both or neither.
+        pub home_to: Option<i64> = None => axis_position("Home switch, to").empty("the home switch is an input"),
+        /// Hard stop on the left, where steps are lost.
+        pub hard_min: Option<i64> = None => axis_position("Left hard stop").empty("no hard stop"),
+        /// Hard stop on the right.
+        pub hard_max: Option<i64> = None => axis_position("Right hard stop").empty("no hard stop"),
     }
 }
 
 settings! {
-    /// The EEPROM with its journal of the position, and the supply's buffer.
+    /// EEPROM with the position journal, and hold-up of the supply.
     pub struct Eeprom {
-        /// When the position is written.
-        pub policy: Policy = Policy::PowerLoss => label("Policy").from(OWN),
-        /// Time to write a byte; 8.5 ms on an ATmega128.
-        pub byte_write_cycles: u32 = 136_000 => label("Time to write a byte").unit("cycles").whole(whole(&limits::BYTE_WRITE_CYCLES))
+        /// When the position is saved.
+        pub policy: Policy = Policy::PowerLoss => label("Save position").from(OWN),
+        /// Time to write one byte; 8.5 ms on an ATmega128.
+        pub byte_write_cycles: u32 = 136_000 => label("Byte write time").unit("cycles").whole(whole(&limits::BYTE_WRITE_CYCLES))
             .from(ZHANG),
-        /// How long the supply's buffer feeds the controller after a power loss.
+        /// How long the controller runs after a power loss.
         pub hold_up_cycles: u64 = 3_200_000 => label("Hold-up").unit("cycles").whole(whole(&limits::HOLD_UP_CYCLES))
-            .term("Hold-up", "When the supply fails, the motors are switched off at once and a capacitor feeds the controller for so long. A record in memory takes 16 bytes: with 17 byte times less one cycle it is written for sure.")
+            .term("Hold-up", "After a power failure the motors are off, and a capacitor supplies the controller for this time. Saving the position takes 16 bytes; 17 byte write times minus one cycle are always enough.")
             .from(OWN),
-        /// Records of the journal, written in turn.
+        /// Records of the journal, written in rotation.
         pub slots: u8 = 8 => label("Slots").whole(whole(&limits::SLOTS)).from(OWN),
-        /// What it holds at first: `blank` (erased), `factory` (position 0, sure), or bytes in hexadecimal from address 0.
-        pub initial: Initial = Initial::Factory => label("At first").from(OWN),
+        /// Initial content: `blank` (erased), `factory` (position 0, confirmed), or bytes in hex from address 0.
+        pub initial: Initial = Initial::Factory => label("Initial content").from(OWN),
     }
 }
 
 settings! {
-    /// An input takes a level in a cycle, and keeps it; or a hand pushes the axis.
+    /// An input changes its level in a cycle, or a hand pushes the axis.
     pub struct PanelInput {
-        /// When.
+        /// Cycle of the change.
         pub cycle: u64 = 1 => label("Cycle").unit("cycles").whole(whole(&limits::INPUT_CYCLE)),
-        /// Which input.
+        /// Input that changes.
         pub input: Option<Signal> = None => label("Input").empty("a push"),
-        /// Its level from then on.
+        /// New level.
         pub level: u8 = 1 => ON,
-        /// Moves the axis by so many steps, while its windings are without current.
+        /// Moves the axis by this number of steps while the windings have no current.
         pub push_steps: Option<i64> = None => label("Push").unit("steps").signed(signed(&limits::PUSH_STEPS)).empty("an input"),
     }
 }

@@ -1,108 +1,88 @@
 //! The types of the schema.
 
+#![allow(missing_docs, reason = "only names that need one have a text")]
+
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::ops::RangeInclusive;
 use serde_json::Value;
 use stepscope_motion::moves::Point;
 
-/// The parts of a value, so that writing need not be generic.
+/// The parts of a value. Code that writes values needs no generics.
 pub enum Parts<'a> {
-    /// A single value.
     Whole(Value),
-    /// A number, possibly -0.0.
     Number(f64),
-    /// A list.
     List(Vec<&'a dyn ToParts>),
     /// The fields of a group in order, and whether each differs from its default.
     Fields(&'static Group, Vec<(&'a dyn ToParts, bool)>),
-    /// A kind's name and value.
     Kind(&'static str, &'a dyn ToParts),
 }
 
 /// A value that can be split into parts.
 pub trait ToParts {
-    /// What it is made of.
+    /// Its parts.
     fn parts(&self) -> Parts<'_>;
 }
 
 /// A field of a group, or a kind of a choice.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// Name in JSON.
     pub name: &'static str,
-    /// Documentation, with the blank before each line.
+    /// Documentation; each line begins with a space.
     pub doc: &'static str,
-    /// Type in JSON.
     pub ty: Type,
-    /// Label in the form.
     pub label: &'static str,
     /// Unit; empty for a plain number.
     pub unit: &'static str,
-    /// Allowed values.
     pub limit: Limit,
     /// Meaning of null.
     pub empty: &'static str,
-    /// Title of the help's card; empty without a card.
+    /// Title of the help card; empty without a card.
     pub term: &'static str,
-    /// Text of the help's card.
+    /// Text of the help card.
     pub explained: &'static str,
-    /// The document that it comes from.
+    /// The paper that it comes from.
     pub document: Option<&'static Document>,
-    /// When it matters; `None` for always.
+    /// When it is used; `None` for always.
     pub when: Option<When>,
-    /// Written only if it differs from the default: not every program has this field.
+    /// Written only if it differs from the default.
     pub only_if_set: bool,
 }
 
 /// A field's type in JSON.
 #[derive(Clone, Copy, Debug)]
 pub enum Type {
-    /// A whole number.
     Whole {
-        /// Minimum of the type.
         least: i64,
-        /// Maximum of the type.
         most: u64,
     },
-    /// A number.
     Number,
-    /// Yes or no: true or false.
     Bool,
-    /// A text.
     Text,
-    /// Bytes in hexadecimal.
     Hex,
     /// A point of a curve: time in s and position.
     Point,
     /// One of some words.
     Word(&'static [Word]),
-    /// A map of fields, or of the key that names a choice.
+    /// An object with fields, or with the one key of a choice.
     Group(&'static Group),
-    /// Null or another type.
     Optional(&'static Type),
-    /// A list.
     List(&'static Type),
 }
 
 /// A word of a choice without settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Word {
-    /// Name in JSON.
     pub name: &'static str,
-    /// Label in the form.
     pub label: &'static str,
-    /// What it means.
     pub doc: &'static str,
 }
 
 /// The fields of a struct, or the kinds of an enum.
 #[derive(Debug)]
 pub struct Group {
-    /// Name of the type.
     pub name: &'static str,
     /// Documentation in Markdown.
     pub doc: &'static str,
-    /// Fields or kinds in order.
     pub fields: &'static [Field],
     /// Whether it is a choice of one.
     pub is_choice: bool,
@@ -115,35 +95,30 @@ pub struct Group {
 /// The allowed values of a single field.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {
-    /// Every value of the type.
     Type,
-    /// Whole numbers of a range.
     Whole(u64, u64),
     /// A range that may be negative.
     Signed(i64, i64),
-    /// Numbers of a range.
     Number(f64, f64),
-    /// A number of characters or entries, and what is counted.
+    /// A number of characters or entries, and their name.
     Length(usize, usize, &'static str),
     /// A range that depends on other fields, described in words.
     Follows(&'static str),
 }
 
-/// A field that matters only while another has a value.
+/// A field that is used only if another field has a value.
 #[derive(Clone, Copy, Debug)]
 pub struct When {
     /// The other field: its path, or its name in the same group.
     pub field: &'static str,
     /// Whether `field` is a whole path.
     pub is_path: bool,
-    /// The value.
     pub is: &'static str,
 }
 
 /// The source of an experiment or a term.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Document {
-    /// Short name for programs.
     pub id: &'static str,
     /// Short name for people.
     pub short: &'static str,
@@ -151,49 +126,41 @@ pub struct Document {
     pub title: &'static str,
 }
 
-/// RU 2704486.
 pub const PATENT: &Document = &Document {
     id: "patent",
-    short: "patent RU 2704486, 2019",
+    short: "RU 2704486, 2019",
     title: "Patent RU 2704486 C1, 2019: tick-by-tick control of several stepper motors over USB (Russian)",
 };
-/// Sonobe 2011.
 pub const SONOBE: &Document = &Document {
     id: "sonobe",
     short: "Sonobe 2011",
     title: "Y. Sonobe, University of Electro-Communications, 2011: speed control of stepper motors, trapezoidal acceleration by table (slides, Japanese)",
 };
-/// Song, Han, Lu 2021.
 pub const SONG: &Document = &Document {
     id: "song",
-    short: "Song, Han, Lu 2021",
-    title: "Song, Han, Lu: exact S-curve control of a stepper motor. Electric Machines & Control Application 48 (11), 2021, page 27 (Chinese)",
+    short: "Song 2021",
+    title: "Song, Han, Lu, 2021: exact S-curve control of a stepper motor. Electric Machines & Control Application 48 (11), page 27 (Chinese)",
 };
-/// SWorldJournal, issue 11.
 pub const SINE: &Document = &Document {
     id: "sine",
-    short: "SWorldJournal, issue 11",
-    title: "SWorldJournal, issue 11, part 1: sinusoidal motion of a vibration-calibration carriage as a sum of segments of fixed speed (Ukrainian)",
+    short: "SWorldJournal 2022",
+    title: "SWorldJournal, issue 11, part 1, 2022: sinusoidal motion of a vibration-calibration carriage as a sum of segments of fixed speed (Ukrainian)",
 };
-/// Zhang 2012.
 pub const ZHANG: &Document = &Document {
     id: "zhang",
     short: "Zhang 2012",
     title: "Zhang, 2012: design of a single-axis fixed-length controller for a stepper motor on an ATmega128 (Chinese)",
 };
-/// Data sheets of drivers.
 pub const SHEETS: &Document = &Document {
     id: "sheets",
-    short: "drivers' data sheets",
-    title: "Data sheets of the drivers: Allegro A4988 (4988-DS), Texas Instruments DRV8825 (SLVSA73), Trinamic TMC2209 (rev. 1.09) and their like",
+    short: "driver data sheets",
+    title: "Data sheets of the drivers: Allegro A4988 (4988-DS), Texas Instruments DRV8825 (SLVSA73), Trinamic TMC2209 (rev. 1.09) and others",
 };
-/// This project.
 pub const OWN: &Document = &Document {
     id: "own",
-    short: "Stepscope's own",
-    title: "Stepscope's own: the framed protocol, the line model and the bit-exact link, described in docs/ of the source",
+    short: "Stepscope",
+    title: "Stepscope: the framed protocol, the line model and the bit-exact link, described in docs/ of the source",
 };
-/// All sources.
 pub const DOCUMENTS: [&Document; 7] = [PATENT, SONOBE, SONG, SINE, ZHANG, SHEETS, OWN];
 
 pub(crate) const fn label(label: &'static str) -> Field {
@@ -238,7 +205,6 @@ impl Field {
         Self { limit: Limit::Follows(range), ..self }
     }
 
-    /// Written to a file only where it differs from its default.
     pub(crate) const fn only_if_set(self) -> Self {
         Self { only_if_set: true, ..self }
     }
@@ -263,7 +229,7 @@ impl Field {
         Self { when: Some(When { field, is_path: true, is }), ..self }
     }
 
-    /// The documentation in one line.
+    /// The documentation as one line.
     #[must_use]
     pub fn text(&self) -> &'static str {
         self.doc.trim()
@@ -272,7 +238,7 @@ impl Field {
 
 /// A type that a field may have.
 pub trait Typed {
-    /// What JSON holds for it.
+    /// Its type in JSON.
     const TYPE: Type;
 }
 

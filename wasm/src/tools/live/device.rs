@@ -1,4 +1,4 @@
-//! The device of a real host (LIVE H1, H4, H5): a session against the wall clock, its recording, and what was of the clock beside it.
+//! The device of a real host (LIVE H1, H4, H5): a session in real time and its recording.
 
 use super::{listed, nanos, read};
 use crate::convert::object;
@@ -13,18 +13,18 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Cycles of a round at most: as many records, at the very most.
+/// Maximum cycles, and therefore records, per round.
 const MAX_ROUND: u64 = 1_000_000;
-/// So many rounds' bytes are on the line ahead of the model, so that it wakes for a frame's end and not for each byte.
+/// Rounds that received bytes are ahead of the model, so that it wakes once per frame and not per byte.
 const ROUNDS_AHEAD: u64 = 10;
-/// Records of the live trace, of all controllers together.
+/// Maximum records of the live traces of all controllers.
 const MAX_RECORDS: usize = 1_000_000;
-/// What is told of the live trace: positions of so many seconds, at so many times, of so many controllers.
+/// Length, points and maximum number of position curves.
 const CURVE_SECONDS: u64 = 10;
 const CURVE_POINTS: usize = 120;
 const CURVES: usize = 4;
 
-/// A controller of a session as it is now.
+/// State of a controller.
 #[derive(Serialize)]
 struct ControllerState {
     state: Option<&'static str>,
@@ -33,19 +33,19 @@ struct ControllerState {
     positions: Vec<i32>,
     faults: Vec<String>,
     ticks_done: u32,
-    /// How the positions of each channel went; empty where there are many controllers.
+    /// Positions of each channel; empty with many controllers.
     curves: Vec<Vec<i32>>,
 }
 
-/// A session as it is now.
+/// State of a session.
 #[derive(Serialize)]
 struct SessionState {
     seconds: f64,
-    /// Where the curves begin; they end now.
+    /// Start of the curves.
     curves_from: f64,
-    heard: u64,
+    received: u64,
     replies: u64,
-    /// Most that a reply was written after its cycle.
+    /// Maximum delay of a reply.
     latest_ms: f64,
     set_backs: u64,
     set_back_ms: f64,
@@ -58,7 +58,7 @@ struct SessionState {
 struct Recorded {
     scenario: String,
     digests: Vec<String>,
-    /// Why it is not the session; null where it was run again with the same digests.
+    /// Why it does not reproduce the digests; null if it does.
     why: Option<String>,
     whole: bool,
 }
@@ -67,10 +67,9 @@ struct Recorded {
 #[wasm_bindgen]
 pub struct LiveDevice {
     session: Session,
-    /// Bytes that the line has not taken.
+    /// Bytes that wait for the line.
     input: Input,
     clock: SessionClock,
-    /// The last records of each controller.
     traces: Vec<LiveTrace>,
     times: SessionTimes,
     replies: u64,
@@ -79,11 +78,10 @@ pub struct LiveDevice {
 
 #[wasm_bindgen]
 impl LiveDevice {
-    /// The controllers of a scenario, whose model may be so late before its clock is set back, in a session that begins so
-    /// many ms after 1970.
+    /// The controllers of a scenario. Above a lag of `lag_ms` the clock is set back. `unix_ms` is the start.
     ///
     /// # Errors
-    /// If the scenario has problems, or its controllers have no line: with what to change.
+    /// If the scenario has problems, or its controllers have no line.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str, lag_ms: u32, unix_ms: f64) -> Result<LiveDevice, JsError> {
         let session = Session::new(&read(json)?).map_err(|problems| listed(&problems))?;
@@ -102,13 +100,13 @@ impl LiveDevice {
         })
     }
 
-    /// The line's rate.
+    /// Bit rate.
     #[must_use]
     pub fn baud(&self) -> u32 {
         self.session.experiment().baud()
     }
 
-    /// Runs the model on towards now, for a ms of it at most. Whether there is more to run.
+    /// Runs the model for at most 1 ms. Returns whether it is still behind.
     pub fn round(&mut self, ms: f64) -> bool {
         let now = self.session.now();
         let clock_hz = u64::from(self.session.experiment().config().clock_hz());
@@ -122,7 +120,7 @@ impl LiveDevice {
         to < target
     }
 
-    /// Bytes of replies that have left the model by now.
+    /// Reply bytes up to now.
     pub fn replies(&mut self, ms: f64) -> Vec<u8> {
         let Self { session, clock, times, replies, latest_ns, .. } = self;
         let mut bytes = Vec::new();
@@ -139,8 +137,7 @@ impl LiveDevice {
         bytes
     }
 
-    /// Bytes that were read at a time, while the model stands where it stands; returns how many of them there was room for.
-    /// The others wait outside, so that nothing is read faster than the line takes it.
+    /// Receives bytes; returns how many were accepted. The others must wait, as on a line.
     pub fn receive(&mut self, bytes: &[u8], ms: f64) -> usize {
         let count = self.input.push(bytes);
         if count > 0 {
@@ -149,7 +146,7 @@ impl LiveDevice {
         count
     }
 
-    /// How long nothing is due, in ms, if nothing is heard; infinite where nothing is on the line.
+    /// Time until the next event without received bytes, in ms.
     #[must_use]
     pub fn wait(&self) -> f64 {
         let due = self.session.deadline();
@@ -157,19 +154,16 @@ impl LiveDevice {
         if due == Instant::NEVER { f64::INFINITY } else { self.clock.nanos(cycles) as f64 / 1e6 }
     }
 
-    /// How it stands: `{seconds, curves_from, heard, replies, latest_ms, set_backs, set_back_ms, records_all, controllers}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Its state ([`SessionState`]).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let Self { session, clock, traces, replies, latest_ns, .. } = self;
         let experiment = session.experiment();
         let clock_hz = experiment.config().clock_hz().max(1);
         let to = session.now();
         let mut from = Instant(to.0.saturating_sub(CURVE_SECONDS * u64::from(clock_hz)));
-        let told = Some(&traces[..]).filter(|all| all.len() <= CURVES).unwrap_or_default();
-        // All curves begin where the last one does.
-        for trace in told {
+        let drawn = Some(&traces[..]).filter(|all| all.len() <= CURVES).unwrap_or_default();
+        // All curves have the same start.
+        for trace in drawn {
             from = from.max(trace.positions(&[], (from, to), 0).from);
         }
         let devices = session.run().devices().zip(experiment.configs()).enumerate();
@@ -183,37 +177,34 @@ impl LiveDevice {
                 state: status.map(|status| status.state.name()),
                 queued: status.map(|status| queued(status.free)),
                 queue_depth: config.queue_depth(),
-                curves: told.get(index).map(curve).unwrap_or_default(),
+                curves: drawn.get(index).map(curve).unwrap_or_default(),
                 positions,
                 faults: device.faults().names().map(|name| name.to_string()).collect(),
                 ticks_done: device.ticks_done(),
             }
         });
-        let stretches = clock.setbacks();
+        let setbacks = clock.setbacks();
         object(&SessionState {
             seconds: to.0 as f64 / f64::from(clock_hz),
             curves_from: from.0 as f64 / f64::from(clock_hz),
-            heard: session.heard(),
+            received: session.heard(),
             replies: *replies,
             latest_ms: *latest_ns as f64 / 1e6,
-            set_backs: stretches.count,
-            set_back_ms: clock.nanos(stretches.cycles) as f64 / 1e6,
+            set_backs: setbacks.count,
+            set_back_ms: clock.nanos(setbacks.cycles) as f64 / 1e6,
             records_all: session.records_all(),
             controllers: controllers.collect(),
         })
     }
 
-    /// `NAME.session.json`, beside the recording.
+    /// The content of `NAME.session.json`.
     #[must_use]
     pub fn times(&self) -> String {
         let Self { session, clock, times, .. } = self;
         times.to_json(clock, &session.recording(), session.records_all())
     }
 
-    /// The session as a scenario, run again and compared: `{scenario, digests, why, whole}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The session as a scenario, repeated and compared ([`Recorded`]).
     pub fn recording(&self) -> Result<JsValue, JsError> {
         let recording = self.session.recording();
         object(&Recorded {

@@ -1,4 +1,4 @@
-//! The host of a real device (LIVE H3, H4): a conversation against the wall clock, with the model beside it.
+//! The host of a real device (LIVE H3, H4), compared with the model.
 
 use super::{SCRIPT, SEGMENTS, listed, nanos, read};
 use crate::convert::object;
@@ -26,22 +26,22 @@ use wasm_bindgen::prelude::*;
 /// One exchange, as a row of the page.
 #[derive(Serialize)]
 struct Exchange {
-    /// When its reply was heard, or when none came.
+    /// Time of the reply or of the timeout.
     at_ms: f64,
     controller: usize,
     kind: &'static str,
-    /// What the reply says; null where none came.
+    /// The reply; null after a timeout.
     reply: Option<String>,
     state: Option<&'static str>,
     ticks_done: Option<u32>,
-    /// From the end of the frame to that of the reply: the device's, and the model's.
+    /// From the end of the frame to the end of the reply.
     delay_ms: Option<f64>,
     model_ms: Option<f64>,
-    /// What is not as the model's.
+    /// Difference from the model.
     difference: Option<String>,
 }
 
-/// How far it is.
+/// Progress.
 #[derive(Serialize)]
 struct State {
     text: String,
@@ -52,19 +52,19 @@ struct State {
     naks: u64,
 }
 
-/// What one of both has come to.
+/// Final state of a device or a model.
 #[derive(Serialize)]
 struct End {
     state: &'static str,
-    /// Since it was opened.
+    /// Since opening.
     ticks_done: Option<u32>,
-    /// Since it was opened; null where they are not told.
+    /// Since opening; null if unknown.
     went: Option<Vec<i32>>,
 }
 
-/// A device's end beside the model's.
+/// Final states of a device and its model.
 #[derive(Serialize)]
-struct Beside {
+struct EndPair {
     controller: usize,
     address: u8,
     ticks: u32,
@@ -72,25 +72,25 @@ struct Beside {
     model: Option<End>,
 }
 
-/// What is known at the end.
+/// The final report.
 #[derive(Serialize)]
-struct Told {
+struct FinalReport {
     text: String,
     verified: bool,
-    /// Why it is not known that all was done.
+    /// Why it is not verified.
     why: Option<String>,
     stop_acknowledged: bool,
-    beside: Vec<Beside>,
-    /// The first that was not as the model's.
+    ends: Vec<EndPair>,
+    /// The first difference from the model.
     difference: Option<String>,
 }
 
-/// The frame that is on its way or waits for its reply.
-struct UnderWay {
+/// The frame that waits for its reply.
+struct PendingFrame {
     controller: usize,
     job: usize,
     kind: Kind,
-    /// How long it takes on the line, and when it has left.
+    /// Its time on the line, and its end.
     takes: Cycles,
     end: Instant,
 }
@@ -104,7 +104,7 @@ pub struct LiveHost {
     clock: SessionClock,
     twin: Twin,
     deframer: Deframer,
-    under_way: Option<UnderWay>,
+    pending: Option<PendingFrame>,
     rows: Vec<Exchange>,
     exchanges: u64,
     difference: Option<String>,
@@ -113,10 +113,10 @@ pub struct LiveHost {
 
 #[wasm_bindgen]
 impl LiveHost {
-    /// The host of a scenario's ticks, whose replies may come so much later than on the line.
+    /// The host of a scenario. Replies may be `slack_ms` late.
     ///
     /// # Errors
-    /// If the scenario has problems, or gives nothing that a device could confirm: with what to change.
+    /// If the scenario has problems, or a device cannot confirm it.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str, slack_ms: f64) -> Result<LiveHost, JsError> {
         let scenario = for_real_line(read(json)?);
@@ -138,7 +138,7 @@ impl LiveHost {
             clock,
             twin,
             deframer: Deframer::default(),
-            under_way: None,
+            pending: None,
             rows: Vec::new(),
             exchanges: 0,
             difference: None,
@@ -146,14 +146,13 @@ impl LiveHost {
         })
     }
 
-    /// The line's rate.
+    /// Bit rate.
     #[must_use]
     pub fn baud(&self) -> u32 {
         self.experiment.baud()
     }
 
-    /// How late the host may be before a queue that was filled runs dry, in ms: a frame's ticks are sent as soon as they find a
-    /// place.
+    /// Maximum delay of the host before a filled queue is empty, in ms.
     #[must_use]
     pub fn margin_ms(&self) -> f64 {
         let margin = |job: &Job| {
@@ -163,30 +162,30 @@ impl LiveHost {
         self.host.known().map(|(job, _)| margin(job)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether it has nothing more to say.
+    /// Whether it has ended.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.host.is_over()
     }
 
-    /// The frame that is to be written now, if one is due.
+    /// The frame to write now, if any.
     pub fn poll(&mut self, ms: f64) -> Option<Vec<u8>> {
         let now = self.now(ms);
         while self.host.deadline() <= now {
             if self.host.is_waiting() {
-                self.unanswered(ms);
+                self.timed_out(ms);
             }
             let Some(bytes) = self.host.poll(now) else { continue };
             if let Some((job, kind)) = self.host.under_way() {
                 let mut controllers = 0..self.experiment.controllers();
                 let controller =
                     controllers.find(|&index| self.experiment.job(index) == Some(job)).unwrap_or(0);
-                if let Some((told, known)) = self.host.known().nth(job) {
-                    self.twin.send(&bytes, now, (told.channels, known));
+                if let Some((job, known)) = self.host.known().nth(job) {
+                    self.twin.send(&bytes, now, (job.channels, known));
                 }
                 let clock_hz = self.experiment.config().clock_hz();
                 let takes = line_time(bytes.len() as u64, clock_hz, self.experiment.baud());
-                self.under_way = Some(UnderWay { controller, job, kind, takes: Cycles(takes), end: now });
+                self.pending = Some(PendingFrame { controller, job, kind, takes: Cycles(takes), end: now });
             }
             self.deframer = Deframer::default();
             return Some(bytes);
@@ -194,22 +193,22 @@ impl LiveHost {
         None
     }
 
-    /// The frame was written: the system took the last of it now.
+    /// The system has accepted the whole frame.
     pub fn sent(&mut self, ms: f64) {
         if self.host.is_waiting() {
             return;
         }
         let now = self.now(ms);
-        if let Some(UnderWay { takes, end, .. }) = &mut self.under_way {
+        if let Some(PendingFrame { takes, end, .. }) = &mut self.pending {
             *end = now + *takes;
             self.host.sent(*end);
         }
     }
 
-    /// Bytes that were read.
-    pub fn hear(&mut self, bytes: &[u8], ms: f64) {
+    /// Receives bytes.
+    pub fn receive(&mut self, bytes: &[u8], ms: f64) {
         let now = self.now(ms);
-        // Nobody answers before the frame has left, though the system may tell that later.
+        // A reply implies that the frame was sent, even if the system reports that later.
         self.sent(ms);
         for &byte in bytes {
             let frame = match self.deframer.byte(byte) {
@@ -218,18 +217,18 @@ impl LiveHost {
             };
             self.host.hear(byte, now);
             if let Some((reply, positions)) = frame {
-                // A reply that the host did not take is that of an earlier frame.
+                // Otherwise the reply belongs to an earlier frame.
                 if !self.host.is_waiting()
-                    && let Some(under_way) = self.under_way.take()
+                    && let Some(pending) = self.pending.take()
                 {
-                    let delay = Cycles(now.0.saturating_sub(under_way.end.0));
-                    self.answered(&under_way, &Answer { reply, positions, delay }, ms);
+                    let delay = Cycles(now.0.saturating_sub(pending.end.0));
+                    self.replied(&pending, &Answer { reply, positions, delay }, ms);
                 }
             }
         }
     }
 
-    /// How long nothing is due, in ms, if nothing is heard; infinite while a frame is written and when it is over.
+    /// Time until the next event without received bytes, in ms.
     #[must_use]
     pub fn wait(&mut self, ms: f64) -> f64 {
         let due = self.host.deadline();
@@ -240,17 +239,14 @@ impl LiveHost {
         self.clock.nanos(Cycles(due.0.saturating_sub(now.0))) as f64 / 1e6
     }
 
-    /// No further ticks: what is under way ends, then STOP until it is acknowledged.
+    /// Ends the current frame, then sends STOP until it is acknowledged.
     pub fn stop(&mut self, ms: f64) {
         let now = self.now(ms);
         self.stopped = true;
         self.host.stop(now);
     }
 
-    /// How far it is: `{text, accepted, done, ticks, repeats, naks}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Progress ([`State`]).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let standing = Standing::new(&self.host);
         object(&State {
@@ -263,25 +259,18 @@ impl LiveHost {
         })
     }
 
-    /// The exchanges since this was asked last: `[{at_ms, controller, kind, reply, state, ticks_done, delay_ms, model_ms,
-    /// difference}]`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// New exchanges ([`Exchange`]).
     pub fn rows(&mut self) -> Result<JsValue, JsError> {
         object(&take(&mut self.rows))
     }
 
-    /// What is known now: `{text, verified, why, stop_acknowledged, beside, difference}`. `lost`: why the port is lost.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The report ([`FinalReport`]). `lost`: why the port is lost.
     pub fn report(&mut self, lost: Option<String>) -> Result<JsValue, JsError> {
         let report = Report::new(&self.experiment, &mut self.host, self.stopped);
-        let beside = report.rows.iter().map(|row| {
+        let ends = report.rows.iter().map(|row| {
             let Known { opened, started, last, positions, opened_at, .. } = row.known;
             let count = |status: Option<Status>| status.map_or(0, |status| status.ticks_done);
-            // The model did the opening ticks, too.
+            // The model also has the opening ticks.
             let opening_ticks = started.map_or(0, |_| count(started).wrapping_sub(count(opened)));
             let device = last.map(|last| End {
                 state: last.state.name(),
@@ -296,16 +285,16 @@ impl LiveHost {
                 ticks_done: Some(done.wrapping_sub(opening_ticks)),
                 went: Some(went),
             });
-            Beside { controller: row.controller, address: row.address, ticks: row.ticks, device, model }
+            EndPair { controller: row.controller, address: row.address, ticks: row.ticks, device, model }
         });
-        let beside: Vec<Beside> = beside.collect();
+        let ends: Vec<EndPair> = ends.collect();
         let why = lost.or_else(|| report.doubt());
-        object(&Told {
+        object(&FinalReport {
             verified: why.is_none(),
             why,
             stop_acknowledged: self.stopped
                 && report.rows.iter().all(|row| row.known.stop_acknowledged || is_done(row.progress)),
-            beside,
+            ends,
             difference: self.difference.clone(),
             text: report.to_string(),
         })
@@ -325,24 +314,24 @@ impl LiveHost {
         self.clock.nanos(cycles) as f64 / 1e6
     }
 
-    fn answered(&mut self, under_way: &UnderWay, told: &Answer, ms: f64) {
+    fn replied(&mut self, pending: &PendingFrame, reply: &Answer, ms: f64) {
         self.exchanges += 1;
-        let &UnderWay { controller, job, kind, .. } = under_way;
+        let &PendingFrame { controller, job, kind, .. } = pending;
         let model = self.twin.answer();
         let known = self.host.known().nth(job).map(|(_, known)| *known).unwrap_or_default();
         let difference = match &model {
-            Some(model) => self.twin.difference(controller, (told, &known), model),
-            None => Some("the model does not answer".to_owned()),
+            Some(model) => self.twin.difference(controller, (reply, &known), model),
+            None => Some("the model does not reply".to_owned()),
         };
-        let Status { state, ticks_done, .. } = told.reply.status;
+        let Status { state, ticks_done, .. } = reply.reply.status;
         let row = Exchange {
             at_ms: ms,
             controller,
             kind: kind.name(),
-            reply: Some(told.reply.to_string()),
+            reply: Some(reply.reply.to_string()),
             state: Some(state.name()),
             ticks_done: Some(ticks_done),
-            delay_ms: Some(self.millis(told.delay)),
+            delay_ms: Some(self.millis(reply.delay)),
             model_ms: model.map(|model| self.millis(model.delay)),
             difference,
         };
@@ -357,9 +346,8 @@ impl LiveHost {
         self.rows.push(row);
     }
 
-    /// The time for a reply is over.
-    fn unanswered(&mut self, ms: f64) {
-        let Some(UnderWay { controller, kind, .. }) = self.under_way.take() else { return };
+    fn timed_out(&mut self, ms: f64) {
+        let Some(PendingFrame { controller, kind, .. }) = self.pending.take() else { return };
         self.rows.push(Exchange {
             at_ms: ms,
             controller,

@@ -1,4 +1,4 @@
-//! The host of a raw line (LIVE H3, H4): packets go at their times, with a lead, and nobody answers.
+//! The host of a raw line (LIVE H3, H4): packets are sent ahead of time, without replies.
 
 use super::{SCRIPT, SEGMENTS, listed, nanos, read};
 use crate::convert::object;
@@ -13,10 +13,10 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// A page is sometimes late: less ahead would be a demonstration (LIVE H3).
+/// Covers the delays of a page (LIVE H3).
 const LEAD_NS: u64 = 200_000_000;
 
-/// How far it is.
+/// Progress.
 #[derive(Serialize)]
 struct State {
     text: String,
@@ -26,14 +26,14 @@ struct State {
     lead_ms: f64,
 }
 
-/// What is known at the end: that nothing is verified.
+/// The final report; nothing is verified.
 #[derive(Serialize)]
-struct Told {
+struct FinalReport {
     text: String,
     sent: usize,
     packets: usize,
     stood: u64,
-    /// How long the device has something to do, by the model of its queue.
+    /// Remaining time of the queue.
     left_ms: f64,
 }
 
@@ -49,7 +49,7 @@ impl LiveRawHost {
     /// The host of a scenario's packets, sent 200 ms ahead.
     ///
     /// # Errors
-    /// If the scenario has problems, has no ticks, or a queue that does not hold the lead: with what to change.
+    /// If the scenario has problems, no ticks, or a queue that is too short for the lead.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str) -> Result<LiveRawHost, JsError> {
         let scenario = for_real_line(read(json)?);
@@ -62,51 +62,48 @@ impl LiveRawHost {
         }
         let host = RawHost::with_slack(&experiment, LEAD_NS).map_err(|why| {
             JsError::new(&format!(
-                "{why}; or choose the framed protocol in the form, whose replies keep the queue filled"
+                "{why}; or choose the framed protocol in the form, which keeps the queue filled"
             ))
         })?;
         Ok(Self { baud: experiment.baud(), host })
     }
 
-    /// The line's rate.
+    /// Bit rate.
     #[must_use]
     pub fn baud(&self) -> u32 {
         self.baud
     }
 
-    /// How late the page may be before the queue runs dry, in ms.
+    /// Maximum delay of the page before the queue is empty, in ms.
     #[must_use]
     pub fn margin_ms(&self) -> f64 {
         self.host.slack_ns() as f64 / 1e6
     }
 
-    /// Whether all is sent.
+    /// Whether everything is sent.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.host.due_ns().is_none()
     }
 
-    /// The packet that is to be written now, if one is due.
+    /// The packet to write now, if any.
     #[must_use]
     pub fn packet(&self, ms: f64) -> Option<Vec<u8>> {
         self.host.packet(nanos(ms)).map(<[u8]>::to_vec)
     }
 
-    /// It was given to the port at a time.
+    /// The packet was written.
     pub fn written(&mut self, ms: f64) {
         self.host.written(nanos(ms));
     }
 
-    /// How long nothing is due, in ms; infinite when all is sent.
+    /// Time until the next packet, in ms.
     #[must_use]
     pub fn wait(&self, ms: f64) -> f64 {
         self.host.due_ns().map_or(f64::INFINITY, |due| due.saturating_sub(nanos(ms)) as f64 / 1e6)
     }
 
-    /// How far it is: `{text, done, ticks, lead, lead_ms}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// Progress ([`State`]).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let report = self.host.report(false);
         object(&State {
@@ -118,14 +115,11 @@ impl LiveRawHost {
         })
     }
 
-    /// What is known now: `{text, sent, packets, stood, left_ms}`.
-    ///
-    /// # Errors
-    /// Never in practice.
+    /// The report ([`FinalReport`]).
     pub fn report(&self, stopped: bool, ms: f64) -> Result<JsValue, JsError> {
         let report = self.host.report(stopped);
         let RawReport { sent, packets, stood_count, .. } = report;
-        object(&Told {
+        object(&FinalReport {
             text: report.to_string(),
             sent,
             packets,

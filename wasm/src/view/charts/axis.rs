@@ -1,25 +1,22 @@
-//! One axis of a chart, as the page asks for it.
+//! One axis of a chart.
 
 use serde::Deserialize;
 
 /// Range and labels of one axis.
 #[derive(Deserialize)]
 pub(crate) struct Axis {
-    /// Least value shown.
     pub(crate) min: f64,
-    /// Greatest value shown.
     pub(crate) max: f64,
-    /// Unit behind the tick labels; takes an SI prefix. Empty for a plain number, which takes the
-    /// prefix alone.
+    /// Unit of the labels; empty for a plain number.
     pub(crate) unit: String,
-    /// False for units that take no prefix, such as dB, and for counts.
+    /// Whether labels have an SI prefix.
     pub(crate) prefix: bool,
     /// Space for the tick labels in CSS pixels; 0 for none.
     pub(crate) label_px: f64,
-    /// Ticks where these are not to be found here, but come with their labels: those of an axis of logarithms.
+    /// Given ticks, for a logarithmic axis.
     #[serde(default)]
     pub(crate) ticks: Vec<f64>,
-    /// A line a label.
+    /// Their labels, one per line.
     #[serde(default)]
     pub(crate) labels: String,
 }

@@ -1,29 +1,24 @@
-//! From the values of a series to the lines that are drawn.
-//!
-//! A curve comes with more points than can be seen apart; what stays within a twentieth of a pixel of a straight line is
-//! that line.
+//! Converts the values of a series to lines, without points within a twentieth of a pixel of a straight line.
 
-/// Greatest distance of a thinned curve from the given one, in pixels.
+/// Maximum error of a thinned curve, in pixels.
 const TOLERANCE_PX: f64 = 0.05;
 
-/// The plotting area: what it shows, where it lies, and how many pixels it has.
+/// The plotting area.
 pub(super) struct Frame {
-    /// Shown part of the x axis.
+    /// Visible range.
     pub(super) x: (f64, f64),
-    /// Shown part of the y axis.
+    /// Visible range.
     pub(super) y: (f64, f64),
-    /// Its lower left corner, in pixels from the canvas' upper left one.
+    /// Lower left corner, in pixels.
     pub(super) corner: Point,
-    /// Pixels across.
     pub(super) width: f64,
-    /// Pixels down.
     pub(super) height: f64,
 }
 
 pub(super) type Point = (f64, f64);
 
 impl Frame {
-    /// Into pixels; what lies outside is brought to the edge.
+    /// To pixels, clamped to the edges.
     fn pixels(&self, x: f64, y: f64) -> Point {
         let y = y.clamp(self.y.0, self.y.1);
         (
@@ -33,7 +28,7 @@ impl Frame {
     }
 }
 
-/// A line through points, one for each stretch without a gap.
+/// Lines through points, separated by gaps.
 pub(super) fn line(frame: &Frame, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     let stretches = points.split(|(_, y)| !y.is_finite()).filter(|stretch| !stretch.is_empty());
@@ -42,8 +37,8 @@ pub(super) fn line(frame: &Frame, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
         .collect()
 }
 
-/// Lines through the least and greatest values of each column, one for each stretch without a gap.
-/// A column whose two values are less than a pixel apart is one point.
+/// Lines through the minimum and maximum of each column, separated by gaps. If they differ by less than a pixel they are
+/// one point.
 pub(super) fn band(frame: &Frame, x: &[f64], min: &[f64], max: &[f64]) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
     for ((x, min), max) in x.iter().zip(min).zip(max) {
@@ -67,12 +62,12 @@ pub(super) fn band(frame: &Frame, x: &[f64], min: &[f64], max: &[f64]) -> Vec<Ve
     lines.iter().map(|line| thin(line)).collect()
 }
 
-/// Cuts lines into dashes of `dash` pixels with gaps as long.
+/// Cuts lines into dashes and gaps of `dash` pixels.
 pub(super) fn dashes(lines: &[Vec<Point>], dash: f64) -> Vec<Vec<Point>> {
     let mut cut = Vec::new();
     for points in lines {
         let mut open: Vec<Point> = points.first().copied().into_iter().collect();
-        // What is left of this dash or gap; a dash first.
+        // Rest of the current dash or gap.
         let (mut left, mut drawn) = (dash, true);
         for pair in points.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];
@@ -105,7 +100,7 @@ fn distance(a: Point, b: Point) -> f64 {
     ((b.0 - a.0) * (b.0 - a.0) + (b.1 - a.1) * (b.1 - a.1)).sqrt()
 }
 
-/// A line from the bottom to each value that lies above it, `shift` pixels to the right.
+/// A line from the bottom to each value, `shift` pixels to the right.
 pub(super) fn stems(frame: &Frame, x: &[f64], y: &[f64], shift: f64) -> Vec<Vec<Point>> {
     x.iter()
         .zip(y)
@@ -117,9 +112,8 @@ pub(super) fn stems(frame: &Frame, x: &[f64], y: &[f64], shift: f64) -> Vec<Vec<
         .collect()
 }
 
-/// Leaves out every point that lies within the tolerance of the line between its neighbours that
-/// stay: from an anchor, the slopes that pass all points so far form a cone; the first point outside
-/// of it makes the one before it the next anchor.
+/// Removes points within the tolerance of the line between their remaining neighbors. From an anchor, the slopes that
+/// pass all points form a cone; the point before the first one outside is the next anchor.
 fn thin(points: &[Point]) -> Vec<Point> {
     let mut kept: Vec<Point> = points.first().copied().into_iter().collect();
     let Some(mut anchor) = kept.first().copied() else { return kept };
@@ -136,7 +130,7 @@ fn thin(points: &[Point]) -> Vec<Point> {
             }
             anchor = last;
             cone = (f64::NEG_INFINITY, f64::INFINITY);
-            // Straight up or down: no line through the column's middle can stand for it.
+            // A vertical line cannot be replaced.
             if !inside(anchor, cone) {
                 kept.push(point);
                 anchor = point;
@@ -158,7 +152,7 @@ fn thin(points: &[Point]) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    /// Height of a line at x, where it does not stand upright.
+    /// Height of a line at x, unless it is vertical.
     fn height(line: &[Point], x: f64) -> f64 {
         let after = line.iter().position(|point| point.0 >= x).unwrap_or(line.len() - 1).max(1);
         let (a, b) = (line[after - 1], line[after]);
@@ -177,7 +171,7 @@ mod tests {
         }
     }
 
-    /// Parabolas in a row: smooth but for their joints, and without transcendental functions.
+    /// Consecutive parabolas, without transcendental functions.
     fn wave(x: f64) -> f64 {
         let turn = (x / core::f64::consts::TAU).fract() * 2.0 - 1.0;
         4.0 * turn * (1.0 - turn.abs())

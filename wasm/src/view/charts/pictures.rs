@@ -1,11 +1,10 @@
-//! Whole charts as text: `wasm/tests/pictures/*.svg` are what the drawing code gives, in the page's light
-//! and dark colours. `STEPSCOPE_BLESS=1 cargo test -p stepscope-wasm --lib pictures` writes them anew; look
-//! at them before they are kept.
+//! Compares charts with `wasm/tests/pictures/*.svg`. `STEPSCOPE_BLESS=1 cargo test -p stepscope-wasm --lib pictures` writes
+//! them; check them before committing.
 
 use super::{Axis, Colors, Series, Shape, Spec, svg};
 use std::{env, f64::consts::LOG10_2, fs, path::Path};
 
-/// The page's colours of a theme.
+/// Colors of a theme.
 struct Theme {
     name: &'static str,
     label: &'static str,
@@ -52,7 +51,7 @@ fn chart(theme: &Theme, x: Axis, y: Axis, series: Vec<Series>) -> Spec {
     Spec { ratio: 2.0, font: "sans-serif".into(), font_px: 11.0, x, y, colors, series }
 }
 
-/// The speed of a trapezoid over 0.4 s, with a staircase around it and another trapezoid dashed.
+/// A trapezoid with a staircase, and another one dashed.
 fn motion(theme: &Theme) -> Spec {
     let x: Vec<f64> = (0..200).map(|column| (f64::from(column) + 0.5) * 0.002).collect();
     let trapezoid = |ramp_s: f64, top: f64| {
@@ -71,7 +70,7 @@ fn motion(theme: &Theme) -> Spec {
     chart(theme, axis(0.0, 0.4, "s", true, 20.0), axis(-1200.0, 16_200.0, "", true, 68.0), series)
 }
 
-/// A curve that swings in every column, with a gap, one lone spike, and values on both sides of zero.
+/// A dense curve with a gap and a spike.
 fn band(theme: &Theme) -> Spec {
     let x: Vec<f64> = (0..120).map(f64::from).collect();
     let swing = |column: usize| {
@@ -83,12 +82,12 @@ fn band(theme: &Theme) -> Spec {
     chart(theme, axis(0.0, 119.0, "", false, 20.0), axis(-108.0, 432.0, "", true, 68.0), series)
 }
 
-/// Two series of stems side by side over frequency, in dB.
+/// Two series of stems over frequency, in dB.
 fn spectrum(theme: &Theme) -> Spec {
     spectrum_over(theme, axis(0.0, 10.25, "Hz", true, 20.0), |hz| hz)
 }
 
-/// The same over the logarithm of the frequency.
+/// The same with logarithmic frequency.
 fn spectrum_log(theme: &Theme) -> Spec {
     let ticks = vec![-LOG10_2, 0.0, LOG10_2, 1.0 - LOG10_2, 1.0];
     let labels = "500 mHz\n1 Hz\n2 Hz\n5 Hz\n10 Hz".into();
@@ -96,7 +95,7 @@ fn spectrum_log(theme: &Theme) -> Spec {
     spectrum_over(theme, Axis { ticks, labels, ..frequency }, log10)
 }
 
-/// A common logarithm from its series: the same bits on every machine.
+/// A logarithm that is bit-identical on every machine.
 fn log10(value: f64) -> f64 {
     let (mut mantissa, mut whole) = (value, 0.0);
     while mantissa > 1.0 {
@@ -122,7 +121,7 @@ fn spectrum_over(theme: &Theme, frequency: Axis, place: fn(f64) -> f64) -> Spec 
 }
 
 #[test]
-fn pictures_are_those_that_were_looked_at() {
+fn pictures_are_unchanged() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
     let drawings: [(&str, Drawing); 4] =
         [("motion", motion), ("band", band), ("spectrum", spectrum), ("spectrum-log", spectrum_log)];

@@ -1,5 +1,4 @@
-//! Curves as they are drawn, at fractions of a pixel: plotters, which draws axes and labels, knows whole pixels only, and a
-//! curve that is brought to those has corners that one sees.
+//! Curves with fractions of a pixel; plotters only has whole pixels, where curves look jagged.
 
 use super::curve::Point;
 use plotters::style::RGBColor;
@@ -9,7 +8,6 @@ use web_sys::CanvasRenderingContext2d;
 
 /// The lines of one series.
 pub(crate) struct Stroke {
-    /// In pixels from the canvas' upper left corner.
     pub(super) lines: Vec<Vec<Point>>,
     pub(super) color: RGBColor,
     /// From 0 (invisible) to 1.
@@ -19,13 +17,12 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    /// Draws it on a canvas.
     #[cfg(target_arch = "wasm32")]
     pub(super) fn draw(&self, context: &CanvasRenderingContext2d) {
         let RGBColor(r, g, b) = self.color;
         context.set_stroke_style_str(&format!("rgba({r},{g},{b},{})", self.opacity));
         context.set_line_width(self.width);
-        // A sharp corner would stand out beyond its value.
+        // A sharp corner would exceed its value.
         context.set_line_join("round");
         context.begin_path();
         for line in &self.lines {
@@ -36,14 +33,13 @@ impl Stroke {
         context.stroke();
     }
 
-    /// The same as elements of an SVG file, a line each, in hundredths of a pixel.
+    /// As SVG elements.
     pub(super) fn svg(&self) -> String {
         let RGBColor(r, g, b) = self.color;
         let mut text = String::new();
         for line in &self.lines {
             text.push_str("<polyline fill=\"none\" stroke-linejoin=\"round\"");
             let points: Vec<String> = line.iter().map(|(x, y)| format!("{x:.2},{y:.2}")).collect();
-            // Writing to a string does not fail.
             let _ = writeln!(
                 text,
                 " stroke=\"#{r:02X}{g:02X}{b:02X}\" opacity=\"{}\" stroke-width=\"{}\" points=\"{}\"/>",

@@ -1,6 +1,4 @@
-//! What a chart is drawn on: the page's canvas, or the text of an SVG file.
-//!
-//! One type for both, so that the page carries the drawing code once and not once for each.
+//! The canvas or SVG of a chart. One type for both, so that the drawing code is compiled once.
 
 #[cfg(target_arch = "wasm32")]
 use plotters_canvas::CanvasBackend;
@@ -11,14 +9,12 @@ use std::{error::Error, fmt};
 
 /// A backend of plotters.
 pub(crate) enum Surface<'a> {
-    /// The page's.
     #[cfg(target_arch = "wasm32")]
     Canvas(CanvasBackend),
-    /// A file's.
     Svg(SVGBackend<'a>),
 }
 
-/// What a backend said, in its words.
+/// The error of a backend.
 #[derive(Debug)]
 pub(crate) struct Failed(String);
 
@@ -32,14 +28,14 @@ impl Error for Failed {}
 
 type Drawn = Result<(), DrawingErrorKind<Failed>>;
 
-fn told<E: Error + Send + Sync>(drawn: Result<(), DrawingErrorKind<E>>) -> Drawn {
+fn converted<E: Error + Send + Sync>(drawn: Result<(), DrawingErrorKind<E>>) -> Drawn {
     drawn.map_err(|error| match error {
         DrawingErrorKind::DrawingError(error) => DrawingErrorKind::DrawingError(Failed(error.to_string())),
         DrawingErrorKind::FontError(error) => DrawingErrorKind::FontError(error),
     })
 }
 
-/// A style as numbers: every style becomes this one, so that a backend is compiled for one.
+/// All styles become this one, so that backends are compiled once.
 struct Ink {
     color: BackendColor,
     stroke_width: u32,
@@ -61,7 +57,7 @@ impl BackendStyle for Ink {
     }
 }
 
-/// Calls a method of whichever backend there is.
+/// Calls a method of the backend.
 macro_rules! on {
     ($surface:expr, $backend:ident => $call:expr) => {
         match $surface {
@@ -80,20 +76,20 @@ impl DrawingBackend for Surface<'_> {
     }
 
     fn ensure_prepared(&mut self) -> Drawn {
-        on!(self, backend => told(backend.ensure_prepared()))
+        on!(self, backend => converted(backend.ensure_prepared()))
     }
 
     fn present(&mut self) -> Drawn {
-        on!(self, backend => told(backend.present()))
+        on!(self, backend => converted(backend.present()))
     }
 
     fn draw_pixel(&mut self, point: BackendCoord, color: BackendColor) -> Drawn {
-        on!(self, backend => told(backend.draw_pixel(point, color)))
+        on!(self, backend => converted(backend.draw_pixel(point, color)))
     }
 
     fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn {
         let ink = Ink::of(style);
-        on!(self, backend => told(backend.draw_line(from, to, &ink)))
+        on!(self, backend => converted(backend.draw_line(from, to, &ink)))
     }
 
     fn draw_rect<S: BackendStyle>(
@@ -104,7 +100,7 @@ impl DrawingBackend for Surface<'_> {
         fill: bool,
     ) -> Drawn {
         let ink = Ink::of(style);
-        on!(self, backend => told(backend.draw_rect(upper_left, bottom_right, &ink, fill)))
+        on!(self, backend => converted(backend.draw_rect(upper_left, bottom_right, &ink, fill)))
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -113,7 +109,7 @@ impl DrawingBackend for Surface<'_> {
         style: &S,
     ) -> Drawn {
         let (path, ink): (Vec<BackendCoord>, _) = (path.into_iter().collect(), Ink::of(style));
-        on!(self, backend => told(backend.draw_path(path, &ink)))
+        on!(self, backend => converted(backend.draw_path(path, &ink)))
     }
 
     fn draw_circle<S: BackendStyle>(
@@ -124,7 +120,7 @@ impl DrawingBackend for Surface<'_> {
         fill: bool,
     ) -> Drawn {
         let ink = Ink::of(style);
-        on!(self, backend => told(backend.draw_circle(center, radius, &ink, fill)))
+        on!(self, backend => converted(backend.draw_circle(center, radius, &ink, fill)))
     }
 
     fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -133,10 +129,10 @@ impl DrawingBackend for Surface<'_> {
         style: &S,
     ) -> Drawn {
         let (corners, ink): (Vec<BackendCoord>, _) = (corners.into_iter().collect(), Ink::of(style));
-        on!(self, backend => told(backend.fill_polygon(corners, &ink)))
+        on!(self, backend => converted(backend.fill_polygon(corners, &ink)))
     }
 
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn {
-        on!(self, backend => told(backend.draw_text(text, style, at)))
+        on!(self, backend => converted(backend.draw_text(text, style, at)))
     }
 }

@@ -1,12 +1,9 @@
-//! Ticks of an axis: where they stand, and their labels: numbers with an SI prefix, a unit, and no
-//! more digits than the ticks need.
+//! Ticks of an axis and their labels.
 
 use crate::view::charts::axis::Axis;
 
-/// The ticks of one axis, 1, 2 or 5 times a power of ten apart, with one prefix and one number of
-/// digits for all labels; or those that the axis brings.
+/// Ticks at 1, 2 or 5 times a power of ten, with one prefix and one number of digits; or the given ticks of the axis.
 pub(super) struct Ticks<'a> {
-    /// From the least to the greatest.
     pub(super) values: Vec<f64>,
     scale: f64,
     digits: usize,
@@ -16,7 +13,7 @@ pub(super) struct Ticks<'a> {
 }
 
 impl<'a> Ticks<'a> {
-    /// As near to `wanted` ticks as their distances allow, and two at least where `most` have room.
+    /// At most `wanted` ticks, but at least two if `most` allows.
     pub(super) fn new(axis: &'a Axis, wanted: usize, most: usize) -> Self {
         const PREFIXES: [(f64, &str); 7] =
             [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
@@ -24,7 +21,7 @@ impl<'a> Ticks<'a> {
         let mut values: Vec<f64> =
             (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
         if values.len() > most.max(2) {
-            // Some around zero, and no room for all: the outer ones.
+            // Only the outer ones fit.
             values = values.first().into_iter().chain(values.last()).copied().collect();
         }
         if !axis.ticks.is_empty() {
@@ -34,7 +31,7 @@ impl<'a> Ticks<'a> {
         let (scale, prefix) = PREFIXES
             .into_iter()
             .find(|(scale, _)| axis.prefix && largest >= *scale * 0.9999)
-            // A part of a step is 0.2, not 200m.
+            // Without a unit 0.2 is better than 200m.
             .filter(|(scale, _)| *scale >= 1.0 || !axis.unit.is_empty())
             .unwrap_or((1.0, ""));
         let mut shown = step / scale;
@@ -48,10 +45,10 @@ impl<'a> Ticks<'a> {
     }
 
     pub(super) fn print(&self, value: f64) -> String {
-        if let Some(place) = self.axis.ticks.iter().position(|tick| *tick == value) {
-            return self.axis.labels.lines().nth(place).unwrap_or_default().to_owned();
+        if let Some(index) = self.axis.ticks.iter().position(|tick| *tick == value) {
+            return self.axis.labels.lines().nth(index).unwrap_or_default().to_owned();
         }
-        // Adding zero makes a plain zero of a negative one.
+        // Adding zero removes the sign of -0.0.
         let number = value / self.scale + 0.0;
         let text = format!("{number:.*}", self.digits);
         let zero = text.chars().all(|c| matches!(c, '0' | '.' | '-'));
@@ -61,8 +58,7 @@ impl<'a> Ticks<'a> {
     }
 }
 
-/// Distance of the ticks: the least of 1, 2 or 5 times a power of ten that gives no more than wanted, but
-/// a smaller one where that would leave a single tick and more have room.
+/// Distance of the ticks: the smallest with at most `wanted` ticks, or a smaller one if that leaves a single tick.
 fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     let span = axis.max - axis.min;
     let mut power = 1.0;
@@ -72,7 +68,6 @@ fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     while power * 10.0 <= span {
         power *= 10.0;
     }
-    // From coarse to fine, while there are no more than wanted.
     let finer = (0..20).flat_map(|k| {
         let power = (0..k).fold(power, |power, _| power / 10.0);
         [5.0, 2.0, 1.0].map(|times| times * power)
@@ -90,9 +85,9 @@ fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     chosen.unwrap_or(power)
 }
 
-/// The first tick in parts of the distance.
+/// The first tick as a multiple of the distance.
 fn first(axis: &Axis, step: f64) -> f64 {
-    // A tick at the very edge is not lost to a rounding.
+    // Rounding must not remove a tick at the edge.
     (axis.min / step - 1e-9).ceil()
 }
 
@@ -140,7 +135,6 @@ mod tests {
                         "{:?}",
                         ticks.values
                     );
-                    // Labels differ: they have the digits they need.
                     let labels: Vec<String> = ticks.values.iter().map(|value| ticks.print(*value)).collect();
                     assert!(labels.windows(2).all(|pair| pair[0] != pair[1]), "{labels:?}");
                 }

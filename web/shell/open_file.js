@@ -1,36 +1,33 @@
-/**
- * What becomes of a file that the visitor opens: a scenario, a link as text, a table of packets, edges
- * that were saved, which are held against the run, and recordings (recording.js). Whatever comes, the own work stays: undo brings it back.
- */
+/** Opens a file: a scenario, a link as text, a table of packets, saved edges or a recording (recording.js). */
 import { Dropped } from "../engine/engine.js";
 import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/queries.js";
 import { message } from "./link.js";
-import { ownIsKept } from "./storage.js";
+import { undoHint } from "./storage.js";
 import { around } from "./verdict.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
 
-/** Most bytes of a scenario's file. */
+/** Maximum bytes of a scenario. */
 const MAX_SCENARIO = 32 << 20;
-/** Most bytes of a table of packets; the core has the same. */
+/** Maximum bytes of a table of packets, as in the core. */
 const MAX_TABLE = 32 << 20;
-/** What a file is, its first bytes tell. */
+/** First bytes, which determine the kind of file. */
 const HEAD = 16 << 10;
 /** Bytes that are read and compared at a time. */
 const PIECE = 4 << 20;
-/** Problems that one message names. */
-const MAX_TOLD = 8;
+/** Maximum problems in a message. */
+const MAX_LISTED = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
 const WHAT =
-  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, UART annotations, Klipper's step commands, and tables of positions.";
+  "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, UART annotations, Klipper step commands, and tables of positions.";
 
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, dispatch, now }, files) {
-  if (files.length > 1) return notify("error", `${files.length} files at once: drop one. ${WHAT}`);
+  if (files.length > 1) return notify("error", `${files.length} files at once; drop one. ${WHAT}`);
   return open(files[0]);
 
   /** @param {"info" | "error"} kind @param {string} text @param {import("../state/types.js").Place | null} [place] */
@@ -61,7 +58,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** The file's text, unless it is too long. @param {File} file @param {number} most */
   async function whole(file, most) {
-    if (file.size > most) throw new Error(`it has ${si(file.size, "B", 3)}, at most ${si(most, "B", 3)} are read`);
+    if (file.size > most) throw new Error(`it has ${si(file.size, "B", 3)}; at most ${si(most, "B", 3)} are allowed`);
     return file.text();
   }
 
@@ -86,38 +83,37 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       text,
       file,
       (scenario) =>
-        `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again, each at its time, to the controllers of the experiment before. The times are those at which the bytes were heard, and replies are not sent again, so the run can differ.`,
+        `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again at their times to the controllers of the previous experiment. The times are those of reception, and replies are not sent again, so the run can differ.`,
     );
   }
 
-  /** Shows a scenario that is right in every respect. @param {string} json @param {File} file @param {(scenario: any) => string} words */
+  /** Shows a scenario if it is valid. @param {string} json @param {File} file @param {(scenario: any) => string} words */
   async function take(json, file, words) {
     const { problems, scenario } = await engine.ask("check", json);
     if (problems.length > 0) {
       const listed = problems
-        .slice(0, MAX_TOLD)
+        .slice(0, MAX_LISTED)
         .map((/** @type {import("../state/types.js").Problem} */ { path, message }) =>
           path ? `${path}: ${message}` : message,
         );
-      const more = problems.length > MAX_TOLD ? `; and ${problems.length - MAX_TOLD} more` : "";
+      const more = problems.length > MAX_LISTED ? `; and ${problems.length - MAX_LISTED} more` : "";
       return notify(
         "error",
-        `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${listed.join("; ")}${more}. Your own work is as it was.`,
+        `${file.name} has ${problems.length === 1 ? "a problem" : `${problems.length} problems`}: ${listed.join("; ")}${more}. Your work is unchanged.`,
       );
     }
     const read = readJson(scenario);
     if (JSON.stringify(read) === JSON.stringify(now().scenario))
-      return notify("info", `${file.name} holds the very experiment that is on show.`);
+      return notify("info", `${file.name} is the same as the current experiment.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
-    notify("info", `${words(read)}${ownIsKept()}`);
+    notify("info", `${words(read)}${undoHint()}`);
   }
 
-  /** Holds saved edges against the run. @param {File} file */
+  /** Compares saved edges with the run. @param {File} file */
   async function edges(file) {
     const { result } = now();
-    if (!result) throw new Error("nothing was run yet that it could be compared with");
-    if (isStale(now()))
-      throw new Error("the experiment has not been run as it stands; fix the form, or run it, then compare");
+    if (!result) throw new Error("there is no run to compare with");
+    if (isStale(now())) throw new Error("the current experiment has not run; fix the form or run it, then compare");
     const { controller, summary } = result;
     const comparison = await engine.session(async (ask, json) => {
       await ask("open", "trace_file", json, controller);
@@ -129,20 +125,21 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       return ask("of", "end");
     });
     if (!comparison || now().result?.summary !== summary)
-      throw new Error("the experiment was run anew meanwhile; compare again");
+      throw new Error("the experiment has run again; compare again");
     const seconds = (/** @type {number} */ cycle) => `${time(cycle / summary.clock_hz)}`;
     const { difference } = comparison;
     if (!difference) {
       const { start_cycle, end_cycle, goes_on, same } = comparison;
       const all = start_cycle === 0 && !goes_on;
       const range = all
-        ? "all of this run"
-        : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; what lies outside is not in the file`;
-      return notify("info", `${file.name} is identical, bit for bit: ${count(same)} rows, ${range}.`);
+        ? "the whole run"
+        : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; the file has no other times`;
+      return notify("info", `${file.name} is bit-identical: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
     const which = signals.map(
-      (/** @type {[string, number, number]} */ [name, file, run]) => `${name} is ${file} in the file and ${run} here`,
+      (/** @type {[string, number, number]} */ [name, file, run]) =>
+        `${name} is ${file} in the file, but ${run} in the run`,
     );
     const what =
       which.length > 0
@@ -151,7 +148,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     const place = around(cycle, cycle, summary.end_cycle, controller);
     notify(
       "error",
-      `${file.name} is not this run: after ${count(comparison.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
+      `${file.name} differs from this run: after ${count(comparison.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
       place,
     );
   }

@@ -1,5 +1,4 @@
-//! Checks single numbers and lengths by their rows. `check` checks rules between fields; other crates check their own
-//! types.
+//! Checks single numbers and lengths against their rows. Other crates check their own types.
 
 use crate::{
     Parts, ToParts, Validator, ValueError,
@@ -7,27 +6,27 @@ use crate::{
 };
 use serde_json::Value;
 
-pub(crate) fn judge(part: &dyn ToParts, validator: &mut Validator) {
+pub(crate) fn check_ranges(part: &dyn ToParts, validator: &mut Validator) {
     match part.parts() {
         Parts::Fields(Group { is_external: true, .. }, _) => {}
         Parts::Fields(group, values) => {
             for (field, (value, _)) in group.fields.iter().zip(values) {
                 let outside = validator.enter(field.name);
-                of_field(field, value, validator);
+                check_field(field, value, validator);
                 validator.leave(outside);
             }
         }
-        Parts::Kind(name, value) => validator.at(name, |here| judge(value, here)),
+        Parts::Kind(name, value) => validator.at(name, |here| check_ranges(value, here)),
         Parts::List(entries) => {
             for (index, entry) in entries.into_iter().enumerate() {
-                validator.at_entry(index, |here| judge(entry, here));
+                validator.at_entry(index, |here| check_ranges(entry, here));
             }
         }
         Parts::Whole(_) | Parts::Number(_) => {}
     }
 }
 
-fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
+fn check_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
     match field.limit {
         Limit::Type | Limit::Follows(_) => {}
         Limit::Whole(least, most) => {
@@ -63,18 +62,18 @@ fn of_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
         }
     }
     if holds_limits(&field.ty) {
-        judge(value, validator);
+        check_ranges(value, validator);
     }
 }
 
-/// Lists of types without limits need no walk.
+/// Long lists of types without limits are not walked.
 fn holds_limits(ty: &Type) -> bool {
     match ty {
         Type::Group(group) => {
-            let judged = |field: &Field| {
+            let is_checked = |field: &Field| {
                 !matches!(field.limit, Limit::Type | Limit::Follows(_)) || holds_limits(&field.ty)
             };
-            !group.is_external && group.fields.iter().any(judged)
+            !group.is_external && group.fields.iter().any(is_checked)
         }
         Type::Optional(inner) | Type::List(inner) => holds_limits(inner),
         _ => false,

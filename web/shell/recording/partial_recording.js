@@ -30,7 +30,7 @@ export function closeOpenFile() {
  * Keeps a file open while the experiment stays, with a button that opens its dialog again.
  * @param {Page} page @param {string} file  Its name. @param {{close: () => void}} capture @param {(dialog: import("./dialog.js").Dialog) => void} show
  */
-export function keepOpen(page, file, capture, show) {
+export function holdOpen(page, file, capture, show) {
   open?.drop();
   let closeDialog = () => {};
   const again = button("Another part…", `Show another part of ${file}`, () => {

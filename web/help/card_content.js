@@ -1,31 +1,31 @@
-/** What a card says of its word. */
+/** The content of a help card. */
 import { element, fill } from "../dom.js";
 import { takeExplanations, termOf } from "../form/schema.js";
 import { VIEWS } from "../state/views.js";
 import { meaning } from "./meaning.js";
 
-/** Loads what the terms of fields mean; where that fails their fields' own text stands for it, and the next card asks again. */
-async function explained() {
+/** Loads the texts of fields. If that fails, the card shows the hint of the field. */
+async function loadExplanations() {
   const found = await import("./explained.js").catch(() => null);
   if (found) takeExplanations(found.EXPLAINED);
 }
 
-/** What the cards say of no field. @type {Promise<typeof import("./texts.js")> | null} */
+/** Texts of terms without a field. @type {Promise<typeof import("./term_texts.js")> | null} */
 let loading = null;
 
-/** Loads it, once; null where that fails. */
+/** Loads them once; null if that fails. */
 async function load() {
-  loading ??= import("./texts.js");
+  loading ??= import("./term_texts.js");
   return loading.catch(() => {
     loading = null;
     return null;
   });
 }
 
-/** Fills the card for a word. @param {HTMLElement} card @param {HTMLElement} word @param {() => boolean} isWanted  Whether no other word was asked for meanwhile. */
+/** Fills the card for a word. @param {HTMLElement} card @param {HTMLElement} word @param {() => boolean} isWanted  Whether no other term was requested meanwhile. */
 export async function fillCard(card, word, isWanted) {
   const name = word.dataset.term ?? "";
-  if (termOf(name)) await explained();
+  if (termOf(name)) await loadExplanations();
   const own = termOf(name);
   const texts = own ? null : await load();
   if (!isWanted()) return;
@@ -48,10 +48,7 @@ export async function fillCard(card, word, isWanted) {
         ]
       : [
           element("strong", {}, term?.name ?? word.textContent ?? ""),
-          meaning(
-            "p",
-            term ?? { text: texts ? "" : "The text could not be loaded; try again when the network is there." },
-          ),
+          meaning("p", term ?? { text: texts ? "" : "The text could not be loaded. Check the network and try again." }),
           ...(hint ? [element("p", { class: "range" }, hint)] : []),
         ]),
   );

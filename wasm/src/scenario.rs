@@ -1,4 +1,4 @@
-//! A scenario that was read, validated and planned once; all requests about it begin here.
+//! A scenario that is read, validated and planned once.
 
 use stepscope_core::{
     peripheral::config::Config,
@@ -7,13 +7,13 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// A scenario that was read, validated and planned once. A run, a link and the study's requests use it.
+/// A scenario that is read, validated and planned once, for runs, links and the study.
 #[wasm_bindgen]
-pub struct Judged(pub(crate) sim::ValidatedScenario);
+pub struct ValidatedScenario(pub(crate) sim::ValidatedScenario);
 
 #[wasm_bindgen]
-impl Judged {
-    /// Reads, judges and plans a text, which may be any.
+impl ValidatedScenario {
+    /// Reads, validates and plans any text.
     #[wasm_bindgen(constructor)]
     #[must_use]
     pub fn new(json: &str) -> Self {
@@ -22,18 +22,18 @@ impl Judged {
 }
 
 #[cfg(feature = "tools")]
-impl Judged {
+impl ValidatedScenario {
     /// Axis `axis` of controller `controller`.
     ///
     /// # Errors
     /// If the scenario has problems, or no such axis.
     pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<sim::SelectedAxis<'_>, JsError> {
         self.0.experiment().map_err(listed)?;
-        self.0.axis(controller, axis).ok_or_else(|| JsError::new("there is no such axis"))
+        self.0.axis(controller, axis).ok_or_else(|| JsError::new("no such axis"))
     }
 }
 
-/// All problems, a line each.
+/// All problems, one per line.
 pub(crate) fn listed(problems: &[Problem]) -> JsError {
     let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
     JsError::new(&lines.join("\n"))

@@ -1,0 +1,118 @@
+/** Additional workers for long requests, which run in parallel. */
+import { byId } from "../dom.js";
+import { compiled } from "./wasm.js";
+
+/** Maximum workers per request. */
+const MAX_WORKERS = 4;
+/** Idle workers end after this time, in ms, to free memory. */
+const IDLE_MS = 20_000;
+/** Time for a canceled worker to finish its piece, in ms. */
+const CANCEL_MS = 300;
+
+export class WorkerPool {
+  /** Idle workers. @type {Worker[]} */
+  #idle = [];
+  #resting = 0;
+  /** The newest request of each slot. @type {Map<string, AbortController>} */
+  #requests = new Map();
+  #Dropped;
+  #missing;
+
+  /**
+   * @param {typeof import("./engine.js").Dropped} Dropped  Rejects requests that are no longer needed.
+   * @param {string} missing  Error if the code cannot be fetched.
+   */
+  constructor(Dropped, missing) {
+    this.#Dropped = Dropped;
+    this.#missing = missing;
+  }
+
+  /** See `Engine`. @param {string} method @param {any[][]} pieces @param {AbortSignal} signal @param {(at: number, reply: any) => void} [onReply] @returns {Promise<any[]>} */
+  async distribute(method, pieces, signal, onReply = () => {}) {
+    /** @type {any[]} */
+    const replies = Array(pieces.length);
+    let next = 0;
+    const run = async () => {
+      const worker = this.#idle.pop() ?? startWorker(this.#missing);
+      try {
+        while (next < pieces.length) {
+          const at = next++;
+          replies[at] = await this.#call(worker, method, pieces[at], signal);
+          onReply(at, replies[at]);
+        }
+        this.#rest(worker);
+      } catch (error) {
+        next = pieces.length;
+        const timer = setTimeout(() => worker.terminate(), error instanceof this.#Dropped ? CANCEL_MS : 0);
+        worker.onmessage = ({ data }) => {
+          clearTimeout(timer);
+          if ("value" in data || "error" in data) this.#rest(worker);
+          else worker.terminate();
+        };
+        throw error;
+      }
+    };
+    await Promise.all(
+      Array.from({ length: Math.min(MAX_WORKERS, navigator.hardwareConcurrency || 1, pieces.length) }, run),
+    );
+    return replies;
+  }
+
+  /** See `Engine`. @param {string} slot @param {string} method @param {any[]} args @returns {Promise<any>} */
+  async consider(slot, method, args) {
+    this.#requests.get(slot)?.abort();
+    const own = new AbortController();
+    this.#requests.set(slot, own);
+    const [reply] = await this.distribute(method, [args], own.signal);
+    return reply;
+  }
+
+  /** See `Engine`. @template T @param {(ask: (method: "open" | "of", ...args: any[]) => Promise<any>) => Promise<T>} work @returns {Promise<T>} */
+  async session(work) {
+    const worker = this.#idle.pop() ?? startWorker(this.#missing);
+    const { signal } = new AbortController();
+    try {
+      const result = await work((method, ...args) => this.#call(worker, method, args, signal));
+      this.#rest(worker);
+      return result;
+    } catch (error) {
+      worker.terminate();
+      throw error;
+    }
+  }
+
+  /** Keeps a worker for the next request. @param {Worker} worker */
+  #rest(worker) {
+    this.#idle.push(worker);
+    clearTimeout(this.#resting);
+    this.#resting = window.setTimeout(() => {
+      for (const each of this.#idle.splice(0)) each.terminate();
+    }, IDLE_MS);
+  }
+
+  /** One request to a worker. @param {Worker} worker @param {string} method @param {any[]} args @param {AbortSignal} signal @returns {Promise<any>} */
+  #call(worker, method, args, signal) {
+    return new Promise((resolve, reject) => {
+      const drop = () => reject(new this.#Dropped(method));
+      if (signal.aborted) return drop();
+      signal.addEventListener("abort", drop, { once: true });
+      worker.onerror = (event) => reject(new Error(event.message || "the engine could not be loaded"));
+      worker.onmessage = ({ data }) => {
+        signal.removeEventListener("abort", drop);
+        if ("value" in data) resolve(data.value);
+        else reject(new Error(data.error ?? data.message));
+      };
+      worker.postMessage({ id: 0, method, args });
+    });
+  }
+}
+
+/** A worker with the tools. @param {string} missing */
+function startWorker(missing) {
+  const worker = new Worker(/** @type {string} */ (byId("main").dataset.studyWorker), { type: "module" });
+  compiled("tools").then(
+    (module) => worker.postMessage({ module }),
+    () => worker.dispatchEvent(new ErrorEvent("error", { message: missing })),
+  );
+  return worker;
+}
