@@ -19,6 +19,8 @@ pub(crate) const INTERRUPTED: u8 = 130;
 #[derive(Debug)]
 pub(crate) enum Failure {
     File(PathBuf, io::Error),
+    /// A written file that could not be renamed, and the temporary files that are kept.
+    NotRenamed(PathBuf, io::Error, Vec<PathBuf>),
     /// The output, and why it cannot be used.
     Output(PathBuf, &'static str),
     Timescale(TooCoarse),
@@ -40,10 +42,7 @@ pub(crate) enum Failure {
     LongRun(PathBuf),
     NoStandAlone(PathBuf),
     NoDriver(PathBuf),
-    /// The given number, and the number of controllers.
-    Controller(PathBuf, usize, usize),
-    /// The given number, and the number of axes.
-    Axis(PathBuf, usize, usize),
+    Index(PathBuf, Index),
     Table(PathBuf, String),
     Recording(PathBuf, String),
     /// A truncated recording.
@@ -69,7 +68,54 @@ pub(crate) enum Failure {
     SilentlyWrong(u64),
 }
 
+/// A number beyond the last controller, axis or channel.
+#[derive(Debug)]
+pub(crate) struct Index {
+    pub(crate) of: Numbered,
+    pub(crate) given: usize,
+    pub(crate) count: usize,
+    /// Without the option all of them are meant.
+    pub(crate) or_all: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Numbered {
+    Controllers,
+    Axes,
+    /// Channels that `--axis` selects.
+    AxisChannels,
+    Channels,
+}
+
+impl Numbered {
+    const fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Controllers => ("--controller", "controller", "controllers"),
+            Self::Axes => ("--axis", "axis", "axes"),
+            Self::AxisChannels => ("--axis", "channel", "channels"),
+            Self::Channels => ("--channel", "channel", "channels"),
+        }
+    }
+}
+
+impl fmt::Display for Index {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (option, one, many) = self.of.words();
+        write!(f, "{option}: {} is out of range; the scenario has ", self.given)?;
+        match self.count {
+            0 => return write!(f, "no {many}"),
+            1 => write!(f, "only {one} 0; use {option} 0")?,
+            count => write!(f, "{many} 0 to {last}; use {option} 0 to {last}", last = count - 1)?,
+        }
+        if self.or_all { f.write_str(", or omit it for all") } else { Ok(()) }
+    }
+}
+
 impl Failure {
+    pub(crate) fn index(path: &Path, of: Numbered, given: usize, count: usize, or_all: bool) -> Self {
+        Self::Index(path.to_owned(), Index { of, given, count, or_all })
+    }
+
     pub(crate) fn output(error: io::Error) -> Self {
         Self::File(PathBuf::from("standard output"), error)
     }
@@ -87,7 +133,7 @@ impl Failure {
         match self {
             // The code that a shell reports for SIGPIPE.
             _ if self.is_closed_pipe() => ExitCode::from(141),
-            Self::File(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
+            Self::File(..) | Self::NotRenamed(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
             Self::Interrupted => ExitCode::from(INTERRUPTED),
             Self::Output(..)
@@ -105,8 +151,7 @@ impl Failure {
             | Self::NoStandAlone(_)
             | Self::LongRun(_)
             | Self::NoDriver(_)
-            | Self::Controller(..)
-            | Self::Axis(..)
+            | Self::Index(..)
             | Self::Table(..)
             | Self::Option(_)
             | Self::Recording(..) => ExitCode::from(2),
@@ -133,6 +178,10 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path, error) => write!(f, "{}: {error}", Escaped::path(path)),
+            Self::NotRenamed(path, error, kept) => {
+                write!(f, "{}: {error}; what was written is saved under other names:", Escaped::path(path))?;
+                kept.iter().try_for_each(|kept| write!(f, "\n  {}", Escaped::path(kept)))
+            }
             Self::Output(path, detail) => write!(f, "{}: {detail}", Escaped::path(path)),
             Self::Timescale(error) => write!(f, "--vcd-timescale: {error}"),
             Self::TooLong(path, most) => write!(
@@ -193,21 +242,7 @@ impl fmt::Display for Failure {
                 "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",
                 Escaped::path(path)
             ),
-            Self::Controller(path, given, 1) => {
-                write!(f, "{}: there is no controller {given}; the scenario has only 0", Escaped::path(path))
-            }
-            Self::Controller(path, given, count) => {
-                let most = count - 1;
-                write!(f, "{}: there is no controller {given}; give 0 to {most}", Escaped::path(path))
-            }
-            Self::Axis(path, given, count) => {
-                let axes = if *count == 1 { "axis" } else { "axes" };
-                write!(
-                    f,
-                    "{}: there is no axis {given}; the scenario has {count} {axes}, from 0",
-                    Escaped::path(path)
-                )
-            }
+            Self::Index(path, index) => write!(f, "{}: {index}", Escaped::path(path)),
             Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", Escaped::path(path)),
             Self::PartOnly(path, why) => {
                 write!(f, "{}: the recording is truncated: {why}; the results above are those of the part before", Escaped::path(path))

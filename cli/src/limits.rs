@@ -1,7 +1,7 @@
 //! `stepscope settling`, `stepscope limits` and `stepscope resonance`: limits of the motors of a scenario's plant.
 
 use crate::{
-    failure::{Failure, no_plant},
+    failure::{Failure, Numbered, no_plant},
     json::Tables,
     motors::Replacing,
     output::{self, Outputs},
@@ -110,7 +110,7 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), F
     let setup = plants.setups.first().cloned().unwrap_or_default();
     let count = setup.motors.len();
     if let Some(channel) = common.channel.filter(|&channel| channel >= count) {
-        return Err(Failure::Axis(path.clone(), channel, count));
+        return Err(Failure::index(path, Numbered::Channels, channel, count, true));
     }
     let mut found: Vec<SingleMotor> = Vec::new();
     for (channel, motor) in setup.motors.iter().enumerate() {

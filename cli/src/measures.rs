@@ -5,7 +5,10 @@ mod distortion;
 mod table;
 mod unplanned;
 
-use crate::{failure::Failure, kept_run, scenarios, terminal};
+use crate::{
+    failure::{Failure, Numbered},
+    kept_run, scenarios, terminal,
+};
 pub(crate) use arguments::Arguments;
 use arguments::Written;
 use distortion::Distortion;
@@ -24,20 +27,21 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let selected = |scenario: &Scenario| arguments.axis.unwrap_or(scenario.analysis.axis.into());
     let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
-        let axes = match &scenario.source {
-            Source::Motion(motion) => motion.axes.len(),
-            _ => scenario.bus.channels.into(),
+        let (of, axes) = match &scenario.source {
+            Source::Motion(motion) => (Numbered::Axes, motion.axes.len()),
+            _ => (Numbered::AxisChannels, scenario.bus.channels.into()),
         };
         let axis = selected(scenario);
         // A scenario without axes has a problem of its own.
-        if axis < axes || axes == 0 { Ok(()) } else { Err(Failure::Axis(path.clone(), axis, axes)) }
+        if axis < axes || axes == 0 { Ok(()) } else { Err(Failure::index(path, of, axis, axes, false)) }
     })?;
     let Source::Motion(motion) = &scenario.source else {
         return unplanned::measures(arguments, &scenario, &experiment);
     };
     let axis = selected(&scenario);
     let plan = experiment.plans().get(axis);
-    let plan = plan.ok_or_else(|| Failure::Axis(path.clone(), axis, experiment.plans().len()))?;
+    let count = experiment.plans().len();
+    let plan = plan.ok_or_else(|| Failure::index(path, Numbered::Axes, axis, count, false))?;
     // The recording has all axes' steps.
     let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
     within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;

@@ -6,13 +6,12 @@
 //! commit    rename all temporary files
 //! ```
 //!
-//! Until the commit an error, a full disk, Ctrl-C or a kill leaves the existing files. Pipes and devices are written
-//! directly.
+//! Until the commit an error, a full disk, Ctrl-C or a kill leaves the existing files. If a file cannot be renamed, all
+//! temporary files are kept. Pipes and devices are written directly.
 
 use crate::{failure::Failure, pipe};
-use same_file::Handle;
 use std::{
-    fs,
+    fs::{self, File},
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
@@ -42,7 +41,7 @@ struct Waiting {
 #[derive(PartialEq)]
 enum Identity {
     /// An existing file, by any path or hard link.
-    There(Handle),
+    There(identity::Id),
     /// A new file, by its real folder.
     New(PathBuf),
 }
@@ -50,30 +49,74 @@ enum Identity {
 impl Identity {
     fn of_input(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
-            return Handle::stdin().ok().map(Self::There);
+            return identity::stdin().and_then(|file| identity::of_file(&file)).map(Self::There);
         }
-        // A pipe can be opened only once.
-        if !is_file(path) {
-            return None;
-        }
-        Handle::from_path(path).ok().map(Self::There)
+        is_file(path).then(|| identity::of(path)).flatten().map(Self::There)
     }
 
     fn of_output(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
-            return Handle::stdout().ok().map(Self::There);
+            return identity::stdout().and_then(|file| identity::of_file(&file)).map(Self::There);
         }
         let name = followed(path);
         if name == Path::new("/dev/null") {
             return None;
         }
-        if (!pipe::is_named_pipe(&name) || is_open_file(&name))
-            && let Ok(handle) = Handle::from_path(&name)
-        {
-            return Some(Self::There(handle));
+        if let Some(id) = identity::of(&name) {
+            return Some(Self::There(id));
         }
         let folder = fs::canonicalize(folder(&name)).ok()?;
         Some(Self::New(folder.join(name.file_name()?)))
+    }
+}
+
+/// Nothing is opened: a pipe can be opened only once, and opening a terminal connects a client to it.
+#[cfg(unix)]
+mod identity {
+    use super::{File, Path, fs, io};
+    use std::os::{fd::AsFd, unix::fs::MetadataExt};
+
+    /// Device and number of the file.
+    pub(super) type Id = (u64, u64);
+
+    pub(super) fn of(path: &Path) -> Option<Id> {
+        fs::metadata(path).ok().map(|known| (known.dev(), known.ino()))
+    }
+
+    pub(super) fn of_file(file: &File) -> Option<Id> {
+        file.metadata().ok().map(|known| (known.dev(), known.ino()))
+    }
+
+    pub(super) fn stdin() -> Option<File> {
+        io::stdin().as_fd().try_clone_to_owned().ok().map(File::from)
+    }
+
+    pub(super) fn stdout() -> Option<File> {
+        io::stdout().as_fd().try_clone_to_owned().ok().map(File::from)
+    }
+}
+
+#[cfg(not(unix))]
+mod identity {
+    use super::{File, Path};
+    use same_file::Handle;
+
+    pub(super) type Id = Handle;
+
+    pub(super) fn of(path: &Path) -> Option<Id> {
+        Handle::from_path(path).ok()
+    }
+
+    pub(super) fn of_file(file: &File) -> Option<Id> {
+        Handle::from_file(file.try_clone().ok()?).ok()
+    }
+
+    pub(super) fn stdin() -> Option<File> {
+        Handle::stdin().ok()?.as_file().try_clone().ok()
+    }
+
+    pub(super) fn stdout() -> Option<File> {
+        Handle::stdout().ok()?.as_file().try_clone().ok()
     }
 }
 
@@ -159,55 +202,85 @@ impl Outputs {
         Ok(Box::new(file))
     }
 
-    /// Renames all complete files; a signal ends the command before or after all of them. If a rename fails, replaced
-    /// files are restored where the file system has hard links.
+    /// Renames all complete files; a signal ends the command before or after all of them. If one cannot be renamed,
+    /// replaced files are restored, where the file system has hard links, and the new files stay next to them.
     pub(crate) fn commit(self) -> Result<(), Failure> {
         let mut committed = committed();
-        if let Some(folder) = self.waiting.iter().find(|waiting| waiting.name.is_dir()) {
-            return Err(Failure::File(folder.given.clone(), io::ErrorKind::IsADirectory.into()));
-        }
-        let mut replaced = Vec::new();
-        for Waiting { given, name, temporary } in self.waiting {
-            let path = temporary.to_path_buf();
-            let backup = Replaced::of(name);
-            if let Err(error) = temporary.persist(&backup.name) {
-                replaced.into_iter().rev().for_each(Replaced::restore);
-                return Err(Failure::File(given, error.error));
-            }
-            replaced.push(backup);
-            lock().retain(|other| *other != path);
+        let mut waiting = self.waiting.into_iter();
+        let mut replaced: Vec<Replaced> = Vec::new();
+        while let Some(next) = waiting.next() {
+            let path = next.temporary.to_path_buf();
+            let failed = match Replaced::by(next) {
+                Ok(done) => {
+                    replaced.push(done);
+                    lock().retain(|other| *other != path);
+                    continue;
+                }
+                Err(failed) => failed,
+            };
+            let NotRenamed { given, error, temporary } = *failed;
+            let mut kept: Vec<TempPath> = replaced.into_iter().rev().filter_map(Replaced::restore).collect();
+            kept.reverse();
+            kept.push(temporary);
+            kept.extend(waiting.map(|waiting| waiting.temporary));
+            return Err(Failure::NotRenamed(given, error, kept.into_iter().filter_map(keep).collect()));
         }
         *committed |= !replaced.is_empty();
         Ok(())
     }
 }
 
+/// `None` if the file is gone.
+fn keep(temporary: TempPath) -> Option<PathBuf> {
+    let path = temporary.keep().ok()?;
+    lock().retain(|other| *other != path);
+    path.exists().then_some(path)
+}
+
+struct NotRenamed {
+    given: PathBuf,
+    error: io::Error,
+    temporary: TempPath,
+}
+
+/// A renamed file.
 struct Replaced {
     name: PathBuf,
+    /// Its path before.
+    temporary: PathBuf,
     existed: bool,
     /// A hard link to the old file, if the file system supports them.
     backup: Option<TempPath>,
 }
 
 impl Replaced {
-    fn of(name: PathBuf) -> Self {
+    fn by(Waiting { given, name, temporary }: Waiting) -> Result<Self, Box<NotRenamed>> {
         let existed = fs::symlink_metadata(&name).is_ok();
         let mut builder = tempfile::Builder::new();
         builder.prefix("stepscope.").suffix(".old");
         let backup = existed.then(|| builder.make_in(folder(&name), |path| fs::hard_link(&name, path)));
         let backup = backup.and_then(Result::ok).map(tempfile::NamedTempFile::into_temp_path);
-        Self { name, existed, backup }
+        let path = temporary.to_path_buf();
+        match temporary.persist(&name) {
+            Ok(()) => Ok(Self { name, temporary: path, existed, backup }),
+            Err(tempfile::PathPersistError { error, path: temporary }) => {
+                Err(Box::new(NotRenamed { given, error, temporary }))
+            }
+        }
     }
 
-    fn restore(self) {
-        if let Some(backup) = self.backup {
-            // A file that cannot be restored keeps its second name.
-            if let Err(error) = backup.persist(&self.name) {
-                let _ = error.path.keep();
-            }
-        } else if !self.existed {
-            let _ = fs::remove_file(self.name);
+    /// Restores the old file; returns the new one. Without a backup the old file is gone, so the new one keeps its
+    /// name.
+    fn restore(self) -> Option<TempPath> {
+        if self.existed && self.backup.is_none() {
+            return None;
         }
+        fs::rename(&self.name, &self.temporary).ok()?;
+        if let Some(Err(error)) = self.backup.map(|backup| backup.persist(&self.name)) {
+            // A file that cannot be restored keeps its second name.
+            let _ = error.path.keep();
+        }
+        TempPath::try_from_path(self.temporary).ok()
     }
 }
 
@@ -274,7 +347,7 @@ fn is_file(path: &Path) -> bool {
     if path != Path::new(STANDARD) {
         return fs::metadata(path).is_ok_and(|known| known.is_file());
     }
-    Handle::stdout().is_ok_and(|out| out.as_file().metadata().is_ok_and(|known| known.is_file()))
+    identity::stdout().is_some_and(|file| file.metadata().is_ok_and(|known| known.is_file()))
 }
 
 static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -296,35 +369,71 @@ pub(crate) fn remove_temporary() {
 mod tests {
     use super::*;
 
-    /// A folder takes the last name while the files are written.
+    /// A folder takes the last name while the files are written, or its folder disappears.
     #[test]
-    fn files_that_cannot_all_get_their_names_change_nothing() {
-        for (taken, is_late, remain) in [("folder", false, 3), ("file/inside", true, 1)] {
+    fn files_that_cannot_all_be_renamed_replace_nothing_and_are_kept() {
+        for (taken, is_late) in [("folder", false), ("file/inside", true)] {
             let folder = tempfile::tempdir().expect("a folder");
             let path = |name: &str| folder.path().join(name);
             fs::write(path("old"), "old").expect("a file");
             fs::create_dir(path("file")).expect("a folder");
             let mut outputs = Outputs::default();
-            for name in ["old", "new", taken] {
+            let names = ["old", "new", taken, "last"];
+            for name in names {
                 outputs
                     .create(&path(name))
                     .and_then(|mut out| {
-                        out.write_all(b"written").and_then(|()| out.flush()).map_err(Failure::output)
+                        out.write_all(name.as_bytes()).and_then(|()| out.flush()).map_err(Failure::output)
                     })
                     .expect("there is room");
             }
             if is_late {
-                // The folder is gone, and the file with it.
                 fs::remove_dir_all(path("file")).expect("it is ours");
             } else {
                 fs::create_dir_all(path("folder/full")).expect("a folder");
             }
             let failed = outputs.commit().expect_err("a name is taken");
-            assert!(matches!(&failed, Failure::File(given, _) if *given == path(taken)), "{failed}");
-            assert_eq!(fs::read_to_string(path("old")).expect("it was there"), "old", "{taken}");
-            assert!(!path("new").exists());
+            let Failure::NotRenamed(given, _, kept) = &failed else { panic!("{failed}") };
+            assert_eq!(*given, path(taken));
+            let text = |path: &Path| fs::read_to_string(path).expect("it is there");
+            let expected: Vec<&str> = names.into_iter().filter(|name| !is_late || *name != taken).collect();
+            assert_eq!(kept.iter().map(PathBuf::as_path).map(text).collect::<Vec<_>>(), expected, "{failed}");
+            assert!(kept.iter().all(|path| failed.to_string().contains(&path.display().to_string())));
+            assert_eq!(text(&path("old")), "old");
+            assert!(!path("new").exists() && !path("last").exists());
             let left = fs::read_dir(folder.path()).expect("a folder").count();
-            assert_eq!(left, remain, "{taken}: files are left next to them");
+            assert_eq!(left, if is_late { 4 } else { 7 }, "{taken}: other files are left");
         }
+    }
+
+    /// The system reports that a terminal was opened and closed.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_terminal_behind_a_link_is_not_opened_by_the_check() {
+        use rustix::{
+            event::{PollFd, PollFlags, Timespec, poll},
+            pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
+        };
+        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+        grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");
+        let name = ptsname(&master, Vec::new()).expect("a name").into_string().expect("text");
+        let folder = tempfile::tempdir().expect("a folder");
+        let link = folder.path().join("link");
+        std::os::unix::fs::symlink(&name, &link).expect("a link");
+        let was_opened = || {
+            let mut fds = [PollFd::new(&master, PollFlags::IN)];
+            poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })).expect("it polls");
+            fds[0].revents().contains(PollFlags::HUP)
+        };
+        let record = folder.path().join("record");
+        for inputs in [&["-"] as &[&str], &["-", "/dev/null"]] {
+            drop(Outputs::judge(inputs.iter().copied(), [record.as_path(), &link]).expect("two files"));
+            assert!(!was_opened(), "{inputs:?}");
+        }
+        let twice = Outputs::judge(["-"], [link.as_path(), Path::new(&name)]);
+        assert!(matches!(twice, Err(Failure::Output(..))), "one terminal by two names");
+        assert!(!was_opened());
+        drop(fs::File::open(&link).expect("it opens"));
+        assert!(was_opened(), "the test sees an opening");
     }
 }

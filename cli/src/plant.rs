@@ -1,7 +1,7 @@
 //! `stepscope plant`: simulates the motors, supply and sensors that a scenario's pulses drive.
 
 use crate::{
-    failure::{Failure, no_plant},
+    failure::{Failure, Numbered, no_plant},
     json::Tables,
     motors::{self, Replacing},
     output::{Out, Outputs, STANDARD},
@@ -125,7 +125,7 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     let (_, experiment) = arguments.replacing.judged(path)?;
     let (controllers, chosen) = (experiment.controllers(), arguments.controller);
     if chosen >= controllers {
-        return Err(Failure::Controller(path.clone(), chosen, controllers));
+        return Err(Failure::index(path, Numbered::Controllers, chosen, controllers, false));
     }
     let parts: Vec<(Files, Files)> = (0..controllers).map(|_| <(Files, Files)>::default()).collect();
     let mut run = PlantRun::new(&experiment, parts).ok_or_else(|| no_plant(path))?;

@@ -1,7 +1,7 @@
 //! `stepscope run`: runs a scenario; prints digest and status, writes files.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, Numbered},
     files::{self, Files, Output, Station},
     json::Tables,
     line,
@@ -128,7 +128,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let controllers = experiment.controllers();
     let chosen = arguments.controller.unwrap_or(0);
     let config = experiment.configs().nth(chosen);
-    let config = config.ok_or_else(|| Failure::Controller(path.clone(), chosen, controllers))?;
+    let config =
+        config.ok_or_else(|| Failure::index(path, Numbered::Controllers, chosen, controllers, true))?;
 
     let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
     if let Some(station) = stations.get_mut(chosen) {

@@ -1,7 +1,7 @@
 //! `stepscope sine`: segments of sines and their distortion (CSV).
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, Numbered},
     json::Tables,
     output::{self, Outputs},
     parallel,
@@ -182,7 +182,7 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
         _ => &[],
     };
     if let Some(axis) = only.filter(|axis| *axis >= axes.len()) {
-        return Err(Failure::Axis(path.to_owned(), axis, axes.len()));
+        return Err(Failure::index(path, Numbered::Axes, axis, axes.len(), true));
     }
     let asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     if asked.flat_map(|(_, axis)| &axis.moves).any(|each| matches!(each, Move::SineSegments(_))) {

@@ -1,7 +1,7 @@
 //! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, Numbered},
     json::Tables,
     kept_run,
     output::{self, Outputs},
@@ -276,7 +276,9 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let axes = Axes::new(arguments)?;
     let axis = arguments.axis.unwrap_or(0);
     let steps = axes.axes.get(axis);
-    let steps = steps.ok_or_else(|| Failure::Axis(axes.path.clone(), axis, axes.axes.len()))?;
+    let is_summary = arguments.format == Written::Summary;
+    let count = axes.axes.len();
+    let steps = steps.ok_or_else(|| Failure::index(&axes.path, Numbered::Axes, axis, count, is_summary))?;
     let Some(language) = arguments.format.language() else {
         return output::write_whole(outputs, &arguments.out, |out| {
             if arguments.json { json_of(&axes, arguments).write(out) } else { summary(&axes, arguments, out) }

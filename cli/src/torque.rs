@@ -7,7 +7,7 @@ pub(crate) mod tables;
 pub(crate) mod text;
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, Numbered},
     output::{self, Outputs},
     progress::Progress,
     scenarios,
@@ -69,7 +69,13 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     if let Some(axis) = only
         && axis >= axes.len()
     {
-        return Err(Failure::Axis(path.clone(), axis, axes.len()));
+        return Err(Failure::index(
+            path,
+            Numbered::Axes,
+            axis,
+            axes.len(),
+            arguments.format == Written::Text,
+        ));
     }
     let mut asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     if !axes.is_empty() && asked.all(|(_, given)| given.motor.is_none()) {

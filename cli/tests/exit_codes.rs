@@ -169,9 +169,10 @@ fn numbers_that_are_none_are_refused_by_every_option() {
 #[test]
 fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
     let sweep = "--to 0.002 is below --from 0.06; use --to 0.06 to 1";
-    let axis = "there is no axis 18446744073709551615; the scenario has 2 axes, from 0";
-    let controller = "there is no controller 18446744073709551615; the scenario has only 0";
-    let channel = "there is no axis 18446744073709551615; the scenario has 1 axis, from 0";
+    let axis =
+        "--axis: 18446744073709551615 is out of range; the scenario has axes 0 to 1; use --axis 0 to 1";
+    let controller = "--controller: 18446744073709551615 is out of range; the scenario has only controller 0; use --controller 0";
+    let channel = "--channel: 18446744073709551615 is out of range; the scenario has only channel 0; use --channel 0, or omit it for all";
     const MOST: &str = "18446744073709551615";
     let rows: &[(&[&str], &str)] = &[
         (&["sine", "sweep", "--from", "0.06", "--to", "0.002"], sweep),
@@ -184,7 +185,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         (&["sine", "vertices", "--segments", "33"], "out of range; use 1 to 32"),
         (
             &["sine", "segments", "sine-2022-d00054", "--axis", MOST],
-            "there is no axis 18446744073709551615; the scenario has 1 axis",
+            "--axis: 18446744073709551615 is out of range; the scenario has only axis 0; use --axis 0, or omit it for all",
         ),
         (&["tables", "framed-link", "--axis", MOST], axis),
         (&["tables", "framed-link", "--axis", MOST, "--json"], axis),
@@ -196,6 +197,10 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         (&["settling", "resonance-full-steps", "--channel", MOST], channel),
         (&["limits", "resonance-full-steps", "--channel", MOST], channel),
         (&["resonance", "resonance-full-steps", "--channel", MOST], channel),
+        (
+            &["limits", "patent-2019-overload", "--channel", "4"],
+            "--channel: 4 is out of range; the scenario has channels 0 to 3; use --channel 0 to 3, or omit it for all",
+        ),
         (
             &["resonance", "resonance-full-steps", "--from", "3", "--to", "2"],
             "--from 3 --to 2 --rung 4: use rates that rise",

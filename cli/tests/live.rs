@@ -230,6 +230,30 @@ fn one_client_is_served_and_a_second_one_is_told() {
     assert!(err.contains("was sent away"), "{err}");
 }
 
+#[test]
+fn a_recording_that_cannot_be_renamed_is_kept_under_another_name() {
+    let scenario = file("kept.json", FEW);
+    let record = scenario.with_file_name("live-kept-recording.json");
+    let _ = fs::remove_dir(&record);
+    let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--record", text(&record)]);
+    let (code, out, err) = send(&scenario, &server.place, &["--slack", "1000"]);
+    assert_eq!(code, Some(0), "{out}{err}");
+    fs::create_dir(&record).expect("the name is free");
+    let (code, out, err) = server.end();
+    let _ = fs::remove_dir(&record);
+    assert_eq!(code, Some(1), "{out}{err}");
+    let named =
+        err.lines().position(|line| line.starts_with(text(&record))).expect("the name and the reason");
+    let kept: Vec<&str> = err.lines().skip(named + 1).map(str::trim).collect();
+    let [recorded, times] = kept[..] else { panic!("two files: {err}") };
+    let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
+    assert_eq!(run_digest(Path::new(recorded)), digest);
+    assert!(fs::read_to_string(times).expect("it is there").contains(digest));
+    for path in [recorded, times] {
+        fs::remove_file(path).expect("it is there");
+    }
+}
+
 /// A device that executes everything at once, but does not know POSITIONS.
 fn old_device(listener: &TcpListener) {
     let (mut stream, _) = listener.accept().expect("a host");
@@ -342,9 +366,11 @@ fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not()
 fn what_cannot_be_is_refused_before_anything_is_sent() {
     let (framed, raw) = (file("refused.json", FEW), file("refused-raw.json", RAW));
     let segments = file("refused-segments.json", r#"{ "source": { "motion": { "engine": "segments" } } }"#);
+    let script =
+        file("refused-script.json", r#"{ "line": { "protocol": "framed" }, "source": { "line": {} } }"#);
     let (framed, raw) = (text(&framed), text(&raw));
     let link = file("refused-link", "not a link");
-    let cases: [(&[&str], i32, &str); 11] = [
+    let cases: [(&[&str], i32, &str); 12] = [
         (&["serve", framed], 2, "--pty"),
         (&["serve", framed, "--tcp", "0.0.0.0:0"], 2, "--open"),
         (&["serve", framed, "--tcp", "127.0.0.1:0", "--pace", "0"], 2, "0.001 to 100"),
@@ -353,6 +379,8 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
         (&["serve", text(&segments), "--tcp", "127.0.0.1:0"], 2, "nothing is on the line"),
         (&["serve", framed, "--tcp", "127.0.0.1:0", "--record", framed], 2, "would be overwritten"),
         (&["send", framed, "--port", "/dev/null"], 1, "/dev/null"),
+        // Refused before the port is opened, which would fail with 1.
+        (&["send", text(&script), "--port", "/dev/no-such-port"], 2, "use a motion or packets"),
         (&["send", framed, "--port", "tcp:127.0.0.1:1"], 1, "refused"),
         (&["send", framed, "--port", "pty:/dev/null", "--rs485", "rts"], 2, "9600"),
         (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "100 places"),
@@ -520,7 +548,8 @@ fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
     let scenario = file("link.json", FEW);
     let link = scenario.with_file_name("live-link-port");
     let _ = fs::remove_file(&link);
-    let first = Server::start(&[text(&scenario), "--pty", text(&link)]);
+    // A client that came and went would end this session.
+    let mut first = Server::start(&[text(&scenario), "--pty", text(&link), "--once"]);
     let target = fs::read_link(&link).expect("it is there");
     let (code, out, err) =
         ended(command(&["serve", text(&scenario), "--pty", text(&link)]).output().expect("it runs"));
@@ -529,6 +558,8 @@ fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
         "{code:?} {out}{err}"
     );
     assert_eq!(fs::read_link(&link).expect("it is still there"), target);
+    thread::sleep(Duration::from_millis(100));
+    assert!(first.child.try_wait().expect("a child").is_none(), "the first session goes on");
     first.signal(Signal::KILL);
     drop(first);
     assert!(link.is_symlink(), "one that was killed leaves it");

@@ -78,7 +78,11 @@ fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
 #[test]
 fn what_cannot_be_measured_ends_with_2_and_says_why() {
     let rows: [(&[&str], &str, &str); 3] = [
-        (&["--axis", "2"], MOTION, "there is no axis 2; the scenario has 2 axes, from 0"),
+        (
+            &["--axis", "2"],
+            MOTION,
+            "--axis: 2 is out of range; the scenario has axes 0 to 1; use --axis 0 to 1",
+        ),
         (&[], r#"{ "source": { "line": {} } }"#, "source: this channel makes no step"),
         (&[], r#"{ "analysis": { "sensor_hz": -1 } }"#, "analysis.sensor_hz: -1 Hz is out of range"),
     ];

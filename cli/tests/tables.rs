@@ -213,7 +213,11 @@ fn names_that_c_keeps_for_itself_are_refused_and_told() {
 #[test]
 fn what_cannot_be_a_table_ends_with_2_and_says_why() {
     let rows: [(&[&str], &str, &str); 5] = [
-        (&["--format", "c", "--axis", "2"], MOTION, "there is no axis 2; the scenario has 2 axes, from 0"),
+        (
+            &["--format", "c", "--axis", "2"],
+            MOTION,
+            "--axis: 2 is out of range; the scenario has axes 0 to 1; use --axis 0 to 1",
+        ),
         (
             &["--format", "c", "--axis", "1", "--form", "document"],
             MOTION,

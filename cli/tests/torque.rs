@@ -221,7 +221,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
     assert!(csv.starts_with("rate_hz,available_mn_m\n0.000,12.7"), "{csv}");
 
     let rows: [(&[&str], &str, &str); 4] = [
-        (&["--axis", "2"], "", "there is no axis 2"),
+        (&["--axis", "2"], "", "--axis: 2 is out of range"),
         (&["--motor", "nema-99"], "", "no such motor; `stepscope plant --motors` lists them"),
         (&["--microsteps", "4"], "", "--motor"),
         (

@@ -180,7 +180,7 @@ impl Tree {
             .with_context(|| format!("{} can't be made", self.home.display()))?;
         let call = self.at_home(tools.wasm_pack()?);
         crate::page::wasm_by(tools, call, FOLDER, &self.package(), &[]).await?;
-        run::to_end(self.at_home(kernels(&["--no-run"]))).await
+        run::compile(self.at_home(kernels(&["--no-run"]))).await
     }
 
     async fn page(&self, browser: &Browser) -> Result<Page> {
@@ -209,13 +209,13 @@ pub(crate) async fn page(results: Option<&Path>) -> Result<()> {
     if let Some(results) = results {
         command.env("STEPSCOPE_RESULTS", results);
     }
-    run::test(command).await
+    run::to_end(command).await
 }
 
 pub(crate) async fn live() -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["bench", "--package", "stepscope-cli", "--bench", "live", "--locked"]);
-    run::test(command).await
+    run::to_end(command).await
 }
 
 async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
@@ -225,7 +225,7 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     }
     let mut command = kernels(&[]);
     command.args(["--noplot", "--quiet"]).args(effort).env("CRITERION_HOME", home);
-    run::test(command).await
+    run::to_end(command).await
 }
 
 fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {

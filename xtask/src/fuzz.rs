@@ -96,7 +96,7 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     command.current_dir(root()).args(["build", "--sanitizer", "none"]);
     // libFuzzer may compare addresses, which differ between runs; coverage alone finds as much.
     command.args(["--no-trace-compares", "--target", &triple, "--target-dir"]).arg(folder);
-    run::to_end(command).await.context(
+    run::compile(command).await.context(
         "the fuzz targets were not built; libFuzzer needs a C++ compiler (Debian: apt-get install g++)",
     )?;
     Ok(folder.join(triple).join("release"))
@@ -106,7 +106,7 @@ async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);
     command.arg("--").arg(home);
-    run::test(command).await
+    run::to_end(command).await
 }
 
 async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report> {

@@ -59,7 +59,7 @@ async fn crates() -> Result<()> {
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
     }
-    run::to_end(command).await?;
+    run::compile(command).await?;
     made.keep()
 }
 
@@ -135,7 +135,7 @@ async fn npm() -> Result<()> {
     fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
     let mut node = Command::new(node_program("node").await?);
     node.arg(&script).arg(tests.join("golden"));
-    run::test(node).await.with_context(|| format!("the program needs Node {NODE}"))
+    run::to_end(node).await.with_context(|| format!("the program needs Node {NODE}"))
 }
 
 fn packed(folder: &Path) -> Result<PathBuf> {

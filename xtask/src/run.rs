@@ -14,8 +14,7 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 use crate::aside;
 
-/// Tests that print nothing for this long hang. Their total time is not limited, for slow machines. Compilers have no
-/// limit either: cargo prints nothing while it compiles one large crate.
+/// A program that prints nothing for this long hangs. Total times are not limited, for slow machines.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10 * 60);
 /// Maximum time of a child whose output goes to a file.
 pub(crate) const LIMIT: Duration = Duration::from_secs(2 * 60 * 60);
@@ -67,20 +66,20 @@ pub(crate) fn start(mut command: Command) -> Result<Group> {
     Ok(Group(wrap.spawn().with_context(|| format!("{name} can't be started"))?))
 }
 
-/// Runs `command` to its end, however long it takes; an error if it can't be started or fails.
+/// Runs `command` to its end; an error if it can't be started, fails, or prints nothing for [`SILENCE`].
 pub(crate) async fn to_end(command: Command) -> Result<()> {
-    watched(command, None).await
-}
-
-/// Runs a program under test: as [`to_end`], but an error if it prints nothing for [`SILENCE`].
-pub(crate) async fn test(command: Command) -> Result<()> {
     watched(command, Some(SILENCE)).await
 }
 
-/// Runs a call of `cargo test`: first compiles all of it, then runs it like [`test()`].
+/// As [`to_end`], but without a limit: cargo prints nothing while it compiles a large crate.
+pub(crate) async fn compile(command: Command) -> Result<()> {
+    watched(command, None).await
+}
+
+/// Runs a call of `cargo test`: first compiles all of it, then runs it like [`to_end`].
 pub(crate) async fn cargo_test(command: Command) -> Result<()> {
-    to_end(only_compiling(&command)).await?;
-    test(command).await
+    compile(only_compiling(&command)).await?;
+    to_end(command).await
 }
 
 /// The same call of `cargo test` with `--no-run`, without the arguments of the tests.
@@ -258,8 +257,16 @@ mod tests {
         to_end(shell("! read line")).await.unwrap();
     }
 
+    /// Time passes at once while nothing else is to be done.
     #[tokio::test(start_paused = true)]
-    async fn only_silence_ends_a_test() {
+    async fn a_silent_download_or_check_is_stopped_and_a_compiler_is_not() {
+        let error = to_end(shell("sleep 30")).await.unwrap_err();
+        assert!(error.to_string().ends_with("` printed nothing for 600 s and was stopped"), "{error}");
+        compile(shell("sleep 0.1")).await.unwrap();
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn only_silence_ends_a_program() {
         const SILENCE: Duration = Duration::from_secs(600);
         let (sender, mut chunks) = unbounded_channel();
         // Two hours of work that prints every nine minutes.

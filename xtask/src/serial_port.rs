@@ -42,7 +42,7 @@ fn has_serial_ports(drivers: &str) -> bool {
 pub(crate) async fn command() -> Result<PathBuf> {
     let mut build = toolchain::cargo();
     build.args(["build", "--workspace", "--bin", "stepscope", "--locked"]);
-    run::to_end(build).await?;
+    run::compile(build).await?;
     let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let command = this.with_file_name(format!("stepscope{}", env::consts::EXE_SUFFIX));
     ensure!(command.exists(), "cargo built no {}", command.display());

@@ -41,7 +41,7 @@ pub(crate) async fn test() -> Result<()> {
     ensure!(!files.is_empty(), "{TESTS} holds no *{TEST_ENDING}");
     let mut command = Command::new(npm::node_program("node").await?);
     command.args(["--test", "--test-reporter=spec"]).args(files);
-    run::test(command).await
+    run::to_end(command).await
 }
 
 fn tests() -> Result<Vec<PathBuf>> {

@@ -66,7 +66,7 @@ impl Step {
             Self::Format => {
                 toolchain::components().await?;
                 for workspace in RUSTFMT {
-                    cargo(&format!("{workspace} --check")).await?;
+                    run::to_end(cargo(&format!("{workspace} --check"))).await?;
                 }
                 sources::check_format().await
             }
@@ -93,15 +93,11 @@ impl Step {
                 clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {
-                let mut command = toolchain::cargo();
-                command.args(words("doc --no-deps --workspace --locked")).env("RUSTDOCFLAGS", "-D warnings");
-                run::to_end(command).await
+                let mut command = cargo("doc --no-deps --workspace --locked");
+                command.env("RUSTDOCFLAGS", "-D warnings");
+                run::compile(command).await
             }
-            Self::Native => {
-                let mut command = toolchain::cargo();
-                command.args(words("test --workspace --locked --no-fail-fast"));
-                run::cargo_test(command).await
-            }
+            Self::Native => run::cargo_test(cargo("test --workspace --locked --no-fail-fast")).await,
             Self::Vcd => dump_readers::test().await,
             Self::Avr => avr::test().await,
             Self::Live => judges::test().await,
@@ -118,18 +114,14 @@ impl Step {
     }
 }
 
-fn words(line: &str) -> impl Iterator<Item = &str> {
-    line.split_whitespace()
-}
-
-async fn cargo(line: &str) -> Result<()> {
+fn cargo(line: &str) -> Command {
     let mut command = toolchain::cargo();
-    command.args(words(line));
-    run::to_end(command).await
+    command.args(line.split_whitespace());
+    command
 }
 
 async fn clippy(what: &str) -> Result<()> {
-    cargo(&format!("clippy {what} --locked -- -D warnings")).await
+    run::compile(cargo(&format!("clippy {what} --locked -- -D warnings"))).await
 }
 
 /// wasm/webdriver.json holds the browsers' flags.
@@ -144,8 +136,8 @@ async fn wasm() -> Result<()> {
     // In seconds, for the whole run; the runner's default of 20 is too short on a busy machine.
     command.env("WASM_BINDGEN_TEST_TIMEOUT", "600");
     // wasm-pack compiles and tests in one call.
-    cargo(&format!("build --tests --package stepscope-wasm --locked --target {WASM}")).await?;
-    run::test(command).await
+    run::compile(cargo(&format!("build --tests --package stepscope-wasm --locked --target {WASM}"))).await?;
+    run::to_end(command).await
 }
 
 async fn page_tests() -> Result<Command> {
@@ -158,8 +150,7 @@ pub(crate) async fn with_page(line: &str) -> Result<Command> {
     let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
     page::built().await?;
-    let mut command = toolchain::cargo();
-    command.args(words(line));
+    let mut command = cargo(line);
     command
         .env("STEPSCOPE_WEB", root().join("web"))
         .env("STEPSCOPE_DIST", dist::folder())
@@ -214,7 +205,7 @@ async fn engines() -> Result<()> {
 pub(crate) async fn format() -> Result<()> {
     toolchain::components().await?;
     for workspace in RUSTFMT {
-        cargo(workspace).await?;
+        run::to_end(cargo(workspace)).await?;
     }
     sources::format().await
 }

@@ -178,7 +178,7 @@ impl Tool {
             .env("CARGO_PROFILE_RELEASE_LTO", "off")
             .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16")
             .env("CARGO_TARGET_DIR", build_folder(cache));
-        run::to_end(command).await?;
+        run::compile(command).await?;
         let program = find(self.program, &home.join("bin")).context("cargo installed it elsewhere")?;
         ensure!(
             self.fits(&program).await,

@@ -510,9 +510,9 @@ mod pty {
                 let path = ptsname(&master, Vec::new())?;
                 Ok((master, PathBuf::from(std::ffi::OsString::from_vec(path.into_bytes()))))
             };
-            let (master, path) = made().map_err(failed)?;
             #[cfg(target_os = "linux")]
             let claim = link.map(claim).transpose()?;
+            let (master, path) = made().map_err(failed)?;
             let mut pty = Self {
                 master,
                 path,

@@ -26,6 +26,7 @@ use stepscope_core::{
     sim::{
         Experiment,
         framed_host::{Conversation, Report, Standing, for_real_line},
+        raw_host::RawHost,
         session::{Pace, SessionClock},
     },
 };
@@ -66,6 +67,12 @@ pub(crate) struct Arguments {
     progress: bool,
 }
 
+/// What to send, by the line's protocol.
+enum Job {
+    Raw(RawHost),
+    Framed(Conversation),
+}
+
 pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
@@ -85,21 +92,25 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         let why = "a framed line is answered, and keeps the queue filled by itself";
         return Err(Failure::Option(format!("--lead: {why}")));
     }
-    let raw = is_raw.then(|| raw::host(&experiment, arguments.lead)).transpose()?;
+    let job = if is_raw {
+        Job::Raw(raw::host(&experiment, arguments.lead)?)
+    } else {
+        Job::Framed(experiment.conversation(Instant(1)).ok_or_else(|| {
+            let why = "a line script has no known replies, so nothing can be confirmed; use a motion or packets as the source";
+            Failure::Option(format!("{}: {why}", path.display()))
+        })?)
+    };
     wake_on_time();
     // Until here a signal ends the command at once, even while it waits for a pipe.
     interrupt::watch()?;
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
-    if let Some(host) = raw {
-        return raw::send(host, wire, (arguments.json, arguments.progress));
-    }
+    let conversation = match job {
+        Job::Raw(host) => return raw::send(host, wire, (arguments.json, arguments.progress)),
+        Job::Framed(conversation) => conversation,
+    };
     let clock_hz = experiment.config().clock_hz();
     let slack = Cycles(u64::from(clock_hz) * arguments.slack / 1000);
-    let Some(conversation) = experiment.conversation(Instant(1)) else {
-        let why = "a line script is sent as it stands, and nobody knows what is to be answered; send a motion or packets";
-        return Err(Failure::Option(format!("{}: {why}", path.display())));
-    };
     let mut sender = Sender {
         host: conversation.with_slack(slack),
         clock: SessionClock::new(clock_hz, Pace::REAL_TIME, u64::MAX),

@@ -1,7 +1,11 @@
 //! Measures steps without a plan: of packets, line scripts, segment lists.
 
 use super::arguments::{Arguments, Written};
-use crate::{failure::Failure, json::Tables, kept_run, terminal};
+use crate::{
+    failure::{Failure, Numbered},
+    json::Tables,
+    kept_run, terminal,
+};
 use serde_json::{Map, Value};
 use std::io::{self, Write};
 use stepscope_core::{
@@ -27,7 +31,9 @@ pub(super) fn measures(
     let channel = arguments.axis.unwrap_or(scenario.analysis.axis.into());
     let channels = experiment.config().channels();
     let own = u8::try_from(channel).ok().filter(|channel| *channel < channels);
-    let own = own.ok_or_else(|| Failure::Axis(arguments.scenario.clone(), channel, channels.into()))?;
+    let own = own.ok_or_else(|| {
+        Failure::index(&arguments.scenario, Numbered::AxisChannels, channel, channels.into(), false)
+    })?;
     let recording = kept_run::of(&arguments.scenario, experiment)?;
     let steps = steps(&recording.trace, own);
     let clock_hz = experiment.config().clock_hz();

@@ -1,7 +1,10 @@
 //! Torque of steps without a plan: of packets, line scripts, segment lists.
 
 use super::{arguments::Arguments, driven::Driven};
-use crate::{failure::Failure, kept_run};
+use crate::{
+    failure::{Failure, Numbered},
+    kept_run,
+};
 use stepscope_core::{
     inspect::motion::torque::Machine,
     peripheral::trace::steps,
@@ -16,7 +19,7 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
     let refused = |field, detail| wrong(vec![Problem::new(field, ValueError::Conflict { detail })]);
     let channels = scenario.bus.channels;
     if let Some(channel) = arguments.axis.filter(|&channel| channel >= channels.into()) {
-        return Err(Failure::Axis(path.clone(), channel, channels.into()));
+        return Err(Failure::index(path, Numbered::AxisChannels, channel, channels.into(), true));
     }
     let named = arguments.named.named(scenario);
     if Machine::of_channel(&named, 0, 0).is_none() {
