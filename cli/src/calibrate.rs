@@ -1,6 +1,6 @@
 //! `stepscope calibrate`: steps per millimeter from measured lengths (DESIGN B3, Zhang 2012).
 
-use crate::{failure::Failure, json::Tables, scenarios, terminal};
+use crate::{failure::Failure, json::Tables, options::Json, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -14,12 +14,10 @@ const LENGTHS: [(&str, f64); 3] = [("length_mm", 1.0), ("length_cm", 10.0), ("le
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// A CSV file with the columns length_mm (or length_cm, length_m) and steps, a measurement a row; `-` reads
-    /// standard input.
+    /// CSV table with the columns length_mm (or length_cm, length_m) and steps; `-` reads standard input
     table: PathBuf,
-    /// Print the result as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
 }
 
 pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
@@ -27,7 +25,7 @@ pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
     let bad = |what| Failure::Table(arguments.table.clone(), what);
     let pairs = pairs(&text).map_err(bad)?;
     let found = Calibration::of(&pairs).map_err(|error| bad(error.to_string()))?;
-    if arguments.json {
+    if arguments.json.json {
         return tables(&found, &pairs).print();
     }
     print(&found, &pairs).map_err(Failure::output)
@@ -59,10 +57,9 @@ fn pairs(text: &str) -> Result<Vec<Pair>, String> {
     let head = reader.headers().map_err(|error| error.to_string())?.clone();
     let place = |name: &str| head.iter().position(|field| field == name);
     let length = LENGTHS.iter().find_map(|(name, mm)| Some((place(name)?, *name, *mm)));
-    let missing = "give a first row that names the columns length_mm (or length_cm, length_m) and steps";
-    let (length, length_name, mm) =
-        length.ok_or_else(|| format!("there is no column of lengths; {missing}"))?;
-    let steps = place("steps").ok_or_else(|| format!("there is no column steps; {missing}"))?;
+    let missing = "use a first row with the columns length_mm (or length_cm, length_m) and steps";
+    let (length, length_name, mm) = length.ok_or_else(|| format!("no column of lengths; {missing}"))?;
+    let steps = place("steps").ok_or_else(|| format!("no column steps; {missing}"))?;
     let mut pairs = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| error.to_string())?;
@@ -70,7 +67,9 @@ fn pairs(text: &str) -> Result<Vec<Pair>, String> {
         let number = |at: usize, name: &str| {
             let given = record.get(at).unwrap_or_default();
             let number = given.parse::<f64>().ok().filter(|number| number.is_finite());
-            number.ok_or_else(|| format!("line {line}: {name} is “{given}”; give a number, with a point"))
+            number.ok_or_else(|| {
+                format!("line {line}: {name}: \"{given}\" is not a number; use digits and a decimal point")
+            })
         };
         pairs.push(Pair { length: mm * number(length, length_name)?, steps: number(steps, "steps")? });
     }
@@ -98,7 +97,7 @@ fn digits(number: f64, decimals: usize) -> String {
 
 fn fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
     let k = fit.steps_per_unit;
-    writeln!(out, "  k                 {} steps/mm, {} mm a step", digits(k, 6), digits(1.0 / k, 9))?;
+    writeln!(out, "  k                 {} steps/mm, {} mm per step", digits(k, 6), digits(1.0 / k, 9))?;
     writeln!(out, "  r.m.s. residual   {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;
     let Some((index, largest)) = fit.largest() else { return Ok(()) };
     let length = pairs.get(index).map_or(0.0, |pair| pair.length);

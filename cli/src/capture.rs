@@ -16,7 +16,7 @@ use crate::{
     output::{Outputs, STANDARD},
     pipe,
     progress::Progress,
-    scenarios,
+    scenarios, suggest,
     timing::{self, TimeUnit},
     torque::{self, Driven},
 };
@@ -30,7 +30,7 @@ use stepscope_core::{
     capture::{
         ChannelMap,
         read::{self, Limits, Reading, Wanted},
-        samples::sample,
+        samples::{SAMPLES, sample},
     },
     inspect::{
         motion::torque::Machine, recording::loaded_capture::LoadedCapture, trace::timing::TimingCheck,
@@ -44,18 +44,19 @@ const MAX_PIPED: u64 = 1 << 30;
 
 pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let Reading { capture, error } = read(arguments)?;
+    let mut progress = Progress::new("capture", arguments.show.progress);
+    let Reading { capture, error } = read(arguments, &mut progress)?;
     if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
         return Err(arguments.wrong(error));
     }
     // A pipe can be read only once.
-    let against = arguments.against.as_deref().map(scenarios::judged).transpose()?;
+    let against = arguments.against.as_deref().map(scenarios::validated).transpose()?;
     let base = against.as_ref().map(|(scenario, _)| &**scenario);
     let rules = arguments.timing.rules(&arguments.file, &base.cloned().unwrap_or_default())?;
-    let most_kept = arguments.timing.most_kept();
+    let max_violations = arguments.timing.max_violations();
     // Uses the file's ticks: rounded to cycles, a short pulse might pass. Runs before the capture's memory is reused.
     let in_ticks = rules.as_ref().map(|rules| {
-        LoadedCapture::timing_in_ticks(&capture, &arguments.open_options(), rules, most_kept)
+        LoadedCapture::timing_in_ticks(&capture, &arguments.open_options(), rules, max_violations)
             .map_err(|error| arguments.cannot_open(&error))
     });
     let in_ticks = in_ticks.transpose()?.flatten();
@@ -75,7 +76,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let rules = rules.filter(|_| recording.has_levels());
     let check = in_ticks.map(|(check, _)| check).or_else(|| {
         let new = if recording.is_rounded { TimingCheck::of_rounded } else { TimingCheck::new };
-        let mut check = new(rules.as_ref()?, recording.clock_hz, most_kept);
+        let mut check = new(rules.as_ref()?, recording.clock_hz, max_violations);
         recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         recording.records.iter().for_each(|record| check.record(*record));
         Some(check)
@@ -86,9 +87,9 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         let written = timing::write_violations(outputs.create(path)?, check, unit);
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
-    outputs.commit()?;
+    progress.end(format_args!("{} {}", recording.count, recording.what), &outputs.commit()?);
 
-    if arguments.json {
+    if arguments.json.json {
         let mut tables =
             text::tables(Tables::of("capture"), &recording, arguments.map.is_none(), beside.as_ref());
         if let Some(check) = &check {
@@ -113,10 +114,10 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::PartOnly(arguments.file.clone(), error.to_string()));
     }
     if let Some(beside) = beside.filter(|beside| !beside.found.is_same()) {
-        return Err(Failure::NotTheModel(text::difference(&beside)));
+        return Err(Failure::NotThePlan(text::difference(&beside)));
     }
     arguments.timing.needs_steps(recording.report.channels.is_empty())?;
-    check.map_or(Ok(()), |check| arguments.timing.verdict(&check))
+    check.map_or(Ok(()), |check| arguments.timing.result(&check))
 }
 
 /// The demand of the steps on their motors: those of the scenario, or the named one.
@@ -130,13 +131,12 @@ fn driven(arguments: &Arguments, recording: &LoadedCapture, base: Option<&Scenar
     recording.report.channels.iter().filter_map(|found| channel(found.channel)).collect()
 }
 
-fn read(arguments: &Arguments) -> Result<Reading, Failure> {
+fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failure> {
     let path = &arguments.file;
     let failed = |error: io::Error| Failure::File(path.clone(), error);
     let limits = Limits::default();
     let channels = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
     let wanted = Wanted { channels, base: arguments.base };
-    let mut progress = Progress::new("capture", arguments.progress);
     let mut piped = |input: &mut dyn Read| {
         let mut bytes = Vec::new();
         input.take(MAX_PIPED + 1).read_to_end(&mut bytes).map_err(failed)?;
@@ -145,7 +145,7 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
             return Err(Failure::TooLong(path.clone(), MAX_PIPED));
         }
         Ok(read::read_wanted(Cursor::new(bytes), &limits, &wanted, &mut |read| {
-            progress.tell(read, all);
+            progress.update(read, all);
             true
         }))
     };
@@ -156,7 +156,10 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
         Ok(file) => file,
         // If there is no such file, it may be a sample's name.
         Err(error) => {
-            let sample = path.to_str().and_then(sample).ok_or_else(|| failed(error))?;
+            let sample = path.to_str().and_then(sample).ok_or_else(|| {
+                let hint = suggest::hint(&path.to_string_lossy(), SAMPLES.iter().map(|sample| sample.id));
+                if hint.is_empty() { failed(error) } else { Failure::NoRecording(path.clone(), hint) }
+            })?;
             return Ok(read::read(Cursor::new(sample.bytes), &limits, &mut |_| true));
         }
     };
@@ -169,7 +172,7 @@ fn read(arguments: &Arguments) -> Result<Reading, Failure> {
     }
     let all = known.len();
     Ok(read::read_wanted(BufReader::with_capacity(1 << 16, file), &limits, &wanted, &mut |read| {
-        progress.tell(read, all);
+        progress.update(read, all);
         true
     }))
 }

@@ -2,6 +2,7 @@
 
 use crate::{
     failure::Failure,
+    help::PAGES,
     paths::{PATHS, check},
 };
 use clap::Command;
@@ -11,22 +12,25 @@ use std::{any::TypeId, collections::BTreeSet, fs, path::PathBuf};
 const LINES: &[&str] = &[
     "run {scenario} --driver {driver} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
     "serve {scenario} --record {record} --pty {pty}",
-    "faults {file}",
+    "faults {file} --seed 1 --write-scenario {write_scenario}",
     "tables {scenario} --steps {steps} --out {out}",
-    "measures {scenario}",
+    "measures {scenario} --out {out}",
     "torque {scenario} --out {out}",
     "plant {scenario} --csv {csv} --vcd {vcd}",
-    "settling {scenario} --write {write}",
+    "settling {scenario} --write-scenario {write_scenario}",
     "limits {scenario}",
-    "resonance {scenario}",
-    "capture {file} --against {against} --driver {driver} --late {late} --scenario {scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
+    "resonance {scenario} --out {out}",
+    "capture {file} --against {against} --driver {driver} --late {late} --write-scenario {write_scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
     "powercut {scenario}",
     "calibrate {table}",
     "sine sweep --out {out}",
     "sine best --out {out}",
     "sine vertices --segments 3 --out {out}",
     "sine segments {scenario} --out {out}",
-    "points {table}",
+    "points {table} --out {out}",
+    "open link --out {out}",
+    "presets --out {out}",
+    "completions bash --out {out}",
 ];
 
 fn commands(command: &Command, name: &str, found: &mut Vec<(String, Command)>) {
@@ -77,7 +81,7 @@ fn line(template: &str, file: impl Fn(&str) -> String, instead: Option<(&str, St
 fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
-    let judged =
+    let checked =
         |words: Vec<String>| check(&crate::command_line().try_get_matches_from(words).expect("a line"));
     for paths in PATHS {
         let templates = LINES.iter().filter(|line| line.starts_with(paths.command));
@@ -85,14 +89,14 @@ fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
             for name in paths.read {
                 fs::write(file(name), "input").expect("a file");
             }
-            judged(line(template, file, None)).expect("each has a file of its own");
+            checked(line(template, file, None)).expect("each has a file of its own");
             for written in paths.written {
                 for read in paths.read {
-                    let found = judged(line(template, file, Some((written, file(read)))));
+                    let found = checked(line(template, file, Some((written, file(read)))));
                     assert!(matches!(found, Err(Failure::Output(..))), "{template}: {written} over {read}");
                 }
                 for other in paths.written.iter().filter(|other| *other != written) {
-                    let found = judged(line(template, file, Some((written, file(other)))));
+                    let found = checked(line(template, file, Some((written, file(other)))));
                     assert!(matches!(found, Err(Failure::Output(..))), "{template}: {written} over {other}");
                 }
             }
@@ -104,7 +108,7 @@ fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
         assert!(!is_tried || names.all(|name| tried.contains(&format!("{{{name}}}"))), "{tried}");
     }
     let twice = ["stepscope", "capture", "-", "--against", "-"].map(str::to_owned).to_vec();
-    assert!(matches!(judged(twice), Err(Failure::Option(_))));
+    assert!(matches!(checked(twice), Err(Failure::Option(_))));
 }
 
 /// A new numeric option needs a type of quantity.rs.
@@ -127,11 +131,11 @@ fn every_option_of_a_number_refuses_what_is_none() {
                 let error = crate::command_line().try_get_matches_from(words).expect_err(&option);
                 let error = error.to_string();
                 // clap itself refuses an empty one.
-                let is_told = ["use ", "give ", "possible values", "lists them"];
+                let allowed = ["use ", "give ", "possible values", "lists the reserved names"];
                 assert!(
                     error.contains(&format!("--{}", argument.get_long().unwrap_or_default()))
                         && (given.is_empty() || error.contains(given))
-                        && (given.is_empty() || is_told.iter().any(|told| error.contains(told))),
+                        && (given.is_empty() || allowed.iter().any(|allowed| error.contains(allowed))),
                     "{name} {option}: {error}"
                 );
             }
@@ -139,4 +143,65 @@ fn every_option_of_a_number_refuses_what_is_none() {
         }
     }
     assert!(tried >= 50, "{tried}");
+}
+
+/// One line in sentence case without a full stop; details are in the long help.
+fn is_one_line(text: &str) -> bool {
+    let first = text.chars().next().unwrap_or(' ');
+    !text.contains('\n') && !text.ends_with('.') && (first.is_uppercase() || first == '`')
+}
+
+#[test]
+fn every_help_page_has_groups_exit_codes_and_examples() {
+    let mut all = vec![(String::new(), crate::command_line())];
+    commands(&crate::command_line(), "", &mut all);
+    all.extend(
+        crate::command_line().get_subcommands().map(|inner| (inner.get_name().to_owned(), inner.clone())),
+    );
+    for (name, command) in all {
+        let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+        assert!(is_one_line(&about) && about.len() <= 80, "{name}: {about}");
+        for argument in command.get_arguments().filter(|argument| !argument.is_hide_set()) {
+            let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+            assert!(is_one_line(&help) && help.len() <= 100, "{name} {}: {help}", argument.get_id());
+            let is_option = argument.get_long().is_some();
+            assert!(!is_option || argument.get_help_heading().is_some(), "{name} {}", argument.get_id());
+        }
+        let page = PAGES.iter().find(|page| page.command == name).expect(&name);
+        let ending = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        assert!(ending.starts_with("Exit codes:\n  0    success\n"), "{name}: {ending}");
+        let examples = format!("\n\nExamples:\n  {}\n  {}", page.examples[0], page.examples[1]);
+        assert!(ending.ends_with(&examples), "{name}: {ending}");
+        assert!(
+            page.examples.iter().all(|line| line.contains(format!("stepscope {name}").trim_end())),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn former_names_of_options_work_and_are_hidden() {
+    let rows: &[(&str, &str)] = &[
+        ("plant x --drive a4988", "--motor-driver"),
+        ("settling x --drive a4988", "--motor-driver"),
+        ("limits x --drive a4988", "--motor-driver"),
+        ("resonance x --drive a4988", "--motor-driver"),
+        ("resonance x --rung 5", "--step"),
+        ("settling x --write y", "--write-scenario"),
+        ("capture x --scenario y --of-steps --error-us 5", "--write-scenario"),
+        ("faults --seed 1 --scenario", "--write-scenario"),
+        ("serve x --tcp 127.0.0.1:0 --open", "--allow-remote"),
+    ];
+    for (line, name) in rows {
+        let words: Vec<&str> = std::iter::once("stepscope").chain(line.split(' ')).collect();
+        assert!(crate::command_line().try_get_matches_from(&words).is_ok(), "{line}");
+        let former =
+            words.iter().find(|word| ["--drive", "--rung", "--write", "--scenario", "--open"].contains(word));
+        let mut help = crate::command_line();
+        let inner = help.find_subcommand_mut(words[1]).expect(line);
+        let help = inner.render_long_help().to_string();
+        let is_shown =
+            |name: &str| help.split_whitespace().any(|word| word.trim_end_matches([',', ';']) == name);
+        assert!(is_shown(name) && !is_shown(former.expect(line)), "{line}: {help}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Failures of a command: message and exit code.
 
-use crate::terminal::Escaped;
+use crate::{suggest, terminal::Escaped};
 use std::{
     fmt, io,
     path::{Path, PathBuf},
@@ -19,6 +19,8 @@ pub(crate) const INTERRUPTED: u8 = 130;
 #[derive(Debug)]
 pub(crate) enum Failure {
     File(PathBuf, io::Error),
+    NoScenario(PathBuf, String),
+    NoRecording(PathBuf, String),
     /// A written file that could not be renamed, and the temporary files that are kept.
     NotRenamed(PathBuf, io::Error, Vec<PathBuf>),
     /// The output, and why it cannot be used.
@@ -31,13 +33,11 @@ pub(crate) enum Failure {
     NotText(PathBuf),
     Scenario(PathBuf, Vec<Problem>),
     Link(LinkError),
-    /// A link without its sender's digests cannot be verified.
-    NoProof,
+    NoDigests,
     RunFingerprint(RunFingerprintError),
-    /// The first difference.
     OtherRun(String),
     LongAnalysis(PathBuf, TooLong),
-    Preset(String),
+    Preset(String, String),
     NoPanel(PathBuf),
     LongRun(PathBuf),
     NoStandAlone(PathBuf),
@@ -45,13 +45,9 @@ pub(crate) enum Failure {
     Index(PathBuf, Index),
     Table(PathBuf, String),
     Recording(PathBuf, String),
-    /// A truncated recording.
     PartOnly(PathBuf, String),
-    /// A recording differs from the plan.
-    NotTheModel(String),
-    /// Violations that the timing check found, with --strict.
+    NotThePlan(String),
     Violations(u64),
-    /// A strict timing check of a recording without steps.
     NoSteps,
     Port(String, String),
     Option(String),
@@ -60,11 +56,8 @@ pub(crate) enum Failure {
     NotRealTime(u64, f64),
     NotRecorded(PathBuf, String),
     NotVerified(String),
-    /// Ctrl-C, after the report.
     Interrupted,
-    /// Number of seeds with wrong steps on a framed line.
     WrongSteps(u64),
-    /// Number of power cuts after which a wrong position is trusted.
     SilentlyWrong(u64),
 }
 
@@ -133,7 +126,12 @@ impl Failure {
         match self {
             // The code that a shell reports for SIGPIPE.
             _ if self.is_closed_pipe() => ExitCode::from(141),
-            Self::File(..) | Self::NotRenamed(..) | Self::PartOnly(..) | Self::Port(..) => ExitCode::from(1),
+            Self::File(..)
+            | Self::NoScenario(..)
+            | Self::NoRecording(..)
+            | Self::NotRenamed(..)
+            | Self::PartOnly(..)
+            | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
             Self::Interrupted => ExitCode::from(INTERRUPTED),
             Self::Output(..)
@@ -144,9 +142,9 @@ impl Failure {
             | Self::LongScenario(..)
             | Self::Scenario(..)
             | Self::Link(_)
-            | Self::NoProof
+            | Self::NoDigests
             | Self::RunFingerprint(_)
-            | Self::Preset(_)
+            | Self::Preset(..)
             | Self::NoPanel(_)
             | Self::NoStandAlone(_)
             | Self::LongRun(_)
@@ -156,7 +154,7 @@ impl Failure {
             | Self::Option(_)
             | Self::Recording(..) => ExitCode::from(2),
             Self::OtherRun(_)
-            | Self::NotTheModel(_)
+            | Self::NotThePlan(_)
             | Self::Violations(_)
             | Self::NoSteps
             | Self::NotRealTime(..)
@@ -169,35 +167,51 @@ impl Failure {
 }
 
 pub(crate) fn no_plant(path: &Path) -> Failure {
-    let detail = "no plant, so nothing is driven; give \"plant\": {}";
+    let detail = "the scenario has no plant, so there are no motors to simulate; add \"plant\": {}";
     let problem = Problem::new("plant", ValueError::Conflict { detail });
     Failure::Scenario(path.to_owned(), vec![problem])
+}
+
+/// The problem, and for an unknown field the name that it is most like.
+pub(crate) fn with_hint(problem: &Problem) -> String {
+    let text = problem.to_string();
+    let Some((_, names)) = text.rsplit_once("unknown field; use one of ") else { return text };
+    let hint = problem.path.rsplit('.').next().map(|name| suggest::hint(name, names.split(", ")));
+    text.clone() + &hint.unwrap_or_default()
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path, error) => write!(f, "{}: {error}", Escaped::path(path)),
+            Self::NoScenario(path, hint) => write!(
+                f,
+                "{}: no file or preset of this name; `stepscope presets` lists the presets{hint}",
+                Escaped::path(path)
+            ),
+            Self::NoRecording(path, hint) => {
+                write!(f, "{}: no file or recording of this name{hint}", Escaped::path(path))
+            }
             Self::NotRenamed(path, error, kept) => {
-                write!(f, "{}: {error}; what was written is saved under other names:", Escaped::path(path))?;
+                let path = Escaped::path(path);
+                write!(f, "{path}: {error}; what was written is saved under other names:")?;
                 kept.iter().try_for_each(|kept| write!(f, "\n  {}", Escaped::path(kept)))
             }
             Self::Output(path, detail) => write!(f, "{}: {detail}", Escaped::path(path)),
             Self::Timescale(error) => write!(f, "--vcd-timescale: {error}"),
-            Self::TooLong(path, most) => write!(
-                f,
-                "{}: more than {most} bytes; {}",
-                Escaped::path(path),
-                if *most > MAX_TEXT_BYTES as u64 {
-                    "save it to a file, which may have any length"
+            Self::TooLong(path, max) => {
+                let path = Escaped::path(path);
+                write!(f, "{path}: more than {max} bytes; ")?;
+                f.write_str(if *max > MAX_TEXT_BYTES as u64 {
+                    "save the recording to a file, which may have any length"
                 } else {
-                    "give a shorter text: no scenario or table needs as many"
-                }
-            ),
+                    "use a shorter scenario or table"
+                })
+            }
             Self::LongAnalysis(path, why) => write!(f, "{}: {why}", Escaped::path(path)),
             Self::LongScenario(path, help) => write!(
                 f,
-                "{}: not written: the scenario takes more than the {MAX_TEXT_BYTES} bytes that can be read again; {help}",
+                "{}: not written: the scenario has more than {MAX_TEXT_BYTES} bytes and could not be read again; {help}",
                 Escaped::path(path)
             ),
             Self::NotText(path) => {
@@ -207,69 +221,81 @@ impl fmt::Display for Failure {
                 let count = problems.len();
                 let s = if count == 1 { "" } else { "s" };
                 write!(f, "{}: {count} problem{s}", Escaped::path(path))?;
-                problems.iter().try_for_each(|problem| write!(f, "\n  {}", Escaped(problem)))
+                problems.iter().try_for_each(|problem| write!(f, "\n  {}", Escaped(with_hint(problem))))
             }
             Self::Link(error) => write!(f, "{error}"),
-            Self::NoProof => f.write_str(
-                "the link carries no digests of its sender (no d= in it), so there is nothing to verify; make it with the page's Share or with `stepscope run --link`",
+            Self::NoDigests => f.write_str(
+                "--verify: the link has no digests of its sender (no d= part); make it with Share in the page, or with `stepscope run --link`",
             ),
             Self::RunFingerprint(error) => write!(f, "{error}"),
-            Self::OtherRun(how) => f.write_str(how),
-            Self::Preset(id) => {
-                write!(f, "{}: no such preset; `stepscope presets` lists them", Escaped(id))
+            Self::Preset(id, hint) => {
+                write!(f, "{}: no preset of this name; `stepscope presets` lists the presets{hint}", Escaped(id))
             }
             Self::NoPanel(path) => write!(
                 f,
-                "{}: --panel writes what stand-alone controllers show, and there is none; take it out, or give a source standalone",
+                "{}: --panel: the scenario has no stand-alone controller; omit the option, or use a source standalone",
                 Escaped::path(path)
             ),
             Self::LongRun(path) => write!(
                 f,
-                "{}: the run makes more than 4 000 000 edges, or comes to no end; give run_cycles or a shorter program",
+                "{}: the run has more than 4000000 edges, or no end; set run_cycles, or use a shorter program",
                 Escaped::path(path)
             ),
             Self::NoStandAlone(path) => write!(
                 f,
-                "{}: powercut cuts the power of stand-alone controllers, and there is none; give a source standalone, or a preset such as zhang-2012-controller",
+                "{}: the scenario has no stand-alone controller; use a source standalone, or a preset such as zhang-2012-controller",
                 Escaped::path(path)
             ),
-            Self::SilentlyWrong(count) => write!(
-                f,
-                "after {count} power cuts a position is wrong but trusted; the table of --json has the first of these cuts"
-            ),
+            Self::SilentlyWrong(count) => {
+                let s = plural(*count);
+                write!(f, "after {count} power cut{s} a wrong position is trusted; --json lists the first of them")
+            }
             Self::NoDriver(path) => write!(
                 f,
-                "{}: the scenario names no driver; give one with --driver, `stepscope drivers` lists them",
+                "{}: the scenario has no driver; use --driver (`stepscope drivers` lists the drivers)",
                 Escaped::path(path)
             ),
             Self::Index(path, index) => write!(f, "{}: {index}", Escaped::path(path)),
-            Self::Table(path, what) | Self::Recording(path, what) => write!(f, "{}: {what}", Escaped::path(path)),
-            Self::PartOnly(path, why) => {
-                write!(f, "{}: the recording is truncated: {why}; the results above are those of the part before", Escaped::path(path))
+            Self::Table(path, what) | Self::Recording(path, what) => {
+                write!(f, "{}: {what}", Escaped::path(path))
             }
-            Self::NotTheModel(how) | Self::Option(how) | Self::NotVerified(how) => f.write_str(how),
+            Self::PartOnly(path, why) => write!(
+                f,
+                "{}: the recording is truncated: {why}; the results are of the part before",
+                Escaped::path(path)
+            ),
+            Self::OtherRun(why) | Self::NotThePlan(why) | Self::Option(why) | Self::NotVerified(why) => {
+                f.write_str(why)
+            }
             Self::Port(name, why) => write!(f, "{}: {why}", Escaped(name)),
-            Self::LostPort(why) => write!(f, "the port is lost: {why}"),
+            Self::LostPort(why) => write!(f, "the port was lost: {why}"),
             Self::NotRealTime(count, ms) => {
-                let times = if *count == 1 { "once" } else { "several times" };
+                let s = plural(*count);
                 write!(
                     f,
-                    "this machine did not keep up: the session's clock was set back {times} ({count}), by {ms:.0} ms in all. The run is exact for what it was given, but was not in real time; give a longer --lag or a lower --pace"
+                    "not in real time: the clock was set back {count} time{s}, by {ms:.0} ms in total; the run is exact for its input. Use a longer --lag or a lower --pace"
                 )
             }
-            Self::NotRecorded(path, why) => write!(f, "{}: written, but it does not reproduce the session: {why}", Escaped::path(path)),
+            Self::NotRecorded(path, why) => write!(
+                f,
+                "{}: written, but the recording does not reproduce the session: {why}",
+                Escaped::path(path)
+            ),
             Self::Interrupted => f.write_str("stopped by Ctrl-C"),
             Self::Violations(count) => {
-                let s = if *count == 1 { "" } else { "s" };
-                write!(f, "{count} violation{s} of the driver's timing")
+                write!(f, "--strict: {count} violation{} of the driver's timing", plural(*count))
             }
             Self::NoSteps => f.write_str(
                 "--strict: the recording has no steps to check; map a channel to STEP0, such as --map STEP0=CH1",
             ),
             Self::WrongSteps(count) => {
-                let s = if *count == 1 { "" } else { "s" };
-                write!(f, "framed: wrong, duplicated or missing ticks with {count} seed{s}")
+                let s = plural(*count);
+                write!(f, "framed line: wrong, duplicated or missing ticks with {count} seed{s}")
             }
         }
     }
+}
+
+const fn plural(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }

@@ -1,8 +1,14 @@
 //! `stepscope faults`: runs a scenario with random line faults, one run per seed.
 
 use crate::{
-    failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenario_file, scenarios,
-    terminal,
+    failure::Failure,
+    json::Tables,
+    options::{Json, Work},
+    output::STANDARD,
+    parallel,
+    progress::Progress,
+    quantity::whole,
+    scenario_file, scenarios, terminal,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -18,21 +24,20 @@ use stepscope_core::{
     sim::fault_sweep::{FaultSweep, Tally},
 };
 
-/// Seeds per batch of a thread.
 const BATCH: u64 = 64;
 /// Seeds have 32 bits.
 const SEEDS: u64 = 1 << 32;
 /// The protocol that must never give wrong steps.
 const FRAMED: &str = "framed";
-/// Maximum seeds that are listed.
 const MAX_NAMED: usize = 8;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// Each seed has its own noise and receivers' rates. Without a file two motors turn against each other for 40
-    /// ticks.
+    /// Each seed has its own noise and receiver rates. Without a scenario, two motors turn in opposite directions for
+    /// 40 ticks.
+    #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Number of seeds to run
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole::<u32>(1..=u32::MAX.into()))]
@@ -40,36 +45,34 @@ pub(crate) struct Arguments {
     /// First seed
     #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole::<u32>(0..=u32::MAX.into()))]
     from: u32,
-    /// Framing protocol
+    /// Protocol of the line
     #[arg(long, value_enum, default_value_t = Which::Both)]
     protocol: Which,
-    /// Number of threads (default: one per processor); the result is the same
-    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
-    threads: Option<NonZero<usize>>,
     /// Run only this seed
     #[arg(long, value_name = "SEED", conflicts_with_all = ["seeds", "from"], value_parser = whole::<u32>(0..=u32::MAX.into()))]
     seed: Option<u32>,
-    /// Write the scenario of `--seed` as JSON and run nothing; `stepscope run` runs it
-    #[arg(long, requires = "seed")]
+    /// Write the scenario of --seed for `stepscope run`, and run nothing
+    #[arg(short = 'o', long, value_name = "FILE", requires = "seed", conflicts_with_all = ["scenario", "link", "json"])]
+    write_scenario: Option<PathBuf>,
+    // The former name of --write-scenario -.
+    #[arg(long, hide = true, requires = "seed", conflicts_with = "json")]
     scenario: bool,
-    /// Print the share link of the scenario of `--seed` and run nothing
-    #[arg(long, requires = "seed", conflicts_with = "scenario")]
+    /// Print the share link of the scenario of --seed, and run nothing
+    #[arg(long, requires = "seed", conflicts_with_all = ["scenario", "json"])]
     link: bool,
-    /// Print the counts as JSON: one object of tables (docs/command.md)
-    #[arg(long, conflicts_with_all = ["scenario", "link"])]
-    json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    work: Work,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// Packets without a check, as in RU 2704486.
+    /// Packets without a check, as in patent RU 2704486
     Raw,
-    /// Frames with a check, sequence numbers and replies.
+    /// Frames with a check, sequence numbers and replies
     Framed,
-    /// One after the other, side by side in the table.
+    /// One column per protocol
     Both,
 }
 
@@ -107,17 +110,19 @@ impl Report {
 
 pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
-    let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the small scenario"));
+    let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
     let sweep = |protocol| {
         let mut base = base.clone().unwrap_or_else(|| FaultSweep::small(protocol));
         base.line.protocol = protocol;
         FaultSweep::new(base).map_err(|problems| Failure::Scenario(path.clone(), problems))
     };
     let protocols = arguments.protocol.protocols();
-    if let Some(seed) = arguments.seed.filter(|_| arguments.scenario || arguments.link) {
+    let standard = arguments.scenario.then(|| PathBuf::from(STANDARD));
+    let out = arguments.write_scenario.as_ref().or(standard.as_ref());
+    if let Some(seed) = arguments.seed.filter(|_| out.is_some() || arguments.link) {
         let scenarios: Result<Vec<_>, _> =
             protocols.iter().map(|&protocol| Ok(sweep(protocol)?.scenario(seed))).collect();
-        return write(&path, &scenarios?, arguments.link);
+        return write(&path, &scenarios?, arguments.write_scenario.is_some(), out.map(PathBuf::as_path));
     }
     let seeds = match arguments.seed {
         Some(seed) => u64::from(seed)..u64::from(seed) + 1,
@@ -131,13 +136,16 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let mut reports = Vec::new();
+    let mut progress = Progress::new("faults", arguments.work.show.progress).with_parts(protocols.len());
     for &protocol in protocols {
         let (name, sweep) = (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
-        let progress = Progress::new(name, arguments.progress);
-        let report = run(&sweep, &seeds, arguments.threads, progress).map_err(Failure::threads)?;
+        let threads = arguments.work.threads;
+        let report = run(&sweep, &seeds, threads, &mut progress).map_err(Failure::threads)?;
+        progress.next_part();
         reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
     }
-    if arguments.json {
+    progress.end(format_args!("{} seeds", seeds.end - seeds.start), &[]);
+    if arguments.json.json {
         tables(&reports).print()?;
     } else {
         print(&reports).map_err(Failure::output)?;
@@ -153,7 +161,7 @@ fn run(
     sweep: &FaultSweep,
     seeds: &Range<u64>,
     threads: Option<NonZero<usize>>,
-    progress: Progress,
+    progress: &mut Progress,
 ) -> io::Result<Result<Report, Vec<Problem>>> {
     let batches = (seeds.end - seeds.start).div_ceil(BATCH);
     let make = |index| {
@@ -175,10 +183,15 @@ fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> 
     Ok(report)
 }
 
-fn write(path: &Path, scenarios: &[Scenario], as_links: bool) -> Result<(), Failure> {
+/// Writes them to `out`, or prints their links. A file has one scenario.
+fn write(path: &Path, scenarios: &[Scenario], is_file: bool, out: Option<&Path>) -> Result<(), Failure> {
+    if is_file && scenarios.len() > 1 {
+        let why = "--protocol: both gives two scenarios, but --write-scenario takes one; use raw or framed";
+        return Err(Failure::Option(why.to_owned()));
+    }
     scenarios.iter().try_for_each(|scenario| {
-        if !as_links {
-            return scenario_file::print(path, scenario, "give a shorter scenario");
+        if let Some(out) = out {
+            return scenario_file::write(out, path, scenario, "use a shorter scenario");
         }
         let link = link::encode(scenario).map_err(Failure::Link)?;
         writeln!(terminal::out(), "#{link}").map_err(Failure::output)
@@ -189,7 +202,7 @@ fn write(path: &Path, scenarios: &[Scenario], as_links: bool) -> Result<(), Fail
 type Row = (&'static str, bool, fn(&Tally) -> u64);
 const ROWS: &[Row] = &[
     ("seeds", true, |tally| tally.seeds),
-    ("seeds with something wrong", true, |tally| tally.wrong_seeds),
+    ("seeds with errors", true, |tally| tally.wrong_seeds),
     ("frames or packets sent", true, |tally| tally.frames),
     ("  repeated", false, |tally| tally.repeated),
     ("  rejected: CRC", false, |tally| tally.bad_check),
@@ -199,14 +212,14 @@ const ROWS: &[Row] = &[
     ("  acknowledged again", false, |tally| tally.acknowledged_again),
     ("bytes lost: FRAMING", true, |tally| tally.framing),
     ("replies sent", false, |tally| tally.replies),
-    ("  lost or spoiled", false, |tally| tally.replies_lost),
+    ("  lost or damaged", false, |tally| tally.replies_lost),
     ("crashes of the host", false, |tally| tally.crashes),
-    ("ticks ordered", true, |tally| tally.ordered),
+    ("ticks commanded", true, |tally| tally.ordered),
     ("  executed", true, |tally| tally.executed),
     ("  not reached: host gave up", false, |tally| tally.unreached),
     ("  missing", true, |tally| tally.missing),
     ("  wrong", true, |tally| tally.wrong),
-    ("  duplicated or not ordered", true, |tally| tally.duplicated),
+    ("  duplicated or not commanded", true, |tally| tally.duplicated),
     ("wrong steps", true, |tally| tally.wrong_steps),
     ("steps of missing ticks", true, |tally| tally.missing_steps),
     ("distance of end positions", true, |tally| tally.position_error),
@@ -245,7 +258,7 @@ fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     for (name, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
         let seeds: Vec<String> = report.wrong.iter().map(u32::to_string).collect();
         let more = if report.tally.wrong_seeds > seeds.len() as u64 { " …" } else { "" };
-        writeln!(out, "{name}: something is wrong with seeds {}{more}", seeds.join(" "))?;
+        writeln!(out, "{name}: errors with seeds {}{more}", seeds.join(" "))?;
     }
     Ok(())
 }

@@ -98,7 +98,6 @@ impl Output for VcdWriter<Out> {
     }
 }
 
-/// One row per packet, with the controller's reaction.
 pub(crate) fn packets(out: Out, controller: usize) -> Box<dyn Output> {
     Box::new(Packets { out, controller, log: PacketLog::default() })
 }
@@ -136,7 +135,6 @@ impl Output for Packets {
 
 pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 
-/// The outputs for one controller.
 #[derive(Default)]
 pub(crate) struct Station {
     pub(crate) digest: Digest,

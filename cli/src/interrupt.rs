@@ -12,7 +12,6 @@ use std::{
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
-/// A command ends at once after this many signals.
 const AT_ONCE: usize = 3;
 
 static WATCHED: AtomicBool = AtomicBool::new(false);
@@ -21,7 +20,6 @@ static COUNT: AtomicUsize = AtomicUsize::new(0);
 /// Ends the command on a signal, even while it waits for a file. Signals ignored at the start, as by `nohup`, stay
 /// ignored.
 pub(crate) fn install() {
-    // Without a handler the system ends the command.
     let _ = system::install();
 }
 

@@ -4,8 +4,8 @@ use crate::{
     failure::{Failure, Numbered, no_plant},
     json::Tables,
     motors::Replacing,
-    output::{self, Outputs},
-    parallel,
+    options::{Json, Out, Work},
+    output, parallel,
     progress::Progress,
     quantity::{Acceleration, PeakPart, Rate, whole},
     scenario_file, terminal,
@@ -13,7 +13,7 @@ use crate::{
 use clap::Args;
 use serde_json::json;
 use std::{
-    io::{self, Write},
+    io::Write,
     num::NonZero,
     path::{Path, PathBuf},
 };
@@ -38,40 +38,35 @@ pub(crate) struct Common {
     channel: Option<usize>,
     #[command(flatten)]
     replacing: Replacing,
-    /// Print the results as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
-    /// Number of threads (default: one per processor); the result is the same
-    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
-    threads: Option<NonZero<usize>>,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    work: Work,
 }
 
 #[derive(Args)]
 pub(crate) struct SettlingArguments {
     #[command(flatten)]
     common: Common,
-    /// Part of the peak that counts as settled
-    #[arg(long, default_value = "0.2")]
+    /// Deviation that counts as settled, as a part of the peak
+    #[arg(long, value_name = "PART", default_value = "0.2")]
     share: PeakPart,
-    /// T_step, the time to observe a step, in cycles (default: the slot of the bus)
+    /// Time to observe a step, in cycles (default: a slot of the bus)
     #[arg(long, value_name = "CYCLES", value_parser = whole::<NonZero<u32>>(1..=u32::MAX.into()))]
     t_step: Option<NonZero<u32>>,
-    /// Write the scenario with the longest settling time as `bus.settle_cycles`
-    #[arg(long, value_name = "FILE")]
-    write: Option<PathBuf>,
+    /// Write the scenario with the longest settling time as its bus.settle_cycles
+    #[arg(short = 'o', long, alias = "write", value_name = "FILE")]
+    write_scenario: Option<PathBuf>,
 }
 
 #[derive(Args)]
 pub(crate) struct LimitsArguments {
     #[command(flatten)]
     common: Common,
-    /// Steps per trial of starting and stopping (default: one turn)
+    /// Steps of each trial to start and stop (default: one turn)
     #[arg(long, value_name = "N", value_parser = whole::<NonZero<u64>>(1..=MAX_STEPS))]
     steps: Option<NonZero<u64>>,
-    /// Acceleration of the ramp to the pull-out rate, in steps/s^2
+    /// Acceleration of the ramps to the pull-out rate, in steps/s^2
     #[arg(long, value_name = "A", default_value = "200000")]
     ramp: Acceleration,
 }
@@ -83,12 +78,14 @@ pub(crate) struct ResonanceArguments {
     /// Minimum rate, in full steps/s
     #[arg(long, value_name = "RATE", default_value = "20")]
     from: Rate,
-    /// Maximum rate
+    /// Maximum rate, in full steps/s
     #[arg(long, value_name = "RATE", default_value = "400")]
     to: Rate,
     /// Rate increment
-    #[arg(long, value_name = "RATE", default_value = "4")]
-    rung: Rate,
+    #[arg(long, alias = "rung", value_name = "RATE", default_value = "4")]
+    step: Rate,
+    #[command(flatten)]
+    out: Out,
 }
 
 // The default of --ramp.
@@ -105,7 +102,7 @@ struct SingleMotor {
 /// The distinct motors of the first controller's plant.
 fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
     let path = &common.scenario;
-    let (scenario, experiment) = common.replacing.judged(path)?;
+    let (scenario, experiment) = common.replacing.validated(path)?;
     let plants = experiment.plants().ok_or_else(|| no_plant(path))?;
     let setup = plants.setups.first().cloned().unwrap_or_default();
     let count = setup.motors.len();
@@ -128,16 +125,17 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), F
     Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), found))
 }
 
-/// Runs `job` on several threads; returns the results in order.
 fn on_threads<T: Send>(
     common: &Common,
-    what: &'static str,
+    (what, unit): (&'static str, &str),
     count: usize,
     job: impl Fn(usize) -> T + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let progress = Progress::new(what, common.progress);
-    parallel::each(count as u64, common.threads, progress, |index| job(index as usize))
-        .map_err(Failure::threads)
+    let mut progress = Progress::new(what, common.work.show.progress);
+    let done = parallel::each(count as u64, common.work.threads, &mut progress, |index| job(index as usize))
+        .map_err(Failure::threads)?;
+    progress.end(format_args!("{count} {unit}"), &[]);
+    Ok(done)
 }
 
 fn refused(path: &Path, refused: Vec<Refused>) -> Failure {
@@ -157,8 +155,7 @@ fn channels(alone: &SingleMotor) -> String {
 pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let share = arguments.share.get();
-    let to_standard = arguments.write.as_deref() == Some(Path::new(output::STANDARD));
-    let outputs = Outputs::default();
+    let to_standard = arguments.write_scenario.as_deref() == Some(Path::new(output::STANDARD));
     let (mut scenario, experiment, motors) = motors(common)?;
     let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
@@ -167,31 +164,29 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         let grid = u64::from(setup.grid_cycles());
         if t_step < grid || 11 * t_step / grid > MAX_SAMPLES {
             let most = MAX_SAMPLES * grid / 11;
-            let what = format!(
-                "T_step is {t_step} cycles; give --t-step {grid} to {most}, at least a step of the plant's grid"
-            );
+            let what = format!("--t-step: {t_step} cycles are out of range; use {grid} to {most}");
             return Err(wrong_option(path, &what));
         }
     }
-    let all = on_threads(common, "settling", motors.len(), |index| {
+    let all = on_threads(common, ("settling", "motors"), motors.len(), |index| {
         motors.get(index).map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, share))
     })?;
     let all: Vec<StepResponse> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
-    if let Some(file) = &arguments.write {
+    if let Some(file) = &arguments.write_scenario {
         let greatest = all.iter().map(|response| response.reached).max().flatten();
         let settled = all.iter().all(|response| response.reached.is_some());
         // Like the self-test: T_step if a channel does not settle.
         let cycles = greatest.filter(|_| settled).unwrap_or(t_step);
         scenario.bus.settle_cycles = u32::try_from(cycles).unwrap_or(u32::MAX);
-        let text = scenario_file::text(file, &scenario, "give a shorter scenario")?;
-        output::write_whole(outputs, file, |out| out.write_all(text.as_bytes()))?;
+        let text = scenario_file::text(file, &scenario, "use a shorter scenario")?;
+        output::write_new(file, |out| out.write_all(text.as_bytes()))?;
     }
     if to_standard {
         return Ok(());
     }
     let clock_hz = f64::from(experiment.config().clock_hz());
-    if common.json {
+    if common.json.json {
         let rows = motors.iter().zip(&all).flat_map(|(alone, found)| {
             alone.channels.iter().map(move |channel| {
                 json!({
@@ -206,7 +201,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let mut out = terminal::out();
     let time = |cycles: Option<u64>| {
         cycles.map_or_else(
-            || "not within T_step".to_owned(),
+            || "not within the observed time".to_owned(),
             |cycles| format!("{:.4} ms, {cycles} cycles", cycles as f64 / clock_hz * 1e3),
         )
     };
@@ -232,7 +227,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (_, _, motors) = motors(common)?;
     let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_a_turn);
     // The pull-out rates take longer, so they come first.
-    let all = on_threads(common, "limits", 2 * motors.len(), |index| {
+    let all = on_threads(common, ("limits", "searches"), 2 * motors.len(), |index| {
         let Some(alone) = motors.get(index / 2) else { return Ok(None) };
         let setup = &alone.setup;
         let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
@@ -249,7 +244,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
         .zip(all.chunks(2))
         .map(|(alone, pair)| (alone, pair.get(1).copied().flatten(), pair.first().copied().flatten()))
         .collect();
-    if common.json {
+    if common.json.json {
         let rows = rows.iter().flat_map(|(alone, start_stop, pull_out)| {
             alone.channels.iter().map(move |channel| {
                 json!({ "channel": channel, "start_stop_steps_s": start_stop, "pull_out_steps_s": pull_out, "ramp_steps_s2": ramp })
@@ -258,7 +253,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
         return Tables::of("limits").with("limits", rows).print();
     }
     let rate = |found: Option<f64>| {
-        found.map_or_else(|| "not even 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
+        found.map_or_else(|| "below 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
     };
     let mut out = terminal::out();
     for (alone, start_stop, pull_out) in rows {
@@ -274,9 +269,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Maximum samples of a settling time measurement.
 const MAX_SAMPLES: u64 = 10_000_000;
-/// Maximum steps of a search at one rate.
 const MAX_STEPS: u64 = 10_000_000;
 /// Maximum motor steps of a map (PLANT F1), and seconds per rate.
 const MAX_MOTOR_STEPS: f64 = 1e10;
@@ -284,26 +277,26 @@ const RATE_S: f64 = 0.6;
 
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
-    let [from, to, rung] = [arguments.from, arguments.to, arguments.rung].map(Rate::get);
-    let count = (to - from) / rung + 1e-9;
+    let [from, to, step] = [arguments.from, arguments.to, arguments.step].map(Rate::get);
+    let count = (to - from) / step + 1e-9;
     if !(to >= from && count < MAX_RATES) {
         let what = format!(
-            "--from {from} --to {to} --rung {rung}: use rates that rise, at most {MAX_RATES} of them"
+            "--from {from} --to {to} --step {step}: out of range; use rates that rise, at most {MAX_RATES} of them"
         );
         return Err(wrong_option(path, &what));
     }
     let (_, _, motors) = motors(common)?;
-    let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * rung).collect();
+    let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * step).collect();
     let points =
         |alone: &SingleMotor| RATE_S * f64::from(alone.setup.clock_hz) / f64::from(alone.setup.grid_cycles());
     let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
     if motor_steps > MAX_MOTOR_STEPS {
         let what = format!(
-            "the map takes {motor_steps:.2e} motor-steps, at most {MAX_MOTOR_STEPS:e} are allowed; give fewer rates (--rung), or one motor (--channel)"
+            "the map takes {motor_steps:.2e} motor steps; at most {MAX_MOTOR_STEPS:e} are allowed; use a larger --step, or one --channel"
         );
         return Err(wrong_option(path, &what));
     }
-    let all = on_threads(common, "resonance", rates.len() * motors.len(), |index| {
+    let all = on_threads(common, ("resonance", "rates"), rates.len() * motors.len(), |index| {
         let (alone, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
         let (Some(alone), Some(rate)) = (alone, rate) else { return Err(Vec::new()) };
         let microsteps = alone.setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
@@ -318,19 +311,18 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
             .iter()
             .flat_map(move |&channel| rows.clone().map(move |(rate, found)| (channel, rate, found)))
     });
-    if common.json {
+    if common.json.json {
         let rows = rows.map(|(channel, rate, found)| {
             json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": found.swing, "loses_steps": found.loses })
         });
-        return Tables::of("resonance").with("resonance", rows).print();
+        let tables = Tables::of("resonance").with("resonance", rows);
+        return output::write_new(&arguments.out.out, |out| tables.write(out));
     }
-    let mut out = io::BufWriter::new(terminal::out());
-    let write = || -> io::Result<()> {
+    output::write_new(&arguments.out.out, |out| {
         writeln!(out, "channel,rate_full_steps_s,swing_full_steps,loses_steps")?;
         for (channel, rate, found) in rows {
             writeln!(out, "{channel},{rate},{},{}", found.swing, u8::from(found.loses))?;
         }
-        out.flush()
-    };
-    write().map_err(Failure::output)
+        Ok(())
+    })
 }

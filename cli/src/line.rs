@@ -17,7 +17,7 @@ pub(crate) fn write(
     let scripted = scripted(scenario, experiment, run);
     // A long noisy run may have more forced levels than a scenario allows.
     let text =
-        scenario_file::text(path, &scripted, "end the run sooner with run_cycles, or give a shorter motion")?;
+        scenario_file::text(path, &scripted, "end the run earlier with run_cycles, or use a shorter motion")?;
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     written.map_err(|error| Failure::File(path.to_owned(), error))
 }

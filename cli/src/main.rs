@@ -4,18 +4,20 @@ mod calibrate;
 mod capture;
 #[cfg(test)]
 mod command_line_tests;
+mod complete;
 mod failure;
 mod faults;
 mod files;
+mod help;
 mod interrupt;
 mod json;
-mod kept_run;
 mod limits;
 mod line;
 mod live;
 mod manual;
 mod measures;
 mod motors;
+mod options;
 mod output;
 mod panel;
 mod parallel;
@@ -27,11 +29,13 @@ mod powercut;
 mod progress;
 mod quantity;
 mod run;
+mod run_recording;
 mod scenario_file;
 mod scenarios;
 mod sine;
 mod status;
 mod steps;
+mod suggest;
 mod tables;
 mod terminal;
 mod timing;
@@ -45,19 +49,6 @@ use std::{
     process::ExitCode,
 };
 use stepscope_core::inspect::export::plain_text::is_unsafe;
-
-/// Printed below the help of each command.
-const EXIT_CODES: &str = "\
-Exit codes:
-  0    success
-  1    a file could not be read or written, the recording is truncated, or a port could not be opened
-  2    the scenario, the link, the recording or the command line is invalid
-  3    a check failed: timing violations with --strict, wrong steps on a framed line (faults), a wrong position
-       that is trusted (powercut), a run that differs from the link's (open --verify) or from the plan
-       (capture --against), commands that are not confirmed (send), a session not in real time (serve)
-  4    the port was lost (send, serve); the report says what is known
-  130  stopped by Ctrl-C; no file was changed
-  141  standard output was closed, for example by | head";
 
 /// Simulate and check stepper motion to the clock cycle
 #[derive(Parser)]
@@ -73,19 +64,21 @@ enum Command {
     Run(run::Arguments),
     /// Serve a scenario's controllers in real time
     ///
-    /// Other programs connect through a pseudo-terminal, a socket or a real port. The session can be recorded.
+    /// Other programs connect through a pseudo-terminal, a socket or a serial port. The session can be recorded.
     Serve(live::serve::Arguments),
     /// Send a scenario's ticks to real controllers and confirm each one
     ///
-    /// On a framed line every tick and the final positions are confirmed; raw packets are only timed.
+    /// On a framed line every tick and the final positions are confirmed. Raw packets have no replies: their timing is
+    /// reported.
     Send(live::send::Arguments),
-    /// Simulate random line faults (one run per seed)
+    /// Simulate random line faults, one run per seed
     ///
-    /// Counts commands that were executed wrong, twice or not at all, with and without the framed protocol.
+    /// Counts ticks that were executed wrong, twice or not at all, with and without the framed protocol.
     Faults(faults::Arguments),
     /// Write the step times of an axis as a table for a firmware
     ///
-    /// C, AVR, Rust or CSV; without --format a summary of what each form of table costs and how far its steps are off.
+    /// Source code in C, C for AVR, or Rust, or CSV. Without --format, reports the size and the errors of each form of
+    /// table.
     Tables(tables::Arguments),
     /// Report tracking error, peaks and distortion of an axis
     ///
@@ -99,57 +92,41 @@ enum Command {
     Plant(plant::Arguments),
     /// Measure how long the supply current of each motor settles after a step
     ///
-    /// The patent's delta t_p. Can write the result into a scenario.
+    /// This is the minimum stagger of two motors in patent RU 2704486.
     Settling(limits::SettlingArguments),
-    /// Search the start-stop rate and the pull-out rate of each motor
+    /// Find the start-stop rate and the pull-out rate of each motor
     Limits(limits::LimitsArguments),
-    /// Map the swing of each motor and lost steps over the step rate (CSV)
+    /// Map oscillation and lost steps of each motor over the step rate
     Resonance(limits::ResonanceArguments),
     /// Analyze a recording of a logic analyzer, a simulation or a serial line
     ///
     /// Reports steps and bytes, checks a driver's timing, compares with a scenario's run, or writes a scenario that
-    /// reproduces it.
+    /// reproduces the recording.
     Capture(capture::Arguments),
     /// Cut the power of stand-alone controllers and check the restored position
     ///
-    /// Counts the cycles after which the position is known, known to be lost, or silently wrong. Also finds the
-    /// shortest sufficient hold-up time and the life of the memory.
+    /// Counts the cycles after which the position is known, known to be lost, or wrong without notice. Also finds the
+    /// minimum hold-up time and the life of the memory.
     Powercut(powercut::Arguments),
-    /// Compute steps per millimeter from measured lengths (least squares)
+    /// Compute steps per millimeter from measured lengths by least squares
     Calibrate(calibrate::Arguments),
-    /// Find the segments that make a sine with least distortion
+    /// Approximate sines by straight segments with minimum distortion
     #[command(subcommand)]
     Sine(sine::Command),
-    /// Write a scenario that moves along the points of a table (CSV of time, position)
+    /// Write a scenario that moves along the points of a CSV table
     Points(points::Arguments),
     /// Write the scenario of a share link as JSON
-    Open {
-        /// Link, or the part after its `#`
-        link: String,
-        /// Run it, and compare the run with that of the link's sender
-        ///
-        /// The result goes to standard error; exit code 3 if the run differs.
-        #[arg(long)]
-        verify: bool,
-    },
+    Open(scenarios::OpenArguments),
     /// List the presets, or write one as JSON
-    Presets {
-        /// Preset to write
-        id: Option<String>,
-        /// Print the list as JSON: one object of tables (docs/command.md).
-        #[arg(long, conflicts_with = "id")]
-        json: bool,
-    },
+    Presets(scenarios::PresetsArguments),
     /// List the drivers that --driver takes, with their limits and sources
-    Drivers {
-        /// Print the list as JSON: one object of tables (docs/command.md).
-        #[arg(long)]
-        json: bool,
-    },
-    /// Generate shell completions
+    Drivers(options::Json),
+    /// Write a script that completes commands, options and presets in a shell
     Completions {
         /// Shell
         shell: clap_complete::Shell,
+        #[command(flatten)]
+        out: options::Out,
     },
     /// Write the manual page, or one page per command into a folder
     Man {
@@ -160,18 +137,11 @@ enum Command {
 }
 
 fn command_line() -> clap::Command {
-    // `-1` is a value out of range, not an option.
-    fn negative(argument: clap::Arg) -> clap::Arg {
-        let takes = argument.get_long().is_some() && argument.get_action().takes_values();
-        if takes { argument.allow_negative_numbers(true) } else { argument }
-    }
-    fn with_codes(command: clap::Command) -> clap::Command {
-        command.after_help(EXIT_CODES).mut_args(negative).mut_subcommands(with_codes)
-    }
-    with_codes(Arguments::command())
+    help::complete(Arguments::command())
 }
 
 fn main() -> ExitCode {
+    complete::answer(command_line);
     interrupt::install();
     let arguments = command_line().try_get_matches().and_then(|matches| {
         let arguments = Arguments::from_arg_matches(&matches)?;
@@ -214,10 +184,10 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),
         Command::Points(arguments) => points::points(&arguments),
-        Command::Open { link, verify } => scenarios::open(&link, verify),
-        Command::Presets { id, json } => scenarios::presets(id.as_deref(), json),
-        Command::Drivers { json } => timing::drivers(json),
-        Command::Completions { shell } => manual::completions(shell, command_line()),
+        Command::Open(arguments) => scenarios::open(&arguments),
+        Command::Presets(arguments) => scenarios::presets(&arguments),
+        Command::Drivers(arguments) => timing::drivers(arguments.json),
+        Command::Completions { shell, out } => complete::script(shell, &out.out),
         Command::Man { dir } => manual::pages(dir.as_deref(), command_line()),
     }
 }

@@ -7,7 +7,7 @@ mod unplanned;
 
 use crate::{
     failure::{Failure, Numbered},
-    kept_run, scenarios, terminal,
+    output, run_recording, scenarios,
 };
 pub(crate) use arguments::Arguments;
 use arguments::Written;
@@ -26,7 +26,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let selected = |scenario: &Scenario| arguments.axis.unwrap_or(scenario.analysis.axis.into());
-    let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
+    let (scenario, experiment) = scenarios::validated_after(path, |scenario| {
         let (of, axes) = match &scenario.source {
             Source::Motion(motion) => (Numbered::Axes, motion.axes.len()),
             _ => (Numbered::AxisChannels, scenario.bus.channels.into()),
@@ -45,7 +45,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     // The recording has all axes' steps.
     let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
     within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;
-    let recording = kept_run::of(path, &experiment)?;
+    let recording = run_recording::of(path, &experiment)?;
     // There are at most 16 axes.
     let channel = axis as u8;
     let steps = steps(&recording.trace, channel);
@@ -58,14 +58,12 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     );
     let found = Measures::of(plan, &run, motion.axes.get(axis));
     let distortion = Distortion::of(plan, &run, &scenario.analysis);
-    let mut out = terminal::out();
-    let written = match arguments.format {
-        _ if arguments.json => table::tables(axis, &found, distortion.as_ref()).write(&mut out),
-        Written::Text => table::text(axis, &found, distortion.as_ref(), &mut out),
-        Written::Csv => table::csv(&found, distortion.as_ref(), &mut out),
-        Written::Json => json(axis, &found, distortion.as_ref(), &mut out),
-    };
-    written.and_then(|()| out.flush()).map_err(Failure::output)
+    output::write_new(&arguments.out.out, |out| match arguments.format {
+        _ if arguments.json.json => table::tables(axis, &found, distortion.as_ref()).write(out),
+        Written::Text => table::text(axis, &found, distortion.as_ref(), out),
+        Written::Csv => table::csv(&found, distortion.as_ref(), out),
+        Written::Json => json(axis, &found, distortion.as_ref(), out),
+    })
 }
 
 fn json(

@@ -1,4 +1,4 @@
-//! Options that select listed motors and drivers: `--motor`, `--drive`, `stepscope plant --motors`.
+//! Options that select listed motors and drivers: `--motor`, `--motor-driver`, `stepscope plant --motors`.
 
 use crate::{
     failure::{Failure, no_plant},
@@ -6,7 +6,10 @@ use crate::{
     quantity::whole,
     scenarios, terminal,
 };
-use clap::Args;
+use clap::{
+    Args,
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
+};
 use serde_json::json;
 use std::{
     borrow::Cow,
@@ -22,26 +25,27 @@ use stepscope_core::{
 
 #[derive(Args)]
 pub(crate) struct Replacing {
-    /// Give every motor these figures, at its rated current
+    /// Replace every motor by this one, at its rated current
     ///
-    /// `stepscope plant --motors` lists them. Supply and load stay.
-    #[arg(long, value_name = "MOTOR", value_parser = motor)]
+    /// `stepscope plant --motors` describes them. Supply and load stay the scenario's.
+    #[arg(long, value_name = "MOTOR", value_parser = motor_parser(), hide_possible_values = true)]
     motor: Option<&'static MotorSheet>,
-    /// Give every motor this driver
+    /// Replace every motor driver by this one
     ///
-    /// `stepscope plant --motors` lists them.
-    #[arg(long, value_name = "DRIVER", value_parser = drive)]
-    drive: Option<&'static DriveSheet>,
+    /// `stepscope plant --motors` describes them.
+    #[arg(long, alias = "drive", value_name = "DRIVER", value_parser = drive_parser(), hide_possible_values = true)]
+    motor_driver: Option<&'static DriveSheet>,
 }
 
 #[derive(Args)]
 pub(crate) struct Named {
-    /// Check this motor at its rated current, in place of the scenario's
+    /// Replace every motor by this one, at its rated current
     ///
-    /// `stepscope plant --motors` lists them. Supply and load stay: 24 V and no load if the scenario has no motor.
-    #[arg(long, value_name = "MOTOR", value_parser = motor)]
+    /// `stepscope plant --motors` describes them. Supply and load stay the scenario's: 24 V and no load if it has no
+    /// motor.
+    #[arg(long, value_name = "MOTOR", value_parser = motor_parser(), hide_possible_values = true)]
     pub(crate) motor: Option<&'static MotorSheet>,
-    /// Microsteps per full step of that motor, if no axis gives them (default: 16)
+    /// Microsteps per full step of --motor if no axis has its own (default: 16)
     #[arg(long, value_name = "N", requires = "motor", value_parser = whole::<u16>(1..=512))]
     pub(crate) microsteps: Option<u16>,
 }
@@ -54,9 +58,6 @@ impl Named {
         motors.for_each(|entry| entry.microsteps = self.microsteps.unwrap_or(entry.microsteps));
     }
 
-    /// The scenario with the named motor, for [`Machine::of_channel`].
-    ///
-    /// [`Machine::of_channel`]: stepscope_core::inspect::motion::torque::Machine::of_channel
     pub(crate) fn named<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
         if self.motor.is_none() {
             return Cow::Borrowed(scenario);
@@ -68,12 +69,14 @@ impl Named {
     }
 }
 
-fn motor(id: &str) -> Result<&'static MotorSheet, String> {
-    motors::motor(id).ok_or_else(|| "no such motor; `stepscope plant --motors` lists them".to_owned())
+fn motor_parser() -> impl TypedValueParser<Value = &'static MotorSheet> {
+    let values = MOTORS.iter().map(|sheet| PossibleValue::new(sheet.id).help(sheet.name));
+    PossibleValuesParser::new(values).try_map(|id| motors::motor(&id).ok_or("unknown motor"))
 }
 
-fn drive(id: &str) -> Result<&'static DriveSheet, String> {
-    motors::drive(id).ok_or_else(|| "no such driver; `stepscope plant --motors` lists them".to_owned())
+fn drive_parser() -> impl TypedValueParser<Value = &'static DriveSheet> {
+    let values = DRIVES.iter().map(|sheet| PossibleValue::new(sheet.id).help(sheet.name));
+    PossibleValuesParser::new(values).try_map(|id| motors::drive(&id).ok_or("unknown driver"))
 }
 
 fn has_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
@@ -82,16 +85,16 @@ fn has_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
 
 impl Replacing {
     /// The scenario with these motors, which must have a plant; `-` is standard input.
-    pub(crate) fn judged(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
-        if self.motor.is_none() && self.drive.is_none() {
-            return scenarios::judged_after(path, |scenario| has_plant(path, scenario));
+    pub(crate) fn validated(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+        if self.motor.is_none() && self.motor_driver.is_none() {
+            return scenarios::validated_after(path, |scenario| has_plant(path, scenario));
         }
         let mut scenario = scenarios::read(path)?;
         has_plant(path, &scenario)?;
         if let Some(motor) = self.motor {
             motor.put_into(&mut scenario);
         }
-        if let Some(drive) = self.drive {
+        if let Some(drive) = self.motor_driver {
             drive.put_into(&mut scenario);
         }
         let experiment =
@@ -174,5 +177,5 @@ fn word(value: &impl Compact) -> String {
 
 fn sources(out: &mut impl Write, source: &str, typical: &[&str]) -> io::Result<()> {
     writeln!(out, "{:14} {source}", "")?;
-    writeln!(out, "{:14} of the usual size only: {}", "", typical.join(", "))
+    writeln!(out, "{:14} typical values, not from the data sheet: {}", "", typical.join(", "))
 }

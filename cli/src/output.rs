@@ -9,7 +9,7 @@
 //! Until the commit an error, a full disk, Ctrl-C or a kill leaves the existing files. If a file cannot be renamed, all
 //! temporary files are kept. Pipes and devices are written directly.
 
-use crate::{failure::Failure, pipe};
+use crate::{failure::Failure, pipe, progress};
 use std::{
     fs::{self, File},
     io::{self, BufWriter, Write},
@@ -18,9 +18,7 @@ use std::{
 };
 use tempfile::TempPath;
 
-/// Stands for standard input or output.
 pub(crate) const STANDARD: &str = "-";
-/// Maximum symbolic links to follow.
 const MAX_LINKS: u32 = 40;
 
 pub(crate) type Out = BufWriter<Box<dyn Write>>;
@@ -30,10 +28,8 @@ pub(crate) struct Outputs {
     waiting: Vec<Waiting>,
 }
 
-/// A complete temporary file.
 struct Waiting {
     given: PathBuf,
-    /// The target of a link, or the path itself.
     name: PathBuf,
     temporary: TempPath,
 }
@@ -76,7 +72,6 @@ mod identity {
     use super::{File, Path, fs, io};
     use std::os::{fd::AsFd, unix::fs::MetadataExt};
 
-    /// Device and number of the file.
     pub(super) type Id = (u64, u64);
 
     pub(super) fn of(path: &Path) -> Option<Id> {
@@ -121,11 +116,9 @@ mod identity {
 }
 
 impl Outputs {
-    /// Checks the outputs before any is written.
-    ///
     /// # Errors
     /// [`Failure::Output`] if an output is another output or an input.
-    pub(crate) fn judge<'p>(
+    pub(crate) fn check<'p>(
         inputs: impl IntoIterator<Item = &'p (impl AsRef<Path> + ?Sized + 'p)>,
         outputs: impl IntoIterator<Item = &'p Path>,
     ) -> Result<Self, Failure> {
@@ -140,9 +133,9 @@ impl Outputs {
                 before.iter().find(|(other, known)| same(known) || is_standard(other) && is_standard(path))
             {
                 let detail = if is_standard(other) || is_standard(path) {
-                    "standard output already has another output; give a file for all but one of them"
+                    "standard output already has another output; use files for the others"
                 } else {
-                    "would be written twice; give each output a file of its own"
+                    "would be written twice; use a separate file for each output"
                 };
                 return Err(Failure::Output(path.to_owned(), detail));
             }
@@ -150,7 +143,7 @@ impl Outputs {
             if identity.as_ref().is_some_and(|identity| inputs.contains(identity)) && is_file(path) {
                 return Err(Failure::Output(
                     path.to_owned(),
-                    "is an input, and would be overwritten; give another file",
+                    "is an input and would be overwritten; use another file",
                 ));
             }
             before.push((path, identity));
@@ -203,16 +196,18 @@ impl Outputs {
     }
 
     /// Renames all complete files; a signal ends the command before or after all of them. If one cannot be renamed,
-    /// replaced files are restored, where the file system has hard links, and the new files stay next to them.
-    pub(crate) fn commit(self) -> Result<(), Failure> {
+    /// replaced files are restored, where the file system has hard links, and the new files stay next to them. Returns
+    /// the names.
+    pub(crate) fn commit(self) -> Result<Vec<PathBuf>, Failure> {
         let mut committed = committed();
         let mut waiting = self.waiting.into_iter();
-        let mut replaced: Vec<Replaced> = Vec::new();
+        let (mut replaced, mut written) = (Vec::<Replaced>::new(), Vec::new());
         while let Some(next) = waiting.next() {
-            let path = next.temporary.to_path_buf();
+            let (path, given) = (next.temporary.to_path_buf(), next.given.clone());
             let failed = match Replaced::by(next) {
                 Ok(done) => {
                     replaced.push(done);
+                    written.push(given);
                     lock().retain(|other| *other != path);
                     continue;
                 }
@@ -226,7 +221,7 @@ impl Outputs {
             return Err(Failure::NotRenamed(given, error, kept.into_iter().filter_map(keep).collect()));
         }
         *committed |= !replaced.is_empty();
-        Ok(())
+        Ok(written)
     }
 }
 
@@ -243,10 +238,8 @@ struct NotRenamed {
     temporary: TempPath,
 }
 
-/// A renamed file.
 struct Replaced {
     name: PathBuf,
-    /// Its path before.
     temporary: PathBuf,
     existed: bool,
     /// A hard link to the old file, if the file system supports them.
@@ -291,15 +284,14 @@ pub(crate) fn committed() -> MutexGuard<'static, bool> {
     COMMITTED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-pub(crate) fn write_whole(
-    mut outputs: Outputs,
-    path: &Path,
-    write: impl FnOnce(&mut Out) -> io::Result<()>,
-) -> Result<(), Failure> {
+/// Writes one file; its path was checked before the command began.
+pub(crate) fn write_new(path: &Path, write: impl FnOnce(&mut Out) -> io::Result<()>) -> Result<(), Failure> {
+    let mut outputs = Outputs::default();
     let mut out = outputs.create(path)?;
     write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.to_owned(), error))?;
     drop(out);
-    outputs.commit()
+    progress::say_written(&outputs.commit()?);
+    Ok(())
 }
 
 fn folder(path: &Path) -> &Path {
@@ -309,7 +301,6 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Follows links even if their target does not exist.
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -328,7 +319,6 @@ fn is_open_file(path: &Path) -> bool {
     cfg!(unix) && (folder.starts_with("/proc") || folder.starts_with("/dev/fd"))
 }
 
-/// A file, or a path where one can be created.
 pub(crate) fn can_be_file(path: &Path) -> bool {
     let name = followed(path);
     path != Path::new(STANDARD)
@@ -427,10 +417,10 @@ mod tests {
         };
         let record = folder.path().join("record");
         for inputs in [&["-"] as &[&str], &["-", "/dev/null"]] {
-            drop(Outputs::judge(inputs.iter().copied(), [record.as_path(), &link]).expect("two files"));
+            drop(Outputs::check(inputs.iter().copied(), [record.as_path(), &link]).expect("two files"));
             assert!(!was_opened(), "{inputs:?}");
         }
-        let twice = Outputs::judge(["-"], [link.as_path(), Path::new(&name)]);
+        let twice = Outputs::check(["-"], [link.as_path(), Path::new(&name)]);
         assert!(matches!(twice, Err(Failure::Output(..))), "one terminal by two names");
         assert!(!was_opened());
         drop(fs::File::open(&link).expect("it opens"));

@@ -21,7 +21,6 @@ pub(crate) fn records(out: Out) -> Box<dyn Output> {
     Box::new(Records(out))
 }
 
-/// Written after the run.
 struct Records(Out);
 
 impl Sink for Records {

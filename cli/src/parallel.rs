@@ -25,7 +25,7 @@ fn threads(wanted: Option<NonZero<usize>>) -> usize {
         ONCE.call_once(|| {
             let _ = writeln!(
                 terminal::err(),
-                "--threads: {wanted} is more than {MAX_THREADS_PER_CORE} per core; {most} are used, the result is the same"
+                "--threads: {wanted} is more than {MAX_THREADS_PER_CORE} per core; using {most}, with the same result"
             );
         });
     }
@@ -33,47 +33,41 @@ fn threads(wanted: Option<NonZero<usize>>) -> usize {
 }
 
 /// Runs `make` for each number below `count`; the results are in order.
-///
-/// # Errors
-/// Threads cannot be started.
 pub(crate) fn each<R: Send>(
     count: u64,
     threads: Option<NonZero<usize>>,
-    progress: Progress,
+    progress: &mut Progress,
     make: impl Fn(u64) -> R + Sync,
 ) -> io::Result<Vec<R>> {
-    let made = shown(count, progress, make);
-    Ok(pool(threads)?.install(|| (0..count).into_par_iter().map(&made).collect()))
+    let job = shown(count, progress, make);
+    Ok(pool(threads)?.install(|| (0..count).into_par_iter().map(&job).collect()))
 }
 
 /// Adds up results without storing them. `add` must not depend on the order.
-///
-/// # Errors
-/// Threads cannot be started.
 pub(crate) fn sum<R: Default + Send, E: Send>(
     count: u64,
     threads: Option<NonZero<usize>>,
-    progress: Progress,
+    progress: &mut Progress,
     make: impl Fn(u64) -> Result<R, E> + Sync,
     add: impl Fn(Result<R, E>, Result<R, E>) -> Result<R, E> + Sync,
 ) -> io::Result<Result<R, E>> {
-    let made = shown(count, progress, make);
+    let job = shown(count, progress, make);
     let pool = pool(threads)?;
-    Ok(pool.install(|| (0..count).into_par_iter().map(&made).reduce(|| Ok(R::default()), &add)))
+    Ok(pool.install(|| (0..count).into_par_iter().map(&job).reduce(|| Ok(R::default()), &add)))
 }
 
 fn pool(wanted: Option<NonZero<usize>>) -> io::Result<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(threads(wanted)).build().map_err(io::Error::other)
 }
 
-fn shown<R>(count: u64, progress: Progress, make: impl Fn(u64) -> R + Sync) -> impl Fn(u64) -> R + Sync {
+fn shown<R>(count: u64, progress: &mut Progress, make: impl Fn(u64) -> R + Sync) -> impl Fn(u64) -> R + Sync {
     let progress = Mutex::new((progress, 0));
     move |number| {
-        let made = make(number);
+        let result = make(number);
         let (progress, done) = &mut *progress.lock().unwrap_or_else(PoisonError::into_inner);
         *done += 1;
-        progress.tell(*done, count);
-        made
+        progress.update(*done, count);
+        result
     }
 }
 
@@ -93,10 +87,10 @@ mod tests {
     #[test]
     fn the_order_is_that_of_the_numbers_on_any_number_of_threads() {
         for threads in [1, 2, 7] {
-            let progress = Progress::new("numbers", false);
-            let made = each(1000, NonZero::new(threads), progress, |number| number * number);
+            let mut progress = Progress::new("numbers", false);
+            let results = each(1000, NonZero::new(threads), &mut progress, |number| number * number);
             let expected: Vec<u64> = (0..1000).map(|number| number * number).collect();
-            assert_eq!(made.expect("there are threads"), expected, "{threads} threads");
+            assert_eq!(results.expect("there are threads"), expected, "{threads} threads");
         }
     }
 }

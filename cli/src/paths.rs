@@ -7,7 +7,6 @@ use crate::{
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
-/// A command and its arguments that are inputs, outputs, or neither.
 pub(crate) struct Paths {
     pub(crate) command: &'static str,
     pub(crate) read: &'static [&'static str],
@@ -18,37 +17,47 @@ pub(crate) struct Paths {
 
 /// Every command with a path; a test fails if one is missing.
 pub(crate) const PATHS: &[Paths] = &[
-    // The driver's limits may be a file.
-    of("run", &["scenario", "driver"], &["trace", "vcd", "csv", "packets", "panel", "line", "violations"]),
+    row("run", &["scenario", "driver"], &["trace", "vcd", "csv", "packets", "panel", "line", "violations"]),
     // A device is opened, not created.
-    Paths { other: &["port"], ..of("serve", &["scenario"], &["record", "pty"]) },
-    Paths { other: &["port"], ..of("send", &["scenario"], &[]) },
-    of("faults", &["file"], &[]),
-    of("tables", &["scenario", "steps"], &["out"]),
-    of("measures", &["scenario"], &[]),
-    of("torque", &["scenario"], &["out"]),
-    of("plant", &["scenario"], &["csv", "vcd"]),
-    of("settling", &["scenario"], &["write"]),
-    of("limits", &["scenario"], &[]),
-    of("resonance", &["scenario"], &[]),
-    of(
+    Paths { other: &["port"], ..row("serve", &["scenario"], &["record", "pty"]) },
+    Paths { other: &["port"], ..row("send", &["scenario"], &[]) },
+    row("faults", &["file"], &["write_scenario"]),
+    row("tables", &["scenario", "steps"], &["out"]),
+    row("measures", &["scenario"], &["out"]),
+    row("torque", &["scenario"], &["out"]),
+    row("plant", &["scenario"], &["csv", "vcd"]),
+    row("settling", &["scenario"], &["write_scenario"]),
+    row("limits", &["scenario"], &[]),
+    row("resonance", &["scenario"], &["out"]),
+    row(
         "capture",
         &["file", "against", "driver"],
-        &["late", "scenario", "steps", "bytes", "packets", "trace", "vcd", "csv", "violations"],
+        &["late", "write_scenario", "steps", "bytes", "packets", "trace", "vcd", "csv", "violations"],
     ),
-    of("powercut", &["scenario"], &[]),
-    of("calibrate", &["table"], &[]),
-    of("sine sweep", &[], &["out"]),
-    of("sine best", &[], &["out"]),
-    of("sine vertices", &[], &["out"]),
-    of("sine segments", &["scenario"], &["out"]),
-    of("points", &["table"], &[]),
+    row("powercut", &["scenario"], &[]),
+    row("calibrate", &["table"], &[]),
+    row("sine sweep", &[], &["out"]),
+    row("sine best", &[], &["out"]),
+    row("sine vertices", &[], &["out"]),
+    row("sine segments", &["scenario"], &["out"]),
+    row("points", &["table"], &["out"]),
+    row("open", &[], &["out"]),
+    row("presets", &[], &["out"]),
+    row("completions", &[], &["out"]),
     // A folder of files with fixed names.
-    Paths { other: &["dir"], ..of("man", &[], &[]) },
+    Paths { other: &["dir"], ..row("man", &[], &[]) },
 ];
 
-const fn of(command: &'static str, read: &'static [&'static str], written: &'static [&'static str]) -> Paths {
+const fn row(
+    command: &'static str,
+    read: &'static [&'static str],
+    written: &'static [&'static str],
+) -> Paths {
     Paths { command, read, written, other: &[] }
+}
+
+pub(crate) fn of(command: &str) -> Option<&'static Paths> {
+    PATHS.iter().find(|paths| paths.command == command)
 }
 
 /// Checks the paths of a command line.
@@ -62,7 +71,7 @@ pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
         name = format!("{name} {command}");
         inner = arguments;
     }
-    let Some(paths) = PATHS.iter().find(|paths| paths.command == name.trim_start()) else { return Ok(()) };
+    let Some(paths) = of(name.trim_start()) else { return Ok(()) };
     let given = |ids: &'static [&'static str]| {
         ids.iter()
             .filter_map(|id| inner.try_get_many::<PathBuf>(id).ok().flatten())
@@ -70,15 +79,15 @@ pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
             .map(PathBuf::as_path)
     };
     if let Some(path) = given(&["pty", "dir"]).find(|path| *path == Path::new(STANDARD)) {
-        let detail = "is standard output, but a link or a folder is needed; give its name";
+        let detail = "standard output is not a link or a folder; use the name of one";
         return Err(Failure::Output(path.to_owned(), detail));
     }
     if given(paths.read).filter(|path| *path == Path::new(STANDARD)).count() > 1 {
-        let why = "-: standard input can be read once; give a file for all inputs but one";
+        let why = "-: standard input can be read only once; use files for the other inputs";
         return Err(Failure::Option(why.to_owned()));
     }
     // JSON goes to standard output unless there is --out.
     let table = inner.try_get_one::<bool>("json").ok().flatten().is_some_and(|json| *json);
     let table = (table && !paths.written.contains(&"out")).then_some(Path::new(STANDARD));
-    Outputs::judge(given(paths.read), given(paths.written).chain(table)).map(drop)
+    Outputs::check(given(paths.read), given(paths.written).chain(table)).map(drop)
 }

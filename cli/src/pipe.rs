@@ -31,7 +31,7 @@ fn open(path: &Path, options: &OpenOptions, does: &str) -> io::Result<File> {
     opened.recv_timeout(WAIT).unwrap_or_else(|_| {
         let seconds = WAIT.as_secs();
         let why = format!(
-            "a named pipe, and no other program opened it within {seconds} s; start the program that {does} it, or give a file"
+            "no other program opened this named pipe within {seconds} s; start the program that {does} it, or use a file"
         );
         Err(io::Error::new(io::ErrorKind::TimedOut, why))
     })

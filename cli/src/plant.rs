@@ -4,6 +4,7 @@ use crate::{
     failure::{Failure, Numbered, no_plant},
     json::Tables,
     motors::{self, Replacing},
+    options::{Json, ShowProgress},
     output::{Out, Outputs, STANDARD},
     progress::Progress,
     quantity::whole,
@@ -43,7 +44,6 @@ use stepscope_core::{
 
 /// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);
-/// Maximum slips that are listed.
 const MAX_SLIPS: usize = 20;
 
 #[derive(Args)]
@@ -53,30 +53,28 @@ pub(crate) struct Arguments {
     scenario: Option<PathBuf>,
     #[command(flatten)]
     replacing: Replacing,
-    /// List the motors and drivers that --motor and --drive take, with their sources
-    #[arg(long, conflicts_with_all = ["scenario", "motor", "drive", "controller", "digest", "csv", "vcd"])]
+    /// List the motors and motor drivers with their figures and sources
+    #[arg(long, conflicts_with_all = ["scenario", "motor", "motor_driver", "controller", "digest", "csv", "vcd"])]
     motors: bool,
     /// Controller to report
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole::<usize>(0..=u64::MAX))]
     controller: usize,
-    /// Print only the digest of the plant: XXH64, 16 hexadecimal digits
+    /// Print only the digest of the plant (XXH64)
     #[arg(long, conflicts_with = "json")]
     digest: bool,
-    /// Write a table of the simulated points: voltage, currents, angles, lost steps, codes
+    /// Write a table of the simulated points (CSV): voltage, currents, angles, lost steps, codes
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Write a value change dump of signals and analog values
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
-    /// Write only every Nth point
+    /// Write only every Nth point to the files
     #[arg(long, value_name = "N", default_value = "1", value_parser = whole::<NonZero<u64>>(1..=u64::MAX))]
     every: NonZero<u64>,
-    /// Print the results as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    show: ShowProgress,
 }
 
 #[derive(Clone, Default)]
@@ -120,9 +118,9 @@ impl Observer for Files {
 }
 
 pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
-    let Some(path) = &arguments.scenario else { return motors::list(arguments.json) };
+    let Some(path) = &arguments.scenario else { return motors::list(arguments.json.json) };
     let mut outputs = Outputs::default();
-    let (_, experiment) = arguments.replacing.judged(path)?;
+    let (_, experiment) = arguments.replacing.validated(path)?;
     let (controllers, chosen) = (experiment.controllers(), arguments.controller);
     if chosen >= controllers {
         return Err(Failure::index(path, Numbered::Controllers, chosen, controllers, false));
@@ -132,13 +130,12 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     let opened = run.plant(chosen).map(|plant| open(arguments, &mut outputs, plant, &experiment));
     let files = opened.transpose()?.unwrap_or_default();
     run.attach(chosen, files.clone(), files.clone());
-    let mut progress = Progress::new("plant", arguments.progress);
+    let mut progress = Progress::new("plant", arguments.show.progress);
     while !run.advance(SLICE) {
-        progress.tell(run.now().0, experiment.cost().end_cycle);
+        progress.update(run.now().0, experiment.cost().end_cycle);
     }
-    drop(progress);
     close(&files, run.now().0)?;
-    outputs.commit()?;
+    progress.end(format_args!("{} cycles", run.now().0), &outputs.commit()?);
     let results = run.results();
     let Some(result) = results.get(chosen) else { return Ok(()) };
     let setups = experiment.plants().map(|plants| plants.setups.as_slice());
@@ -146,7 +143,7 @@ pub(crate) fn plant(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.digest {
         return writeln!(terminal::out(), "{:016x}", result.digest).map_err(Failure::output);
     }
-    if arguments.json {
+    if arguments.json.json {
         return PlantReport::of(&experiment, &run, chosen).map_or(Ok(()), |report| tables(&report).print());
     }
     if arguments.csv.as_deref() == Some(Path::new(STANDARD))
@@ -223,7 +220,7 @@ fn print<S: Sink, O: Observer>(
     if let Some(at) = result.collapsed {
         writeln!(
             out,
-            "  warning: the supply collapses at {:.3} ms; give a stronger source or less load",
+            "  warning: the supply collapses at {:.3} ms; use a stronger source or less load",
             ms(at, clock_hz)
         )?;
     }
@@ -272,10 +269,10 @@ fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_
         )?;
     }
     for slip in motor.slips.iter().take(MAX_SLIPS) {
-        let way = if slip.is_behind { "behind" } else { "ahead" };
+        let side = if slip.is_behind { "behind" } else { "ahead" };
         writeln!(
             out,
-            "  slip           at {:.3} ms, cycle {}: four full steps {way}",
+            "  slip           at {:.3} ms, cycle {}: four full steps {side}",
             ms(slip.cycle, clock_hz),
             slip.cycle
         )?;
@@ -290,8 +287,8 @@ fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_
         "  energy         {:.5} J from the bus = copper {:.5} + friction {:.5} + viscous {:.5} + diodes {:.5} + load {:.5} + stored {:.5}",
         energy.bus, energy.copper, energy.friction, energy.viscous, energy.diodes, energy.load, energy.stored
     )?;
-    if let Some(told) = energy_left_over(motor) {
-        writeln!(out, "  warning: {told}")?;
+    if let Some(warning) = energy_left_over(motor) {
+        writeln!(out, "  warning: {warning}")?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `stepscope points`: converts a table of times and positions to a scenario.
 
-use crate::{failure::Failure, quantity::Millimeters, scenario_file, scenarios};
+use crate::{failure::Failure, options::Out, quantity::Millimeters, scenario_file, scenarios};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use stepscope_core::{
@@ -14,18 +14,19 @@ use stepscope_core::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The table: two columns, time in s and position, with or without a line of names; `-` reads
-    /// standard input.
+    /// CSV table of time in s and position, with or without a header; `-` reads standard input
     table: PathBuf,
     /// Unit of the positions
     #[arg(long, value_enum, default_value = "steps")]
     unit: UnitName,
-    /// Length of one step in mm, for positions in mm
-    #[arg(long, required_if_eq("unit", "mm"))]
+    /// Travel per step, in mm, for positions in mm
+    #[arg(long, value_name = "MM", required_if_eq("unit", "mm"))]
     step_mm: Option<Millimeters>,
-    /// Connect the points by straight lines, not by a smooth curve from rest to rest
+    /// Connect the points by straight lines (default: a smooth curve that starts and ends at rest)
     #[arg(long)]
     straight: bool,
+    #[command(flatten)]
+    out: Out,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -57,5 +58,5 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
         path.file_name().map_or_else(String::new, |name| name.to_string_lossy().chars().take(120).collect());
     let source = Source::Motion(Motion { axes: vec![axis], ..Motion::default() });
     let scenario = Scenario { title, source, ..Scenario::default() };
-    scenario_file::print(path, &scenario, "give fewer points")
+    scenario_file::write(&arguments.out.out, path, &scenario, "use fewer points")
 }

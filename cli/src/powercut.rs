@@ -1,7 +1,13 @@
 //! `stepscope powercut`: cuts a stand-alone controller's power and checks the restored position.
 
 use crate::{
-    failure::Failure, json::Tables, parallel, progress::Progress, quantity::whole, scenarios, terminal,
+    failure::Failure,
+    json::Tables,
+    options::{Json, Work},
+    parallel,
+    progress::Progress,
+    quantity::whole,
+    scenarios, terminal,
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -27,27 +33,23 @@ const BYTE_TIMES: u64 = 17;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Scenario with a source `standalone`: a JSON file or a preset's name; `-` reads standard input
+    /// Scenario with a source standalone: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// How many cycles to cut the power in: every one of a run that is no longer, else seeded ones, half of them while a
-    /// record is written.
+    /// Number of cycles in which to cut the power
+    ///
+    /// Every cycle of a run that is no longer. Otherwise random cycles, half of them while a record is written.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole::<u32>(1..=10_000_000))]
     cuts: u32,
-    /// Random seed of the cycles
+    /// Random seed
     #[arg(long, value_name = "SEED", default_value_t = 1, value_parser = whole::<u64>(0..=u64::MAX))]
     seed: u64,
-    /// Write cycles that a cell of the memory endures
+    /// Endurance of a memory cell, in write cycles
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = whole::<u32>(1..=u32::MAX.into()))]
     endurance: u32,
-    /// Number of threads (default: one per processor); the result is the same
-    #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
-    threads: Option<NonZero<usize>>,
-    /// Print the counts as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    work: Work,
 }
 
 struct Row {
@@ -59,7 +61,7 @@ struct Row {
 
 pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     let none = || Failure::NoStandAlone(arguments.scenario.clone());
-    let (_, experiment) = scenarios::judged_after(&arguments.scenario, |scenario| {
+    let (_, experiment) = scenarios::validated_after(&arguments.scenario, |scenario| {
         if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(none()) }
     })?;
     let checked = experiment.stand_alone().ok_or_else(none)?;
@@ -69,14 +71,19 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     }
     let end = Instant(cost.end_cycle);
     let mut rows = Vec::new();
-    for (policy, hold_up_cycles, what) in memories(checked) {
+    let memories = memories(checked);
+    // The search halves its range, and begins with a measurement of its end.
+    let searches = 1 + most_hold_up(checked).max(1).ilog2() as usize + 1;
+    let mut progress =
+        Progress::new("powercut", arguments.work.show.progress).with_parts(memories.len() + searches);
+    for (policy, hold_up_cycles, what) in memories {
         let one = with_memory(checked, policy, hold_up_cycles);
         let cuts = PowerCuts::of(&one, end, arguments.cuts as usize, arguments.seed);
-        let progress = Progress::new(name(policy), arguments.progress);
-        let tally = counted(&cuts, arguments.threads, progress)?;
+        let tally = counted(&cuts, arguments.work.threads, &mut progress)?;
         rows.push(Row { policy, hold_up_cycles, what, tally });
     }
-    let enough = least(checked, end, arguments)?;
+    let enough = least(checked, end, arguments, &mut progress)?;
+    progress.end(format_args!("{} cuts", rows.iter().map(|row| row.tally.cuts).sum::<u64>()), &[]);
     let controllers = checked.controllers().len();
     let worn: Vec<(Policy, usize, Wear)> = [Policy::PowerLoss, Policy::WriteAhead]
         .into_iter()
@@ -87,7 +94,7 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
             (policy, index, wear(&of_policy, end, index, 2 * one.slots, arguments.endurance))
         })
         .collect();
-    if arguments.json {
+    if arguments.json.json {
         tables(&rows, enough, &worn).print()?;
     } else {
         print(&rows, enough, &worn, checked).map_err(Failure::output)?;
@@ -117,29 +124,37 @@ fn memories(checked: &CheckedSetup) -> Vec<(Policy, u64, &'static str)> {
     all
 }
 
-fn counted(cuts: &PowerCuts, threads: Option<NonZero<usize>>, progress: Progress) -> Result<Tally, Failure> {
+fn counted(
+    cuts: &PowerCuts,
+    threads: Option<NonZero<usize>>,
+    progress: &mut Progress,
+) -> Result<Tally, Failure> {
     let cycles = cuts.cycles();
     let part = cycles.len().div_ceil(PARTS).max(1);
     let parts: Vec<&[u64]> = cycles.chunks(part).collect();
-    // The data that a thread takes with it.
     let setup: Setup = cuts.checked().setup();
     let each = |index: u64| {
         let checked = setup.clone().check();
         checked.map_or_else(|_| Tally::default(), |checked| tally(&checked, parts[index as usize]))
     };
     let tallies = parallel::each(parts.len() as u64, threads, progress, each).map_err(Failure::threads)?;
+    progress.next_part();
     let mut whole = Tally::default();
     tallies.iter().for_each(|tally| whole.join(tally));
     Ok(whole)
 }
 
 /// The shortest sufficient hold-up time of the policy `power_loss`, up to 18 byte times.
-fn least(checked: &CheckedSetup, end: Instant, arguments: &Arguments) -> Result<u64, Failure> {
-    let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
+fn least(
+    checked: &CheckedSetup,
+    end: Instant,
+    arguments: &Arguments,
+    progress: &mut Progress,
+) -> Result<u64, Failure> {
     let mut failed = None;
     let losses = |one: &CheckedSetup| {
         let cuts = PowerCuts::of(one, end, arguments.cuts as usize, arguments.seed);
-        match counted(&cuts, arguments.threads, Progress::new("hold-up", arguments.progress)) {
+        match counted(&cuts, arguments.work.threads, progress) {
             Ok(tally) => tally.lost,
             Err(failure) => {
                 failed = Some(failure);
@@ -147,8 +162,13 @@ fn least(checked: &CheckedSetup, end: Instant, arguments: &Arguments) -> Result<
             }
         }
     };
-    let enough = least_hold_up(checked, (BYTE_TIMES + 1) * u64::from(longest), losses);
+    let enough = least_hold_up(checked, most_hold_up(checked), losses);
     failed.map_or(Ok(enough), Err)
+}
+
+fn most_hold_up(checked: &CheckedSetup) -> u64 {
+    let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
+    (BYTE_TIMES + 1) * u64::from(longest)
 }
 
 const fn name(policy: Policy) -> &'static str {
@@ -185,11 +205,11 @@ fn print(
     }
     let w = checked.controllers().first().map_or(1, |first| u64::from(first.memory.byte_write_cycles));
     let bytes = (enough + 1) as f64 / w as f64;
-    writeln!(out, "least hold-up {enough} cycles, {bytes} byte times less one cycle (power_loss)")?;
+    writeln!(out, "minimum hold-up {enough} cycles, {bytes} byte times less one cycle (power_loss)")?;
     for (policy, index, wear) in worn {
         write!(
             out,
-            "controller {index} {}: most worn cell {} writes a power cycle",
+            "controller {index} {}: most worn cell {} writes per power cycle",
             name(*policy),
             wear.writes_a_cycle
         )?;

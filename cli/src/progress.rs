@@ -1,36 +1,161 @@
-//! Progress of a long command, in percent on standard error.
+//! Progress of long work on standard error, and a last line that sums it up.
 
-use std::io::{self, IsTerminal, Write};
+use crate::terminal::{self, Escaped};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::{
+    fmt,
+    io::{self, IsTerminal, Write},
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+/// Work that ends sooner shows no bar.
+const DELAY: Duration = Duration::from_millis(400);
+const TEMPLATE: &str = "{prefix} [{bar:30}] {percent:>3} %, {eta} left";
+/// Resolution of the bar.
+const LENGTH: u64 = 1000;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Style {
+    Bar,
+    /// Lines of percents, for a program that reads them.
+    Lines,
+    Hidden,
+}
+
+impl Style {
+    /// A bar for a person at a terminal; elsewhere nothing, unless it is `wanted`.
+    fn of(wanted: bool) -> Self {
+        match (io::stderr().is_terminal() && std::env::var_os("CI").is_none(), wanted) {
+            (true, _) => Self::Bar,
+            (false, true) => Self::Lines,
+            (false, false) => Self::Hidden,
+        }
+    }
+}
 
 pub(crate) struct Progress {
-    shown: bool,
     what: &'static str,
+    style: Style,
+    start: Instant,
+    /// Equal parts of the work, and those that are done.
+    parts: u64,
+    done: u64,
+    bar: Option<ProgressBar>,
     percent: Option<u64>,
 }
 
 impl Progress {
-    /// Shown on a terminal, or if `wanted`.
     pub(crate) fn new(what: &'static str, wanted: bool) -> Self {
-        Self { shown: wanted || io::stderr().is_terminal(), what, percent: None }
+        let (style, start) = (Style::of(wanted), Instant::now());
+        Self { what, style, start, parts: 1, done: 0, bar: None, percent: None }
     }
 
-    pub(crate) fn tell(&mut self, done: u64, all: u64) {
-        let percent = (u128::from(done.min(all)) * 100 / u128::from(all.max(1))) as u64;
-        if self.shown && self.percent.is_none_or(|before| before < percent) {
-            self.percent = Some(percent);
-            // On a terminal each line overwrites the one before.
-            let end = if io::stderr().is_terminal() { '\r' } else { '\n' };
-            // If standard error is closed, progress is not needed.
-            let _ = write!(io::stderr(), "{}: {percent:3} %{end}", self.what);
+    pub(crate) fn with_parts(mut self, parts: usize) -> Self {
+        self.parts = parts.max(1) as u64;
+        self
+    }
+
+    pub(crate) fn next_part(&mut self) {
+        self.done += 1;
+    }
+
+    /// `done` of `all` in the current part.
+    pub(crate) fn update(&mut self, done: u64, all: u64) {
+        let all = all.max(1);
+        let whole = u128::from(self.done.min(self.parts)) * u128::from(all) + u128::from(done.min(all));
+        let of = |length: u64| {
+            let share = whole * u128::from(length) / (u128::from(self.parts) * u128::from(all));
+            u64::try_from(share).unwrap_or(length).min(length)
+        };
+        match self.style {
+            Style::Hidden => {}
+            Style::Bar if self.start.elapsed() < DELAY => {}
+            Style::Bar => {
+                let at = of(LENGTH);
+                self.bar.get_or_insert_with(|| bar(self.what, self.start.elapsed())).set_position(at);
+            }
+            Style::Lines => {
+                let percent = of(100);
+                if self.percent.is_none_or(|before| before < percent) {
+                    self.percent = Some(percent);
+                    // If standard error is closed, progress is not needed.
+                    let _ = writeln!(io::stderr(), "{}: {percent:3} %", self.what);
+                }
+            }
         }
+    }
+
+    /// Ends with a line: what was done, in what time, and the files that were written.
+    pub(crate) fn end(mut self, done: impl fmt::Display, written: &[PathBuf]) {
+        let took = self.start.elapsed();
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+        if self.style != Style::Lines && (self.style == Style::Hidden || took < DELAY && written.is_empty()) {
+            return;
+        }
+        let files = Files(written);
+        let _ = writeln!(terminal::err(), "{}: {done} in {:.1} s{files}", self.what, took.as_secs_f64());
     }
 }
 
 impl Drop for Progress {
-    /// Start a new line for later output.
     fn drop(&mut self) {
-        if self.percent.is_some() && io::stderr().is_terminal() {
-            let _ = writeln!(io::stderr());
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
         }
+    }
+}
+
+fn bar(what: &'static str, elapsed: Duration) -> ProgressBar {
+    let style = ProgressStyle::with_template(TEMPLATE).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::new(LENGTH).with_style(style.progress_chars("#> ")).with_prefix(what);
+    bar.with_elapsed(elapsed)
+}
+
+/// Tells a person at a terminal what quick work has written.
+pub(crate) fn say_written(written: &[PathBuf]) {
+    if !written.is_empty() && Style::of(false) == Style::Bar {
+        let text = Files(written).to_string();
+        let _ = writeln!(terminal::err(), "{}", text.trim_start_matches("; "));
+    }
+}
+
+struct Files<'a>(&'a [PathBuf]);
+
+impl fmt::Display for Files<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, path) in self.0.iter().enumerate() {
+            write!(f, "{}{}", if index == 0 { "; wrote " } else { ", " }, Escaped::path(path))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_begins_where_the_one_before_it_ended() {
+        let mut progress = Progress::new("parts", false).with_parts(4);
+        progress.style = Style::Lines;
+        let mut seen = Vec::new();
+        for _ in 0..4 {
+            for done in [0, 5, 10] {
+                progress.update(done, 10);
+                seen.extend(progress.percent);
+            }
+            progress.next_part();
+        }
+        assert_eq!(seen, [0, 12, 25, 25, 37, 50, 50, 62, 75, 75, 87, 100]);
+    }
+
+    #[test]
+    fn the_last_line_names_the_files() {
+        let paths = ["a.vcd", "b\u{1b}.csv"].map(PathBuf::from);
+        assert_eq!(Files(&paths).to_string(), "; wrote a.vcd, b\\u{1b}.csv");
+        assert_eq!(Files(&[]).to_string(), "");
     }
 }

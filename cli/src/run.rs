@@ -5,6 +5,7 @@ use crate::{
     files::{self, Files, Output, Station},
     json::Tables,
     line,
+    options::{Json, ShowProgress},
     output::{Out, Outputs},
     panel,
     progress::Progress,
@@ -36,14 +37,12 @@ const SLICE: u64 = 1 << 16;
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// Print only the digest of the trace: XXH64, 16 hexadecimal digits
-    ///
-    /// One line per controller.
+    /// Print only the digest of the trace (XXH64), one line per controller
     #[arg(long)]
     digest: bool,
     /// Print positions, fault flags and completed ticks
     ///
-    /// On a framed line also the controller's state, the host's counters and the load of the line.
+    /// On a framed line also the controller's state, the host's counters and the line load.
     #[arg(long)]
     status: bool,
     /// Print the share link of the scenario
@@ -51,47 +50,43 @@ pub(crate) struct Arguments {
     /// It contains the digests of this run, so that `stepscope open --verify` can compare.
     #[arg(long)]
     link: bool,
-    /// Write the trace: one record per line, cycle and levels in hexadecimal
+    /// Write the trace: cycle and levels in hexadecimal, one record per line
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write a value change dump, for GTKWave, Surfer or PulseView
+    /// Write a value change dump for GTKWave, Surfer or PulseView
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
     /// Time unit of the dump: 1, 10 or 100 of s, ms, us, ns, ps or fs
     ///
-    /// At most one cycle, so that no time is lost. A cycle is round(t*clock); the header of the dump has the clock.
+    /// At most one cycle, so that the dump is exact: a time t is cycle round(t*clock). The dump's header has the clock.
     #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
     vcd_timescale: Timescale,
-    /// Write a table of the signals: cycle, time in s, one level per signal
+    /// Write a table of the signals (CSV): cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a table of the packets, with the controller's reaction to each (CSV)
+    /// Write a table of the packets with the outcome of each (CSV)
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
     /// Write the panel of stand-alone controllers as a table (CSV)
     ///
-    /// Cycle, word, position and display of each record, and the meaning of the word: state, alarm, trust, outputs,
-    /// group, loop.
+    /// One row per change: cycle, panel word, position, display, and the fields of the word (state, alarm, trust,
+    /// outputs, group, loop).
     #[arg(long, value_name = "FILE")]
     panel: Option<PathBuf>,
     /// Write the scenario with every byte, forced level or segment as its source
     ///
-    /// Noise included. Its run gives the same traces.
+    /// Noise is included, so a run of the written scenario gives the same traces.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
     /// Controller to report: 0 is the scenario's own, 1 the first of `controllers`
     ///
-    /// By default digest and status are those of all controllers, files and timing those of controller 0.
+    /// By default digest and status are of all controllers, files and timing of controller 0.
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     controller: Option<usize>,
-    /// Print status, timing and link as JSON: one object of tables (docs/command.md)
-    ///
-    /// No file can go to standard output then.
-    #[arg(long)]
-    json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    show: ShowProgress,
     #[command(flatten)]
     timing: timing::Options,
 }
@@ -101,7 +96,7 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    const fn asks_for_a_file(&self) -> bool {
+    const fn writes_a_file(&self) -> bool {
         self.trace.is_some()
             || self.vcd.is_some()
             || self.csv.is_some()
@@ -109,16 +104,15 @@ impl Arguments {
             || self.panel.is_some()
             || self.line.is_some()
             || self.link
-            || self.timing.asked()
+            || self.timing.is_wanted()
     }
 }
 
-/// By default prints digest and status.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let mut outputs = Outputs::default();
     let mut timing = None;
-    let (scenario, experiment) = scenarios::judged_after(path, |scenario| {
+    let (scenario, experiment) = scenarios::validated_after(path, |scenario| {
         if arguments.panel.is_some() && !matches!(scenario.source, Source::Standalone(_)) {
             return Err(Failure::NoPanel(path.clone()));
         }
@@ -144,7 +138,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warned in experiment.stand_alone().iter().flat_map(|controllers| controllers.warnings()) {
         let _ = writeln!(terminal::err(), "warning: {warned}");
     }
-    let finished = go(&experiment, &mut stations, arguments.progress);
+    let mut progress = Progress::new("run", arguments.show.progress);
+    let finished = go(&experiment, &mut stations, &mut progress);
     if let Some(work) = finished.stand_alone().and_then(StandAlone::work) {
         let at = format!("source.standalone[{}].groups", work.controller);
         return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::Work(work))]));
@@ -163,7 +158,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let written = timing::write_violations(out, timing, TimeUnit::of_cycles(scenario.clock_hz));
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
-    outputs.commit()?;
+    let written = outputs.commit()?;
+    let records: u64 = stations.iter().map(|station| station.digest.records()).sum();
+    progress.end(format_args!("{records} records, {} cycles", finished.cycles().0), &written);
 
     let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
     let summary = match arguments.controller {
@@ -171,7 +168,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => summary,
     };
     let link = if arguments.link { Some(link_of(&scenario, &mut stations)?) } else { None };
-    if arguments.json {
+    if arguments.json.json {
         let mut tables = status::tables(Tables::of("run"), &summary, chosen);
         if let Some(timing) = &timing {
             tables = timing::tables(tables, timing, TimeUnit::of_cycles(scenario.clock_hz));
@@ -186,14 +183,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         if arguments.digest && !arguments.status {
             status::digests(&summary).map_err(Failure::output)?;
-        } else if arguments.status || !arguments.asks_for_a_file() {
+        } else if arguments.status || !arguments.writes_a_file() {
             status::print(&summary).map_err(Failure::output)?;
         }
         if let Some(timing) = &timing {
             arguments.timing.report(timing, TimeUnit::of_cycles(scenario.clock_hz))?;
         }
     }
-    timing.map_or(Ok(()), |timing| arguments.timing.verdict(&timing))
+    timing.map_or(Ok(()), |timing| arguments.timing.result(&timing))
 }
 
 fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Failure> {
@@ -203,19 +200,15 @@ fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Fail
     Ok(link::with_part(link, "d", &proof.emit()))
 }
 
-/// Stops early if a file cannot be written.
-fn go(experiment: &Experiment, stations: &mut [Station], wanted: bool) -> Run {
-    let mut progress = Progress::new("run", wanted);
+fn go(experiment: &Experiment, stations: &mut [Station], progress: &mut Progress) -> Run {
     let mut run = experiment.start();
     while !run.advance_each(SLICE, stations) {
         if stations.iter().any(Station::has_failed) {
             return run;
         }
-        progress.tell(run.cycles().0, experiment.cost().end_cycle);
+        progress.update(run.cycles().0, experiment.cost().end_cycle);
     }
-    if wanted {
-        progress.tell(1, 1);
-    }
+    progress.update(1, 1);
     run
 }
 

@@ -1,10 +1,7 @@
 //! Writes scenarios that can be read again: they are validated, and refused if too long, before a file is created.
 
-use crate::{failure::Failure, terminal};
-use std::{
-    io::{self, Write},
-    path::Path,
-};
+use crate::{failure::Failure, output, terminal};
+use std::{io::Write, path::Path};
 use stepscope_core::scenario::Scenario;
 
 /// The text for the file `path`. `help` says how to shorten it.
@@ -19,7 +16,8 @@ pub(crate) fn text(path: &Path, scenario: &Scenario, help: &'static str) -> Resu
     Ok(text)
 }
 
-pub(crate) fn print(path: &Path, scenario: &Scenario, help: &'static str) -> Result<(), Failure> {
-    let text = text(path, scenario, help)?;
-    io::stdout().write_all(text.as_bytes()).map_err(Failure::output)
+/// Writes the scenario to `out`; a message names its source, `from`.
+pub(crate) fn write(out: &Path, from: &Path, scenario: &Scenario, help: &'static str) -> Result<(), Failure> {
+    let text = text(from, scenario, help)?;
+    output::write_new(out, |out| out.write_all(text.as_bytes()))
 }

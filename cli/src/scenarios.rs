@@ -1,6 +1,12 @@
-//! Reads scenarios from files; `stepscope open` and `stepscope presets`.
+//! Reads scenarios; `stepscope open` and `stepscope presets`.
 
-use crate::{failure::Failure, json, pipe, scenario_file, terminal, verify};
+use crate::{
+    failure::Failure,
+    json,
+    options::{Json, Out},
+    output, pipe, scenario_file, suggest, terminal, verify,
+};
+use clap::Args;
 use serde_json::json;
 use std::{
     io::{self, Read, Write},
@@ -8,7 +14,7 @@ use std::{
     rc::Rc,
 };
 use stepscope_core::{
-    capture::samples::sample,
+    capture::samples::{SAMPLES, sample},
     scenario::{
         MAX_TEXT_BYTES, Problem, Scenario, ValueError, link,
         presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
@@ -25,12 +31,12 @@ pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
 }
 
 /// A validated scenario and its experiment; `-` is standard input.
-pub(crate) fn judged(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
-    judged_after(path, |_| Ok(()))
+pub(crate) fn validated(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+    validated_after(path, |_| Ok(()))
 }
 
-/// Like [`judged`], but checks the scenario alone first: planning long motions takes time.
-pub(crate) fn judged_after(
+/// Like [`validated`], but checks the scenario alone first: planning long motions takes time.
+pub(crate) fn validated_after(
     path: &Path,
     check: impl FnOnce(&Scenario) -> Result<(), Failure>,
 ) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
@@ -42,13 +48,12 @@ pub(crate) fn judged_after(
     let wrong = |problems: Vec<Problem>| Failure::Scenario(path.to_owned(), problems);
     let experiment = experiment.map_err(wrong)?;
     if experiment.jogs_without_end() {
-        let detail = "the run has no end, because a jog button stays pressed; give run_cycles, or release the button in inputs";
+        let detail = "a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs";
         return Err(wrong(vec![Problem::new("run_cycles", ValueError::Conflict { detail })]));
     }
     Ok((Rc::new(scenario), Rc::new(experiment)))
 }
 
-/// A file, or else a preset.
 fn scenario_text(path: &Path) -> Result<String, Failure> {
     match text(path) {
         Err(Failure::File(path, error)) if error.kind() == io::ErrorKind::NotFound => {
@@ -56,7 +61,12 @@ fn scenario_text(path: &Path) -> Result<String, Failure> {
                 let recorded = || sample(id).map(|sample| sample.scenario);
                 preset(id).map(|preset| preset.json).or_else(recorded)
             });
-            named.map(str::to_owned).ok_or(Failure::File(path, error))
+            named.map(str::to_owned).ok_or_else(|| {
+                let samples = SAMPLES.iter().map(|sample| sample.id);
+                let names = all_presets().map(|preset| preset.id).chain(samples);
+                let hint = suggest::hint(&path.to_string_lossy(), names);
+                Failure::NoScenario(path, hint)
+            })
         }
         read => read,
     }
@@ -78,7 +88,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
 }
 
-fn all_presets() -> impl Iterator<Item = &'static Preset> {
+pub(crate) fn all_presets() -> impl Iterator<Item = &'static Preset> {
     PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).chain(CONTROLLER_PLANT_PRESETS)
 }
 
@@ -86,30 +96,58 @@ fn preset(id: &str) -> Option<&'static Preset> {
     all_presets().find(|preset| preset.id == id)
 }
 
-/// With `verify`, runs the scenario and compares it with the link's digests.
-pub(crate) fn open(link: &str, verify: bool) -> Result<(), Failure> {
-    let fragment = link.split_once('#').map_or(link, |(_, fragment)| fragment);
+#[derive(Args)]
+pub(crate) struct OpenArguments {
+    /// Share link, or the part after its `#`
+    link: String,
+    /// Run the scenario and compare the run with the sender's
+    ///
+    /// The result goes to standard error; exit code 3 if the runs differ.
+    #[arg(long)]
+    verify: bool,
+    #[command(flatten)]
+    out: Out,
+}
+
+pub(crate) fn open(arguments: &OpenArguments) -> Result<(), Failure> {
+    let OpenArguments { link, verify, out } = arguments;
+    let fragment = link.split_once('#').map_or(link.as_str(), |(_, fragment)| fragment);
     let scenario = link::decode(fragment).map_err(Failure::Link)?;
     // Refuse what `run` refuses.
     let path = Path::new("the link");
     Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
-    scenario_file::print(path, &scenario, "open the link in the page")?;
-    if verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
+    scenario_file::write(&out.out, path, &scenario, "open the link in the page")?;
+    if *verify { verify::verify(&scenario, link::part(fragment, "d").as_deref()) } else { Ok(()) }
 }
 
-pub(crate) fn presets(id: Option<&str>, as_json: bool) -> Result<(), Failure> {
-    if let Some(id) = id {
-        let preset = preset(id).ok_or_else(|| Failure::Preset(id.to_owned()))?;
-        return print(&terminal::json(preset.json.trim_end()));
-    }
-    if as_json {
-        let row = |preset: &Preset| json!({ "id": preset.id, "title": preset.scenario().title });
-        return json::Tables::of("presets").with("presets", all_presets().map(row)).print();
-    }
-    let line = |preset: &Preset| format!("{:28} {}", preset.id, preset.scenario().title);
-    print(&all_presets().map(line).collect::<Vec<_>>().join("\n"))
+#[derive(Args)]
+pub(crate) struct PresetsArguments {
+    /// Preset to write (default: list all)
+    #[arg(value_name = "PRESET", conflicts_with = "json")]
+    id: Option<String>,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    out: Out,
 }
 
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    writeln!(terminal::out(), "{text}").map_err(Failure::output)
+pub(crate) fn presets(arguments: &PresetsArguments) -> Result<(), Failure> {
+    let text = match &arguments.id {
+        Some(id) => {
+            let known = || suggest::hint(id, all_presets().map(|preset| preset.id));
+            let preset = preset(id).ok_or_else(|| Failure::Preset(id.clone(), known()))?;
+            terminal::json(preset.json.trim_end()) + "\n"
+        }
+        None => {
+            all_presets().map(|preset| format!("{:28} {}\n", preset.id, preset.scenario().title)).collect()
+        }
+    };
+    output::write_new(&arguments.out.out, |out| {
+        if arguments.json.json { table().write(out) } else { out.write_all(text.as_bytes()) }
+    })
+}
+
+fn table() -> json::Tables {
+    let row = |preset: &Preset| json!({ "id": preset.id, "title": preset.scenario().title });
+    json::Tables::of("presets").with("presets", all_presets().map(row))
 }

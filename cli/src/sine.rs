@@ -3,8 +3,8 @@
 use crate::{
     failure::{Failure, Numbered},
     json::Tables,
-    output::{self, Outputs},
-    parallel,
+    options::{Json, Out},
+    output, parallel,
     progress::Progress,
     quantity::{AmplitudePart, Hertz, Seconds, whole},
     scenarios,
@@ -30,27 +30,27 @@ use stepscope_core::{
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Report segments, distortion and distance for each maximum deviation d1 of a range
+    /// Report segments and distortion over a range of maximum deviations
     Sweep {
         #[command(flatten)]
         range: Range,
-        /// Number of values of d1 in the range
+        /// Number of maximum deviations in the range
         #[arg(long, value_name = "N", default_value = "500", value_parser = whole::<u32>(2..=1_000_000))]
         points: u32,
     },
-    /// Find the d1 with least distortion in a range
+    /// Find the maximum deviation with minimum distortion in a range
     ///
-    /// All polylines that the range has are compared.
+    /// Compares every polyline of the range.
     Best {
         #[command(flatten)]
         range: Range,
-        /// Compare only polylines with this number of segments per quarter
+        /// Number of segments per quarter (default: any)
         #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
         segments: Option<usize>,
     },
-    /// Find the vertices with least distortion for a number of segments per quarter
+    /// Find the vertices with minimum distortion for a number of segments
     Vertices {
-        /// Segments per quarter
+        /// Number of segments per quarter
         #[arg(long, value_name = "N", value_parser = whole::<u8>(1..=MAX_SEGMENTS as u64))]
         segments: u8,
         /// Allow vertices off the curve
@@ -59,7 +59,9 @@ pub(crate) enum Command {
         #[command(flatten)]
         common: Common,
     },
-    /// Report the segments of a scenario's sines: vertices, steps, rates, bytes per quarter
+    /// Report the segments of a scenario's sines
+    ///
+    /// Vertices, steps, rates and bytes of a quarter of each sine.
     Segments {
         /// Scenario with a motion: a JSON file or a preset's name; `-` reads standard input
         scenario: PathBuf,
@@ -73,18 +75,18 @@ pub(crate) enum Command {
 
 #[derive(Args)]
 pub(crate) struct Range {
-    /// Minimum d1, as a part of the amplitude
+    /// Minimum deviation d1, as a part of the amplitude
     #[arg(long, value_name = "D1", default_value = "0.002")]
     from: AmplitudePart,
-    /// Maximum d1
+    /// Maximum deviation d1
     #[arg(long, value_name = "D1", default_value = "0.06")]
     to: AmplitudePart,
-    /// Add the distortion that an accelerometer of this bandwidth measures, in Hz
+    /// Bandwidth of an accelerometer, in Hz; adds the distortion that it measures
     ///
-    /// -3 dB, first order; needs --period-s.
+    /// A first-order low-pass filter (-3 dB).
     #[arg(long, value_name = "HZ", requires = "period_s")]
     sensor_hz: Option<Hertz>,
-    /// Time of one period, in s, for --sensor-hz
+    /// Period of the sine, in s, for --sensor-hz
     #[arg(long, value_name = "S", requires = "sensor_hz")]
     period_s: Option<Seconds>,
     #[command(flatten)]
@@ -92,14 +94,12 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// # Errors
-    /// From is above to.
     fn ends(&self) -> Result<(f64, f64), Failure> {
         let (from, to) = (self.from.get(), self.to.get());
         if from <= to {
             return Ok((from, to));
         }
-        let why = format!("--to {to} is below --from {from}; use --to {from} to 1, or a lower --from");
+        let why = format!("--to: {to} is below --from {from}; use --to {from} to 1, or a lower --from");
         Err(Failure::Option(why))
     }
 
@@ -121,12 +121,10 @@ pub(crate) struct Common {
 
 #[derive(Args)]
 pub(crate) struct Written {
-    /// Output file (`-`: standard output)
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    out: PathBuf,
-    /// Print the table as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    out: Out,
+    #[command(flatten)]
+    json: Json,
 }
 
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
@@ -135,7 +133,6 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         Command::Vertices { common, .. } => &common.written,
         Command::Segments { written, .. } => written,
     };
-    let outputs = Outputs::default();
     let (mut sines, mut rows) = (Vec::new(), Vec::new());
     match command {
         Command::Segments { scenario, axis, .. } => sines = self::sines(scenario, *axis)?,
@@ -143,14 +140,14 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
         Command::Best { range, segments } => rows = vec![best(range, *segments)?],
         Command::Vertices { .. } => {}
     }
-    output::write_whole(outputs, &written.out, |out| match command {
+    output::write_new(&written.out.out, |out| match command {
         Command::Sweep { range, .. } => polylines("sine sweep", range, &rows, out),
         Command::Best { range, .. } => polylines("sine best", range, &rows, out),
         Command::Vertices { segments, free, common } => {
             let freedom = if *free { Freedom::Free } else { Freedom::OnCurve };
             vertices((*segments).into(), freedom, common, out)
         }
-        Command::Segments { written, .. } => segments(&sines, written.json, out),
+        Command::Segments { written, .. } => segments(&sines, written.json.json, out),
     })
 }
 
@@ -161,7 +158,7 @@ struct Placed {
 }
 
 fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
-    let (_, experiment) = scenarios::judged_after(scenario, |given| has_sines(scenario, given, only))?;
+    let (_, experiment) = scenarios::validated_after(scenario, |given| has_sines(scenario, given, only))?;
     let plans = experiment.plans();
     let axes = plans.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     let found: Vec<Placed> = axes
@@ -175,7 +172,6 @@ fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
     Ok(found)
 }
 
-/// Refuses a scenario without a sine in segments.
 fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<(), Failure> {
     let axes = match &scenario.source {
         Source::Motion(motion) => motion.axes.as_slice(),
@@ -184,12 +180,11 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
     if let Some(axis) = only.filter(|axis| *axis >= axes.len()) {
         return Err(Failure::index(path, Numbered::Axes, axis, axes.len(), true));
     }
-    let asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    if asked.flat_map(|(_, axis)| &axis.moves).any(|each| matches!(each, Move::SineSegments(_))) {
+    let selected = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    if selected.flat_map(|(_, axis)| &axis.moves).any(|each| matches!(each, Move::SineSegments(_))) {
         return Ok(());
     }
-    let detail =
-        "no sine in segments; give a scenario with a move sine_segments, such as the preset sine-2022-d00054";
+    let detail = "there is no sine in segments; use a move sine_segments, as in the preset sine-2022-d00054";
     let problem = Problem::new("source", ValueError::Conflict { detail });
     Err(Failure::Scenario(path.to_owned(), vec![problem]))
 }
@@ -245,9 +240,11 @@ fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Va
 
 fn sweep(range: &Range, points: u32) -> Result<Vec<Row>, Failure> {
     let (from, to) = range.ends()?;
-    let (progress, measure) = (Progress::new("sweep", false), Measure::new(range.bounds()));
-    parallel::each(points.into(), None, progress, |index| measure.row(swept(from, to, points, index as u32)))
-        .map_err(Failure::threads)
+    let (mut progress, measure) = (Progress::new("sine sweep", false), Measure::new(range.bounds()));
+    let row = |index: u64| measure.row(swept(from, to, points, index as u32));
+    let rows = parallel::each(points.into(), None, &mut progress, row).map_err(Failure::threads)?;
+    progress.end(format_args!("{points} polylines"), &[]);
+    Ok(rows)
 }
 
 fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
@@ -260,14 +257,14 @@ fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
     best.ok_or_else(|| {
         let given = only.unwrap_or(0);
         let why = format!(
-            "--segments {given}: no d1 from {from} to {to} gives this number; use {least} to {most}, or another range"
+            "--segments: {given} is out of range for deviations from {from} to {to}; use {least} to {most}, or another range"
         );
         Failure::Option(why)
     })
 }
 
 fn polylines(command: &'static str, range: &Range, rows: &[Row], out: &mut impl Write) -> io::Result<()> {
-    if range.common.written.json {
+    if range.common.written.json.json {
         return json_of(command, "polylines", rows.iter().map(cells)).write(out);
     }
     head(range, out)?;
@@ -314,7 +311,7 @@ fn vertices(segments: usize, freedom: Freedom, common: &Common, out: &mut impl W
     let found = optimum(segments, freedom, common.order)
         .ok_or_else(|| io::Error::other("no such number of segments"))?;
     let percent = found.distortion.position * 100.0;
-    if common.written.json {
+    if common.written.json.json {
         let rows = found.vertices.iter().enumerate().map(|(index, vertex)| {
             let angle_deg = vertex.angle.to_degrees();
             json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "thd_position_percent": percent })

@@ -3,10 +3,10 @@
 use crate::{
     failure::{Failure, Numbered},
     json::Tables,
-    kept_run,
-    output::{self, Outputs},
+    options::{Json, Out},
+    output,
     quantity::{Microseconds, whole},
-    scenarios,
+    run_recording, scenarios,
     steps::steps_of_table,
     terminal,
 };
@@ -36,66 +36,69 @@ use stepscope_core::{
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// The scenario: a JSON file, or a preset's name; `-` reads standard input. Where its source is no motion, the steps
-    /// that its run makes are taken. With --steps it gives clock and pulses, and may be left out: 16 MHz and the default bus.
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
+    ///
+    /// If its source is not a motion, the tables are of the steps of its run. With --steps only its clock and pulse
+    /// times are used (default: 16 MHz and the default bus).
     #[arg(required_unless_present = "steps")]
     scenario: Option<PathBuf>,
-    /// Make tables of these steps instead, as axis 0
+    /// Read step times from a CSV table, as axis 0
     ///
-    /// CSV with one row per step: its time from the start in a column cycle, time_s, time_ms or time_us, and, if steps
-    /// go both ways, dir: 1 or right, 0 or left.
+    /// One row per step: its time from the start in a column cycle, time_s, time_ms or time_us. A column dir has the
+    /// direction: 1 or right, 0 or left.
     #[arg(long, value_name = "FILE")]
     steps: Option<PathBuf>,
-    /// Form of the table (default in a summary: all three)
+    /// Form of the table (default: compressed; in a summary all)
     #[arg(long, value_enum)]
     form: Option<FormName>,
     /// Maximum error of a step in a compressed table, in us
     #[arg(long, value_name = "US", default_value = "25")]
     error_us: Microseconds,
-    /// In a compressed table no step is off by more than this part of the shorter interval beside it, or, of one that is
-    /// never late, of the interval before it: 2 for a half, as in Klipper.
+    /// Maximum error of a step as a part of its interval: 2 for a half, as in Klipper
+    ///
+    /// In a compressed table, in addition to --error-us. The part is of the shorter interval next to the step; with
+    /// --window early, of the interval before it.
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
     interval_part: Option<NonZeroU32>,
-    /// Allow steps of a compressed table to be early, or early and late
+    /// Side of the error in a compressed table
     #[arg(long, value_enum, default_value = "both")]
     window: WindowName,
     /// Search method of a compressed table
     ///
-    /// `fewest` searches tables of whole cycles, and others where the error is so small that a window has up to 4096
-    /// units; else both methods are the same.
+    /// fewest applies to tables of whole cycles, and to others if the error is so small that a window has up to 4096
+    /// units. Otherwise both methods are the same.
     #[arg(long, value_enum, default_value = "fewest")]
     search: Search,
-    /// Widths of an entry: q16, q8, ticks or klipper (default in a summary: all)
+    /// Format of an entry: q16, q8, ticks or klipper (default: q16; in a summary all)
     ///
-    /// q16 has 20 bytes and 1/65536 cycle, q8 8 bytes and 1/256 cycle, ticks 8 bytes and whole cycles. klipper is
-    /// another name of ticks: the numbers that its queue_step takes.
-    #[arg(long, value_name = "WIDTHS", value_parser = widths)]
+    /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 8 bytes and 1/256 cycle, ticks 8 bytes and whole cycles.
+    /// klipper is another name for ticks: the numbers that Klipper's queue_step takes.
+    #[arg(long, value_name = "FORMAT", value_parser = widths)]
     entries: Option<EntryFormat>,
-    /// Output format: source code or CSV of one axis, or a summary
-    #[arg(long, value_enum, default_value = "summary")]
+    /// Output format
+    #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
     format: Written,
-    /// Axis to write, from 0 (default: 0; in a summary, all)
+    /// Axis, from 0 (default: 0; in a summary all)
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     axis: Option<usize>,
-    /// Name of the table in source code: up to 32 small letters, digits and underscores, a letter first, and not letters
-    /// alone; `axis_K` without it. Refused is what C keeps for itself: names that begin with is, to, str, mem, wcs or
-    /// e and a letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_
-    /// or tss_.
-    #[arg(long, value_parser = name)]
+    /// Name of the table in source code (default: axis_K)
+    ///
+    /// Up to 32 lower-case letters, digits and underscores; the first is a letter, and one is not a letter. Names that
+    /// C reserves are refused: names that begin with is, to, str, mem, wcs or e and a letter, with e and a digit, or
+    /// with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_.
+    #[arg(long, value_parser = name, conflicts_with = "json")]
     name: Option<String>,
-    /// Output file (`-`: standard output)
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    out: PathBuf,
-    /// Print the summary as JSON: one object of tables (docs/command.md)
-    #[arg(long, conflicts_with_all = ["format", "name"])]
-    json: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    out: Out,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum WindowName {
-    /// Early or late.
+    /// Early or late
     Both,
-    /// Early, never late, as Klipper has it.
+    /// Early, never late, as in Klipper
     Early,
 }
 
@@ -110,19 +113,19 @@ impl WindowName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Search {
-    /// No table has fewer entries, as far as the summary's column surplus says.
+    /// Minimum number of entries, as far as the summary's column surplus says
     Fewest,
-    /// Few entries, each the longest that ends near the middle of a window: hundreds of times as fast.
+    /// Hundreds of times faster: each entry is the longest that ends near the middle of a window
     Quick,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum FormName {
-    /// Every step in its cycle.
+    /// Every step in its cycle
     Exact,
-    /// The motion's own table.
+    /// The table that the paper of the motion describes
     Document,
-    /// Few entries, with a greatest error.
+    /// Few entries, within a maximum error
     Compressed,
 }
 
@@ -138,15 +141,15 @@ impl FormName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Written {
-    /// C99.
+    /// C99
     C,
-    /// C for avr-gcc, in program memory.
+    /// C for avr-gcc, in program memory
     Avr,
-    /// Rust.
+    /// Rust
     Rust,
-    /// Comma-separated values.
+    /// Comma-separated values
     Csv,
-    /// What each form costs and how good it is.
+    /// Size and errors of each form
     Summary,
 }
 
@@ -165,14 +168,14 @@ impl Written {
 fn widths(text: &str) -> Result<EntryFormat, String> {
     let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
     let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
-    found.ok_or_else(|| "give q16, q8, ticks or klipper".to_owned())
+    found.ok_or_else(|| "unknown format; use q16, q8, ticks or klipper".to_owned())
 }
 
 fn name(text: &str) -> Result<String, String> {
     if is_name(text) {
         Ok(text.to_owned())
     } else {
-        Err("give up to 32 small letters, digits and underscores, a letter first and not letters alone, and none of the beginnings that C keeps for itself (`stepscope tables --help` lists them), such as x_axis"
+        Err("not a name for a table; use up to 32 lower-case letters, digits and underscores that C does not reserve, such as x_axis (`stepscope tables --help` lists the reserved names)"
             .to_owned())
     }
 }
@@ -198,9 +201,9 @@ impl Axes {
         let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
         // Without a motion, use the steps of the scenario's run.
-        let made = match (&scenario.source, &arguments.steps) {
+        let run_steps = match (&scenario.source, &arguments.steps) {
             (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
-            _ => Some(made(&path, &scenario)?),
+            _ => Some(steps_of_run(&path, &scenario)?),
         };
         let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
         let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
@@ -215,8 +218,8 @@ impl Axes {
             let axes = vec![Steps::Listed(steps)];
             return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance, search });
         }
-        if let Some(made) = made {
-            let axes = made.into_iter().map(Steps::Listed).collect();
+        if let Some(run_steps) = run_steps {
+            let axes = run_steps.into_iter().map(Steps::Listed).collect();
             return Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search });
         }
         let axes = match &source {
@@ -229,7 +232,7 @@ impl Axes {
         Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search })
     }
 
-    fn kept(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
+    fn stored(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
         let form = match form {
             FormName::Exact => Form::Exact,
             FormName::Document => Form::Document,
@@ -254,25 +257,23 @@ impl Axes {
 }
 
 /// Steps of the scenario's run from cycle 1, for each channel up to the last one with steps.
-fn made(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Failure> {
+fn steps_of_run(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Failure> {
     let wrong = |problems| Failure::Scenario(path.to_owned(), problems);
     let experiment = Experiment::new(scenario).map_err(wrong)?;
-    let recording = kept_run::of(path, &experiment)?;
+    let recording = run_recording::of(path, &experiment)?;
     let of = |channel| scheduled(&steps(&recording.trace, channel));
     let mut all: Vec<_> = (0..experiment.config().channels()).map(of).collect();
     while all.last().is_some_and(Vec::is_empty) {
         all.pop();
     }
     if all.is_empty() {
-        let detail =
-            "nothing steps, so there is nothing to make tables of; give a scenario that moves, or --steps";
+        let detail = "no channel steps, so there is no table; use a scenario that moves, or --steps";
         return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
     }
     Ok(all)
 }
 
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
-    let outputs = Outputs::default();
     let axes = Axes::new(arguments)?;
     let axis = arguments.axis.unwrap_or(0);
     let steps = axes.axes.get(axis);
@@ -280,21 +281,23 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let count = axes.axes.len();
     let steps = steps.ok_or_else(|| Failure::index(&axes.path, Numbered::Axes, axis, count, is_summary))?;
     let Some(language) = arguments.format.language() else {
-        return output::write_whole(outputs, &arguments.out, |out| {
-            if arguments.json { json_of(&axes, arguments).write(out) } else { summary(&axes, arguments, out) }
+        return output::write_new(&arguments.out.out, |out| {
+            if arguments.json.json {
+                json_of(&axes, arguments).write(out)
+            } else {
+                summary(&axes, arguments, out)
+            }
         });
     };
     let form = arguments.form.unwrap_or(FormName::Compressed);
     let format = arguments.entries.unwrap_or(EntryFormat::Q16);
-    let table = axes.kept(steps, form, format).map_err(|cause| axes.refused(axis, cause))?;
+    let table = axes.stored(steps, form, format).map_err(|cause| axes.refused(axis, cause))?;
     let name = arguments.name.clone().unwrap_or_else(|| format!("axis_{axis}"));
     let title = headline(&axes.title, axis, form.name());
     let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
     let mut text = String::new();
     let written = source.write(language, &mut text).map_err(io::Error::other);
-    output::write_whole(outputs, &arguments.out, |out| {
-        written.and_then(|()| out.write_all(text.as_bytes()))
-    })?;
+    output::write_new(&arguments.out.out, |out| written.and_then(|()| out.write_all(text.as_bytes())))?;
     for warning in source.warnings(language) {
         // The file contains the same warning.
         let _ = writeln!(terminal::err(), "warning: {warning}");
@@ -316,12 +319,11 @@ fn each<'a>(
     chosen.flat_map(move |(axis, steps)| {
         let formats = formats.clone();
         forms.clone().flat_map(move |form| {
-            formats.clone().map(move |format| (axis, form, format, axes.kept(steps, form, format)))
+            formats.clone().map(move |format| (axis, form, format, axes.stored(steps, form, format)))
         })
     })
 }
 
-/// A row per axis, form and width.
 fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -362,19 +364,19 @@ fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
 }
 
 fn row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<()> {
-    let told = |number: Option<u64>| number.map_or_else(|| "-".to_owned(), |number| number.to_string());
+    let shown = |number: Option<u64>| number.map_or_else(|| "-".to_owned(), |number| number.to_string());
     let micros = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(clock_hz)) as f64 / 1e3;
     writeln!(
         out,
         " {:8} {:12} {:>15} {:10} {:17.3} {:13.3} {:8} {:>11} {:>8}",
         table.entries.len(),
         table.bytes(),
-        told(table.document_bytes),
+        shown(table.document_bytes),
         table.error.steps,
         micros(table.error.greatest as f64),
         micros(table.error.rms()),
         table.turns(),
-        told(table.wire_bytes()),
-        told(table.surplus)
+        shown(table.wire_bytes()),
+        shown(table.surplus)
     )
 }

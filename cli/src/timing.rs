@@ -1,6 +1,11 @@
 //! The timing check of `stepscope run --timing`, and `stepscope drivers`.
 
-use crate::{failure::Failure, json::Tables, output::Out, scenarios, terminal};
+use crate::{
+    failure::{Failure, with_hint},
+    json::Tables,
+    output::Out,
+    scenarios, suggest, terminal,
+};
 use clap::Args;
 use serde_json::{Value, json};
 use std::{
@@ -17,25 +22,23 @@ use stepscope_core::{
     scenario::{Scenario, TimingRules},
 };
 
-/// Maximum violations on the screen.
 const MAX_SHOWN: usize = 20;
-/// Maximum violations in a file.
 const MAX_WRITTEN: usize = 1_000_000;
 
 #[derive(Args)]
 pub(crate) struct Options {
-    /// Check the pulses against the scenario's driver
+    /// Check STEP, DIR and EN against the scenario's driver
     ///
-    /// Prints the shortest times, their slack, and the first violations.
+    /// Prints the shortest times, their slack and the first violations.
     #[arg(long)]
     timing: bool,
-    /// Check STEP, DIR and EN against a driver's timing
+    /// Check STEP, DIR and EN against this driver's timing
     ///
-    /// One that `stepscope drivers` lists, limits of your own such as custom:step_high_ns=1000,dir_setup_ns=200, or a
-    /// JSON file with them; in place of the driver that the scenario names.
+    /// A driver that `stepscope drivers` lists, limits of your own such as
+    /// custom:step_high_ns=1000,dir_setup_ns=200, or a JSON file with them. Replaces the scenario's driver.
     #[arg(long, value_name = "DRIVER")]
     driver: Option<PathBuf>,
-    /// Write the violations as a table, up to a million
+    /// Write the violations (CSV), up to a million
     #[arg(long, value_name = "FILE")]
     pub(crate) violations: Option<PathBuf>,
     /// End with exit code 3 if the timing check finds a violation
@@ -43,7 +46,6 @@ pub(crate) struct Options {
     strict: bool,
 }
 
-/// Prefix of custom limits.
 const CUSTOM: &str = "custom:";
 
 /// A listed driver, `custom:field=ns,...`, or a JSON file.
@@ -58,9 +60,8 @@ fn driver(path: &Path) -> Result<TimingRules, String> {
     let read = scenarios::text(path).map_err(|error| match error {
         Failure::File(_, error) if error.kind() == io::ErrorKind::NotFound => {
             let ids = DRIVERS.map(|sheet| sheet.id).join(", ");
-            format!(
-                "neither a driver nor a file; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file"
-            )
+            let hint = suggest::hint(text, DRIVERS.iter().map(|sheet| sheet.id));
+            format!("no driver or file of this name; use one of {ids}, limits such as custom:step_high_ns=1000, or a JSON file{hint}")
         }
         Failure::File(_, error) => error.to_string(),
         error => error.to_string(),
@@ -68,12 +69,11 @@ fn driver(path: &Path) -> Result<TimingRules, String> {
     rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
 }
 
-/// Parses `field=ns,...`.
 fn custom(fields: &str) -> Result<TimingRules, String> {
     let mut rules = serde_json::Map::new();
     for field in fields.split(',') {
         let (name, ns) =
-            field.split_once('=').ok_or_else(|| format!("{field:?} has no \"=\"; {}", allowed()))?;
+            field.split_once('=').ok_or_else(|| format!("{field:?}: no \"=\"; {}", allowed()))?;
         let (name, ns) = (name.trim(), ns.trim());
         let value: u64 =
             ns.parse().map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed()))?;
@@ -95,7 +95,7 @@ fn rules_of(found: Value) -> Result<TimingRules, String> {
     match scenario.driver_timing.as_ref().filter(|_| problems.is_empty()) {
         Some(driver) => Ok(drivers::rules(driver)),
         None => {
-            let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
+            let problems: Vec<String> = problems.iter().map(with_hint).collect();
             let problems = if problems.is_empty() { "no limits".to_owned() } else { problems.join("; ") };
             Err(format!("{problems}; {}", allowed()))
         }
@@ -108,28 +108,28 @@ fn allowed() -> String {
 }
 
 impl Options {
-    pub(crate) const fn asked(&self) -> bool {
+    pub(crate) const fn is_wanted(&self) -> bool {
         self.timing || self.driver.is_some() || self.violations.is_some() || self.strict
     }
 
     pub(crate) fn rules(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingRules>, Failure> {
-        if !self.asked() {
+        if !self.is_wanted() {
             return Ok(None);
         }
         let own = || scenario.driver_timing.as_ref().map(drivers::rules);
-        let wrong = |given: &Path, why| Failure::Option(format!("--driver {}: {why}", given.display()));
+        let wrong = |given: &Path, why| Failure::Option(format!("--driver: {}: {why}", given.display()));
         let named = self.driver.as_deref().map(|given| driver(given).map_err(|why| wrong(given, why)));
         let rules = named.transpose()?.or_else(own);
         rules.map(Some).ok_or_else(|| Failure::NoDriver(path.to_owned()))
     }
 
-    pub(crate) const fn most_kept(&self) -> usize {
+    pub(crate) const fn max_violations(&self) -> usize {
         if self.violations.is_some() { MAX_WRITTEN } else { MAX_SHOWN }
     }
 
     pub(crate) fn check(&self, path: &Path, scenario: &Scenario) -> Result<Option<TimingCheck>, Failure> {
         let rules = self.rules(path, scenario)?;
-        Ok(rules.map(|rules| TimingCheck::new(&rules, scenario.clock_hz, self.most_kept())))
+        Ok(rules.map(|rules| TimingCheck::new(&rules, scenario.clock_hz, self.max_violations())))
     }
 
     pub(crate) fn report(&self, check: &TimingCheck, unit: TimeUnit) -> Result<(), Failure> {
@@ -144,8 +144,7 @@ impl Options {
         if self.strict && is_empty { Err(Failure::NoSteps) } else { Ok(()) }
     }
 
-    /// With --strict, violations are a failure.
-    pub(crate) fn verdict(&self, check: &TimingCheck) -> Result<(), Failure> {
+    pub(crate) fn result(&self, check: &TimingCheck) -> Result<(), Failure> {
         if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
     }
 }
@@ -153,11 +152,11 @@ impl Options {
 pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tables {
     let rule = |result: &RuleResult| {
         let least = result.least.as_ref();
-        let asked = (result.nanos > 0).then_some(result.nanos);
-        let spare = asked.and_then(|asked| Some(unit.over(least?.measured, asked).nanos()));
+        let required = (result.nanos > 0).then_some(result.nanos);
+        let spare = required.and_then(|required| Some(unit.over(least?.measured, required).nanos()));
         json!({
             "rule": result.rule.name(),
-            "required_ns": asked,
+            "required_ns": required,
             "least_ns": least.map(|least| unit.over(least.measured, 0).nanos()),
             "spare_ns": spare,
             "at_cycle": least.map(|least| unit.cycle(least.at)),
@@ -195,7 +194,7 @@ pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
             writeln!(out, "{:14} {}", "", figures(&sheet.rules))?;
             writeln!(out, "{:14} {}", "", sheet.source)
         })?;
-        writeln!(out, "{:14} limits of your own, in ns: --driver {}", "custom", example())?;
+        writeln!(out, "{:14} your own limits, in ns: --driver {}", "custom", example())?;
         writeln!(out, "{:14} or a JSON file: {{\"step_high_ns\": 1000, \"dir_setup_ns\": 200}}", "")
     };
     list(&mut terminal::out()).map_err(Failure::output)
@@ -207,8 +206,8 @@ fn example() -> String {
 }
 
 fn figures(rules: &TimingRules) -> String {
-    let asked = Rule::ALL.iter().filter(|rule| rule.nanos(rules) > 0);
-    asked.map(|rule| format!("{} {} ns", rule.name(), rule.nanos(rules))).collect::<Vec<_>>().join(", ")
+    let limits = Rule::ALL.iter().filter(|rule| rule.nanos(rules) > 0);
+    limits.map(|rule| format!("{} {} ns", rule.name(), rule.nanos(rules))).collect::<Vec<_>>().join(", ")
 }
 
 pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
@@ -218,9 +217,9 @@ pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, unit: TimeUnit
         let time = Instant(cycle).seconds(unit.clock_hz);
         let (channel, rule) = (found.channel, found.rule.name());
         let (measured, required) = (unit.cycles(found.measured), unit.cycles_up(found.required));
-        let asked = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
+        let required_ns = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
         let nanos = unit.over(found.measured, 0);
-        writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{asked}")?;
+        writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{required_ns}")?;
     }
     out.flush()
 }
@@ -251,14 +250,14 @@ fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
 /// `-` without a limit or a measurement.
 fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, String, String) {
     let none = || "-".to_owned();
-    let asked = result.nanos > 0;
-    let required = if asked { result.nanos.to_string() } else { none() };
+    let is_limited = result.nanos > 0;
+    let required = if is_limited { result.nanos.to_string() } else { none() };
     let Some(least) = result.least else { return (required, none(), none(), none(), none()) };
     let spare = unit.over(least.measured, result.nanos);
     (
         required,
         unit.over(least.measured, 0).to_string(),
-        if asked { spare.to_string() } else { none() },
+        if is_limited { spare.to_string() } else { none() },
         unit.cycle(least.at).to_string(),
         least.channel.to_string(),
     )

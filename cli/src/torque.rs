@@ -8,7 +8,7 @@ pub(crate) mod text;
 
 use crate::{
     failure::{Failure, Numbered},
-    output::{self, Outputs},
+    output,
     progress::Progress,
     scenarios,
 };
@@ -30,11 +30,9 @@ use stepscope_core::{
 
 /// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);
-/// Number of rates of the curve.
 const POINTS: u32 = 201;
 
 pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
-    let outputs = Outputs::default();
     let mut scenario = scenarios::read(&arguments.scenario)?;
     if arguments.plant {
         scenario.plant.get_or_insert_default();
@@ -45,10 +43,10 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
         _ => of_steps::driven(arguments, &scenario)?,
     };
     if arguments.format == Written::Text {
-        hold_against_plant(arguments, scenario, &mut driven)?;
+        compare_with_plant(arguments, scenario, &mut driven)?;
     }
-    output::write_whole(outputs, &arguments.out, |out| match arguments.format {
-        _ if arguments.json => tables::tables(&driven).write(out),
+    output::write_new(&arguments.out.out, |out| match arguments.format {
+        _ if arguments.json.json => tables::tables(&driven).write(out),
         Written::Text => driven.iter().try_for_each(|driven| text::report(driven, out)),
         Written::Csv => driven.first().map_or(Ok(()), |driven| curve(driven, out)),
     })
@@ -59,7 +57,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     if arguments.named.microsteps.is_some() {
-        let what = "--microsteps is for sources without a motion; an axis has its own in its mechanics";
+        let what = "--microsteps: the axes of a motion have their own microsteps; set them in the axis's mechanics, or omit the option";
         return Err(Failure::Table(path.clone(), what.to_owned()));
     }
     let only = match (arguments.axis, arguments.format) {
@@ -77,25 +75,26 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
             arguments.format == Written::Text,
         ));
     }
-    let mut asked = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    if !axes.is_empty() && asked.all(|(_, given)| given.motor.is_none()) {
-        let detail = "no motor; give one, such as \"motor\": {} for that of Song, Han and Lu 2021";
-        let place = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
-        return Err(wrong(vec![Problem::new(place, ValueError::Conflict { detail })]));
+    let mut selected = axes.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    if !axes.is_empty() && selected.all(|(_, given)| given.motor.is_none()) {
+        let detail =
+            "the axis has no motor; use --motor, or \"motor\": {} for the motor of Song, Han and Lu 2021";
+        let field = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
+        return Err(wrong(vec![Problem::new(field, ValueError::Conflict { detail })]));
     }
     let plans = plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
     let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
-    let asked = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    let found = asked.filter_map(|(axis, (given, plan))| {
+    let selected = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
+    let found = selected.filter_map(|(axis, (given, plan))| {
         let machine = Machine::of(given)?;
         let demand = Demand::of(&machine, &plan);
-        Some(Driven { axis, machine, asked: MotionSource::Plan(plan), demand, agreement: None })
+        Some(Driven { axis, machine, source: MotionSource::Plan(plan), demand, agreement: None })
     });
     Ok(found.collect())
 }
 
 /// Runs the plant if there is one or it is requested, and compares it with the torque curve.
-fn hold_against_plant(
+fn compare_with_plant(
     arguments: &Arguments,
     mut scenario: Scenario,
     driven: &mut [Driven],
@@ -116,19 +115,21 @@ fn hold_against_plant(
         Err(problems) if arguments.plant => {
             return Err(Failure::Scenario(arguments.scenario.clone(), problems));
         }
-        Err(_) => return not_run("the scenario has problems, which --plant tells".to_owned()),
+        Err(_) => return not_run("the scenario has problems, which --plant lists".to_owned()),
     };
     let motor_steps = experiment.cost().motor_steps;
     if motor_steps > BUDGET_MOTOR_STEPS && !arguments.plant {
-        return not_run(format!("it takes {motor_steps} motor-steps; --plant runs it all the same"));
+        return not_run(format!(
+            "the simulation takes {motor_steps} motor steps; use --plant to run it anyway"
+        ));
     }
     let parts = (0..experiment.controllers()).map(|_| <(Digest, FirstSlips)>::default()).collect();
     let Some(mut run) = PlantRun::new(&experiment, parts) else { return Ok(()) };
     let mut progress = Progress::new("torque", false);
     while !run.advance(SLICE) {
-        progress.tell(run.now().0, experiment.cost().end_cycle);
+        progress.update(run.now().0, experiment.cost().end_cycle);
     }
-    drop(progress);
+    progress.end(format_args!("{} cycles", run.now().0), &[]);
     let (results, overload) = (run.results(), run.overload(0));
     let parts = run.into_parts();
     let setup = experiment.plants().and_then(|plants| plants.setups.first());

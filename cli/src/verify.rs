@@ -16,19 +16,20 @@ use stepscope_core::{
 const SLICE: u64 = 1 << 16;
 
 pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
-    let proof = part.ok_or(Failure::NoProof)?;
+    let proof = part.ok_or(Failure::NoDigests)?;
     let proof = RunFingerprint::parse(proof).map_err(Failure::RunFingerprint)?;
     let experiment = Experiment::new(scenario)
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
     let own = experiment.controllers();
     let mut checks = proof.checks(own).map_err(|sent| {
-        Failure::OtherRun(format!("the link's digests are of {sent} controllers, its scenario has {own}"))
+        Failure::OtherRun(format!("the link has digests of {sent} controllers, but its scenario has {own}"))
     })?;
-    let mut progress = Progress::new("verify", false);
+    let mut progress = Progress::new("open", false);
     let mut run = experiment.start();
     while !run.advance_each(SLICE, &mut checks) {
-        progress.tell(run.cycles().0, experiment.cost().end_cycle);
+        progress.update(run.cycles().0, experiment.cost().end_cycle);
     }
+    progress.end(format_args!("{} cycles", run.cycles().0), &[]);
     let clock_hz = experiment.config().clock_hz();
     let (controller, after, until, shorter) = match Verification::of(checks) {
         Verification::Same { edges } => {
@@ -37,7 +38,7 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
             // If standard error is closed, the exit code remains.
             let _ = writeln!(
                 terminal::err(),
-                "identical, bit for bit: {edges} edges, digest {}",
+                "identical to the sender's run: {edges} edges, digest {}",
                 digests.join(" ")
             );
             return Ok(());
@@ -52,10 +53,10 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         None => "",
     };
     let version = proof.other_version().map_or_else(String::new, |version| {
-        format!("; it was made with version {version}, this is {VERSION}")
+        format!("; the link was made with version {version}, this is version {VERSION}")
     });
     Err(Failure::OtherRun(format!(
-        "not the link's run: the first difference{controller} comes after edge {}, {}, and by edge {}, {}{ends}{version}",
+        "the run differs from the sender's: the first difference{controller} is between edge {}, {}, and edge {}, {}{ends}{version}",
         after.edges,
         at(after.cycle),
         until.edges,

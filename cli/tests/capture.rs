@@ -215,7 +215,7 @@ fn what_a_file_does_not_tell_is_asked_for() {
             "Time [s],A,B\n0,0,0\n1,1,0\n2,0,1\n",
             &[],
             2,
-            "nothing says which channel is which signal; give a map, such as STEP0=A,DIR0=B; the channels are A, B",
+            "; the channels are A, B; use a map, such as --map STEP0=A,DIR0=B",
         ),
         (DUMP, &["--clock", "5"], 2, "'5' for '--clock <HZ>': out of range; use 11 to 1000000000"),
     ]);
@@ -265,7 +265,7 @@ fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing(
     assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
     assert!(
         err.starts_with("-: the recording is truncated: line 3: ")
-            && err.ends_with("; the results above are those of the part before\n"),
+            && err.ends_with("; the results are of the part before\n"),
         "{err}"
     );
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");
@@ -341,7 +341,7 @@ fn pulses_are_held_against_a_driver() {
     let (code, out, err) = stepscope(&["capture", "-", "--driver", "drv8825", "--strict"], DUMP);
     assert_eq!((code, err.as_str()), (Some(0), ""), "{out}");
     let (code, _, err) = stepscope(&["capture", "-", "--timing"], DUMP);
-    assert!(code == Some(2) && err.contains("the scenario names no driver"), "{err}");
+    assert!(code == Some(2) && err.contains("the scenario has no driver"), "{err}");
 }
 
 fn dump_of(timescale: &str, interval: u64, width: u64) -> String {
@@ -552,7 +552,7 @@ fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
     assert!(!told(&[]).contains("torque"));
     let named = told(&["--motor", "nema-8"]);
     assert!(
-        named.contains("\ntorque\nchannel 0: no plan is known") && named.contains("enough torque"),
+        named.contains("\ntorque\nchannel 0: the scenario has no motion") && named.contains("enough torque"),
         "{named}"
     );
     // The scenario has a motor with its own microsteps.
@@ -678,7 +678,7 @@ fn timing_limits_of_ones_own_need_no_scenario() {
         let (code, out, err) = stepscope(&["capture", &dump, "--driver", driver, "--strict"], "");
         assert_eq!(
             (code, err.as_str()),
-            (Some(3), "2 violations of the driver's timing\n"),
+            (Some(3), "--strict: 2 violations of the driver's timing\n"),
             "{driver}: {out}"
         );
         assert!(out.contains("dir_setup       10000000       500000     -9500000"), "{out}");

@@ -47,7 +47,7 @@ fn steps_on_both_edges_are_counted_where_asked_for_and_hinted_at_otherwise() {
     let file = dump(&["STEP", "DIR"], 0b10, &[&edges, &[]]);
     let hint =
         "both edges of STEP0 are evenly spaced: a driver that steps on both edges makes 40 steps of it";
-    all_of(&told(&file, &[]), &["channel 0  20 steps: 20 right", "rate at most 5000.0 steps/s", hint]);
+    all_of(&told(&file, &[]), &["channel 0  20 steps: 20 right", "maximum rate 5000.0 steps/s", hint]);
     for options in [&["--both-edges"][..], &["--map", "DEDGE0=STEP,DIR0=DIR"]] {
         let out = told(&file, options);
         all_of(
@@ -136,7 +136,7 @@ fn maps_that_are_told_of_can_be_used_whatever_the_names_of_the_channels() {
         all_of(&out, &[&format!("use {map} in the map\n")]);
     }
     let (code, _, err) = stepscope(&["capture", "-"], "Time [s],A\n0,0\n1,1\n2,0\n");
-    assert!(code == Some(2) && err.contains("such as STEP0=A; the channels are A"), "{err}");
+    assert!(code == Some(2) && err.contains("the channels are A; use a map, such as --map STEP0=A"), "{err}");
 }
 
 #[test]

@@ -191,7 +191,7 @@ fn the_timing_check_prints_writes_and_is_strict_when_asked() {
     assert_eq!((lines.len(), lines[27].join(" ").as_str()), (28, "and 111 more"));
 
     let strict = run(&["--strict"]);
-    let complaint = "131 violations of the driver's timing\n";
+    let complaint = "--strict: 131 violations of the driver's timing\n";
     assert_eq!(strict.parts(), (Some(3), answer.out.as_str(), complaint));
     let rows = run(&["--violations", "-"]);
     assert_eq!((rows.code, rows.out.lines().count()), (Some(0), 132));

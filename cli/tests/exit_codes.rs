@@ -132,7 +132,7 @@ fn numbers_that_are_none_are_refused_by_every_option() {
         &["limits", "-", "--ramp"],
         &["resonance", "-", "--from"],
         &["resonance", "-", "--to"],
-        &["resonance", "-", "--rung"],
+        &["resonance", "-", "--step"],
         &["points", "-", "--unit", "mm", "--step-mm"],
         &["sine", "sweep", "--from"],
         &["sine", "best", "--to"],
@@ -168,7 +168,7 @@ fn numbers_that_are_none_are_refused_by_every_option() {
 /// The message has the value given and what is allowed.
 #[test]
 fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
-    let sweep = "--to 0.002 is below --from 0.06; use --to 0.06 to 1";
+    let sweep = "--to: 0.002 is below --from 0.06; use --to 0.06 to 1";
     let axis =
         "--axis: 18446744073709551615 is out of range; the scenario has axes 0 to 1; use --axis 0 to 1";
     let controller = "--controller: 18446744073709551615 is out of range; the scenario has only controller 0; use --controller 0";
@@ -180,7 +180,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         (&["sine", "best", "--segments", "0"], "'0' for '--segments <N>': out of range; use 1 or more"),
         (
             &["sine", "best", "--segments", MOST],
-            "--segments 18446744073709551615: no d1 from 0.002 to 0.06 gives this number; use 2 to 10",
+            "--segments: 18446744073709551615 is out of range for deviations from 0.002 to 0.06; use 2 to 10",
         ),
         (&["sine", "vertices", "--segments", "33"], "out of range; use 1 to 32"),
         (
@@ -203,16 +203,19 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         ),
         (
             &["resonance", "resonance-full-steps", "--from", "3", "--to", "2"],
-            "--from 3 --to 2 --rung 4: use rates that rise",
+            "--from 3 --to 2 --step 4: out of range; use rates that rise",
         ),
-        (&["settling", "resonance-full-steps", "--t-step", "1"], "T_step is 1 cycles; give --t-step 80 to "),
+        (
+            &["settling", "resonance-full-steps", "--t-step", "1"],
+            "--t-step: 1 cycles are out of range; use 80 to ",
+        ),
         (
             &["capture", "recorded-step-table", "--against", "framed-link", "--channel", "16"],
             "'16' for '--channel <K>': out of range; use 0 to 15",
         ),
         (
             &["capture", "recorded-step-table", "--against", "framed-link", "--align", MOST],
-            "--align 18446744073709551615: the plan has ",
+            "--align: 18446744073709551615 is out of range; the plan has ",
         ),
         (&["capture", "recorded-step-table", "--map", "STEP16=#0"], "use STEP0 to STEP15"),
         (&["capture", "recorded-step-table", "--map", "STEP0=#99"], "there is no channel #99; the file has "),

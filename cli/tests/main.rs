@@ -11,6 +11,7 @@ mod controller;
 mod exit_codes;
 mod exports;
 mod faults;
+mod help;
 mod inputs;
 mod lines;
 #[cfg(unix)]

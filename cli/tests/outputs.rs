@@ -53,7 +53,7 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
         std::os::unix::fs::symlink("in.json", folder.join("soft.json")).expect("a link");
         std::os::unix::fs::symlink("new.vcd", folder.join("soft.vcd")).expect("a link");
     }
-    let input = "is an input, and would be overwritten";
+    let input = "is an input and would be overwritten";
     let twice = "would be written twice";
     let standard = "standard output already has another output";
     let rows: &[(&[&str], &str)] = &[
@@ -96,7 +96,7 @@ fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
         let arguments = ["capture", "recorded-step-table", "--against", "s.json", output, "s.json"];
         let (code, out, err) = in_folder(&folder, &arguments);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{output}");
-        assert!(err.starts_with("s.json: is an input, and would be overwritten"), "{err}");
+        assert!(err.starts_with("s.json: is an input and would be overwritten"), "{err}");
     }
     let (code, _, err) = in_folder(&folder, &["tables", "in.json", "--steps", "s.json", "--out", "./s.json"]);
     assert!(code == Some(2) && err.contains("is an input"), "{err}");

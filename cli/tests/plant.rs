@@ -27,7 +27,12 @@ fn a_scenario_without_a_plant_is_refused_with_the_remedy() {
     for command in ["plant", "settling", "limits", "resonance"] {
         let (code, out, err) = stepscope(&[command, "-"], "{}");
         assert_eq!((code, out.as_str()), (Some(2), ""));
-        assert!(err.ends_with("plant: no plant, so nothing is driven; give \"plant\": {}\n"), "{err}");
+        assert!(
+            err.ends_with(
+                "plant: the scenario has no plant, so there are no motors to simulate; add \"plant\": {}\n"
+            ),
+            "{err}"
+        );
     }
     let (code, _, err) = stepscope(&["plant", "-"], r#"{"plant":{"source_ohm":0}}"#);
     assert!(code == Some(2) && err.contains("plant.source_ohm: 0 Ω is out of range"), "{err}");
@@ -64,7 +69,7 @@ fn motors_and_drivers_are_taken_from_the_list() {
         json["tables"]["limits"][0]["start_stop_steps_s"].as_f64().expect("a rate")
     };
     assert!(limits("as1060") < 0.6 * limits("song-2021"));
-    for (option, told) in [("--motor", "no such motor"), ("--drive", "no such driver")] {
+    for (option, told) in [("--motor", "invalid value"), ("--drive", "possible values: ideal")] {
         let (code, _, err) = stepscope(&["resonance", "-", option, "none"], r#"{"plant":{}}"#);
         assert!(code == Some(2) && err.contains(told), "{err}");
     }

@@ -93,12 +93,46 @@ fn the_figures_are_those_of_the_text() {
     assert_eq!(stepscope(&["run", "-", "--strict", "--json"], &broken).0, Some(3));
 }
 
+/// What a shell's script receives for the last of these words.
+fn completed(words: &[&str]) -> Vec<String> {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_stepscope"))
+        .args([&["--", "stepscope"], words].concat())
+        .env("STEPSCOPE_COMPLETE", "bash")
+        .env("_CLAP_COMPLETE_INDEX", words.len().to_string())
+        .env("_CLAP_IFS", "\n")
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("it starts");
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).expect("text").lines().map(|line| line.trim().to_owned()).collect()
+}
+
 #[test]
-fn shells_complete_and_man_shows_every_command() {
+fn a_shell_completes_commands_options_presets_and_files() {
+    let rows: &[(&[&str], &str)] = &[
+        (&["meas"], "measures"),
+        (&["run", "--vcd-t"], "--vcd-timescale"),
+        (&["run", "song-2021-o"], "song-2021-one-turn"),
+        (&["capture", "recorded-s"], "recorded-step-table"),
+        (&["capture", "x", "--against", "song-2021-o"], "song-2021-one-turn"),
+        (&["faults", "framed-l"], "framed-link"),
+        (&["presets", "zhang-2012-z"], "zhang-2012-zero-by-jog"),
+        (&["run", "x", "--driver", "a49"], "a4988"),
+        (&["plant", "x", "--motor", "17"], "17hs4401"),
+        (&["run", "Cargo.t"], "Cargo.toml"),
+    ];
+    for (words, expected) in rows {
+        let found = completed(words);
+        assert!(found.iter().any(|line| line == expected), "{words:?}: {found:?}");
+    }
+}
+
+#[test]
+fn shells_have_scripts_and_man_shows_every_command() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let (code, out, err) = stepscope(&["completions", shell], "");
         assert_eq!((code, err.as_str()), (Some(0), ""), "{shell}");
-        assert!(["vcd-timescale", "measures", "calibrate"].iter().all(|word| out.contains(word)), "{shell}");
+        assert!(["STEPSCOPE_COMPLETE", "stepscope"].iter().all(|word| out.contains(word)), "{shell}: {out}");
     }
     let (code, page, _) = stepscope(&["man"], "");
     assert_eq!(code, Some(0));
@@ -109,20 +143,5 @@ fn shells_complete_and_man_shows_every_command() {
     for name in ["stepscope", "stepscope-run", "stepscope-sine-sweep", "stepscope-tables"] {
         let page = fs::read_to_string(folder.join(format!("{name}.1"))).expect(name);
         assert!(page.starts_with(".ie") || page.contains(".TH"), "{name}");
-    }
-}
-
-#[test]
-fn the_help_of_every_command_tells_the_exit_codes() {
-    for command in [&[] as &[&str], &["run"], &["faults"], &["open"], &["sine", "best"], &["completions"]] {
-        let (code, out, _) = stepscope(&[command, &["--help"]].concat(), "");
-        assert_eq!(code, Some(0), "{command:?}");
-        for line in [
-            "Exit codes:",
-            "  2    the scenario, the link, the recording or the command line is invalid",
-            "  141  ",
-        ] {
-            assert!(out.contains(line), "{command:?}: {out}");
-        }
     }
 }

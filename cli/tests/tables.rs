@@ -69,7 +69,8 @@ fn steps_of_any_origin_are_compressed() {
     let (code, out, _) =
         stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
     assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
-    for (list, told) in [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle is \"later\"")]
+    for (list, told) in
+        [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle: \"later\" is out of range")]
     {
         let (code, _, err) = stepscope(&["tables", "--steps", "-", "--format", "csv"], list);
         assert!(code == Some(2) && err.contains(told), "{err}");
@@ -223,7 +224,7 @@ fn what_cannot_be_a_table_ends_with_2_and_says_why() {
             MOTION,
             "axes[1]: a move of this kind has no table",
         ),
-        (&[], r#"{ "source": { "line": {} } }"#, "source: nothing steps"),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: no channel steps"),
         (&["--error-us=-1"], MOTION, "use 0 to 1000000000"),
         (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
     ];

@@ -14,9 +14,9 @@ fn an_axis_with_torque_to_spare_says_so_and_names_the_longest_ramp() {
     let expected = "\
 axis 0
   full torque      282.8 mN*m, up to 30945 steps/s
-  greatest rate    any rate with a load of 0.0 mN*m
+  maximum rate     any rate with a load of 0.0 mN*m
   working rate     19200 steps/s, as stated
-  least margin     281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
+  minimum margin   281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
   enough torque throughout
   move 0           3200 steps in 0.4 s
     under 19200 steps/s  a ramp of at most 0.2333 s; the longest possible is 0.2000 s
@@ -33,17 +33,17 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
     let (code, out, _) = stepscope(&["torque", "-"], &scenario);
     assert_eq!(code, Some(0), "a warning is no error");
     for line in [
-        "  least margin     -63.9 mN*m: at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
+        "  minimum margin   -63.9 mN*m: at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
         "  jump of speed    250 steps/s at once; the motor's start-stop rate has to be higher",
-        "  warning: too little torque in 1 interval; give more time, gentler ramps, less load, or a higher supply voltage",
+        "  warning: too little torque in 1 interval; allow more time, or use gentler ramps, less load or a higher supply voltage",
         "    0.053133 to 0.146867 s: 63.9 mN*m short at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
-        "    no ramp leaves enough torque; give more time or less load",
+        "    no ramp leaves enough torque; allow more time or reduce the load",
     ] {
         assert!(out.lines().any(|found| found == line), "{line}\nis not in\n{out}");
     }
     let (code, _, err) = stepscope(&["torque", "-", "--axis", "0"], &scenario);
     assert_eq!(code, Some(2));
-    assert!(err.contains("source.motion.axes[0].motor: no motor; give one"), "{err}");
+    assert!(err.contains("source.motion.axes[0].motor: the axis has no motor; use --motor"), "{err}");
     assert_eq!(stepscope(&["torque", "-", "--axis", "2"], &scenario).0, Some(2));
     let direct = axes(r#"{"mechanics":{"direct":{}},"motor":{}}"#);
     let (code, _, err) = stepscope(&["torque", "-"], &direct);
@@ -78,7 +78,7 @@ fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
     );
     let scenario = r#"{"run_cycles":10000000000,"plant":{},"source":{"motion":{"axes":[{"motor":{}}]}}}"#;
     let (code, out, _) = stepscope(&["torque", "-"], scenario);
-    assert!(code == Some(0) && out.contains("motor-steps; --plant runs it all the same"), "{out}");
+    assert!(code == Some(0) && out.contains("motor steps; use --plant to run it anyway"), "{out}");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn what_limits_a_moves_ramps_is_named() {
         assert_eq!((code, err.as_str()), (Some(0), ""));
         out
     };
-    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but they are above the working rate; give more time\n";
+    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but they are above the working rate; allow more time\n";
     let out = of(r#"{"cosine":{"ramp_s":0}}"#, r#"{"working_rate_hz":8000}"#);
     let without = "    enough torque without ramps, if the motor starts and stops at that rate\n";
     assert!(
@@ -100,9 +100,9 @@ fn what_limits_a_moves_ramps_is_named() {
     assert!(out.contains("above the working rate of 8000 steps/s") && out.contains(by_rate), "{out}");
     assert!(!out.contains("no ramp"), "{out}");
     let out = of(r#"{"cosine":{}}"#, r#"{"load_torque_mn_m":1e6}"#);
-    assert!(out.contains("  greatest rate    none with a load of 1000000.0 mN*m\n"), "{out}");
+    assert!(out.contains("  maximum rate     none with a load of 1000000.0 mN*m\n"), "{out}");
     assert!(
-        out.contains("    the load needs more torque than the motor has at any rate; give less load\n"),
+        out.contains("    the load needs more torque than the motor has at any rate; reduce the load\n"),
         "{out}"
     );
     assert!(!out.contains("inf"), "{out}");
@@ -112,7 +112,7 @@ fn what_limits_a_moves_ramps_is_named() {
         out.contains("  standing torque  11.8 mN*m; the supply is too low for the whole current"),
         "{out}"
     );
-    assert!(out.contains("  greatest rate    271 steps/s with a load of 0.0 mN*m\n"), "{out}");
+    assert!(out.contains("  maximum rate     271 steps/s with a load of 0.0 mN*m\n"), "{out}");
     assert!(
         out.contains("  warning: too little torque in 1 interval") && !out.contains("throughout"),
         "{out}"
@@ -140,7 +140,7 @@ fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
     let table = "length_cm, steps\n10,5650\n30.5,17232.5\n45,25425\n";
     let (code, out, err) = stepscope(&["calibrate", "-"], table);
     assert_eq!((code, err.as_str()), (Some(0), ""));
-    assert!(out.contains("  k                 56.500000 steps/mm, 0.017699115 mm a step\n"), "{out}");
+    assert!(out.contains("  k                 56.500000 steps/mm, 0.017699115 mm per step\n"), "{out}");
     assert!(out.contains("  offset            0.000 steps, 0.000000 mm\n"), "{out}");
     let mechanics = out.lines().last().expect("a last line");
     // The result is valid in a scenario.
@@ -155,7 +155,7 @@ fn very_few_steps_a_millimetre_keep_their_digits() {
     let (code, out, _) = stepscope(&["calibrate", "-"], "length_mm,steps\n0,0\n1e12,1\n");
     assert_eq!(code, Some(0));
     assert!(
-        out.contains("  k                 1.000000000e-12 steps/mm, 1.000000000e12 mm a step\n"),
+        out.contains("  k                 1.000000000e-12 steps/mm, 1.000000000e12 mm per step\n"),
         "{out}"
     );
 }
@@ -163,16 +163,22 @@ fn very_few_steps_a_millimetre_keep_their_digits() {
 #[test]
 fn a_table_without_a_line_is_refused() {
     for (table, expected) in [
-        ("a,b\n1,2\n", "there is no column of lengths; give a first row"),
-        ("length_mm\n1\n", "there is no column steps; give a first row"),
+        ("a,b\n1,2\n", "no column of lengths; use a first row"),
+        ("length_mm\n1\n", "no column steps; use a first row"),
         ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
         ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; measure at least one of another length"),
         (
             "length_mm,steps\n1e-200,1\n2e-200,2\n",
             "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12",
         ),
-        ("length_mm,steps\n1,2\n2,x\n", "line 3: steps is “x”; give a number, with a point"),
-        ("length_mm,steps\n1,2\n2,nan\n", "line 3: steps is “nan”; give a number, with a point"),
+        (
+            "length_mm,steps\n1,2\n2,x\n",
+            "line 3: steps: \"x\" is not a number; use digits and a decimal point",
+        ),
+        (
+            "length_mm,steps\n1,2\n2,nan\n",
+            "line 3: steps: \"nan\" is not a number; use digits and a decimal point",
+        ),
     ] {
         let (code, _, err) = stepscope(&["calibrate", "-"], table);
         assert_eq!(code, Some(2), "{table}");
@@ -194,12 +200,15 @@ fn lists(plant: &str) -> String {
 #[test]
 fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_named() {
     let (code, _, err) = stepscope(&["torque", "-"], &lists(""));
-    assert!(code == Some(2) && err.contains("plant: no motor; give one, such as \"plant\": {}"), "{err}");
+    assert!(
+        code == Some(2) && err.contains("plant: the scenario has no motor; use --motor, or \"plant\": {}"),
+        "{err}"
+    );
     let heavy = r#","plant":{"motors":[{},{"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}}]}"#;
     let (code, out, err) = stepscope(&["torque", "-"], &lists(heavy));
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let (light, heavy_lines) = out.split_once("channel 1: ").expect("both channels");
-    assert!(light.starts_with("channel 0: no plan is known, so the steps themselves are judged, over the rotor's natural period of 3.544 ms\n"), "{out}");
+    assert!(light.starts_with("channel 0: the scenario has no motion, so the steps themselves are checked, over the rotor's natural period of 3.544 ms\n"), "{out}");
     for line in ["  enough torque throughout\n", "  plant            follows; both models agree\n"] {
         assert!(light.contains(line), "{line}{out}");
     }
@@ -222,7 +231,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
 
     let rows: [(&[&str], &str, &str); 4] = [
         (&["--axis", "2"], "", "--axis: 2 is out of range"),
-        (&["--motor", "nema-99"], "", "no such motor; `stepscope plant --motors` lists them"),
+        (&["--motor", "nema-9"], "", "a similar value exists"),
         (&["--microsteps", "4"], "", "--motor"),
         (
             &["--axis", "1", "--motor", "nema-8"],

@@ -16,10 +16,10 @@ pub(super) fn option(remedy: &Remedy) -> String {
         }
         Remedy::InvertLine { line, inverted: true } => format!(": map it with !, such as {line}=!CH1"),
         Remedy::InvertLine { line, inverted: false } => format!(": map it without !, such as {line}=CH1"),
-        Remedy::ChooseLine => "; choose one by a map, such as RX=#0".to_owned(),
+        Remedy::ChooseLine => "; choose one with a map, such as RX=#0".to_owned(),
         Remedy::Format(format) => format!(": try --uart {format}"),
-        Remedy::Baud => "; give one with --baud".to_owned(),
-        Remedy::BaudOrFormat => "; give the bit rate with --baud, or the format with --uart".to_owned(),
+        Remedy::Baud => "; use --baud".to_owned(),
+        Remedy::BaudOrFormat => "; use --baud for the bit rate, or --uart for the format".to_owned(),
     }
 }
 

@@ -4,6 +4,7 @@ use super::advice;
 use crate::{
     failure::Failure,
     motors::Named,
+    options::{Json, ShowProgress},
     quantity::{ExactMicroseconds, Microseconds, whole},
     timing,
 };
@@ -17,107 +18,99 @@ use stepscope_core::{
     },
 };
 
-/// What `stepscope capture` takes.
 #[derive(Args)]
 #[command(group(ArgGroup::new("of_channel").args(["against", "steps"]).multiple(true)))]
 pub(crate) struct Arguments {
-    /// Recording to read, or `-` for standard input
+    /// Recording; `-` reads standard input
     ///
     /// Value change dumps; sigrok and PulseView sessions, tables and UART annotations; tables of levels (Saleae, DSView,
-    /// WaveForms, Kingst, your own); decoded bytes; hex dumps (hexdump -C, xxd, od); serial logs with times; Klipper's step
-    /// commands; times and positions. Two samples come with the command: recorded-step-table, recorded-late-packet.
+    /// WaveForms, Kingst, your own); decoded bytes; hex dumps (hexdump -C, xxd, od); serial logs with times; Klipper's
+    /// step commands; times and positions. Two recordings come with the command: recorded-step-table and
+    /// recorded-late-packet.
+    #[arg(value_name = "RECORDING")]
     pub(super) file: PathBuf,
-    /// Assign channels to signals: STEP0=CH1,DIR0=CH2,EN=!nEN
+    /// Assign channels to signals, such as STEP0=CH1,DIR0=CH2,EN=!nEN
     ///
-    /// `!` inverts a channel; `#0` is the first one. Motors can share a DIR channel (DIR0=DIR,DIR1=DIR). In place of STEP0:
-    /// DEDGE0 for a driver that steps on both edges, CW0 and CCW0 for one pulse input per direction, A0 and B0 for a
-    /// quadrature encoder. Without a map, one is proposed from names and behavior, and printed.
+    /// `!` inverts a channel; `#0` is the first one. Motors can share a DIR channel (DIR0=DIR,DIR1=DIR). In place of
+    /// STEP0: DEDGE0 for a driver that steps on both edges, CW0 and CCW0 for one pulse input per direction, A0 and B0
+    /// for a quadrature encoder. By default a map is proposed from names and behavior, and printed.
     #[arg(long, value_name = "MAP")]
     pub(super) map: Option<String>,
-    /// Count a step on both edges of each STEP: DEDGE in place of STEP in the map
+    /// Count a step on both edges of STEP, as DEDGE in a map
     #[arg(long)]
     pub(super) both_edges: bool,
-    /// Clock that times are converted to, in Hz
-    ///
-    /// The default is the file's own clock, in which each time is a whole number of cycles.
+    /// Clock that times are converted to, in Hz (default: the file's own)
     #[arg(long, value_name = "HZ", value_parser = whole::<u32>(11..=1_000_000_000))]
     pub(super) clock: Option<u32>,
     /// Sample rate, in Hz, if the file does not contain it
     #[arg(long, value_name = "HZ", value_parser = whole::<u64>(1..=1_000_000_000_000))]
     pub(super) sample_rate: Option<u64>,
-    /// Bit rate of RX and TX; the default is measured from their pulses
+    /// Bit rate of RX and TX (default: measured from their pulses)
     #[arg(long, value_name = "BAUD", value_parser = whole::<u32>(1..=1_000_000_000))]
     pub(super) baud: Option<u32>,
-    /// Data bits, parity and stop bits of RX and TX, such as 7E1 (default 8N1)
+    /// Data bits, parity and stop bits of RX and TX, such as 7E1 (default: 8N1)
     #[arg(long, value_name = "FORMAT", value_parser = uart)]
     pub(super) uart: Option<uart::Format>,
-    /// Base of decoded bytes in annotations, logs and tables: hex, dec, oct or bin (default: by their digits)
+    /// Base of decoded bytes: hex, dec, oct or bin (default: by their digits)
     #[arg(long, value_name = "BASE", value_parser = base)]
     pub(super) base: Option<Base>,
-    /// Compare with the run of this scenario, step by step
+    /// Compare with the run of this scenario: a JSON file or a preset's name
     ///
-    /// A JSON file or a preset's name. Bytes are compared where no channel steps. Reports missing, additional and late
-    /// steps; exit code 3 if there are any.
+    /// Reports missing, additional and late steps; exit code 3 if there are any. Bytes are compared if no channel steps.
     #[arg(long, value_name = "SCENARIO")]
     pub(super) against: Option<PathBuf>,
-    /// Channel to compare with --against, or to write with --steps
+    /// Channel to compare, or to write with --steps
     #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel", value_parser = whole::<u8>(0..=15))]
     pub(super) channel: u8,
-    /// Align both at this step of the plan, from 0
-    ///
-    /// The default is the first step, or byte, that both have.
+    /// Step of the plan, from 0, at which both are aligned (default: the first that both have)
     #[arg(long, value_name = "STEP", requires = "against", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) align: Option<usize>,
-    /// Accept steps that are off by up to this time, in us
-    ///
-    /// Applies to bytes, too. The default is one cycle of the slower clock.
+    /// Maximum error of a step or byte, in us (default: one cycle of the slower clock)
     #[arg(long, value_name = "US", requires = "against")]
     pub(super) within_us: Option<ExactMicroseconds>,
-    /// Write the delay of each step, or byte, as a table
+    /// Write the delay of each step or byte (CSV)
     ///
-    /// One row per missing or additional one, too.
+    /// Missing and additional ones have rows, too.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
     /// Write a scenario that reproduces the recording
     ///
-    /// Its bytes, if RX has any, sent to the controllers of --against, else its steps.
-    #[arg(long, value_name = "FILE")]
-    pub(super) scenario: Option<PathBuf>,
+    /// If RX has bytes, it sends them to the controllers of --against. Otherwise it makes the steps.
+    #[arg(short = 'o', long, alias = "scenario", value_name = "FILE")]
+    pub(super) write_scenario: Option<PathBuf>,
     /// Make the scenario from the steps even if RX has bytes
-    #[arg(long, requires = "scenario")]
+    #[arg(long, requires = "write_scenario")]
     pub(super) of_steps: bool,
-    /// Maximum error of the scenario's steps, in us: larger errors take fewer segments
-    #[arg(long, value_name = "US", requires = "scenario")]
+    /// Maximum error of the scenario's steps, in us; larger errors need fewer segments
+    #[arg(long, value_name = "US", requires = "write_scenario")]
     pub(super) error_us: Option<Microseconds>,
-    /// Write the step times of a channel as a table for `stepscope tables --steps`
+    /// Write the step times of a channel (CSV) for `stepscope tables --steps`
     #[arg(long, value_name = "FILE")]
     pub(super) steps: Option<PathBuf>,
-    /// Write the bytes of RX as a table: time, byte
+    /// Write the bytes of RX and TX (CSV)
     #[arg(long, value_name = "FILE")]
     pub(super) bytes: Option<PathBuf>,
-    /// Write the packets of RX and TX as a table, with their check and meaning
+    /// Write the packets of RX and TX with their check and meaning (CSV)
     ///
-    /// Replies of the device are among them. The table can be opened and sent again.
+    /// `stepscope capture` can read the table again.
     #[arg(long, value_name = "FILE")]
     pub(super) packets: Option<PathBuf>,
-    /// Write the trace: one record per line, cycle and levels in hexadecimal
+    /// Write the trace: cycle and levels in hexadecimal, one record per line
     #[arg(long, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
-    /// Write a value change dump with the signals' names
+    /// Write a value change dump with the names of the signals
     #[arg(long, value_name = "FILE")]
     pub(super) vcd: Option<PathBuf>,
-    /// Time unit of the dump
+    /// Time unit of the dump: 1, 10 or 100 of s, ms, us, ns, ps or fs
     #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
     pub(super) vcd_timescale: Timescale,
-    /// Write a table of the signals: cycle, time in s, one level per signal
+    /// Write a table of the signals (CSV): cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
-    /// Print the report as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    pub(super) progress: bool,
+    #[command(flatten)]
+    pub(super) json: Json,
+    #[command(flatten)]
+    pub(super) show: ShowProgress,
     #[command(flatten)]
     pub(super) named: Named,
     #[command(flatten)]
@@ -137,11 +130,10 @@ fn timescale(text: &str) -> Result<Timescale, String> {
 }
 
 impl Arguments {
-    /// The requested files.
     pub(super) fn outputs(&self) -> impl Iterator<Item = &Path> {
         [
             &self.late,
-            &self.scenario,
+            &self.write_scenario,
             &self.steps,
             &self.bytes,
             &self.packets,
@@ -155,7 +147,6 @@ impl Arguments {
         .map(PathBuf::as_path)
     }
 
-    /// How to open the recording.
     pub(super) fn open_options(&self) -> OpenOptions {
         OpenOptions {
             map: self.map.clone(),
@@ -167,18 +158,16 @@ impl Arguments {
         }
     }
 
-    /// The file's name without its folders.
     pub(super) fn name(&self) -> String {
         self.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
-    /// Why the recording cannot be opened, and the option that helps.
     pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
         let option = match error {
             OpenError::NoSampleRate(_) => " (--sample-rate HZ)".to_owned(),
             OpenError::NoBaud => " (--baud BAUD)".to_owned(),
             OpenError::NoMap { names, example } => {
-                format!("; give a map, such as {example}; the channels are {} (--map MAP)", names.join(", "))
+                format!("; the channels are {}; use a map, such as --map {example}", names.join(", "))
             }
             OpenError::NoRate(_, remedies) => remedies.iter().map(advice::option).collect(),
             _ => String::new(),
@@ -186,7 +175,6 @@ impl Arguments {
         self.wrong(format!("{error}{option}"))
     }
 
-    /// Why the recording cannot be used.
     pub(super) fn wrong(&self, what: impl ToString) -> Failure {
         Failure::Recording(self.file.clone(), what.to_string())
     }

@@ -1,7 +1,7 @@
 //! Compares a recording with a scenario's run.
 
 use super::arguments::Arguments;
-use crate::{failure::Failure, kept_run};
+use crate::{failure::Failure, run_recording};
 use std::{path::Path, rc::Rc};
 use stepscope_core::{
     inspect::recording::{
@@ -27,7 +27,7 @@ impl Beside {
         path: &Path,
         (scenario, experiment): &(Rc<Scenario>, Rc<Experiment>),
     ) -> Result<Self, Failure> {
-        let run = kept_run::of(path, experiment)?;
+        let run = run_recording::of(path, experiment)?;
         let recorded = recording.events(arguments.channel);
         let baud = recording
             .report
@@ -44,10 +44,10 @@ impl Beside {
             let (channel, own, planned) = (arguments.channel, recorded.len(), model.len());
             arguments.wrong(match arguments.align {
                 Some(step) if own > 0 && planned > 0 => format!(
-                    "--align {step}: the plan has {planned} {what}, from 0, and the recording {own}; this {one} is not in both; give another"
+                    "--align: {step} is out of range; the plan has {planned} {what}, from 0, and the recording {own}; use a {one} that both have"
                 ),
                 _ => format!(
-                    "channel {channel} has {own} {what} recorded and {planned} in the plan, so there is nothing to compare; map a channel to STEP{channel}, or give another --channel"
+                    "channel {channel}: {own} {what} recorded and {planned} planned, so there is nothing to compare; map a channel to STEP{channel}, or use another --channel"
                 ),
             })
         })?;

@@ -42,18 +42,23 @@ pub(super) fn write(
         let others: Vec<String> = channels.iter().map(|found| found.channel.to_string()).collect();
         let others = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
         return Err(arguments.wrong(format!(
-            "channel {} has no steps to write; channels with steps: {others} (--channel K)",
+            "--channel: channel {} has no steps; channels with steps: {others}",
             arguments.channel
         )));
     }
-    let made =
-        arguments.scenario.as_ref().map(|path| scenario(path, arguments, recording, base)).transpose()?;
+    let text = arguments
+        .write_scenario
+        .as_ref()
+        .map(|path| scenario(path, arguments, recording, base))
+        .transpose()?;
     let mut file = |path: &Option<PathBuf>, write: &dyn Fn(&mut Out) -> io::Result<()>| {
         let Some(path) = path else { return Ok(()) };
         let mut out = outputs.create(path)?;
         write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.clone(), error))
     };
-    file(&arguments.scenario, &|out| made.as_ref().map_or(Ok(()), |text| out.write_all(text.as_bytes())))?;
+    file(&arguments.write_scenario, &|out| {
+        text.as_ref().map_or(Ok(()), |text| out.write_all(text.as_bytes()))
+    })?;
     file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, beside)))?;
     file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
     file(&arguments.bytes, &|out| bytes(out, recording))?;
@@ -105,12 +110,10 @@ fn scenario(
             arguments.error_us.map_or(0.0, Microseconds::get),
             base,
         )
-        .map_err(|refused| arguments.wrong(format!("no scenario can be made of it: {refused}")))?;
-    scenario_file::text(
-        path,
-        &scenario,
-        "allow larger errors of its steps with --error-us, which takes fewer segments",
-    )
+        .map_err(|refused| {
+            arguments.wrong(format!("no scenario can be made of this recording: {refused}"))
+        })?;
+    scenario_file::text(path, &scenario, "use --error-us with a larger error, which needs fewer segments")
 }
 
 /// A missing or additional step has a row with one empty time.
@@ -127,9 +130,9 @@ fn late(out: &mut Out, beside: &Beside) -> io::Result<()> {
             writeln!(out, ",{extra},{},,,extra", beside.recorded.at_s(extra).unwrap_or(0.0))?;
         }
         for off in (index..index + count).filter_map(|index| alignment.off(index)) {
-            let (step, recorded, way) = (off.step, off.recorded_step, u8::from(off.other_direction));
+            let (step, recorded, other) = (off.step, off.recorded_step, u8::from(off.other_direction));
             let event = if off.other_value { "value" } else { "" };
-            writeln!(out, "{step},{recorded},{},{:e},{way},{event}", off.recorded_s, off.late_s)?;
+            writeln!(out, "{step},{recorded},{},{:e},{other},{event}", off.recorded_s, off.late_s)?;
         }
         (step, recorded_step, index) = (model + count, recorded + count, index + count);
     }

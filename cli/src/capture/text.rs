@@ -39,7 +39,7 @@ pub(super) fn print(
         writeln!(out, "{}", advice::line(line))?;
     }
     if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
-        writeln!(out, "no channel steps and nothing is heard on a line")?;
+        writeln!(out, "no channel steps, and no line has bytes")?;
     }
     if !driven.is_empty() {
         writeln!(out, "torque")?;
@@ -71,11 +71,11 @@ fn figures(out: &mut impl Write, ChannelReport { channel, figures }: &ChannelRep
         of.shortest_at_s,
         of.longest_interval_s,
     ) {
-        writeln!(out, "  rate at most {greatest:.1} steps/s, {mean:.1} in the mean")?;
+        writeln!(out, "  maximum rate {greatest:.1} steps/s, mean {mean:.1} steps/s")?;
         writeln!(out, "  intervals {:.3} us (at {at} s) to {:.3} us", shortest * 1e6, longest * 1e6)?;
     }
     if let Some(acceleration) = of.greatest_acceleration_steps_s2 {
-        writeln!(out, "  acceleration at most {acceleration:.0} steps/s^2, over 8 steps")?;
+        writeln!(out, "  maximum acceleration {acceleration:.0} steps/s^2, over 8 steps")?;
     }
     Ok(())
 }

@@ -13,23 +13,20 @@ use stepscope_core::{
 };
 
 pub(crate) const HELP: &str = "\
-press NAME [TIME]     a button, held until `release NAME`, or for a time such as 100ms, 2.5s or 200us
-release NAME
-NAME 0|1 [TIME]       a level of any input, for good or for a time: power 0, estop 1, limit_max 1
-push STEPS            a hand on the axis, such as -20, while its windings are without current
-wait TIME             the lines after it come so much later
-1: LINE               the same of controller 1; without it, of controller 0
-help                  this, and the names of all inputs";
+press NAME [TIME]     press a button until `release NAME`, or for a time such as 100ms, 2.5s or 200us
+release NAME          release a button
+NAME 0|1 [TIME]       set any input, permanently or for a time: power 0, estop 1, limit_max 1
+push STEPS            move the axis by hand, such as -20, while its windings have no current
+wait TIME             delay the lines that follow
+1: LINE               do the same with controller 1 (default: controller 0)
+help                  print this text and the names of all inputs";
 
-/// A month.
 const MAX_SECONDS: f64 = 2_678_400.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
-    /// Blank, or a comment.
     Nothing,
     Help,
-    /// The next line comes later.
     Wait(Span),
     /// Controller, change, and duration if it is not permanent.
     Change(usize, Change, Option<Span>),
@@ -78,12 +75,12 @@ pub(crate) enum NoLine {
 impl fmt::Display for NoLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Word(word) => write!(f, "{word}: no such word or input; `help` says what there is"),
-            Self::Input(name) => write!(f, "{name}: no such input; `help` names them"),
-            Self::Level(text) => write!(f, "{text}: not a level; give 0 or 1"),
-            Self::Time(text) => write!(f, "{text}: not a time; give one such as 100ms, 2.5s or 200us"),
-            Self::Steps(text) => write!(f, "{text}: not a number of steps; give a whole one, such as -20"),
-            Self::Count(word, usage) => write!(f, "{word}: give `{usage}`"),
+            Self::Word(word) => write!(f, "{word}: unknown word or input; `help` lists them"),
+            Self::Input(name) => write!(f, "{name}: unknown input; `help` lists them"),
+            Self::Level(text) => write!(f, "{text}: not a level; use 0 or 1"),
+            Self::Time(text) => write!(f, "{text}: not a time; use one such as 100ms, 2.5s or 200us"),
+            Self::Steps(text) => write!(f, "{text}: not a number of steps; use a whole number, such as -20"),
+            Self::Count(word, usage) => write!(f, "{word}: incomplete; use `{usage}`"),
         }
     }
 }
@@ -156,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_a_change_and_what_is_none_is_told() {
+    fn a_line_is_a_change_or_has_an_error() {
         let rows = [
             ("press start 100ms", level_of(0, Signal::Start, true, Some(0.1))),
             ("press jog_plus", level_of(0, Signal::JogPlus, true, None)),
@@ -174,21 +171,21 @@ mod tests {
             assert_eq!(text.parse(), Ok(line), "{text}");
         }
         for (text, why) in [
-            ("dance", "dance: no such word or input; `help`"),
-            ("press dance", "dance: no such input"),
-            ("press", "give `press start 100ms`"),
-            ("press start 1ms 2ms", "give `press start 100ms`"),
-            ("power 2", "2: not a level; give 0 or 1"),
-            ("power", "give `power 0` or `power 0 2s`"),
+            ("dance", "dance: unknown word or input; `help`"),
+            ("press dance", "dance: unknown input"),
+            ("press", "use `press start 100ms`"),
+            ("press start 1ms 2ms", "use `press start 100ms`"),
+            ("power 2", "2: not a level; use 0 or 1"),
+            ("power", "use `power 0` or `power 0 2s`"),
             ("press start 100", "100: not a time"),
             ("press start -1s", "-1s: not a time"),
             ("press start NaNs", "NaNs: not a time"),
-            ("wait", "give `wait 2s`"),
+            ("wait", "use `wait 2s`"),
             ("push much", "much: not a number of steps"),
-            ("left: push 2", "left:: no such word"),
+            ("left: push 2", "left:: unknown word"),
         ] {
-            let told = text.parse::<Line>().expect_err(text).to_string();
-            assert!(told.contains(why), "{text}: {told}");
+            let error = text.parse::<Line>().expect_err(text).to_string();
+            assert!(error.contains(why), "{text}: {error}");
         }
     }
 

@@ -1,6 +1,6 @@
 //! Standard input as the port of a stand-alone controller's buttons.
 
-use super::port::{Heard, Port};
+use super::port::{Port, Received};
 use std::{
     io::{self, Read},
     sync::mpsc::{Receiver, RecvTimeoutError, sync_channel},
@@ -15,7 +15,6 @@ const CHUNK: usize = 1024;
 /// A thread reads standard input, since not every system can wait for it with a time-out.
 pub(crate) struct Keyboard {
     chunks: Receiver<Vec<u8>>,
-    /// The rest of a chunk that did not fit.
     rest: Vec<u8>,
     ended: bool,
 }
@@ -39,25 +38,25 @@ impl Keyboard {
 }
 
 impl Port for Keyboard {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received> {
         if self.ended {
             thread::sleep(wait);
-            return Ok(Heard::Nothing);
+            return Ok(Received::Nothing);
         }
         if self.rest.is_empty() {
             match self.chunks.recv_timeout(wait) {
                 Ok(chunk) => self.rest = chunk,
-                Err(RecvTimeoutError::Timeout) => return Ok(Heard::Nothing),
+                Err(RecvTimeoutError::Timeout) => return Ok(Received::Nothing),
                 Err(RecvTimeoutError::Disconnected) => {
                     self.ended = true;
-                    return Ok(Heard::Gone);
+                    return Ok(Received::Gone);
                 }
             }
         }
         let count = self.rest.len().min(buffer.len());
         let taken = self.rest.drain(..count);
         buffer.iter_mut().zip(taken).for_each(|(place, byte)| *place = byte);
-        Ok(Heard::Bytes(count))
+        Ok(Received::Bytes(count))
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

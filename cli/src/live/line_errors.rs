@@ -6,7 +6,6 @@ use std::fmt;
 pub(crate) struct LineErrors {
     /// Missing stop bits: the other end has another rate, or the line is bad.
     framing: u32,
-    /// Bytes without space in the buffer.
     overruns: u32,
     parity: u32,
     breaks: u32,

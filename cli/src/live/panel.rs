@@ -16,20 +16,16 @@ use stepscope_core::{
     sim::session::Session,
 };
 
-/// Longer lines are ignored.
 const MAX_LINE: usize = 200;
-/// Stops reading while this many lines wait.
 const MAX_LINES: usize = 256;
 
 #[derive(Default)]
 pub(crate) struct Panel {
-    /// The start of an incomplete line.
     begun: Vec<u8>,
     lines: VecDeque<String>,
     /// The next lines wait until after this cycle.
     pub(crate) waits: Option<Instant>,
-    /// Ignored presses that were reported, per controller.
-    told: Vec<usize>,
+    reported: Vec<usize>,
 }
 
 impl Panel {
@@ -37,7 +33,7 @@ impl Panel {
         if self.lines.len() < MAX_LINES { usize::MAX } else { 0 }
     }
 
-    pub(crate) fn type_in(&mut self, bytes: &[u8]) {
+    pub(crate) fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             match byte {
                 b'\n' | b'\r' => self.end_line(),
@@ -61,29 +57,31 @@ impl Panel {
         self.lines.is_empty() && self.waits.is_none()
     }
 
-    pub(crate) fn obey(&mut self, session: &mut Session, told: &mut StatusLine) {
+    pub(crate) fn execute(&mut self, session: &mut Session, status: &mut StatusLine) {
         if self.waits.is_some_and(|until| session.now() >= until) {
             self.waits = None;
         }
         while self.waits.is_none() {
             let Some(text) = self.lines.pop_front() else { break };
             if text.len() > MAX_LINE {
-                told.note(&format!("a line of more than {MAX_LINE} bytes; `help` says what there is"));
+                status.note(&format!(
+                    "a line of more than {MAX_LINE} bytes was ignored; `help` lists what is possible"
+                ));
                 continue;
             }
             match text.parse() {
-                Ok(line) => self.does(line, session, told),
-                Err(why) => told.note(&why.to_string()),
+                Ok(line) => self.apply(line, session, status),
+                Err(why) => status.note(&why.to_string()),
             }
         }
-        self.tell_ignored(session, told);
+        self.report_ignored(session, status);
     }
 
-    fn does(&mut self, line: Line, session: &mut Session, told: &mut StatusLine) {
+    fn apply(&mut self, line: Line, session: &mut Session, status: &mut StatusLine) {
         let clock_hz = session.experiment().config().clock_hz();
         let entered = match line {
             Line::Nothing => return,
-            Line::Help => return told.note(&help()),
+            Line::Help => return status.note(&help()),
             Line::Wait(span) => {
                 self.waits = Some(session.now() + span.cycles(clock_hz));
                 return;
@@ -94,17 +92,17 @@ impl Panel {
             Line::Change(controller, change, _) => session.enter(controller, change),
         };
         if let Err(why) = entered {
-            told.note(&why.to_string());
+            status.note(&why.to_string());
         }
     }
 
     /// Reports presses without effect since the last call.
-    fn tell_ignored(&mut self, session: &Session, told: &mut StatusLine) {
+    fn report_ignored(&mut self, session: &Session, status: &mut StatusLine) {
         let Some(machine) = session.run().stand_alone() else { return };
-        self.told.resize(machine.controllers(), 0);
-        for (index, count) in self.told.iter_mut().enumerate() {
+        self.reported.resize(machine.controllers(), 0);
+        for (index, count) in self.reported.iter_mut().enumerate() {
             for Press { button, state, .. } in machine.ignored(index).iter().skip(*count) {
-                told.note(&format!("{} did nothing in {}", button.name(), state.name()));
+                status.note(&format!("{} has no effect in {}", button.name(), state.name()));
             }
             *count = machine.ignored(index).len();
         }
@@ -153,12 +151,12 @@ mod tests {
     fn recorded(typed: &[u8], cycles: u64) -> Vec<(u64, String)> {
         let (mut session, mut panel, mut line) = (session(), Panel::default(), StatusLine::new(false));
         session.advance::<Digest>(Instant(9), &mut []);
-        panel.type_in(typed);
+        panel.receive(typed);
         panel.end_line();
-        panel.obey(&mut session, &mut line);
+        panel.execute(&mut session, &mut line);
         while let Some(until) = panel.waits {
             session.advance::<Digest>(until, &mut []);
-            panel.obey(&mut session, &mut line);
+            panel.execute(&mut session, &mut line);
         }
         session.advance::<Digest>(Instant(cycles), &mut []);
         let recording = session.recording();

@@ -22,13 +22,12 @@ const WRITE_WAIT: Duration = Duration::from_millis(1);
 /// Interval of checks for Ctrl-C while connecting.
 const CONNECT_WAIT: Duration = Duration::from_millis(20);
 /// Interval of checks whether a client whose bytes are unread has closed.
-const ASK_TIME: Duration = Duration::from_millis(20);
+const CHECK_TIME: Duration = Duration::from_millis(20);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Heard {
+pub(crate) enum Received {
     Nothing,
     Bytes(usize),
-    /// A new client.
     Connected,
     /// No more bytes come; the other end may still read.
     Ended,
@@ -36,21 +35,17 @@ pub(crate) enum Heard {
     Gone,
 }
 
-/// One end of a line.
 pub(crate) trait Port {
     /// Reads what is available or comes within `wait`.
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard>;
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received>;
 
-    /// Waits without reading, but detects a disconnection.
-    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+    fn wait(&mut self, wait: Duration) -> io::Result<Received> {
         thread::sleep(wait);
-        Ok(Heard::Nothing)
+        Ok(Received::Nothing)
     }
 
-    /// Disconnects a client that has stopped sending.
     fn hang_up(&mut self) {}
 
-    /// Writes as much as fits now.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 
     /// Waits until everything is sent, if the system can tell.
@@ -63,11 +58,10 @@ pub(crate) trait Port {
     }
 
     /// Called several times per second for other events; returns a message for the user.
-    fn look(&mut self) -> Option<String> {
+    fn poll_events(&mut self) -> Option<String> {
         None
     }
 
-    /// Errors since the port was opened, if the system counts them.
     fn line_errors(&self) -> Option<LineErrors> {
         None
     }
@@ -77,7 +71,6 @@ pub(crate) trait Port {
     }
 }
 
-/// Fails after `within`.
 pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration) -> io::Result<()> {
     let begin = Instant::now();
     while !bytes.is_empty() {
@@ -85,7 +78,7 @@ pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration)
         bytes = bytes.get(written..).unwrap_or_default();
         if written == 0 {
             if begin.elapsed() > within {
-                return Err(io::Error::new(ErrorKind::TimedOut, "it takes no bytes"));
+                return Err(io::Error::new(ErrorKind::TimedOut, "the port accepts no bytes"));
             }
             thread::sleep(MIN_WAIT);
         }
@@ -93,12 +86,12 @@ pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration)
     Ok(())
 }
 
-fn heard(result: io::Result<usize>) -> io::Result<Heard> {
+fn received(result: io::Result<usize>) -> io::Result<Received> {
     match result {
-        Ok(0) => Ok(Heard::Gone),
-        Ok(count) => Ok(Heard::Bytes(count)),
+        Ok(0) => Ok(Received::Gone),
+        Ok(count) => Ok(Received::Bytes(count)),
         Err(error) => match error.kind() {
-            ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(Heard::Nothing),
+            ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(Received::Nothing),
             _ => Err(error),
         },
     }
@@ -118,21 +111,19 @@ fn written(result: io::Result<usize>) -> io::Result<usize> {
     }
 }
 
-/// What switches an RS-485 transceiver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Rs485 {
-    /// The adapter turns by itself.
+    /// The adapter does
     #[default]
     Auto,
-    /// The kernel does (TIOCSRS485).
+    /// The kernel does (TIOCSRS485)
     Kernel,
-    /// This command does: RTS up, write, drain, RTS down. Up to 9600 baud.
+    /// This command does, with RTS, up to 9600 baud
     Rts,
 }
 
 pub(crate) struct Serial {
     port: SerialPort,
-    /// Errors counted before the port was opened.
     errors_before: Option<LineErrors>,
 }
 
@@ -154,25 +145,26 @@ impl Serial {
         #[cfg(unix)]
         rustix::termios::ioctl_tiocexcl(&port).map_err(|error| failed(error.into()))?;
         let wanted = port.get_configuration().and_then(set).map_err(failed)?;
-        let refused =
-            |why: &str| Failure::Port(name(), format!("it does not take {baud} baud, 8N1, raw: {why}"));
+        let refused = |why: &str| {
+            Failure::Port(name(), format!("the port does not support {baud} baud, 8N1, raw: {why}"))
+        };
         port.set_configuration(&wanted).map_err(|error| refused(&error.to_string()))?;
-        let told = port.get_configuration().map_err(failed)?;
-        let has = told.get_baud_rate().unwrap_or(0);
+        let actual = port.get_configuration().map_err(failed)?;
+        let has = actual.get_baud_rate().unwrap_or(0);
         // Dividers are coarse; receivers tolerate a few percent (A4).
         if u64::from(has.abs_diff(baud)) * 50 > u64::from(baud) {
-            return Err(refused(&format!("it says {has} baud")));
+            return Err(refused(&format!("it reports {has} baud")));
         }
-        let frame = (told.get_char_size().ok(), told.get_stop_bits().ok(), told.get_parity().ok());
+        let frame = (actual.get_char_size().ok(), actual.get_stop_bits().ok(), actual.get_parity().ok());
         if frame != (Some(CharSize::Bits8), Some(StopBits::One), Some(Parity::None)) {
-            return Err(refused(&format!("it says {frame:?}")));
+            return Err(refused(&format!("it reports {frame:?}")));
         }
         port.set_write_timeout(WRITE_WAIT).map_err(failed)?;
         if rs485 == Rs485::Kernel {
             kernel_turns(&port).map_err(|error| {
                 Failure::Port(
                     name(),
-                    format!("this port cannot turn an RS-485 transceiver: {error}; give --rs485 auto or rts"),
+                    format!("the port cannot switch an RS-485 transceiver: {error}; use --rs485 auto or rts"),
                 )
             })?;
         }
@@ -225,13 +217,13 @@ fn has_bytes<T>(_port: &T, _wait: Duration) -> io::Result<bool> {
 }
 
 impl Port for Serial {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received> {
         if !has_bytes(&self.port, wait)? {
-            return Ok(Heard::Nothing);
+            return Ok(Received::Nothing);
         }
         let wait = if wait.is_zero() { wait } else { wait.max(MIN_WAIT) };
         self.port.set_read_timeout(wait)?;
-        heard(self.port.read(buffer))
+        received(self.port.read(buffer))
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -282,18 +274,18 @@ impl Socket {
 }
 
 impl Port for Socket {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received> {
         if !has_bytes(&self.0, wait)? {
-            return Ok(Heard::Nothing);
+            return Ok(Received::Nothing);
         }
         if !cfg!(unix) {
             self.0.set_read_timeout(Some(wait.max(MIN_WAIT)))?;
         }
-        heard(self.0.read(buffer))
+        received(self.0.read(buffer))
     }
 
-    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
-        Ok(if is_broken(&self.0, wait)? { Heard::Gone } else { Heard::Nothing })
+    fn wait(&mut self, wait: Duration) -> io::Result<Received> {
+        Ok(if is_broken(&self.0, wait)? { Received::Gone } else { Received::Nothing })
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -301,7 +293,6 @@ impl Port for Socket {
     }
 }
 
-/// Returns early if the connection is broken.
 #[cfg(unix)]
 fn is_broken(stream: &TcpStream, wait: Duration) -> io::Result<bool> {
     poll_for(stream, rustix::event::PollFlags::empty(), wait)
@@ -317,7 +308,6 @@ fn is_broken(_stream: &TcpStream, wait: Duration) -> io::Result<bool> {
 struct Client {
     socket: Socket,
     from: SocketAddr,
-    /// It has stopped sending and may still read.
     ended: bool,
 }
 
@@ -330,13 +320,11 @@ impl Client {
     }
 }
 
-/// A socket that serves one client at a time.
 pub(crate) struct Listener {
     listener: TcpListener,
     client: Option<Client>,
-    /// A client that has not been reported yet.
     is_new: bool,
-    asked: Instant,
+    checked: Instant,
 }
 
 impl Listener {
@@ -344,14 +332,14 @@ impl Listener {
     pub(crate) fn open(address: SocketAddr, open: bool) -> Result<(Self, SocketAddr), Failure> {
         if !address.ip().is_loopback() && !open {
             return Err(Failure::Option(format!(
-                "--tcp {address}: whoever reaches this address could move the model; give 127.0.0.1, or --open to let them"
+                "--tcp: other machines can reach {address}; use 127.0.0.1, or --allow-remote to allow them"
             )));
         }
         let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        Ok((Self { listener, client: None, is_new: false, asked: Instant::now() }, address))
+        Ok((Self { listener, client: None, is_new: false, checked: Instant::now() }, address))
     }
 
     /// Accepts a waiting client; an additional one gets a message and is disconnected.
@@ -361,7 +349,7 @@ impl Listener {
             // The client may use another protocol, but can show this text.
             let _ = (&stream).write_all(b"stepscope serve: another client is connected; one at a time\n");
             let _ = stream.shutdown(Shutdown::Both);
-            return Some(format!("{from} was sent away: another client is connected"));
+            return Some(format!("{from} was refused: another client is connected"));
         }
         let socket = Socket::new(stream).ok()?;
         self.client = Some(Client { socket, from, ended: false });
@@ -371,46 +359,46 @@ impl Listener {
 }
 
 impl Port for Listener {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received> {
         if std::mem::take(&mut self.is_new) {
-            return Ok(Heard::Connected);
+            return Ok(Received::Connected);
         }
         let Some(client) = self.client.as_mut().filter(|client| !client.ended) else {
             return self.wait(wait.min(MIN_WAIT));
         };
         match client.socket.read(buffer, wait) {
-            Ok(Heard::Gone) => {
+            Ok(Received::Gone) => {
                 client.ended = true;
-                Ok(Heard::Ended)
+                Ok(Received::Ended)
             }
             Err(_) => {
                 self.client = None;
-                Ok(Heard::Gone)
+                Ok(Received::Gone)
             }
-            heard => heard,
+            received => received,
         }
     }
 
-    fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+    fn wait(&mut self, wait: Duration) -> io::Result<Received> {
         if std::mem::take(&mut self.is_new) {
-            return Ok(Heard::Connected);
+            return Ok(Received::Connected);
         }
         let Some(client) = &mut self.client else {
             thread::sleep(wait);
-            return Ok(Heard::Nothing);
+            return Ok(Received::Nothing);
         };
-        let is_broken = client.socket.wait(wait)? == Heard::Gone;
-        let asks = !client.ended && self.asked.elapsed() > ASK_TIME;
-        if asks {
-            self.asked = Instant::now();
+        let is_broken = client.socket.wait(wait)? == Received::Gone;
+        let checks = !client.ended && self.checked.elapsed() > CHECK_TIME;
+        if checks {
+            self.checked = Instant::now();
         }
-        if is_broken || asks && client.is_closed() {
+        if is_broken || checks && client.is_closed() {
             let ended = client.ended;
             self.client = None;
             // A client that has stopped sending has been read completely.
-            return Ok(if ended { Heard::Nothing } else { Heard::Gone });
+            return Ok(if ended { Received::Nothing } else { Received::Gone });
         }
-        Ok(Heard::Nothing)
+        Ok(Received::Nothing)
     }
 
     fn hang_up(&mut self) {
@@ -426,7 +414,7 @@ impl Port for Listener {
         self.client.as_mut().map_or(Ok(bytes.len()), |client| client.socket.write(bytes).or(Ok(bytes.len())))
     }
 
-    fn look(&mut self) -> Option<String> {
+    fn poll_events(&mut self) -> Option<String> {
         self.accept()
     }
 
@@ -471,7 +459,8 @@ mod pty {
         UnixListener::bind_addr(&address).map_err(|error| match error.kind() {
             ErrorKind::AddrInUse => Failure::Port(
                 link.display().to_string(),
-                "a running session of stepscope serve uses this link; end that session, or give --pty another link".to_owned(),
+                "a running session of stepscope serve uses this link; end that session, or use another link"
+                    .to_owned(),
             ),
             _ => failed(error),
         })
@@ -480,7 +469,6 @@ mod pty {
     /// A pseudo-terminal; the other end is a port for another program.
     pub(crate) struct Pty {
         master: OwnedFd,
-        /// The other end.
         pub(crate) path: PathBuf,
         link: Option<PathBuf>,
         /// Held while this session owns the link.
@@ -488,15 +476,13 @@ mod pty {
         _claim: Option<std::os::unix::net::UnixListener>,
         baud: u32,
         connected: bool,
-        /// The rate of the last warning.
         warned: u32,
     }
 
     impl Pty {
-        /// Raw and at `baud`, with a symbolic link if requested.
         pub(crate) fn open(link: Option<&Path>, baud: u32) -> Result<Self, Failure> {
             let failed = |error: io::Error| Failure::Port("pty".to_owned(), error.to_string());
-            let made = || -> io::Result<(OwnedFd, PathBuf)> {
+            let opened = || -> io::Result<(OwnedFd, PathBuf)> {
                 let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
                 grantpt(&master)?;
                 unlockpt(&master)?;
@@ -512,7 +498,7 @@ mod pty {
             };
             #[cfg(target_os = "linux")]
             let claim = link.map(claim).transpose()?;
-            let (master, path) = made().map_err(failed)?;
+            let (master, path) = opened().map_err(failed)?;
             let mut pty = Self {
                 master,
                 path,
@@ -524,12 +510,17 @@ mod pty {
                 warned: baud,
             };
             if let Some(link) = link {
-                pty.link_to(link).map_err(|error| Failure::File(link.to_owned(), error))?;
+                pty.link_to(link).map_err(|error| match error.kind() {
+                    ErrorKind::AlreadyExists => {
+                        let why = "exists and is not a link to a terminal; remove it, or use another link";
+                        Failure::Port(link.display().to_string(), why.to_owned())
+                    }
+                    _ => Failure::File(link.to_owned(), error),
+                })?;
             }
             Ok(pty)
         }
 
-        /// Returns whether bytes are available, and whether the other end is closed.
         fn poll(&self, flags: PollFlags, wait: Duration) -> io::Result<(bool, bool)> {
             let mut fds = [PollFd::new(&self.master, flags)];
             let timeout =
@@ -575,40 +566,40 @@ mod pty {
     }
 
     impl Port for Pty {
-        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Heard> {
+        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<Received> {
             let (has_bytes, is_closed) = self.poll(PollFlags::IN, wait)?;
             let was_connected = std::mem::replace(&mut self.connected, has_bytes || !is_closed);
             if self.connected && !was_connected {
-                return Ok(Heard::Connected);
+                return Ok(Received::Connected);
             }
             if has_bytes {
                 return match rustix::io::read(&self.master, buffer) {
-                    Ok(count) => heard(Ok(count)),
+                    Ok(count) => received(Ok(count)),
                     // The other end was closed meanwhile.
-                    Err(rustix::io::Errno::IO) => Ok(Heard::Nothing),
-                    Err(error) => heard(Err(error.into())),
+                    Err(rustix::io::Errno::IO) => Ok(Received::Nothing),
+                    Err(error) => received(Err(error.into())),
                 };
             }
             if is_closed {
                 if was_connected {
-                    return Ok(Heard::Ended);
+                    return Ok(Received::Ended);
                 }
                 // The system reports this without waiting.
                 thread::sleep(wait.min(MIN_WAIT));
             }
-            Ok(Heard::Nothing)
+            Ok(Received::Nothing)
         }
 
-        fn wait(&mut self, wait: Duration) -> io::Result<Heard> {
+        fn wait(&mut self, wait: Duration) -> io::Result<Received> {
             let (_, is_closed) = self.poll(PollFlags::empty(), wait)?;
             if is_closed && std::mem::replace(&mut self.connected, false) {
                 self.discard();
-                return Ok(Heard::Gone);
+                return Ok(Received::Gone);
             }
             if is_closed {
                 thread::sleep(wait.min(MIN_WAIT));
             }
-            Ok(Heard::Nothing)
+            Ok(Received::Nothing)
         }
 
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -618,7 +609,7 @@ mod pty {
             written(rustix::io::write(&self.master, bytes).map_err(Into::into))
         }
 
-        fn look(&mut self) -> Option<String> {
+        fn poll_events(&mut self) -> Option<String> {
             if !self.connected {
                 return None;
             }
@@ -629,7 +620,7 @@ mod pty {
             self.warned = has;
             let line = self.baud;
             (has != line).then(|| {
-                format!("warning: the host set the port to {has} baud, and the line has {line}: a real one would not understand it")
+                format!("warning: the host set the port to {has} baud, but the line has {line}: a real controller would receive errors")
             })
         }
 
@@ -650,16 +641,16 @@ mod tests {
         let mut buffer = [0; 8];
         let connect = |listener: &mut Listener| {
             let client = TcpStream::connect(address).expect("it listens");
-            while listener.look().is_none() {}
+            while listener.poll_events().is_none() {}
             client
         };
         let first = connect(&mut listener);
-        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Heard::Connected);
+        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Received::Connected);
         drop(first);
-        while listener.read(&mut buffer, MIN_WAIT).expect("it reads") != Heard::Ended {}
+        while listener.read(&mut buffer, MIN_WAIT).expect("it reads") != Received::Ended {}
         let mut second = connect(&mut listener);
         assert_eq!(listener.write(b"old").expect("it takes all"), 3);
-        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Heard::Connected);
+        assert_eq!(listener.read(&mut buffer, MIN_WAIT).expect("it reads"), Received::Connected);
         assert_eq!(listener.write(b"new").expect("it takes all"), 3);
         second.read_exact(&mut buffer[..3]).expect("a reply");
         assert_eq!(&buffer[..3], b"new");

@@ -1,6 +1,6 @@
 //! Sends raw packets to a real line, paced and without replies (LIVE H3). Nothing is confirmed.
 
-use super::{port::Heard, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
+use super::{port::Received, status_line::StatusLine, stop_watch::StopWatch, wire::Wire};
 use crate::{failure::Failure, interrupt, json::Tables, terminal};
 use serde_json::json;
 use std::{io::Write, thread, time::Duration};
@@ -11,11 +11,10 @@ use stepscope_core::sim::{
 
 const WRITE_WITHIN: Duration = Duration::from_secs(2);
 
-/// `lead`: number of packets sent ahead.
 pub(super) fn host(experiment: &Experiment, lead: u8) -> Result<RawHost, Failure> {
     RawHost::new(experiment, lead).map_err(|why| match why {
         NotPaced::Nothing => Failure::Option(why.to_string()),
-        _ => Failure::Option(format!("--lead {lead}: {why}")),
+        _ => Failure::Option(format!("--lead: {lead}: {why}")),
     })
 }
 
@@ -40,7 +39,7 @@ pub(super) fn send(
             break;
         }
         host.written(at);
-        line.tell(|| host.report(false).standing());
+        line.update(|| host.report(false).standing());
     }
     drop(line);
     if lost.is_none() {
@@ -52,7 +51,7 @@ pub(super) fn send(
         Some(why) => Err(Failure::LostPort(why)),
         None if interrupted => Err(Failure::Interrupted),
         None => Err(Failure::NotVerified(
-            "raw packets are sent, not verified: a raw controller does not reply; use the framed protocol for a verified result"
+            "raw packets were sent, not verified, because a raw controller does not reply; use the framed protocol for a verified result"
                 .to_owned(),
         )),
     }
@@ -68,13 +67,13 @@ fn wait_until(due_ns: u64, watch: StopWatch, wire: &mut Wire) -> Result<bool, Fa
         }
         let left = Duration::from_nanos(left).min(Duration::from_millis(20));
         if wire.echo && left > Duration::from_millis(2) {
-            let heard = wire.port.read(&mut buffer, left.saturating_sub(Duration::from_millis(1)));
-            match heard.map_err(|error| Failure::LostPort(error.to_string()))? {
-                Heard::Bytes(count) => drop(wire.without_echo(buffer.get(..count).unwrap_or_default())),
-                Heard::Gone | Heard::Ended => {
-                    return Err(Failure::LostPort("the other end has closed it".to_owned()));
+            let received = wire.port.read(&mut buffer, left.saturating_sub(Duration::from_millis(1)));
+            match received.map_err(|error| Failure::LostPort(error.to_string()))? {
+                Received::Bytes(count) => drop(wire.without_echo(buffer.get(..count).unwrap_or_default())),
+                Received::Gone | Received::Ended => {
+                    return Err(Failure::LostPort("the other end closed the connection".to_owned()));
                 }
-                Heard::Nothing | Heard::Connected => {}
+                Received::Nothing | Received::Connected => {}
             }
         } else {
             thread::sleep(left);

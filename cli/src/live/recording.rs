@@ -24,7 +24,6 @@ pub(crate) fn beside(record: &Path) -> PathBuf {
     record.with_file_name(name)
 }
 
-/// Returns whether the scenario's run is the same.
 pub(crate) fn write(
     session: &Session,
     (clock, times): (&SessionClock, &SessionTimes),
@@ -56,8 +55,10 @@ pub(crate) fn write(
     }
     if !whole {
         let cycles = recording.scenario.run_cycles.unwrap_or(0);
-        let _ =
-            writeln!(terminal::err(), "recorded are the first {cycles} cycles: then there was no more room");
+        let _ = writeln!(
+            terminal::err(),
+            "recorded only the first {cycles} cycles: the recording has reached its maximum size"
+        );
     }
     Ok(verified)
 }
@@ -74,14 +75,14 @@ pub(crate) fn link(scenario: &Scenario) -> Option<String> {
 
 /// Writes the recording elsewhere if its disk is full.
 fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
-    let mut places = Vec::new();
+    let mut saved = Vec::new();
     for (path, text) in texts {
         if let Some(elsewhere) = rescue_in(&std::env::temp_dir(), path, text) {
-            places.push(elsewhere.display().to_string());
+            saved.push(elsewhere.display().to_string());
         }
     }
-    let also = if places.is_empty() { "nothing could be written elsewhere" } else { "written instead:" };
-    Failure::Port(path.display().to_string(), format!("{error}; {also} {}", places.join(" ")))
+    let also = if saved.is_empty() { "nothing could be written elsewhere" } else { "saved instead as" };
+    Failure::Port(path.display().to_string(), format!("{error}; {also} {}", saved.join(" ")))
 }
 
 const MAX_NAMES: u32 = 100;

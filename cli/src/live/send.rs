@@ -2,13 +2,20 @@
 //! simulated host. Reports a tick as done only if the controller has confirmed it.
 
 use super::{
-    port::{Heard, Port, Rs485, Serial, Socket},
+    port::{Port, Received, Rs485, Serial, Socket},
     raw,
     status_line::StatusLine,
     stop_watch::{StopWatch, wake_on_time},
     wire::Wire,
 };
-use crate::{failure::Failure, interrupt, json::Tables, quantity::whole, scenarios, terminal};
+use crate::{
+    failure::Failure,
+    interrupt,
+    json::Tables,
+    options::{Json, ShowProgress},
+    quantity::whole,
+    scenarios, terminal,
+};
 use clap::Args;
 use serde_json::json;
 use std::{
@@ -33,41 +40,37 @@ use stepscope_core::{
 
 /// At higher rates RTS drops too late.
 const MAX_RTS_BAUD: u32 = 9600;
-/// Time for a write beyond the line's own time.
 const WRITE_WITHIN: Duration = Duration::from_secs(2);
 const WAIT: Duration = Duration::from_millis(10);
 const ALL: u8 = 255;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Scenario to send: a JSON file or a preset's name; `-` reads standard input
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
     /// Port to send to: a serial port, tcp:ADDRESS or pty:PATH
     #[arg(long, value_name = "PORT")]
     port: String,
-    /// Additional time for a reply, in ms, for the system and the adapter
+    /// Additional time for each reply, in ms, for the system and the adapter
     #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(0..=60_000))]
     slack: u64,
-    /// Send this number of raw packets ahead; must be less than the queue holds
+    /// Number of raw packets to send ahead, fewer than the queue holds
     ///
-    /// Late writes of up to this many packets cause no gap.
+    /// Packets that are late by no more than this number leave no gap.
     #[arg(long, value_name = "PACKETS", default_value_t = 0, value_parser = whole::<u8>(0..=254))]
     lead: u8,
-    /// Select what switches the direction of an RS-485 transceiver
+    /// What switches the direction of an RS-485 transceiver
     #[arg(long, value_enum, default_value_t)]
     rs485: Rs485,
-    /// Expect an echo of the sent bytes, and compare it
+    /// Expect an echo of the sent bytes and compare it
     #[arg(long)]
     echo: bool,
-    /// Print the report as JSON: one object of tables (docs/command.md)
-    #[arg(long)]
-    json: bool,
-    /// Show the progress even if standard error is not a terminal
-    #[arg(long)]
-    progress: bool,
+    #[command(flatten)]
+    json: Json,
+    #[command(flatten)]
+    show: ShowProgress,
 }
 
-/// What to send, by the line's protocol.
 enum Job {
     Raw(RawHost),
     Framed(Conversation),
@@ -78,19 +81,19 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     if experiment.segments().is_some() {
-        let why = "segments run a controller by itself: there is nothing to send; choose ticks";
+        let why = "the scenario runs segments, so there are no ticks to send; use the engine ticks";
         return Err(Failure::Option(format!("{}: {why}", path.display())));
     }
     let baud = experiment.baud();
     if arguments.rs485 == Rs485::Rts && baud > MAX_RTS_BAUD {
         return Err(Failure::Option(format!(
-            "--rs485 rts: at {baud} baud RTS cannot fall before the reply comes; up to {MAX_RTS_BAUD} baud, or give kernel or auto"
+            "--rs485: rts is too slow for {baud} baud; use it up to {MAX_RTS_BAUD} baud, or use kernel or auto"
         )));
     }
     let is_raw = experiment.config().protocol() == Protocol::Raw;
     if arguments.lead > 0 && !is_raw {
-        let why = "a framed line is answered, and keeps the queue filled by itself";
-        return Err(Failure::Option(format!("--lead: {why}")));
+        let why = "is for raw packets only; omit it, because the framed protocol keeps the queue filled";
+        return Err(Failure::Option(format!("--lead: {} {why}", arguments.lead)));
     }
     let job = if is_raw {
         Job::Raw(raw::host(&experiment, arguments.lead)?)
@@ -106,7 +109,7 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
     let conversation = match job {
-        Job::Raw(host) => return raw::send(host, wire, (arguments.json, arguments.progress)),
+        Job::Raw(host) => return raw::send(host, wire, (arguments.json.json, arguments.show.progress)),
         Job::Framed(conversation) => conversation,
     };
     let clock_hz = experiment.config().clock_hz();
@@ -117,14 +120,14 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         clock_hz,
         baud,
         watch: StopWatch::start(),
-        line: StatusLine::new(arguments.progress),
+        line: StatusLine::new(arguments.show.progress),
         interrupts: 0,
     };
     let ended = sender.run(wire);
     drop(std::mem::replace(&mut sender.line, StatusLine::new(false)));
     let interrupted = sender.interrupts > 0;
     let report = Report::new(&experiment, &mut sender.host, interrupted);
-    print(&report, wire, baud, (arguments.json, ended.as_ref().err()))?;
+    print(&report, wire, baud, (arguments.json.json, ended.as_ref().err()))?;
     ended?;
     if interrupted {
         return Err(Failure::Interrupted);
@@ -158,12 +161,11 @@ impl Sender {
         self.clock.target(self.watch.nanos(), Instant::RESET)
     }
 
-    /// Fails if the port is lost.
     fn run(&mut self, wire: &mut Wire) -> Result<(), Failure> {
         let lost = |error: io::Error| Failure::LostPort(error.to_string());
         let mut buffer = [0; 4096];
         while !self.host.is_over() {
-            self.obey(wire)?;
+            self.handle_interrupts(wire)?;
             let now = self.now();
             while self.host.deadline() <= now {
                 if let Some(bytes) = self.host.poll(now) {
@@ -177,28 +179,30 @@ impl Sender {
             let due = Cycles(self.host.deadline().0.saturating_sub(self.now().0));
             let wait = Duration::from_nanos(self.clock.nanos(due)).min(WAIT);
             match wire.port.read(&mut buffer, wait).map_err(lost)? {
-                Heard::Bytes(count) => {
+                Received::Bytes(count) => {
                     let now = self.now();
                     let bytes = wire.without_echo(buffer.get(..count).unwrap_or_default());
                     bytes.into_iter().for_each(|byte| self.host.hear(byte, now));
                 }
-                Heard::Gone | Heard::Ended => {
-                    return Err(Failure::LostPort("the other end has closed it".to_owned()));
+                Received::Gone | Received::Ended => {
+                    return Err(Failure::LostPort("the other end closed the connection".to_owned()));
                 }
-                Heard::Nothing | Heard::Connected => {}
+                Received::Nothing | Received::Connected => {}
             }
             let Self { line, host, .. } = self;
-            line.tell(|| Standing::new(host).to_string());
+            line.update(|| Standing::new(host).to_string());
         }
         Ok(())
     }
 
     /// The first Ctrl-C sends STOP until it is acknowledged; the second sends STOP to all and ends.
-    fn obey(&mut self, wire: &mut Wire) -> Result<(), Failure> {
+    fn handle_interrupts(&mut self, wire: &mut Wire) -> Result<(), Failure> {
         let count = interrupt::count();
         if count > self.interrupts {
             if self.interrupts == 0 && count == 1 {
-                self.line.note("stopping: STOP until it is acknowledged; Ctrl-C once more ends at once");
+                self.line.note(
+                    "stopping: sending STOP until it is acknowledged; press Ctrl-C again to end at once",
+                );
                 let now = self.now();
                 self.host.stop(now);
             } else {
@@ -229,10 +233,14 @@ fn print(
     let mut write = || -> io::Result<()> {
         write!(out, "{report}")?;
         if let Some(errors) = wire.port.line_errors().filter(|errors| !errors.is_none()) {
-            writeln!(out, "line_errors {errors}: is the other end at {baud} baud?")?;
+            writeln!(out, "line_errors {errors}; check that the other end is at {baud} baud")?;
         }
         if wire.collisions() > 0 {
-            writeln!(out, "collisions {}: own bytes came back changed", wire.collisions())?;
+            writeln!(
+                out,
+                "collisions {}: the echo differs from the bytes that were sent",
+                wire.collisions()
+            )?;
         }
         out.flush()
     };
@@ -268,11 +276,11 @@ fn tables(report: &Report, wire: &Wire, lost: Option<&str>) -> Tables {
         let channels = row.bounds.as_ref().map_or(0, |(least, _)| least.len());
         (0..channels).map(move |channel| {
             let of = |list: Option<&Vec<i32>>| list.and_then(|list| list.get(channel).copied());
-            let told = row.known.positions.and_then(|told| told.as_slice().get(channel).copied());
+            let reported = row.known.positions.and_then(|reported| reported.as_slice().get(channel).copied());
             json!({
                 "controller": row.controller,
                 "channel": channel,
-                "told": told,
+                "told": reported,
                 "expected": of(row.expected.as_ref()),
                 "steps_of_done_ticks": of(row.bounds.as_ref().map(|(least, _)| least)),
                 "steps_with_the_next_tick": of(row.bounds.as_ref().map(|(_, most)| most)),

@@ -27,39 +27,39 @@ use stepscope_core::sim::session::{Pace, Session};
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// Its controllers and their line are served; the packets it sends are left out, as the host is another program.
-    /// Stand-alone controllers have no line: lines on standard input, such as `press start 100ms`, press their buttons
-    /// (`help` lists them).
+    /// Its controllers and their line are served. Its packets are ignored, because the host is another program.
+    /// Stand-alone controllers have no line: lines on standard input, such as `press start 100ms`, operate their
+    /// buttons (`help` lists them).
     scenario: PathBuf,
-    /// Make a pseudo-terminal and print its path; LINK becomes a symbolic link to it
+    /// Open a pseudo-terminal and print its path; LINK becomes a symbolic link to it
     #[cfg_attr(not(unix), arg(hide = true))]
     #[arg(long, value_name = "LINK", num_args = 0..=1)]
     pty: Option<Option<PathBuf>>,
     /// Listen on an address, such as 127.0.0.1:4000 (port 0: any free port)
     ///
-    /// One client at a time; the line's bytes are sent as they are.
+    /// Serves one client at a time, with the raw bytes of the line.
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     tcp: Option<SocketAddr>,
     /// Allow addresses that other machines can reach
-    #[arg(long, requires = "tcp")]
-    open: bool,
-    /// Answer a host on this serial port
+    #[arg(long, alias = "open", requires = "tcp")]
+    allow_remote: bool,
+    /// Serve a host on this serial port
     #[arg(long, value_name = "DEVICE")]
     port: Option<PathBuf>,
     /// Maximum delay of the model, in ms, before its clock is set back
     ///
-    /// A clock that was set back is reported, and ends with exit code 3.
+    /// If the clock was set back, the session ends with exit code 3.
     #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(1..=60_000))]
     lag: u64,
     /// Speed of time, 0.001 to 100, or `max`
     ///
-    /// With `max` bytes take no time, and the model goes on by itself when the host is silent for 10 ms.
+    /// With `max` bytes take no time, and the model continues when the host is silent for 10 ms.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = pace)]
     pace: Pacing,
     /// Record the session as a scenario, with its wall-clock times in NAME.session.json
     ///
     /// The scenario is run again to check that it gives the same digest.
-    #[arg(long, value_name = "FILE")]
+    #[arg(short = 'o', long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Stop when the client disconnects
     ///
@@ -72,7 +72,7 @@ pub(crate) struct Arguments {
 }
 
 fn address(text: &str) -> Result<SocketAddr, String> {
-    text.parse().map_err(|_| "not an address and a port; use both, such as 127.0.0.1:4000".to_owned())
+    text.parse().map_err(|_| "not an address with a port; use both, such as 127.0.0.1:4000".to_owned())
 }
 
 fn pace(text: &str) -> Result<Pacing, String> {
@@ -85,11 +85,11 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let files = || arguments.record.iter().chain(&beside).map(PathBuf::as_path);
     if let Some(path) = files().find(|path| !output::can_be_file(path)) {
         let detail =
-            "is no file, and a recording is two: NAME.json and NAME.session.json; give --record NAME.json";
+            "not a file, but a recording needs two: NAME.json and NAME.session.json; use --record NAME.json";
         return Err(Failure::Output(path.to_owned(), detail));
     }
     let link = arguments.pty.iter().flatten().map(PathBuf::as_path);
-    let mut outputs = Outputs::judge(Some(path), files().chain(link))?;
+    let mut outputs = Outputs::check(Some(path), files().chain(link))?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
@@ -138,7 +138,7 @@ fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failu
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(Failure::output)
     };
     if let Some(address) = arguments.tcp {
-        let (listener, address) = Listener::open(address, arguments.open)?;
+        let (listener, address) = Listener::open(address, arguments.allow_remote)?;
         tell(format!("tcp:{address}"))?;
         return Ok(Box::new(listener));
     }
@@ -154,15 +154,14 @@ fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failu
         return Ok(Box::new(pty));
     }
     Err(Failure::Option(match arguments.pty {
-        Some(_) => "there are no pseudo-terminals here; give --tcp 127.0.0.1:4000".to_owned(),
-        None => "where is the line? give --pty, --tcp 127.0.0.1:4000 or --port DEVICE".to_owned(),
+        Some(_) => "--pty: this system has no pseudo-terminals; use --tcp 127.0.0.1:4000".to_owned(),
+        None => "no connection is given; use --pty, --tcp 127.0.0.1:4000 or --port DEVICE".to_owned(),
     }))
 }
 
-/// Stand-alone controllers have no line.
 fn buttons(arguments: &Arguments) -> Result<Box<dyn Port>, Failure> {
     if arguments.pty.is_some() || arguments.tcp.is_some() || arguments.port.is_some() {
-        let why = "a stand-alone controller has no line, and nobody could talk to it there; its buttons are lines on standard input: leave out --pty, --tcp and --port";
+        let why = "a stand-alone controller has no line; omit --pty, --tcp and --port, and write lines such as `press start 100ms` to standard input";
         return Err(Failure::Option(format!("{}: {why}", arguments.scenario.display())));
     }
     let keyboard = Keyboard::open().map_err(Failure::threads)?;

@@ -8,7 +8,7 @@
 
 use super::{
     panel::{self, Panel},
-    port::{Heard, Port},
+    port::{Port, Received},
     status_line::StatusLine,
     stop_watch::{StopWatch, wake_on_time},
 };
@@ -33,7 +33,6 @@ use stepscope_core::{
 
 /// Limits the cycles, and so the records, per round.
 const MAX_ROUND: u64 = 1_000_000;
-/// Maximum wait for bytes if nothing else is due.
 const IDLE_WAIT: Duration = Duration::from_millis(5);
 /// With `--pace max`: the host's time to respond before the model goes on.
 const THINKING: Duration = Duration::from_millis(10);
@@ -48,10 +47,8 @@ pub(super) enum Pacing {
     Max,
 }
 
-/// What a session is asked to be.
 pub(super) struct Settings {
     pub(super) pacing: Pacing,
-    /// Maximum delay of the model, in ms.
     pub(super) lag: u64,
     pub(super) records: bool,
     pub(super) once: bool,
@@ -61,7 +58,6 @@ pub(super) struct Settings {
 pub(super) struct Server {
     pub(super) session: Session,
     port: Box<dyn Port>,
-    /// For stand-alone controllers.
     panel: Option<Panel>,
     pacing: Pacing,
     pub(super) clock: SessionClock,
@@ -71,13 +67,10 @@ pub(super) struct Server {
     input: Input,
     /// The client has stopped sending; its last bytes are still buffered.
     is_leaving: bool,
-    /// Bytes of disconnected clients that were dropped.
     dropped: u64,
-    /// Replies that the port has not taken.
     waiting: VecDeque<u8>,
     missed: u64,
     late: Lateness,
-    /// The wait requested after the last round.
     waited: Duration,
     /// Maximum delay beyond that wait, since the last report.
     behind: Duration,
@@ -116,32 +109,32 @@ impl Server {
     pub(super) fn run(&mut self) -> Result<(), Failure> {
         wake_on_time();
         let mut buffer = [0; 4096];
-        let (mut looked, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
+        let (mut polled, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
         let (mut has_ended, mut was_recorded) = (false, true);
         while interrupt::count() == 0 && !(has_ended && self.is_over()) {
             let wait = self.round(silent_since);
             self.write_replies().map_err(lost)?;
             let room = self.room().min(buffer.len());
-            let heard = match buffer.get_mut(..room) {
+            let received = match buffer.get_mut(..room) {
                 Some(free @ [_, ..]) => self.port.read(free, wait),
                 _ => self.port.wait(wait),
             };
-            match heard.map_err(lost)? {
-                Heard::Bytes(count) => {
+            match received.map_err(lost)? {
+                Received::Bytes(count) => {
                     silent_since = self.watch.elapsed();
                     self.catch_up(silent_since)?;
                     self.take(buffer.get(..count).unwrap_or_default());
                 }
-                Heard::Connected => {
+                Received::Connected => {
                     has_ended |= self.once && self.is_leaving;
                     self.drop_input();
                 }
-                Heard::Ended => self.is_leaving = true,
-                Heard::Gone => {
+                Received::Ended => self.is_leaving = true,
+                Received::Gone => {
                     has_ended = self.once;
                     self.gone();
                 }
-                Heard::Nothing => {}
+                Received::Nothing => {}
             }
             if self.is_leaving && self.has_left() {
                 has_ended = self.once;
@@ -149,20 +142,21 @@ impl Server {
                 self.gone();
             }
             if let Some(panel) = &mut self.panel {
-                panel.obey(&mut self.session, &mut self.line);
+                panel.execute(&mut self.session, &mut self.line);
             }
             if was_recorded && !self.session.records_all() {
                 was_recorded = false;
-                self.line.note("more than a recording may have: the session goes on unrecorded");
+                self.line
+                    .note("the recording has reached its maximum size: the session continues unrecorded");
             }
-            if self.watch.elapsed().saturating_sub(looked) > Duration::from_millis(20) {
-                looked = self.watch.elapsed();
-                if let Some(text) = self.port.look() {
+            if self.watch.elapsed().saturating_sub(polled) > Duration::from_millis(20) {
+                polled = self.watch.elapsed();
+                if let Some(text) = self.port.poll_events() {
                     self.line.note(&text);
                 }
             }
             let Self { line, session, clock, late, behind, port, .. } = self;
-            line.tell(|| {
+            line.update(|| {
                 let text = status(session, (clock, std::mem::take(behind)), late);
                 let errors = port.line_errors().filter(|errors| !errors.is_none());
                 errors.map_or_else(|| text.clone(), |errors| format!("{text}  line errors: {errors}"))
@@ -170,7 +164,7 @@ impl Server {
         }
         if interrupt::count() == 0 && self.session.jogs_without_end() {
             self.line.note(
-                "a jog button is still pressed; the session ends here. Add `release` lines to end the jog",
+                "a jog button is still pressed, so the session ends here; add `release` lines to end the jog",
             );
         }
         Ok(())
@@ -187,7 +181,7 @@ impl Server {
     fn take(&mut self, bytes: &[u8]) {
         self.times.chunk(self.watch.nanos(), self.session.now(), bytes.len());
         if let Some(panel) = &mut self.panel {
-            panel.type_in(bytes);
+            panel.receive(bytes);
             return;
         }
         self.input.push(bytes);
@@ -232,13 +226,12 @@ impl Server {
 
     /// The next cycle with something to write or press; no round passes it.
     fn deadline(&self) -> Instant {
-        let typed = self.panel.as_ref().and_then(|panel| panel.waits);
+        let waits = self.panel.as_ref().and_then(|panel| panel.waits);
         // A process that waits for every byte is scheduled later on a busy system.
         let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
-        typed.map_or(due, |typed| typed.min(due))
+        waits.map_or(due, |waits| waits.min(due))
     }
 
-    /// A millisecond.
     fn round_cycles(&self) -> u64 {
         let clock_hz = u64::from(self.session.experiment().config().clock_hz());
         (clock_hz / 1000).clamp(1, MAX_ROUND)
@@ -341,7 +334,6 @@ impl Server {
     }
 }
 
-/// Milliseconds since 1970.
 fn unix_ms() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     u64::try_from(since.as_millis()).unwrap_or(u64::MAX)

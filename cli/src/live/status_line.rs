@@ -22,7 +22,7 @@ impl StatusLine {
         Self { shown: wanted || terminal, terminal, last: None, wide: 0 }
     }
 
-    pub(crate) fn tell(&mut self, text: impl FnOnce() -> String) {
+    pub(crate) fn update(&mut self, text: impl FnOnce() -> String) {
         if !self.shown || self.last.is_some_and(|last| last.elapsed() < MIN_TIME) {
             return;
         }
@@ -38,7 +38,6 @@ impl StatusLine {
         };
     }
 
-    /// Prints a line that stays.
     pub(crate) fn note(&mut self, text: &str) {
         let end = if self.terminal && self.wide > 0 { "\n" } else { "" };
         self.wide = 0;
@@ -47,7 +46,6 @@ impl StatusLine {
 }
 
 impl Drop for StatusLine {
-    /// Start a new line for later output.
     fn drop(&mut self) {
         if self.terminal && self.wide > 0 {
             let _ = writeln!(terminal::err());

@@ -17,7 +17,6 @@ impl Wire {
         Self { port, rts, echo, own: VecDeque::new(), collisions: 0 }
     }
 
-    /// Echoed bytes that differ.
     pub(super) const fn collisions(&self) -> u64 {
         self.collisions
     }
@@ -56,13 +55,13 @@ impl Wire {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::port::Heard;
+    use crate::live::port::Received;
 
     struct Noted(std::rc::Rc<std::cell::RefCell<Vec<String>>>);
 
     impl Port for Noted {
-        fn read(&mut self, _: &mut [u8], _: Duration) -> io::Result<Heard> {
-            Ok(Heard::Nothing)
+        fn read(&mut self, _: &mut [u8], _: Duration) -> io::Result<Received> {
+            Ok(Received::Nothing)
         }
 
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

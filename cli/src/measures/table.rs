@@ -121,7 +121,7 @@ fn compared(group: &mut Group, pairs: &[&CurveMetrics]) {
 
 fn errors(found: &Measures) -> Group {
     let columns = [("steps", "whole cycles"), ("ticks", "ticks and link")];
-    let mut group = Group::new("pulses", "pulses off their places by", &columns);
+    let mut group = Group::new("pulses", "time and position errors of pulses", &columns);
     let rows: [(_, _, Figure<PulseErrors>); 7] = [
         ("largest time error", "us", |errors| Some(errors.largest_s * 1e6)),
         ("largest at", "s", |errors| Some(errors.largest_at_s)),
@@ -129,7 +129,7 @@ fn errors(found: &Measures) -> Group {
         ("r.m.s. time error", "us", |errors| Some(errors.rms_s * 1e6)),
         ("largest position error", "steps", |errors| Some(errors.largest_steps)),
         ("r.m.s. position error", "steps", |errors| Some(errors.rms_steps)),
-        ("pulses that count", "", |errors| Some(errors.pulses as f64)),
+        ("pulses", "", |errors| Some(errors.pulses as f64)),
     ];
     for (measure, unit, of) in rows {
         group.row(measure, unit, vec![of(&found.step_errors), of(&found.tick_errors)]);

@@ -4,7 +4,7 @@ use super::arguments::{Arguments, Written};
 use crate::{
     failure::{Failure, Numbered},
     json::Tables,
-    kept_run, terminal,
+    output, run_recording,
 };
 use serde_json::{Map, Value};
 use std::io::{self, Write};
@@ -34,36 +34,34 @@ pub(super) fn measures(
     let own = own.ok_or_else(|| {
         Failure::index(&arguments.scenario, Numbered::AxisChannels, channel, channels.into(), false)
     })?;
-    let recording = kept_run::of(&arguments.scenario, experiment)?;
+    let recording = run_recording::of(&arguments.scenario, experiment)?;
     let steps = steps(&recording.trace, own);
     let clock_hz = experiment.config().clock_hz();
     let figures = StepFigures::of(steps.iter().copied(), clock_hz).ok_or_else(|| {
-        let detail = "this channel makes no step, so there is nothing to measure; give another --axis";
+        let detail = "this channel makes no step; use another --axis";
         let problem = Problem::new("source", ValueError::Conflict { detail });
         Failure::Scenario(arguments.scenario.clone(), vec![problem])
     })?;
     let spectra = Spectra::of(scenario, None, &Pulses::recorded(own, &steps, clock_hz));
     let rows = rows(&figures, spectra.actual.as_ref()).map_err(Failure::output)?;
-    let mut out = terminal::out();
-    let written = match arguments.format {
-        _ if arguments.json => {
+    output::write_new(&arguments.out.out, |out| match arguments.format {
+        _ if arguments.json.json => {
             let row =
                 |(name, value): (&String, &Value)| serde_json::json!({ "measure": name, "value": value });
-            Tables::of("measures").with("steps", rows.iter().map(row)).write(&mut out)
+            Tables::of("measures").with("steps", rows.iter().map(row)).write(out)
         }
         Written::Json => writeln!(out, "{:#}", Value::Object(rows)),
         Written::Csv => writeln!(out, "measure,value").and_then(|()| {
             rows.iter().try_for_each(|(name, value)| writeln!(out, "{name},{}", shown(value, "")))
         }),
-        Written::Text => writeln!(
-            out,
-            "channel {own}: no plan is known, so the steps themselves are measured"
-        )
-        .and_then(|()| {
-            rows.iter().try_for_each(|(name, value)| writeln!(out, "  {name:34} {}", shown(value, "-")))
-        }),
-    };
-    written.and_then(|()| out.flush()).map_err(Failure::output)
+        Written::Text => {
+            writeln!(out, "channel {own}: the scenario has no motion, so the steps themselves are measured")
+                .and_then(|()| {
+                    rows.iter()
+                        .try_for_each(|(name, value)| writeln!(out, "  {name:34} {}", shown(value, "-")))
+                })
+        }
+    })
 }
 
 fn shown(value: &Value, none: &str) -> String {

@@ -13,14 +13,13 @@ use stepscope_core::{
 pub(crate) struct Driven {
     pub(crate) axis: usize,
     pub(crate) machine: Machine,
-    pub(crate) asked: MotionSource,
+    pub(crate) source: MotionSource,
     pub(crate) demand: Demand,
     /// Comparison with the plant, if it was run.
     pub(crate) agreement: Option<Agreement>,
 }
 
 pub(crate) enum MotionSource {
-    /// The plan of an axis.
     Plan(AxisPlan),
     Steps,
 }
@@ -28,6 +27,6 @@ pub(crate) enum MotionSource {
 impl Driven {
     pub(crate) fn of_steps(channel: u8, machine: Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(&machine, steps, clock_hz);
-        Self { axis: channel.into(), machine, asked: MotionSource::Steps, demand, agreement: None }
+        Self { axis: channel.into(), machine, source: MotionSource::Steps, demand, agreement: None }
     }
 }

@@ -3,7 +3,7 @@
 use super::{arguments::Arguments, driven::Driven};
 use crate::{
     failure::{Failure, Numbered},
-    kept_run,
+    run_recording,
 };
 use stepscope_core::{
     inspect::motion::torque::Machine,
@@ -23,15 +23,16 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
     }
     let named = arguments.named.named(scenario);
     if Machine::of_channel(&named, 0, 0).is_none() {
-        let detail = "no motor; give one, such as \"plant\": {} for that of Song, Han and Lu 2021, or --motor (stepscope plant --motors lists them)";
+        let detail =
+            "the scenario has no motor; use --motor, or \"plant\": {} for the motor of Song, Han and Lu 2021";
         return Err(refused("plant", detail));
     }
     let experiment = Experiment::new(scenario).map_err(wrong)?;
-    let recording = kept_run::of(path, &experiment)?;
+    let recording = run_recording::of(path, &experiment)?;
     let clock_hz = experiment.config().clock_hz();
-    let asked =
+    let selected =
         (0..channels).filter(|channel| arguments.axis.is_none_or(|only| only == usize::from(*channel)));
-    let found: Vec<Driven> = asked
+    let found: Vec<Driven> = selected
         .filter_map(|channel| {
             let steps = Some(steps(&recording.trace, channel)).filter(|steps| !steps.is_empty())?;
             let machine = Machine::of_channel(&named, 0, channel.into())?;
@@ -39,7 +40,7 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
         })
         .collect();
     if found.is_empty() {
-        let detail = "no channel that was asked for makes a step, so no motor is asked for anything; give another --axis";
+        let detail = "the selected channels make no step; use another --axis";
         return Err(refused("source", detail));
     }
     Ok(found)

@@ -9,7 +9,7 @@ use stepscope_core::{
 };
 
 pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
-    driven.iter().map(|Driven { axis, machine, asked, demand, agreement }| {
+    driven.iter().map(|Driven { axis, machine, source, demand, agreement }| {
         let least = demand.least.as_ref();
         json!({
             "axis": axis,
@@ -27,7 +27,7 @@ pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
             "plant": agreement.as_ref().map(|found| &found.plant),
             "models_agree": agreement.as_ref().and_then(|found| found.agrees),
             "models_differ_because": agreement.as_ref().and_then(|found| found.why.as_ref()),
-            "window_s": matches!(asked, MotionSource::Steps).then(|| machine.natural_period_s()),
+            "window_s": matches!(source, MotionSource::Steps).then(|| machine.natural_period_s()),
         })
     })
 }
@@ -51,8 +51,8 @@ pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
 }
 
 pub(super) fn tables(driven: &[Driven]) -> Tables {
-    let ramps = driven.iter().flat_map(|Driven { axis, machine, asked, .. }| {
-        let moves = match asked {
+    let ramps = driven.iter().flat_map(|Driven { axis, machine, source, .. }| {
+        let moves = match source {
             MotionSource::Plan(plan) => plan.moves(),
             MotionSource::Steps => &[],
         };

@@ -10,20 +10,19 @@ use stepscope_core::{
     motion::{Curve, PlannedMove},
 };
 
-/// Maximum shortages on the screen, per axis.
 const MAX_SHOWN: usize = 20;
 /// Maximum time of a move, in s (docs/scenario.md).
 const MAX_DURATION_S: f64 = 86_400.0;
 
 pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
-    let Driven { axis, machine, asked, demand, agreement } = driven;
-    match asked {
+    let Driven { axis, machine, source, demand, agreement } = driven;
+    match source {
         MotionSource::Plan(_) => writeln!(out, "axis {axis}")?,
         MotionSource::Steps => {
             let period_ms = machine.natural_period_s() * 1e3;
             writeln!(
                 out,
-                "channel {axis}: no plan is known, so the steps themselves are judged, over the rotor's natural period of {period_ms:.3} ms"
+                "channel {axis}: the scenario has no motion, so the steps themselves are checked, over the rotor's natural period of {period_ms:.3} ms"
             )?;
         }
     }
@@ -37,7 +36,7 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     }
     writeln!(
         out,
-        "  greatest rate    {} with a load of {:.1} mN*m",
+        "  maximum rate     {} with a load of {:.1} mN*m",
         rate(machine.torque_rate()),
         machine.load_mn_m()
     )?;
@@ -46,15 +45,15 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     }
     if let Some(least) = &demand.least {
         let margin = least.margin_mn_m();
-        writeln!(out, "  least margin     {margin:.1} mN*m: {}", moment(least))?;
+        writeln!(out, "  minimum margin   {margin:.1} mN*m: {}", moment(least))?;
     }
     if demand.jump > 0.0 {
         let jump = demand.jump;
         let higher = "the motor's start-stop rate has to be higher";
-        match asked {
+        match source {
             MotionSource::Plan(_) => writeln!(out, "  jump of speed    {jump:.0} steps/s at once; {higher}")?,
             MotionSource::Steps => {
-                writeln!(out, "  jump of speed    {jump:.0} steps/s beside a rest or a turn; {higher}")?;
+                writeln!(out, "  jump of speed    {jump:.0} steps/s next to a stop or a reversal; {higher}")?;
             }
         }
     }
@@ -70,7 +69,7 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
             writeln!(out, "    {why}")?;
         }
     }
-    let MotionSource::Plan(plan) = asked else { return Ok(()) };
+    let MotionSource::Plan(plan) = source else { return Ok(()) };
     for (index, planned) in plan.moves().iter().enumerate() {
         if let Some(found) = Ramps::of(machine, &planned.profile) {
             ramps(index, planned, &found, out)?;
@@ -101,7 +100,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
     if let (Some(given), Some(most)) = (demand.over_working_rate, machine.working_rate()) {
         writeln!(
             out,
-            "  warning: {given:.0} steps/s are above the working rate of {most:.0} steps/s; give more time, or shorter ramps"
+            "  warning: {given:.0} steps/s are above the working rate of {most:.0} steps/s; allow more time, or use shorter ramps"
         )?;
     }
     if demand.total == 0 {
@@ -109,7 +108,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
     }
     writeln!(
         out,
-        "  warning: too little torque in {} interval{}; give more time, gentler ramps, less load, or a higher supply voltage",
+        "  warning: too little torque in {} interval{}; allow more time, or use gentler ramps, less load or a higher supply voltage",
         demand.total,
         if demand.total == 1 { "" } else { "s" }
     )?;
@@ -133,7 +132,7 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
     if found.greatest_rate == Some(0.0) {
         return writeln!(
             out,
-            "    the load needs more torque than the motor has at any rate; give less load"
+            "    the load needs more torque than the motor has at any rate; reduce the load"
         );
     }
     if let Some(greatest) = found.greatest_rate {
@@ -147,10 +146,11 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
             None => {
                 write!(out, "even without ramps the move is faster; ")?;
                 match steps.unsigned_abs() as f64 / greatest {
-                    least_s if least_s <= MAX_DURATION_S => writeln!(out, "give at least {least_s:.4} s")?,
-                    _ => {
-                        writeln!(out, "give less distance or less load: no move may take the time it needs")?
-                    }
+                    least_s if least_s <= MAX_DURATION_S => writeln!(out, "allow at least {least_s:.4} s")?,
+                    _ => writeln!(
+                        out,
+                        "reduce the distance or the load, because the move would take longer than is allowed"
+                    )?,
                 }
             }
         }
@@ -164,8 +164,8 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
     match found.too_fast_s {
         Some((shortest, longest)) => writeln!(
             out,
-            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but they are above the working rate; give more time"
+            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but they are above the working rate; allow more time"
         ),
-        None => writeln!(out, "    no ramp leaves enough torque; give more time or less load"),
+        None => writeln!(out, "    no ramp leaves enough torque; allow more time or reduce the load"),
     }
 }

@@ -1,0 +1,35 @@
+//! "Did you mean": the known name that is most like a given one.
+
+/// As clap's own suggestions for commands and options.
+const LEAST: f64 = 0.8;
+
+pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let likeness = |name: &'a str| (strsim::jaro(given, name), name);
+    let likely = known.into_iter().map(likeness).filter(|(likeness, _)| *likeness > LEAST);
+    likely.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, name)| name)
+}
+
+/// `; did you mean NAME?`, or nothing.
+pub(crate) fn hint<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    nearest(given, known).map_or_else(String::new, |name| format!("; did you mean {name}?"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_suggested_if_it_is_nearly_the_given_one() {
+        let known = ["slots", "channels", "step_period_cycles", "settle_cycles"];
+        for (given, expected) in [
+            ("slot", Some("slots")),
+            ("chanels", Some("channels")),
+            ("step_period", Some("step_period_cycles")),
+            ("voltage", None),
+            ("", None),
+        ] {
+            assert_eq!(nearest(given, known), expected, "{given}");
+        }
+        assert_eq!(hint("slot", known), "; did you mean slots?");
+    }
+}
