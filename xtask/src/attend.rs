@@ -39,7 +39,6 @@ pub(crate) async fn attend(words: &[OsString]) -> Result<()> {
     std::fs::create_dir_all(&folder.0).with_context(|| format!("{} can't be made", folder.0.display()))?;
     let mut command = Command::new(program);
     command.args(arguments).env("TMPDIR", &folder.0);
-    // Declared after the folder and so dropped before it.
     let mut group = run::start(command)?;
     tokio::select! {
         () = end_of_input() => {}

@@ -20,9 +20,7 @@ use tokio::process::Command;
 use crate::{root, run, toolchain, tools};
 use report::Report;
 
-/// Additional time for a target's first inputs and its last one.
 const GRACE: Duration = Duration::from_secs(120);
-/// Maximum time (s) and memory (MB) per input.
 const INPUT_SECONDS: u32 = 10;
 const MEMORY_MB: u32 = 2048;
 
@@ -140,7 +138,6 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     }
 }
 
-/// The commands that repeat a finding and save it, for the workspace's folder.
 fn advice(target: &str, input: &Path, program: &Path) -> String {
     let short = |path: &Path| path.strip_prefix(root()).unwrap_or(path).display().to_string();
     let (input, program) = (short(input), short(program));

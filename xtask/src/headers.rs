@@ -6,7 +6,6 @@
 use anyhow::{Context, Result, bail};
 use axum::http::{HeaderName, HeaderValue};
 
-/// Hosts never send this file.
 pub(crate) const FILE: &str = "_headers";
 
 #[derive(Debug, Default)]

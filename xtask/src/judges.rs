@@ -27,7 +27,6 @@ pub(crate) async fn socat() -> Result<()> {
     apt::require("the test of live commands", &["socat"], &["socat"]).await
 }
 
-/// A Python environment with these packages in the tools' cache.
 pub(crate) async fn python() -> Result<PathBuf> {
     let home = cache()?.join("tools").join(HOME);
     let python = home.join("bin").join("python");

@@ -14,7 +14,7 @@ use crate::{THIS_PROGRAM, root, toolchain};
 const WORKSPACE: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
 /// Prefixes of environment variables that change cargo's or rustc's result.
-const TOLD_BY: [&str; 6] =
+const VARIABLES: [&str; 6] =
     ["CARGO_PROFILE_", "CARGO_TARGET_", "CARGO_BUILD_", "CARGO_ENCODED_", "RUSTC", "RUSTFLAGS"];
 
 /// Hashed at the start: this program may be rebuilt while it runs.
@@ -27,7 +27,6 @@ pub(crate) struct Made<'a> {
     folder: &'a Path,
     sources: &'a [&'a str],
     how: Vec<String>,
-    /// The file that records the inputs of the last build.
     note: PathBuf,
     from: u64,
 }
@@ -39,7 +38,7 @@ impl<'a> Made<'a> {
         how.push(toolchain::version().await?);
         let mut told: Vec<_> = env::vars_os()
             .map(|(name, value)| (name.to_string_lossy().into_owned(), value))
-            .filter(|(name, _)| TOLD_BY.iter().any(|begin| name.starts_with(begin)))
+            .filter(|(name, _)| VARIABLES.iter().any(|begin| name.starts_with(begin)))
             .map(|(name, value)| format!("{name}={}", value.to_string_lossy()))
             .collect();
         told.sort();
@@ -50,7 +49,6 @@ impl<'a> Made<'a> {
         Ok(Self { folder, sources, how, note, from })
     }
 
-    /// Whether the folder is up to date and unchanged since it was built.
     pub(crate) fn stands(&self) -> Result<bool> {
         let Ok(noted) = fs::read_to_string(&self.note) else { return Ok(false) };
         Ok(self.folder.is_dir() && noted == self.words()?)

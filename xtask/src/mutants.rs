@@ -43,7 +43,6 @@ const MIN_CAUGHT_PERCENT: usize = 95;
 const TEST_LIMIT: Duration = Duration::from_secs(2 * 60);
 /// Time for the copy, its first build and the unchanged tests.
 const START: Duration = Duration::from_secs(40 * 60);
-/// Average time per mutant, at most.
 const EACH: Duration = Duration::from_secs(4 * 60);
 
 pub(crate) struct Options {
@@ -106,7 +105,6 @@ fn cargo_mutants(program: &Path, packages: &[&str]) -> Command {
     command
 }
 
-/// cargo-mutants writes its list to `file`.
 async fn list(program: &Path, packages: &[&str], file: &Path) -> Result<Vec<String>> {
     #[derive(Deserialize)]
     struct Mutant {
@@ -149,7 +147,6 @@ fn testing(program: &Path, packages: &[&str], folder: &Path) -> Command {
     for argument in ["--locked", "--lib"].into_iter().chain(packages).chain(tests) {
         command.arg(format!("--cargo-arg={argument}"));
     }
-    // cargo-mutants' own arguments, then cargo's, then those of the tests.
     command.args(["--", "--"]).args(SKIPPED.iter().flat_map(|name| ["--skip", name]));
     command
 }
@@ -159,7 +156,6 @@ struct Verdict {
     caught: usize,
     /// The tests were stopped because they took too long, which counts as caught.
     timeouts: Vec<String>,
-    /// Mutants that do not compile do not count.
     unviable: usize,
     missed: Vec<String>,
 }

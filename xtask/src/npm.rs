@@ -68,13 +68,11 @@ impl Npm {
     }
 }
 
-/// The path of one of Node's programs, installing Node.js if it is missing.
 pub(crate) async fn node_program(name: &str) -> Result<PathBuf> {
     apt::require("this step", &[name], &["nodejs", "npm"]).await?;
     which::which(name).with_context(|| format!("{name} is gone"))
 }
 
-/// The path of axe-core's script, installing it if it is missing.
 pub(crate) async fn axe() -> Result<PathBuf> {
     let cache = cache()?;
     let script = AXE.modules(&cache).join("axe-core").join("axe.min.js");

@@ -15,7 +15,6 @@ use crate::made::Made;
 use crate::npm::node_program;
 use crate::{page, root, run, toolchain};
 
-/// Each after its dependencies.
 const LIBRARIES: [&str; 10] = [
     "registers",
     "peripheral",
@@ -29,7 +28,7 @@ const LIBRARIES: [&str; 10] = [
     "core",
 ];
 /// Files that wasm-pack does not list: the types and the licenses.
-const BESIDE: [&str; 4] = ["stepscope_wasm_bg.wasm.d.ts", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
+const UNLISTED: [&str; 4] = ["stepscope_wasm_bg.wasm.d.ts", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
 /// The oldest version that the test's program supports.
 const NODE: &str = ">=20.6";
 
@@ -54,7 +53,6 @@ async fn crates() -> Result<()> {
         clear(&unpacked)?;
     }
     let mut command = toolchain::cargo();
-    // Uncommitted changes are packaged, too.
     command.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&folder);
     for library in LIBRARIES {
         command.args(["--package", &format!("stepscope-{library}")]);
@@ -147,7 +145,7 @@ fn packed(folder: &Path) -> Result<PathBuf> {
 pub(crate) fn complete(folder: &Path) -> Result<()> {
     let file = folder.join("package.json");
     let text = fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
-    for name in BESIDE {
+    for name in UNLISTED {
         ensure!(folder.join(name).is_file(), "{name} is not in {}", folder.display());
     }
     fs::write(&file, completed(&text)?).with_context(|| format!("{} can't be written", file.display()))
@@ -157,7 +155,7 @@ fn completed(text: &str) -> Result<String> {
     let mut package: Value = serde_json::from_str(text).context("wasm-pack's package.json is no JSON")?;
     let files = package.get_mut("files").and_then(Value::as_array_mut);
     let files = files.context("wasm-pack's package.json lists no files")?;
-    for name in BESIDE {
+    for name in UNLISTED {
         if !files.iter().any(|file| file == name) {
             files.push(json!(name));
         }

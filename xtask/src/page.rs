@@ -79,7 +79,7 @@ pub(crate) async fn wasm_by(
 ) -> Result<()> {
     command.args(["build", "--profile", "page", "--target", "web"]).args(tools.build_options());
     command.args([folder, "--out-dir"]).arg(package).args(["--", "--locked"]).args(options);
-    tools.judge(run::compile(command).await)
+    tools.check(run::compile(command).await)
 }
 
 #[derive(Clone, Copy, Default)]

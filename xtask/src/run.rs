@@ -50,7 +50,6 @@ impl Group {
 
 impl Drop for Group {
     fn drop(&mut self) {
-        // Fails if the group has already ended.
         let _ = self.0.start_kill();
     }
 }
@@ -131,7 +130,6 @@ fn succeeded(name: &str, status: io::Result<std::process::ExitStatus>) -> Result
     Ok(())
 }
 
-/// Waits for `end`; an error with `silence`, if that is limited and no chunk of output comes for so long.
 async fn unless_silent<T>(
     end: impl Future<Output = T>,
     chunks: &mut UnboundedReceiver<()>,
@@ -198,7 +196,6 @@ pub(crate) async fn output(mut command: Command) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Waits for a signal to stop; returns the exit code for it.
 #[cfg(unix)]
 pub(crate) async fn interrupted() -> Result<u8> {
     use tokio::signal::unix::{SignalKind, signal};

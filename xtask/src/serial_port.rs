@@ -17,7 +17,6 @@ const DRIVERS: &str = "/proc/tty/drivers";
 const POLICIES: &str = "/etc/chromium";
 const TRIAL: &str = "mount --bind /dev/null /dev/ttyS0 && mount -t tmpfs none /etc/chromium";
 
-/// Tries the mounts; the error says why this machine cannot have the port.
 pub(crate) async fn possible() -> Result<()> {
     let drivers = fs::read_to_string(DRIVERS).with_context(|| format!("{DRIVERS} can't be read"))?;
     ensure!(has_serial_ports(&drivers), "{DRIVERS} has no driver of serial ports /dev/ttyS");
@@ -31,7 +30,6 @@ pub(crate) async fn possible() -> Result<()> {
     Ok(())
 }
 
-/// Looks for `serial /dev/ttyS 4 64 serial` in the kernel's list of drivers.
 fn has_serial_ports(drivers: &str) -> bool {
     drivers.lines().any(|line| {
         let words: Vec<_> = line.split_whitespace().collect();

@@ -15,7 +15,6 @@ use tower_http::services::ServeDir;
 
 use crate::headers::{FILE, Headers};
 
-/// Binds `port` on 127.0.0.1; 0 takes any free one.
 pub(crate) fn bind(port: u16) -> Result<TcpListener> {
     match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
         Ok(listener) => Ok(listener),

@@ -8,11 +8,8 @@ use tokio::process::Command;
 use crate::npm::{self, Npm};
 use crate::{root, run};
 
-/// Unit tests of the page's scripts, by their path from the repository's root.
 const TESTS: &str = "tests/scripts";
-/// How the names of their files end.
 const TEST_ENDING: &str = ".test.mjs";
-/// Formatter and linter; `web/biome.jsonc` says how it is meant.
 const BIOME: Npm = Npm { package: "@biomejs/biome", version: "2.6.8" };
 const TYPESCRIPT: Npm = Npm { package: "typescript", version: "7.0.2" };
 
@@ -34,7 +31,6 @@ pub(crate) async fn check_types() -> Result<()> {
     run::to_end(command).await
 }
 
-/// Runs the unit tests of the page's models in Node.
 pub(crate) async fn test() -> Result<()> {
     // Node's versions differ in how they search a folder, so each file is named.
     let files = tests()?;

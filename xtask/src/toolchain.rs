@@ -9,7 +9,6 @@ use tokio::process::Command;
 use crate::{root, run};
 
 pub(crate) const WASM: &str = "wasm32-unknown-unknown";
-/// A Cortex-M3 without an operating system.
 pub(crate) const BARE_METAL: &str = "thumbv7m-none-eabi";
 
 pub(crate) fn cargo() -> Command {

@@ -96,11 +96,11 @@ impl WasmTools {
     }
 
     /// wasm-pack reports success even if wasm-opt did not run, so this checks for it.
-    pub(crate) fn judge(&self, done: Result<()>) -> Result<()> {
+    pub(crate) fn check(&self, done: Result<()>) -> Result<()> {
         let done = done.context("the page was not built");
         match self.wasm_opt {
             WasmOpt::Found | WasmOpt::LeftOut => done,
-            WasmOpt::FetchedByWasmPack => wasm_opt::judge_fetch(done, &self.wasm_pack_cache),
+            WasmOpt::FetchedByWasmPack => wasm_opt::check_fetch(done, &self.wasm_pack_cache),
         }
     }
 
@@ -139,7 +139,6 @@ async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
         });
     }
     if installed {
-        // Only disk space is lost if it stays.
         let _ = std::fs::remove_dir_all(build_folder(cache));
     }
     Ok(programs)
@@ -192,7 +191,7 @@ impl Tool {
     async fn fits(&self, program: &Path) -> bool {
         let answer = match version_answer(program).await {
             Some(answer) => answer,
-            None => asked_as_by_cargo(program).await.unwrap_or_default(),
+            None => version_of_subcommand(program).await.unwrap_or_default(),
         };
         answer.split_whitespace().nth(1) == Some(self.version.as_str())
     }
@@ -205,7 +204,7 @@ pub(crate) async fn version_answer(program: &Path) -> Option<String> {
 }
 
 /// Some subcommands report a version only if called as cargo does: `cargo-mutants mutants --version`.
-async fn asked_as_by_cargo(program: &Path) -> Option<String> {
+async fn version_of_subcommand(program: &Path) -> Option<String> {
     let mut command = Command::new(program);
     command.args([program.file_stem()?.to_str()?.strip_prefix("cargo-")?, "--version"]);
     run::output(command).await
@@ -225,7 +224,6 @@ fn build_folder(cache: &Path) -> PathBuf {
     cache.join("build")
 }
 
-/// An error unless the lock file has exactly one version of the package.
 fn locked_version(lock: &str, package: &str) -> Result<String> {
     #[derive(Deserialize)]
     struct Lock {

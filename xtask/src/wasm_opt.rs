@@ -14,9 +14,8 @@ use crate::tools::{find, version_answer};
 
 const BINARYEN: &str = "132.0.0";
 /// The version that wasm-pack 0.15.1 downloads.
-const AT_LEAST: u32 = 130;
+const MIN_VERSION: u32 = 130;
 
-/// `None` if wasm-pack must download one.
 pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
     let npm = Npm { package: "binaryen", version: BINARYEN };
     let own = npm.modules(cache).join(".bin");
@@ -40,7 +39,7 @@ pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
 }
 
 /// On platforms without a download wasm-pack goes on without wasm-opt and only prints a note.
-pub(crate) fn judge_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
+pub(crate) fn check_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
     done.map_err(|error| anyhow!("{error:#}\nif it was wasm-opt that could not be fetched: {}", remedy()))?;
     let entries = std::fs::read_dir(wasm_pack_cache).context("wasm-pack's cache can't be read")?;
     let fetched = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("wasm-opt"));
@@ -49,14 +48,15 @@ pub(crate) fn judge_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()
 }
 
 fn remedy() -> String {
-    format!("install Node.js with npm, or binaryen {AT_LEAST} or later; or do without wasm-opt by --no-opt")
+    format!(
+        "install Node.js with npm, or binaryen {MIN_VERSION} or later; or do without wasm-opt by --no-opt"
+    )
 }
 
 async fn fits(program: &Path) -> bool {
-    version_answer(program).await.is_some_and(|answer| version(&answer) >= Some(AT_LEAST))
+    version_answer(program).await.is_some_and(|answer| version(&answer) >= Some(MIN_VERSION))
 }
 
-/// Parses `wasm-opt version 132 (version_132)`.
 fn version(answer: &str) -> Option<u32> {
     answer.split_whitespace().nth(2)?.parse().ok()
 }

@@ -87,7 +87,6 @@ fn router(page: &Path, package: &Path, words: mpsc::Sender<Word>, rounds: mpsc::
     let rounds = Arc::new(Mutex::new(rounds));
     let report = move |text: String| async move {
         let _ = words.send(Word::Report(text)).await;
-        // 0 ends the page.
         rounds.lock().await.recv().await.unwrap_or(0).to_string()
     };
     let fail = move |why: String| async move {

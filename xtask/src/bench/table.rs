@@ -12,7 +12,6 @@ pub(super) struct Report {
     what: String,
     unit: String,
     units: u64,
-    /// Single-signal edges per call.
     edges: Option<u64>,
     yardstick: Option<String>,
     aim: Option<f64>,
@@ -61,7 +60,6 @@ impl Estimate {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 struct Ratio {
     median: f64,
-    /// Median absolute deviation.
     deviation: f64,
 }
 

@@ -86,7 +86,6 @@ struct Input {
     imports: Vec<Import>,
 }
 
-/// These sources and all their imports, static or dynamic.
 fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut waiting: Vec<&'a str>) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     while let Some(source) = waiting.pop() {
@@ -148,7 +147,6 @@ impl Bundles {
         struct Note {
             outputs: BTreeMap<String, Output>,
         }
-        // All lie in one folder, wherever that is.
         let placed = |path: &str| format!("{ASSETS}/{}", path.rsplit('/').next().unwrap_or(path));
         let Note { outputs } = serde_json::from_str(note).context("esbuild's note of what it made")?;
         let outputs = outputs.into_iter().map(|(path, mut output)| {
@@ -184,7 +182,6 @@ impl Bundles {
         loaded
     }
 
-    /// What these files load later, by source.
     pub(super) fn later<'a>(&'a self, files: &BTreeSet<&str>) -> BTreeMap<&'a str, &'a str> {
         let imports = files.iter().filter_map(|file| self.0.get(*file)).flat_map(|output| &output.imports);
         let paths = imports.filter(|import| import.is_later()).map(|import| import.path.as_str());

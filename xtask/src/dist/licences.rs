@@ -46,7 +46,6 @@ async fn parts() -> Result<Vec<Part>> {
         version: String,
         license: Option<String>,
         manifest_path: PathBuf,
-        /// `None` for crates of the workspace.
         source: Option<String>,
     }
     let metadata: Metadata = serde_json::from_str(&metadata).context("cargo metadata")?;
@@ -69,7 +68,6 @@ async fn answer(command: Command) -> Result<String> {
     run::output(command).await.context("cargo does not say of which crates the page is made")
 }
 
-/// Parses a line of `cargo tree`, such as `serde v1.0.0 (*)`.
 fn named(line: &str) -> Option<(&str, &str)> {
     let mut words = line.split_whitespace();
     Some((words.next()?, words.next()?.strip_prefix('v')?))
@@ -109,7 +107,6 @@ fn chosen<'a>(files: &'a [String], licence: &str) -> Vec<&'a str> {
     files.iter().map(String::as_str).filter(wanted).collect()
 }
 
-/// A text that several crates share is printed once.
 fn print(parts: &[Part], own: &str) -> String {
     let mut page = String::from(HEAD);
     let _ = write!(page, "<pre>{}</pre>\n<h2>What it is made of</h2>\n<ul>\n", escaped(own.trim()));

@@ -10,17 +10,15 @@ pub(crate) struct Report {
     covered: u64,
     counters: u64,
     kept: u64,
-    /// Seconds and MB.
     slowest_s: u64,
     memory_mb: u64,
     pub(crate) finding: Option<String>,
     broken: Vec<String>,
 }
 
-/// Lines of a panic that are printed.
-const TOLD_LINES: usize = 6;
+const MAX_LINES: usize = 6;
 /// Characters per line: a panic may contain a whole scenario.
-const TOLD_CHARACTERS: usize = 200;
+const MAX_CHARACTERS: usize = 200;
 
 impl Report {
     pub(crate) fn of(log: &str) -> Self {
@@ -63,8 +61,8 @@ fn broken(log: &str) -> Vec<String> {
     let panic = from("panicked at ");
     let told = if panic.is_empty() { from("ERROR: libFuzzer: ") } else { panic };
     let end = |line: &&str| line.starts_with("stack backtrace") || line.starts_with("note: ");
-    let shown = told.into_iter().take_while(|line| !end(line)).take(TOLD_LINES);
-    shown.map(|line| line.chars().take(TOLD_CHARACTERS).collect()).collect()
+    let shown = told.into_iter().take_while(|line| !end(line)).take(MAX_LINES);
+    shown.map(|line| line.chars().take(MAX_CHARACTERS).collect()).collect()
 }
 
 impl fmt::Display for Report {
