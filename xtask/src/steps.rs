@@ -74,7 +74,7 @@ impl Step {
             Self::Lint => {
                 sources::lint().await?;
                 // The fuzz targets are a workspace of their own, whose lock file no other step reads.
-                cargo("fetch --quiet --locked --manifest-path fuzz/Cargo.toml").await?;
+                run::to_end(cargo("fetch --quiet --locked --manifest-path fuzz/Cargo.toml")).await?;
                 toolchain::components().await?;
                 toolchain::target(WASM).await?;
                 toolchain::target(BARE_METAL).await?;
