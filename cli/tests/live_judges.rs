@@ -184,16 +184,16 @@ fn a_host_that_stands_still_for_two_seconds_repeats_and_no_tick_is_wrong() {
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn the_ten_lines_of_the_readme_run() {
-    let readme =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).expect("it is there");
-    let (_, from) = readme.split_once("```python\n").expect("lines of Python");
+fn the_ten_lines_of_the_documentation_run() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/how-to/connect-a-program.md");
+    let page = fs::read_to_string(page).expect("the page");
+    let (_, from) = page.split_once("```python\n").expect("lines of Python");
     let (lines, _) = from.split_once("```").expect("their end");
     assert!(lines.lines().count() <= 12 && lines.contains("\"/tmp/stepscope\""), "{lines}");
-    let link = file("readme-port", "");
+    let link = file("documented-port", "");
     fs::remove_file(&link).expect("it was made");
     let server = Running::start(stepscope(&["serve", "framed-link", "--pty", text(&link), "--lag", "1000"]));
-    let script = file("readme.py", &lines.replace("/tmp/stepscope", text(&link)));
+    let script = file("documented.py", &lines.replace("/tmp/stepscope", text(&link)));
     let python =
         env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only live` says where Python is");
     let ran = Command::new(python).arg(script).output().expect("it runs");

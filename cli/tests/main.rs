@@ -8,6 +8,8 @@ mod capture_maps;
 mod command;
 mod compared;
 mod controller;
+#[cfg(unix)]
+mod documents_commands;
 mod exit_codes;
 mod exports;
 mod faults;

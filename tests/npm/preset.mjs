@@ -6,7 +6,9 @@
 import assert from "node:assert/strict";
 import { readFile, readdir } from "node:fs/promises";
 import { join } from "node:path";
-import init, { ValidatedScenario, presets, version } from "stepscope-wasm";
+import init, * as stepscope from "stepscope-wasm";
+
+const { ValidatedScenario, presets, version } = stepscope;
 
 const [golden] = process.argv.slice(2);
 assert.ok(golden, "give the folder of the golden cases");
@@ -25,16 +27,25 @@ for (const name of [about.main, about.types, "stepscope_wasm_bg.wasm", "README.m
 await init({ module_or_path: await readFile(installed("stepscope_wasm_bg.wasm")) });
 assert.equal(version(), about.version);
 
-/** The digests of all controllers of a run. */
-function digests(json) {
-  const scenario = new ValidatedScenario(json);
-  const simulation = scenario.run();
+// The README names only functions that exist.
+const exported = Object.values(stepscope).filter((value) => typeof value === "function");
+const methods = exported.flatMap((value) => Object.getOwnPropertyNames(value.prototype ?? {}));
+const known = new Set([...Object.keys(stepscope), ...methods, "init"]);
+const readme = await readFile(installed("README.md"), "utf8");
+for (const [, name] of readme.matchAll(/`(?:await |new |\w+\.)*(\w+)\(/g)) {
+  assert.ok(known.has(name), `README.md names ${name}, which does not exist`);
+}
+
+/** The digests of all controllers of a scenario's run, a line each. */
+function digests(scenario) {
+  const validated = new ValidatedScenario(scenario);
+  const simulation = validated.run();
   try {
     while (!simulation.advance(100_000).done);
     return simulation.summary().controllers.map(({ digest }) => digest);
   } finally {
     simulation.free();
-    scenario.free();
+    validated.free();
   }
 }
 

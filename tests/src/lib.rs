@@ -52,3 +52,8 @@ pub mod fuzzing;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// The examples of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/how-to/test-firmware.md")]
+pub struct TestFirmware;

@@ -399,7 +399,8 @@ fn a_room_knows_of_another_only_what_it_may() {
 fn every_file_that_the_documents_name_is_there() {
     let root = root();
     let own = ["README.md", "CONTRIBUTING.md"].map(|name| root.join(name));
-    let others = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let folders = ["docs", "docs/how-to"].map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let others = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
     let mut named = 0;
     for document in others.chain(own).filter(|path| path.extension().is_some_and(|found| found == "md")) {
         let text = fs::read_to_string(&document).unwrap();

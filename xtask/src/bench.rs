@@ -9,7 +9,7 @@
 //! With `--against`, blocks of an earlier commit, built in a clone, alternate with those of the working tree.
 
 mod page;
-mod readme;
+mod published;
 mod table;
 
 use std::fs::File;
@@ -113,8 +113,8 @@ fn keep(home: &Path, json: &str) -> Result<()> {
     Ok(())
 }
 
-pub(crate) fn readme() -> Result<()> {
-    readme::write()
+pub(crate) fn published() -> Result<()> {
+    published::write()
 }
 
 struct Tree {

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `index.html`, other pages, `manifest.webmanifest`, `sw.js` | under their own names, requested again at each visit |
 //! | `assets/` | all other files, made by esbuild; a name contains the hash of the file and its imports, so it may be cached forever |
+//! | `docs/` | the documentation, as a site of its own |
 //! | `_headers` | `web/_headers` and the rules for caching |
 //!
 //! Only pages and the manifest name files that no script imports, so new names are written there alone. The result
@@ -19,7 +20,7 @@ use anyhow::{Context, Result, ensure};
 use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
-use crate::{headers, root, run};
+use crate::{docs, headers, root, run};
 use esbuild::Bundles;
 
 const ASSETS: &str = "assets";
@@ -53,6 +54,7 @@ pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
         let file = dist.join(name);
         std::fs::write(&file, text).with_context(|| format!("{} can't be written", file.display()))?;
     }
+    docs::build(&dist.join(docs::FOLDER))?;
     Ok(site.parts(&bundles))
 }
 
@@ -91,11 +93,13 @@ fn named(text: &str) -> impl Iterator<Item = &str> {
     files_at(text, &AT_ONCE).chain(LATER.iter().flat_map(move |places| files_at(text, places)))
 }
 
-/// `./`, the page's own address, is skipped.
+/// `./`, the page's own address, and the documentation are skipped.
 fn files_at<'a>(text: &'a str, places: &'a [&str]) -> impl Iterator<Item = &'a str> {
     let values = places.iter().flat_map(|place| text.split(place).skip(1));
     let addresses = values.filter_map(|rest| rest.split('"').next()).filter(|address| !address.contains(':'));
-    addresses.filter_map(|address| address.split(['#', '?']).next()).filter(|file| !["", "./"].contains(file))
+    addresses
+        .filter_map(|address| address.split(['#', '?']).next())
+        .filter(|file| !["", "./", docs::LINK].contains(file))
 }
 
 impl Site {
@@ -225,7 +229,8 @@ impl Site {
         let kept = self.headers.lines().filter(|line| !line.trim_start().starts_with("Cache-Control:"));
         let mut rules: String = kept.map(|line| format!("{line}\n")).collect();
         rules.push_str(&format!("/{ASSETS}/*\n  Cache-Control: public, max-age=31536000, immutable\n"));
-        for entry in std::iter::once("").chain(entries) {
+        let site = format!("{}*", docs::LINK);
+        for entry in ["", site.as_str()].into_iter().chain(entries) {
             rules.push_str(&format!("/{entry}\n  Cache-Control: no-cache\n"));
         }
         rules
@@ -265,7 +270,8 @@ fn hash_of(texts: &BTreeMap<String, String>) -> u64 {
 fn clear(dist: &Path) -> Result<()> {
     if dist.exists() {
         ensure!(
-            dist.join(ASSETS).exists() || dist.read_dir().is_ok_and(|mut it| it.next().is_none()),
+            [ASSETS, docs::FOLDER].iter().any(|folder| dist.join(folder).exists())
+                || dist.read_dir().is_ok_and(|mut it| it.next().is_none()),
             "{} is no earlier build; remove it or take another folder",
             dist.display()
         );

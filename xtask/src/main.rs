@@ -4,7 +4,9 @@
 //! | --- | --- |
 //! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | install missing tools once per user |
 //! | `page`, `dist`, `made` | build the page, unless it is up to date |
+//! | `docs` | build the documentation as a site |
 //! | `sources` | format, lint and type-check the page's sources |
+//! | `words`, `spelling` | check the words and the spelling of texts |
 //! | `headers`, `serve` | the local server |
 //! | `steps`, `aside`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr`, `judges`, `package` | `cargo xtask test` |
 //! | `bench`, `fuzz`, `mutants` | the commands of these names |
@@ -18,6 +20,7 @@ mod bare_metal;
 mod bench;
 mod browser;
 mod dist;
+mod docs;
 mod dump_readers;
 mod engines;
 mod fuzz;
@@ -32,10 +35,12 @@ mod run;
 mod serial_port;
 mod serve;
 mod sources;
+mod spelling;
 mod steps;
 mod toolchain;
 mod tools;
 mod wasm_opt;
+mod words;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -80,6 +85,8 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
+    /// Build the documentation as a site into dist/docs
+    Docs,
     /// Serve the page's sources as they lie, without building anything
     Serve {
         /// Port on 127.0.0.1; 0 takes any free one
@@ -111,9 +118,9 @@ enum Task {
         /// Measure `stepscope serve` alone: how late its replies are, its load, its memory over a day of session
         #[arg(long, conflicts_with_all = ["quick", "against", "page"])]
         live: bool,
-        /// Write README's table, of what was measured last
-        #[arg(long, conflicts_with_all = ["quick", "against", "page", "live"])]
-        readme: bool,
+        /// Write the table of docs/benchmarks.md from the last measurement
+        #[arg(long, alias = "readme", conflicts_with_all = ["quick", "against", "page", "live"])]
+        table: bool,
         /// Measure the kernels of this commit in the same blocks, and print what they have become
         #[arg(long, value_name = "REV")]
         against: Option<String>,
@@ -191,6 +198,12 @@ async fn perform(task: Task) -> Result<()> {
             print!("{}", page::weigh(&dist::folder(), &parts)?);
             Ok(())
         }
+        Task::Docs => {
+            let site = dist::folder().join(docs::FOLDER);
+            docs::build(&site)?;
+            println!("{}", site.join("index.html").display());
+            Ok(())
+        }
         Task::Serve { port, web: folder } => {
             serve::serve(serve::bind(port)?, &folder.unwrap_or(web), false).await
         }
@@ -200,7 +213,7 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Test { only, list: false } => steps::run(&only).await,
-        Task::Bench { readme: true, .. } => bench::readme(),
+        Task::Bench { table: true, .. } => bench::published(),
         Task::Bench { page: true, .. } => bench::page(None).await,
         Task::Bench { live: true, .. } => bench::live().await,
         Task::Bench { quick, against: Some(rev), .. } => bench::against(quick, &rev).await,

@@ -13,7 +13,7 @@ use walkdir::WalkDir;
 use crate::dist::Parts;
 use crate::made::Made;
 use crate::tools::{Optimise, WasmTools};
-use crate::{dist, headers, package, root, run};
+use crate::{dist, docs, headers, package, root, run};
 
 /// Maximum bytes that opening the page loads, compressed by brotli as hosts do.
 const OPENING_BUDGET: usize = 700_000;
@@ -170,8 +170,9 @@ pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
     let mut all = BTreeMap::new();
     for entry in WalkDir::new(dist) {
         let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
-        // Hosts do not send the file of their own rules.
-        if entry.file_type().is_file() && entry.file_name() != headers::FILE {
+        // Hosts do not send the file of their own rules, and the page never loads the documentation.
+        let apart = entry.file_name() == headers::FILE || entry.path().starts_with(dist.join(docs::FOLDER));
+        if entry.file_type().is_file() && !apart {
             let bytes = std::fs::read(entry.path())
                 .with_context(|| format!("{} can't be read", entry.path().display()))?;
             let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());
@@ -232,7 +233,16 @@ mod tests {
     fn what_opening_the_page_loads_is_summed_apart_from_each_later_part_and_what_is_kept_beside() {
         let dist = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
         std::fs::create_dir_all(dist.join("assets")).unwrap();
-        for name in ["index.html", "assets/a.js", "assets/b.js", "assets/c.js", "_headers", "icon.png"] {
+        std::fs::create_dir_all(dist.join("docs")).unwrap();
+        for name in [
+            "index.html",
+            "assets/a.js",
+            "assets/b.js",
+            "assets/c.js",
+            "_headers",
+            "icon.png",
+            "docs/index.html",
+        ] {
             std::fs::write(dist.join(name), " ".repeat(1000)).unwrap();
         }
         let set = |files: &[&str]| files.iter().map(|file| (*file).to_owned()).collect::<BTreeSet<_>>();

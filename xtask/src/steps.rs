@@ -17,7 +17,8 @@ use crate::engines::{self, Firefox, WebKit};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimise, WasmTools};
 use crate::{
-    avr, bare_metal, dist, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+    avr, bare_metal, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+    spelling, words,
 };
 
 /// The fuzz targets are a workspace of their own.
@@ -30,9 +31,9 @@ pub(crate) enum Step {
     Format,
     /// Unit tests of the page's models, in Node
     Scripts,
-    /// clippy is silent: native, wasm and bare metal; and Biome of the page's sources
+    /// clippy is silent: native, wasm and bare metal; Biome of the page's sources; words and spelling of all texts
     Lint,
-    /// rustdoc is silent
+    /// rustdoc is silent, and the documentation site has no broken links
     Docs,
     /// Unit, integration and documentation tests, as native code
     Native,
@@ -72,6 +73,8 @@ impl Step {
             }
             Self::Scripts => sources::test().await,
             Self::Lint => {
+                words::check()?;
+                spelling::check().await?;
                 sources::lint().await?;
                 // The fuzz targets are a workspace of their own, whose lock file no other step reads.
                 run::to_end(cargo("fetch --quiet --locked --manifest-path fuzz/Cargo.toml")).await?;
@@ -93,6 +96,7 @@ impl Step {
                 clippy(&format!("{packages} --no-default-features --target {BARE_METAL}")).await
             }
             Self::Docs => {
+                docs::build(&root().join("target").join(docs::FOLDER))?;
                 let mut command = cargo("doc --no-deps --workspace --locked");
                 command.env("RUSTDOCFLAGS", "-D warnings");
                 run::compile(command).await

@@ -169,7 +169,7 @@ impl Kernel {
         match self {
             Self::Write => Facts {
                 name: "plain_write",
-                what: "as many records as of `stored_trace`, made of a counter",
+                what: "the number of records of `stored_trace`, from a counter",
                 ..plain
             },
             Self::Copy => {
@@ -177,26 +177,26 @@ impl Kernel {
             }
             Self::Stored => Facts {
                 name: "stored_trace",
-                what: "16 channels at 100 kHz into a stored trace, 12 edges a record",
+                what: "16 channels at 100 kHz into a stored trace, 12 edges per record",
                 aim: Some(1.0 / 6.0),
                 ..run
             },
             Self::Digest => Facts { name: "digest", what: "the same motion into a digest", ..run },
             Self::VariedStored => Facts {
                 name: "varied_stored_trace",
-                what: "every tick orders something else: into a stored trace",
+                what: "different commands in every tick: into a stored trace",
                 ..run
             },
             Self::VariedDigest => Facts {
                 name: "varied_digest",
-                what: "every tick orders something else: into a digest",
+                what: "different commands in every tick: into a digest",
                 ..run
             },
             Self::CommonDir => {
                 Facts { name: "common_dir", what: "16 channels at 10 kHz with one DIR line for all", ..run }
             }
             Self::Staggered => {
-                Facts { name: "staggered", what: "16 channels at 10 kHz, pulses one after another", ..run }
+                Facts { name: "staggered", what: "16 channels at 10 kHz, staggered pulses", ..run }
             }
             Self::Framed => Facts {
                 name: "framed",
@@ -204,11 +204,11 @@ impl Kernel {
                 ..run
             },
             Self::Segments => {
-                Facts { name: "segments", what: "16 lists of segments at 100 kHz, 16 edges a record", ..run }
+                Facts { name: "segments", what: "16 lists of segments at 100 kHz, 16 edges per record", ..run }
             }
             Self::SegmentsApart => Facts {
                 name: "segments_apart",
-                what: "16 lists of segments, every edge alone in its record",
+                what: "16 lists of segments, one edge per record",
                 aim: Some(0.1),
                 ..run
             },
@@ -240,7 +240,7 @@ impl Kernel {
                 yardstick: Some(Self::ClockByClock),
                 ..plain
             },
-            Self::Roots => Facts { name: "square_roots", what: "one square root a step", ..steps },
+            Self::Roots => Facts { name: "square_roots", what: "one square root per step", ..steps },
             Self::StepTimes => Facts {
                 name: "step_times",
                 what: "the cycles of a trapezoid's steps",
@@ -249,7 +249,7 @@ impl Kernel {
             },
             Self::Exact => Facts {
                 name: "exact_list",
-                what: "planned, and kept as the smallest list without error",
+                what: "planned, and saved as the smallest list without error",
                 ..of_roots
             },
             Self::Compressed => {
@@ -277,7 +277,7 @@ impl Kernel {
             },
             Self::Document => Facts {
                 name: "document_table",
-                what: "the table of the trapezoid's document, and how far its steps are from it",
+                what: "the table of the trapezoid's paper, and the error of its steps",
                 ..of_roots
             },
             Self::Plan(planner) => Facts { name: planner.name(), what: planner.what(), ..of_roots },
@@ -285,17 +285,17 @@ impl Kernel {
                 let (name, what) = match segments {
                     3 => (
                         "optimum_3_segments",
-                        "the vertices of least distortion, by three segments a quarter",
+                        "the vertices of least distortion, with three segments per quarter",
                     ),
-                    4 => ("optimum_4_segments", "the same, by four segments a quarter"),
-                    5 => ("optimum_5_segments", "the same, by five segments a quarter"),
-                    _ => ("optimum_6_segments", "the same, by six segments a quarter"),
+                    4 => ("optimum_4_segments", "the same, with four segments per quarter"),
+                    5 => ("optimum_5_segments", "the same, with five segments per quarter"),
+                    _ => ("optimum_6_segments", "the same, with six segments per quarter"),
                 };
                 Facts { name, what, unit: "optima", ..plain }
             }
             Self::Sweep => Facts {
                 name: "sweep_500_rows",
-                what: "a sweep of d1 in 500 rows, as figure 4 of the sine document",
+                what: "a sweep of d1 in 500 rows, as in figure 4 of the sine paper",
                 unit: "rows",
                 ..plain
             },

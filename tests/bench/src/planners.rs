@@ -125,7 +125,7 @@ impl Planner {
     #[must_use]
     pub const fn what(self) -> &'static str {
         match self {
-            Self::TrapezoidTable => "every step of a trapezoid, by the document's table",
+            Self::TrapezoidTable => "every step of a trapezoid, by the paper's table",
             Self::TrapezoidExact => "every step of a trapezoid, by the ideal curve",
             Self::Staircase => "every step of a staircase",
             Self::Cosine => "every step of cosine ramps",

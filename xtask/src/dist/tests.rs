@@ -11,7 +11,7 @@ fn site(changed: &[(&str, &str)]) -> Site {
              <link rel=\"preload\" href=\"pkg/x.wasm\">\
              <script type=\"module\" src=\"main.js\" data-worker=\"engine/w.js\"></script></head>\
              <span id=\"version\">development</span><a href=\"#views\"></a><a href=\"./\"></a>\
-             <a href=\"licenses.html\"></a><a href=\"help.html#keys\"></a>",
+             <a href=\"licenses.html\"></a><a href=\"help.html#keys\"></a><a href=\"docs/\"></a>",
         ),
         (
             "help.html",
@@ -123,7 +123,7 @@ fn what_has_a_hash_is_kept_for_ever_and_all_else_asked_for_anew() {
     let one = built(&[], "M").unwrap();
     let headers = headers::Headers::parse(&one[headers::FILE]).unwrap();
     let names = one.keys().filter(|name| *name != headers::FILE).map(String::as_str);
-    for name in names.chain(bundles("M").files()).chain([""]) {
+    for name in names.chain(bundles("M").files()).chain(["", "docs/index.html"]) {
         let given: Vec<_> =
             headers.of(&format!("/{name}")).map(|(_, value)| value.to_str().unwrap()).collect();
         let kept =

@@ -11,17 +11,20 @@ use alloc::{
 };
 use core::fmt::Write as _;
 
+/// Whole scenarios, which a test of the command runs.
+const EXAMPLES: &str = include_str!("examples.md");
+
 /// The documentation of the format, in Markdown.
 #[must_use]
 pub fn markdown() -> String {
-    let mut out = format!("# The scenario format, version {VERSION}\n\n");
+    let mut out = format!("# The scenario format, version {VERSION}\n\n{EXAMPLES}\n## Fields\n\n");
     let mut done = Vec::new();
     if let Type::Group(root) = Scenario::TYPE {
         section(&mut out, root, ("", ""), &mut done);
     }
     quantities(&mut out, &done);
     out.push_str(
-        "## The link\n\nA scenario as a link, and what else a link may carry: [links.md](links.md).\n",
+        "## Links\n\nA link contains a scenario, and can contain the view and the digests of a run: [links.md](links.md).\n",
     );
     out
 }

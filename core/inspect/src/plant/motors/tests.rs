@@ -111,7 +111,7 @@ fn supply_and_load_stay_and_every_motor_changes() {
     assert_eq!(found, [(9.5, 8), (9.5, 16)]);
 }
 
-/// The tables of docs/plant.md.
+/// The tables of docs/motors.md.
 fn markdown() -> String {
     let mut text = String::from(
         "| `--motor` | motor | A | Ω | mH | mN·m | g·cm² | detent mN·m | source; what is of the usual size only |\n\
@@ -164,17 +164,17 @@ fn code(fields: &[&str]) -> String {
 fn the_tables_of_the_documentation_are_these() {
     const FROM: &str = "<!-- STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect motors -->\n";
     const TO: &str = "<!-- end -->\n";
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/plant.md");
-    let found = fs::read_to_string(&file).expect("docs/plant.md");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/motors.md");
+    let found = fs::read_to_string(&file).expect("docs/motors.md");
     let (before, rest) = found.split_once(FROM).expect("where the tables begin");
     let (_, after) = rest.split_once(TO).expect("where they end");
     let expected = format!("{before}{FROM}{}{TO}{after}", markdown());
     if env::var_os("STEPSCOPE_BLESS").is_some() {
-        fs::write(&file, &expected).expect("docs/plant.md can be written");
+        fs::write(&file, &expected).expect("docs/motors.md can be written");
     } else {
         assert!(
             found == expected,
-            "docs/plant.md has other tables; STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect writes them"
+            "docs/motors.md has other tables; STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect writes them"
         );
     }
 }

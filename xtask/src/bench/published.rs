@@ -1,4 +1,4 @@
-//! `cargo xtask bench --readme`: writes README's table from the results of the last run.
+//! `cargo xtask bench --table`: writes the table of docs/benchmarks.md from the results of the last run.
 
 use std::path::Path;
 
@@ -7,8 +7,9 @@ use anyhow::{Context, Result, bail};
 use super::{RESULTS, table};
 use crate::root;
 
-const BEGIN: &str = "<!-- Made by `cargo xtask bench --readme`: begin. -->\n";
+const BEGIN: &str = "<!-- Made by `cargo xtask bench --table`: begin. -->\n";
 const END: &str = "<!-- End. -->\n";
+const PAGE: &str = "docs/benchmarks.md";
 
 pub(super) fn write() -> Result<()> {
     let results = root().join("target").join("bench").join(RESULTS);
@@ -17,11 +18,10 @@ pub(super) fn write() -> Result<()> {
     })?;
     let table =
         table::markdown(&text).with_context(|| format!("{} is not what it should be", shown(&results)))?;
-    let readme = root().join("README.md");
-    let before =
-        std::fs::read_to_string(&readme).with_context(|| format!("{} can't be read", shown(&readme)))?;
-    std::fs::write(&readme, with(&before, &table)?)
-        .with_context(|| format!("{} can't be written", shown(&readme)))
+    let page = root().join(PAGE);
+    let before = std::fs::read_to_string(&page).with_context(|| format!("{} can't be read", shown(&page)))?;
+    std::fs::write(&page, with(&before, &table)?)
+        .with_context(|| format!("{} can't be written", shown(&page)))
 }
 
 fn shown(path: &Path) -> String {
@@ -32,7 +32,7 @@ fn with(text: &str, table: &str) -> Result<String> {
     let parts = text.split_once(BEGIN).and_then(|(head, rest)| Some((head, rest.split_once(END)?.1)));
     let Some((head, tail)) = parts else {
         bail!(
-            "README.md has no place for the table: a line {:?} and, after it, a line {:?}",
+            "{PAGE} has no place for the table: a line {:?} and, after it, a line {:?}",
             BEGIN.trim(),
             END.trim()
         )
@@ -54,8 +54,8 @@ mod tests {
     }
 
     #[test]
-    fn readme_has_a_place_for_it() {
-        let text = std::fs::read_to_string(root().join("README.md")).unwrap();
+    fn the_page_has_a_place_for_it() {
+        let text = std::fs::read_to_string(root().join(PAGE)).unwrap();
         assert_eq!((text.matches(BEGIN).count(), text.matches(END).count()), (1, 1));
         assert!(with(&text, "| kernel |\n").is_ok());
     }
