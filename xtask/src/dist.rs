@@ -229,8 +229,8 @@ impl Site {
         let kept = self.headers.lines().filter(|line| !line.trim_start().starts_with("Cache-Control:"));
         let mut rules: String = kept.map(|line| format!("{line}\n")).collect();
         rules.push_str(&format!("/{ASSETS}/*\n  Cache-Control: public, max-age=31536000, immutable\n"));
-        let site = format!("{}*", docs::LINK);
-        for entry in ["", site.as_str()].into_iter().chain(entries) {
+        // The last one is the documentation.
+        for entry in entries.chain(["", "docs/*"]) {
             rules.push_str(&format!("/{entry}\n  Cache-Control: no-cache\n"));
         }
         rules

@@ -176,6 +176,11 @@ mod tests {
     }
 
     #[test]
+    fn all_texts_of_the_project_pass() {
+        check().unwrap();
+    }
+
+    #[test]
     fn a_line_without_a_replacement_is_refused() {
         assert!(rules("beside\n").is_err());
         assert!(rules(WORDS).unwrap().len() > 20);
