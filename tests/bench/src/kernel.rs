@@ -203,9 +203,11 @@ impl Kernel {
                 what: "the framed protocol, with a host that waits for replies",
                 ..run
             },
-            Self::Segments => {
-                Facts { name: "segments", what: "16 lists of segments at 100 kHz, 16 edges per record", ..run }
-            }
+            Self::Segments => Facts {
+                name: "segments",
+                what: "16 lists of segments at 100 kHz, 16 edges per record",
+                ..run
+            },
             Self::SegmentsApart => Facts {
                 name: "segments_apart",
                 what: "16 lists of segments, one edge per record",
