@@ -114,7 +114,7 @@ fn supply_and_load_stay_and_every_motor_changes() {
 /// The tables of docs/motors.md.
 fn markdown() -> String {
     let mut text = String::from(
-        "| `--motor` | motor | A | Ω | mH | mN·m | g·cm² | detent mN·m | source; what is of the usual size only |\n\
+        "| `--motor` | motor | A | Ω | mH | mN·m | g·cm² | detent mN·m | source; typical values |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for sheet in MOTORS {
@@ -132,8 +132,8 @@ fn markdown() -> String {
             code(sheet.typical)
         );
     }
-    text += "\n| `--drive` | driver | regulator, decay | fast share | off µs | blank µs | converter's steps | bridge Ω | diode V | \
-             source; what is of the usual size only |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    text += "\n| `--motor-driver` | driver | regulator, decay | fast share | off µs | blank µs | converter's steps | bridge Ω | diode V | \
+             source; typical values |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for sheet in DRIVES {
         let Drive { regulator, decay, decay_share, off_us, blank_us, dac_levels, bridge_ohm, diode_v } =
             sheet.drive;
