@@ -1,9 +1,8 @@
-//! What a driver reaches the peripheral through.
+//! The bus between a driver and the peripheral's registers.
 
-/// A bus on which the peripheral's registers are.
+/// Reads and writes registers: on a chip a volatile load and store, in a test the model.
 ///
-/// Offsets are in bytes from the peripheral's base, in steps of 4; every access is 32 bits wide. On a
-/// chip this is a volatile load and store, in a test it is the model.
+/// Offsets are in bytes from the peripheral's base, in steps of 4; every access is 32 bits wide.
 pub trait RegisterBus {
     /// Reads the register at `offset`.
     fn read(&mut self, offset: u32) -> u32;
@@ -12,7 +11,6 @@ pub trait RegisterBus {
     fn write(&mut self, offset: u32, value: u32);
 }
 
-/// A driver may borrow the bus.
 impl<B: RegisterBus> RegisterBus for &mut B {
     fn read(&mut self, offset: u32) -> u32 {
         (**self).read(offset)

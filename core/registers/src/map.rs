@@ -1,19 +1,18 @@
-//! The one table of all registers. What follows from it: the constants that drivers use, the model's
-//! decoding, and the tables of the data sheet.
+//! The table of all registers. Constants for drivers, the model's decoding and the data sheet follow from it.
 
 use crate::table::registers;
 
 registers! {
-    /// Tells that this is the peripheral: the letters "STEP", the first in the highest byte.
+    /// Identifies the peripheral: the letters "STEP", the first in the highest byte.
     id: "ID" [0x000; 1], Ro, Is(0x5354_4550) => {
-        /// Always the same.
+        /// Constant.
         MAGIC [0..=31] {
             /// "STEP".
             MAGIC_STEP = 0x5354_4550,
         }
     }
 
-    /// What the peripheral was built with.
+    /// Properties of this peripheral.
     capabilities: "CAPABILITIES" [0x004; 1], Ro, Built => {
         /// Version of the register map.
         VERSION [0..=7] {
@@ -24,18 +23,18 @@ registers! {
         CHANNELS [8..=12] {}
         /// Ticks that the queue holds, 1 to 255.
         QUEUE_DEPTH [16..=23] {}
-        /// How many DIR lines there are.
+        /// Number of DIR lines.
         DIR_LINE [24..=24] {
-            /// One a channel.
+            /// One per channel.
             DIR_LINE_PER_CHANNEL = 0,
-            /// One, common to all channels.
+            /// One for all channels.
             DIR_LINE_COMMON = 1,
         }
-        /// What the serial line speaks.
+        /// Protocol of the serial line.
         PROTOCOL [25..=25] {
             /// Raw packets.
             PROTOCOL_RAW = 0,
-            /// Frames with a check, sequence numbers and replies.
+            /// Frames with a CRC, sequence numbers and replies.
             PROTOCOL_FRAMED = 1,
         }
     }
@@ -52,24 +51,23 @@ registers! {
         CYCLES [0..=31] {}
     }
 
-    /// Commands: a one gives the command of its bit. Where several are set only the highest is carried
-    /// out, so STOP always is. RESULT tells the outcome. A write of 0 does nothing.
+    /// Commands: a one gives the command of its bit. If several are set, only the highest is executed, so STOP
+    /// always is. RESULT reports the outcome. Writing 0 has no effect.
     control: "CONTROL" [0x010; 1], Wo, Is(0) => {
-        /// Puts the timing registers in force. Refused with BUSY while a tick runs or waits, with
-        /// BAD_TIMING if the timing does not fit; then nothing changes.
+        /// Puts the timing registers into force. Refused with BUSY while a tick runs or waits, with BAD_TIMING if
+        /// the timing is invalid; then nothing changes.
         COMMIT [0..=0] {}
         /// EN = 1; leaves STOPPED.
         ENABLE [1..=1] {}
         /// EN = 0, state STOPPED. Refused with BUSY while a tick runs or waits.
         DISABLE [2..=2] {}
-        /// Emergency stop: EN = 0 and STEP = 0, the queue emptied, the running tick abandoned, state
-        /// STOPPED.
+        /// Emergency stop: EN = 0, STEP = 0, queue cleared, current tick aborted, state STOPPED.
         STOP [3..=3] {}
     }
 
-    /// Outcome of the last command: of the last write to CONTROL (but a write of 0) or PUSH.
+    /// Outcome of the last command: the last write to CONTROL (except of 0) or PUSH.
     result: "RESULT" [0x014; 1], Ro, Is(0) => {
-        /// Why the command was refused, if it was. 2 to 5 are the reasons of the framed protocol.
+        /// Why the command was refused. 2 to 5 are the reasons of the framed protocol.
         CODE [0..=7] {
             /// Done.
             CODE_DONE = 0,
@@ -77,7 +75,7 @@ registers! {
             CODE_QUEUE_FULL = 2,
             /// PUSH: a channel has more steps than a tick has slots; sets the fault TOO_MANY_STEPS.
             CODE_TOO_MANY_STEPS = 3,
-            /// PUSH: in the self-test. DISABLE and COMMIT: a tick runs or waits.
+            /// PUSH: during the self-test. DISABLE and COMMIT: a tick runs or waits.
             CODE_BUSY = 4,
             /// PUSH: stopped; ENABLE comes first.
             CODE_STOPPED = 5,
@@ -86,10 +84,9 @@ registers! {
         }
     }
 
-    /// What the peripheral does. The low three bytes are those of a reply of the framed protocol.
+    /// State of the peripheral. The low three bytes are those of a reply of the framed protocol.
     status: "STATUS" [0x018; 1], Ro, Built => {
-        /// The state; of several that hold, the one named first in the order STOPPED, BUSY, MOVING,
-        /// READY.
+        /// The state; if several apply, the first in the order STOPPED, BUSY, MOVING, READY.
         STATE [0..=7] {
             /// In the self-test.
             STATE_BUSY = 0,
@@ -108,41 +105,41 @@ registers! {
         MOVING [24..=24] {}
         /// The level of EN: 1 = windings powered.
         EN [25..=25] {}
-        /// The timing registers differ from the timing in force: COMMIT is due.
+        /// The timing registers differ from the timing in force: COMMIT is needed.
         PENDING [26..=26] {}
     }
 
-    /// Fault flags. They stay until a one is written to them, or a RESYNC comes on a framed line.
+    /// Fault flags. They stay set until a one is written to them, or a RESYNC arrives on a framed line.
     faults: "FAULTS" [0x01C; 1], W1c, Is(0) => {
         /// A stop bit on the line was low.
         FRAMING [0..=0] {}
-        /// A pause cut a raw packet short, or a run of bytes was no frame.
+        /// A pause cut a raw packet short, or a sequence of bytes was no frame.
         SHORT_PACKET [1..=1] {}
-        /// A frame's check failed.
+        /// The CRC of a frame was wrong.
         CRC [2..=2] {}
         /// A frame was too long.
         OVERLONG [3..=3] {}
-        /// Ticks found no free place in the queue, from PUSH or from the line.
+        /// Ticks from PUSH or the line found no free place in the queue.
         QUEUE_OVERFLOW [4..=4] {}
-        /// A tick ordered more steps than it has slots, from PUSH or from the line.
+        /// A tick from PUSH or the line requested more steps than it has slots.
         TOO_MANY_STEPS [5..=5] {}
         /// A TICKS frame had a wrong sequence number.
         BAD_SEQ [6..=6] {}
-        /// A tick with steps ended and none was there to follow; only where PROTOCOL is framed.
+        /// A tick with steps ended and none followed; only if PROTOCOL is framed.
         UNDERRUN [7..=7] {}
-        /// The supply current was too great for too long, and stopped the controller; only where it is measured.
+        /// The supply current was too high for too long, and the controller stopped; only if it is measured.
         OVERLOAD [8..=8] {}
-        /// The self-test found no settling time on some channel; only where it measures one.
+        /// The self-test found no settling time on some channel; only if it measures one.
         SELF_TEST [9..=9] {}
     }
 
-    /// Ticks that have ended since reset. A tick that STOP abandoned is not counted.
+    /// Ticks that have ended since reset, without those aborted by STOP.
     ticks_done: "TICKS_DONE" [0x020; 1], Ro, Is(0) => {
         /// Ticks, wrapping after 4 294 967 295.
         COUNT [0..=31] {}
     }
 
-    /// M: slots in a tick, the most steps that a channel can make in one.
+    /// M: slots per tick, the maximum steps of a channel in one tick.
     slots: "SLOTS" [0x040; 1], Rw, Built => {
         /// 1 to 127.
         COUNT [0..=31] {}
@@ -154,41 +151,40 @@ registers! {
         CYCLES [0..=31] {}
     }
 
-    /// W: how long STEP stays high.
+    /// W: time that STEP stays high.
     pulse_width: "PULSE_WIDTH" [0x048; 1], Rw, Built => {
         /// 1 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
-    /// D: from the start of a slot, where DIR may change, to the rise of STEP.
+    /// D: time from the start of a slot, where DIR may change, to the rise of STEP.
     dir_setup: "DIR_SETUP" [0x04C; 1], Rw, Built => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
-    /// H: how long DIR is held after STEP has fallen.
+    /// H: time that DIR is held after STEP has fallen.
     dir_hold: "DIR_HOLD" [0x050; 1], Rw, Built => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
-    /// dp: settling time of the drivers' supply current after a step. Staggered pulses are at most so
-    /// far apart.
+    /// dp: settling time of the drivers' supply current after a step, the maximum distance of staggered pulses.
     settle: "SETTLE" [0x054; 1], Rw, Built => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
-    /// Where the pulses of a tick come.
+    /// Times of the pulses in a tick.
     mode: "MODE" [0x058; 1], Rw, Built => {
-        /// Where in a tick a channel's steps go.
+        /// Where the steps of a channel go within a tick.
         DISTRIBUTION [0..=0] {
             /// Into the tick's first slots.
             DISTRIBUTION_BURST = 0,
             /// Evenly over the tick.
             DISTRIBUTION_SPREAD = 1,
         }
-        /// When the pulses of one slot come.
+        /// When the pulses of one slot rise.
         PULSES [1..=1] {
             /// All at once.
             PULSES_SIMULTANEOUS = 0,
@@ -197,9 +193,8 @@ registers! {
         }
     }
 
-    /// Orders of the next tick, four channels each: ORDERS0 has channels 0 to 3 and so on. A byte is
-    /// bit 7 the direction (1 = right) and bits 6..0 the steps. Bytes of channels that are not there
-    /// read as 0. PUSH leaves the orders as they are.
+    /// Commands of the next tick, four channels each: ORDERS0 has channels 0 to 3 and so on. A byte has the
+    /// direction in bit 7 (1 = right) and the steps in bits 6..0. Bytes of unused channels read as 0. PUSH keeps the commands.
     orders: "ORDERS" [0x060; 4], Rw, Is(0) => {
         /// Channel 4n of ORDERSn.
         FIRST [0..=7] {}
@@ -211,12 +206,12 @@ registers! {
         FOURTH [24..=31] {}
     }
 
-    /// A write queues a tick with the orders; the value does not matter. RESULT tells the outcome. It
-    /// is judged in the order STOPPED, BUSY, TOO_MANY_STEPS, QUEUE_FULL.
+    /// Writing any value queues a tick with the commands. RESULT reports the outcome, checked in the order STOPPED,
+    /// BUSY, TOO_MANY_STEPS, QUEUE_FULL.
     push: "PUSH" [0x070; 1], Wo, Is(0) => {}
 
-    /// Position counters of channels 0 to 15: +1 for a rising STEP edge with DIR right, -1 with DIR
-    /// left. Those of channels that are not there stay 0.
+    /// Position counters of channels 0 to 15: +1 per rising STEP edge with DIR right, -1 with DIR left. Those of
+    /// unused channels stay 0.
     position: "POSITION" [0x080; 16], Ro, Is(0) => {
         /// Steps, two's complement, wrapping.
         STEPS [0..=31] {}

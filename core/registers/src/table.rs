@@ -1,16 +1,15 @@
-//! The shape of the register table, and the macro that makes constants and data of its one text.
+//! Types of the register table, and the macro that derives constants and data from it.
 //!
 //! ```
 //! use stepscope_registers::{MAP, status, table::Access};
 //!
-//! // A field takes its value out of what was read, and puts it in its place.
+//! // A field extracts and inserts its value.
 //! assert_eq!(status::STATE.of(status::STATE.with(status::STATE_MOVING)), status::STATE_MOVING);
-//! // The map as data: what may be written?
+//! // The map as data: registers that can be written.
 //! let written = MAP.iter().filter(|register| register.access != Access::Ro).map(|register| register.name);
 //! assert!(written.into_iter().any(|name| name == "CONTROL"));
 //! ```
 
-/// Who may do what with a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Read only: writes are ignored.
@@ -19,12 +18,12 @@ pub enum Access {
     Rw,
     /// Write only: reads as 0.
     Wo,
-    /// Read; a one written to a bit clears it, a zero leaves it.
+    /// Read; writing a one to a bit clears it.
     W1c,
 }
 
 impl Access {
-    /// Its abbreviation in the data sheet.
+    /// Abbreviation in the data sheet.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,86 +35,78 @@ impl Access {
     }
 }
 
-/// What a register reads as after reset.
+/// Value after reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reset {
-    /// This.
     Is(u32),
-    /// What the peripheral was built with.
     Built,
 }
 
-/// A register, or several of the same kind one after another.
+/// A register, or an array of registers.
 #[derive(Clone, Copy, Debug)]
 pub struct Register {
-    /// Its name; of several, without their numbers.
+    /// For an array, without the index.
     pub name: &'static str,
-    /// In bytes from the peripheral's base; of several, the first one's.
+    /// In bytes from the peripheral's base; for an array that of the first register.
     pub offset: u32,
-    /// How many there are, 4 bytes apart.
+    /// Number of registers, 4 bytes apart.
     pub count: u32,
-    /// Who may do what.
     pub access: Access,
-    /// After reset.
     pub reset: Reset,
-    /// What it is, in sentences.
+    /// Description in sentences.
     pub meaning: &'static str,
-    /// Its fields, from bit 0 up; bits of no field are reserved.
+    /// From bit 0 up; bits of no field are reserved.
     pub fields: &'static [Field],
 }
 
-/// Bits of a register that mean something together.
+/// Bits of a register with a common meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
     pub name: &'static str,
-    /// Its lowest bit, 0 to 31.
+    /// Lowest bit, 0 to 31.
     pub low: u32,
-    /// Its highest bit, `low` to 31.
+    /// Highest bit, `low` to 31.
     pub high: u32,
-    /// What it is, in sentences.
+    /// Description in sentences.
     pub meaning: &'static str,
-    /// What its values mean, where they are names and no numbers.
+    /// Values that have names.
     pub values: &'static [Named],
 }
 
 /// One value of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Named {
-    /// Its constant's name, which begins with the field's.
+    /// Name of its constant, which begins with the field's.
     pub name: &'static str,
-    /// The value, as [`Field::of`] gives it.
     pub value: u32,
-    /// What it means.
     pub meaning: &'static str,
 }
 
 impl Field {
-    /// Its bits within the register.
     #[must_use]
     pub const fn mask(&self) -> u32 {
         u32::MAX >> (31 - (self.high - self.low)) << self.low
     }
 
-    /// How far its lowest bit stands from bit 0.
+    /// Position of its lowest bit.
     #[must_use]
     pub const fn shift(&self) -> u32 {
         self.low
     }
 
-    /// The field's value in what was read of its register.
+    /// The field's value in the register value `register`.
     #[must_use]
     pub const fn of(&self, register: u32) -> u32 {
         (register & self.mask()) >> self.low
     }
 
-    /// The field's value at its place in the register; what does not fit is cut off.
+    /// `value` at the position of the field; excess bits are dropped.
     #[must_use]
     pub const fn with(&self, value: u32) -> u32 {
         value << self.low & self.mask()
     }
 
-    /// Whether any of its bits is set in what was read of its register.
+    /// Whether any of its bits is set in the register value `register`.
     #[must_use]
     pub const fn is_set(&self, register: u32) -> bool {
         register & self.mask() != 0
@@ -123,15 +114,13 @@ impl Field {
 }
 
 impl Register {
-    /// Offset just after it, or after the last of several.
     #[must_use]
     pub const fn end(&self) -> u32 {
         self.offset + 4 * self.count
     }
 }
 
-/// Makes a module for each register, with constants for its offset, fields and values, and `MAP`,
-/// all of them as data.
+/// Generates a module per register, with constants for its offset, fields and values, and `MAP` with all of them as data.
 macro_rules! registers {
     ($(
         $(#[doc = $meaning:literal])*
@@ -147,10 +136,8 @@ macro_rules! registers {
         $(
             $(#[doc = $meaning])*
             pub mod $module {
-                /// Offset of the register, or of the first of several.
                 pub const OFFSET: u32 = $offset;
 
-                /// The register as data.
                 pub const REGISTER: $crate::table::Register = $crate::table::Register {
                     name: $name,
                     offset: $offset,
@@ -182,7 +169,6 @@ macro_rules! registers {
             }
         )*
 
-        /// All registers, by offset.
         pub const MAP: &[crate::table::Register] = &[$($module::REGISTER),*];
     };
 }
