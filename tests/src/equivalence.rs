@@ -181,7 +181,7 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
         if line.next_change() == device.now() {
             line.change();
         }
-        device.clock(line.heard(true), &mut left);
+        device.clock(line.level(true), &mut left);
         let horizon = line.next_change().0.min(cycles.0).saturating_sub(device.now().0);
         let quiet = device.cycles_until_event().map_or(horizon, |quiet| quiet.0.min(horizon));
         device.advance(Cycles((u128::from(quiet) * u128::from(hurry) / 100) as u64));

@@ -75,7 +75,7 @@ fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycle
         if line.next_change() == device.now() {
             line.change();
         }
-        device.clock(line.heard(true), &mut trace);
+        device.clock(line.level(true), &mut trace);
         let to_line = line.next_change().0.min(cycles).saturating_sub(device.now().0);
         let quiet = device.cycles_until_event().map_or(to_line, |quiet| quiet.0.min(to_line));
         device.advance(Cycles(quiet));

@@ -112,7 +112,7 @@ impl Case {
                 line.change();
             }
             let until = next.min(self.end).min(line.next_change().0);
-            pass(&mut device, line.heard(true), Instant(until), &mut left);
+            pass(&mut device, line.level(true), Instant(until), &mut left);
             while let Some((_, access)) = accesses.next_if(|(cycle, _)| cycle + 1 == device.now().0) {
                 match *access {
                     Access::Read(offset) => read.push(device.read(offset)),
@@ -230,7 +230,7 @@ fn commanded(
             if line.next_change() == device.now() {
                 line.change();
             }
-            device.clock(line.heard(true), &mut left);
+            device.clock(line.level(true), &mut left);
             let fate = left.events.iter().skip(known).find_map(|(_, event)| match event {
                 Event::Frame(fate) => Some(*fate),
                 _ => None,

@@ -1,7 +1,6 @@
-//! The peripheral's configuration: what a device is built from, and the rules of DESIGN A4 and A7 that it keeps.
+//! The peripheral's configuration and its rules (DESIGN A4, A7).
 //!
-//! [`Bus`] and [`SerialLine`] are the request. [`Config`] is valid: it is made of them, or every broken rule is reported
-//! with its numbers.
+//! [`Bus`] and [`SerialLine`] are the request; [`Config`] is valid.
 //!
 //! ```
 //! use stepscope_peripheral::config::{Bus, Config, SerialLine};
@@ -22,18 +21,16 @@ use crate::{
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 
-/// Minimum cycles of a receiver's bit.
 const MIN_BIT_CYCLES: u64 = 11;
 
-/// The range of each number that has one; other rules of [`Config::new`] join several.
-#[allow(missing_docs, reason = "the names say it")]
+/// The range of each number; [`Config::new`] has rules that combine several.
 pub mod limits {
     use crate::signal::MAX_CHANNELS;
     use core::ops::RangeInclusive;
 
     const MAX_CYCLES: u64 = 1_000_000_000;
 
-    /// The slowest clock can hear 1 baud.
+    /// A clock of 11 Hz can receive 1 baud.
     pub const CLOCK_HZ: RangeInclusive<u64> = super::MIN_BIT_CYCLES..=1_000_000_000;
     pub const CHANNELS: RangeInclusive<u64> = 1..=MAX_CHANNELS as u64;
     pub const SLOTS: RangeInclusive<u64> = 1..=127;
@@ -49,29 +46,28 @@ pub mod limits {
 
 /// The tick sequencer and its driver bus.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Bus {
-    /// Channels in use, 1 to 16; a packet has one byte for each.
+    /// 1 to 16; a packet has one byte per channel.
     pub channels: u8,
-    /// Slots in a tick, 1 to 127: the most steps a channel can make in one tick.
+    /// Slots per tick, 1 to 127: the maximum steps of a channel in one tick.
     pub slots: u8,
-    /// Ts, length of a slot in cycles; a tick lasts `slots` times as long.
+    /// Ts, length of a slot; a tick lasts `slots` times as long.
     pub step_period_cycles: u32,
-    /// W, how long STEP stays high, in cycles.
+    /// W, time that STEP stays high.
     pub pulse_width_cycles: u32,
-    /// D, from the start of a slot to the rise of STEP, in cycles: DIR has changed by then.
+    /// D, time from the start of a slot, where DIR may change, to the rise of STEP.
     pub dir_setup_cycles: u32,
-    /// H, how long DIR is held after STEP has fallen, in cycles.
+    /// H, time that DIR is held after STEP has fallen.
     pub dir_hold_cycles: u32,
     pub distribution: Distribution,
     pub dir_line: DirLine,
     pub pulse_phasing: PulsePhasing,
-    /// dp, settling time of the drivers' supply current after a step, in cycles (the patent's delta t_p): staggered
-    /// pulses are at most so far apart.
+    /// dp, settling time of the drivers' supply current after a step (the patent's delta t_p): the maximum distance of
+    /// staggered pulses.
     pub settle_cycles: u32,
     /// 1 to 255 ticks.
     pub queue_depth: u8,
-    /// Self-test after reset in cycles. Packets that end within it are dropped; framed ticks get BUSY.
+    /// Self-test after reset. Packets that end within it are dropped; framed ticks get BUSY.
     pub boot_cycles: u32,
 }
 
@@ -94,9 +90,8 @@ impl Default for Bus {
     }
 }
 
-/// Where in a tick a channel's steps go.
+/// Where the steps of a channel go within a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Distribution {
     /// The first `count` slots of the tick, as in RU 2704486.
     Burst,
@@ -104,35 +99,30 @@ pub enum Distribution {
     Spread,
 }
 
-/// How many DIR lines the controller has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirLine {
-    /// One per channel; they change when a tick starts.
+    /// They change when a tick starts.
     #[default]
     PerChannel,
-    /// One for all channels; it changes within each slot that has a step.
+    /// It changes within each slot that has a step.
     Common,
 }
 
 /// When the pulses of one slot rise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum PulsePhasing {
     #[default]
     Simultaneous,
-    /// One after another, so that the drivers' current peaks do not meet.
+    /// One after another, so that the drivers' current peaks do not add up.
     Staggered,
 }
 
-/// The serial line as a controller sees it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct SerialLine {
-    /// Bit rate of the host in baud.
     pub baud: u32,
-    /// Bit rate of the receiver where its clock differs from the host's.
+    /// Bit rate of the receiver if its clock differs from the host's.
     pub receiver_baud: Option<u32>,
-    /// 0 to 254, if packets begin with an address; on a framed line 0 by default.
+    /// 0 to 254 if packets begin with an address; 0 by default on a framed line.
     pub address: Option<u8>,
     pub protocol: Protocol,
 }
@@ -143,18 +133,16 @@ impl Default for SerialLine {
     }
 }
 
-/// The protocol on the line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Protocol {
-    /// Bytes, and pauses between packets, as in RU 2704486.
+    /// Bytes with pauses between packets, as in RU 2704486.
     #[default]
     Raw,
-    /// Frames with a check, sequence numbers and replies.
+    /// Frames with a CRC, sequence numbers and replies.
     Framed,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Field {
     ClockHz,
     Bus(&'static str),
@@ -171,9 +159,7 @@ impl fmt::Display for Field {
     }
 }
 
-/// A field that breaks a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ConfigProblem {
     pub field: Field,
     pub error: ConfigError,
@@ -190,9 +176,7 @@ impl core::error::Error for ConfigProblem {}
 /// A broken rule, with its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum ConfigError {
-    /// A number out of its range.
     Range {
         given: u64,
         least: u64,
@@ -200,22 +184,31 @@ pub enum ConfigError {
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// The receiver's bit time is too short.
-    BitTooShort { bit_cycles: u64, baud: u32, clock_hz: u32, max_baud: u32 },
-    /// The pulses of a slot do not fit in it.
+    BitTooShort {
+        bit_cycles: u64,
+        baud: u32,
+        clock_hz: u32,
+        max_baud: u32,
+    },
     PulseTooLong {
         width: u64,
         setup: u64,
         hold: u64,
         /// L = W + max(D + H, 1).
         needed: u64,
-        /// Pulses in a row in a slot.
+        /// Pulses per slot, one after another.
         pulses: u64,
         of: &'static str,
         period: u64,
     },
-    /// Staggered pulses with a common DIR line are closer than one lasts.
-    SettleTooShort { settle: u64, width: u64, setup: u64, hold: u64, needed: u64 },
+    /// Staggered pulses on a common DIR line are closer than one lasts.
+    SettleTooShort {
+        settle: u64,
+        width: u64,
+        setup: u64,
+        hold: u64,
+        needed: u64,
+    },
 }
 
 impl fmt::Display for ConfigError {
@@ -246,12 +239,11 @@ impl fmt::Display for ConfigError {
     }
 }
 
-/// A valid configuration: every rule of A4 and A7 holds.
+/// A valid configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
     clock_hz: u32,
     bus: Bus,
-    /// The receiver's rate.
     baud: u32,
     protocol: Protocol,
     address: Option<u8>,
@@ -259,19 +251,18 @@ pub struct Config {
 
 impl Config {
     /// Validates the bus and the line.
-    /// Errors: every rule that is broken, each with the field that has to change.
+    /// Errors: every broken rule, each with the field to change.
     pub fn new(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
-        Self::judged(clock_hz, bus, line, true)
+        Self::validate(clock_hz, bus, line, true)
     }
 
-    /// Validates a bus that segments drive: there are no slots for the pulses to fit in, and
-    /// nothing is received.
+    /// Validates a bus for segments: no slots limit the pulses, and nothing is received.
     /// Errors: as [`Self::new`].
     pub fn of_segments(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Result<Self, Vec<ConfigProblem>> {
-        Self::judged(clock_hz, bus, line, false)
+        Self::validate(clock_hz, bus, line, false)
     }
 
-    fn judged(
+    fn validate(
         clock_hz: u32,
         bus: &Bus,
         line: &SerialLine,
@@ -334,8 +325,8 @@ impl Config {
         self.bus.distribution
     }
 
-    /// The same controller with another bus: checked as [`Self::new`] does.
-    /// Errors: every rule that is broken.
+    /// The same controller with another bus.
+    /// Errors: as [`Self::new`].
     pub(crate) fn with_bus(&self, bus: &Bus) -> Result<Self, Vec<ConfigProblem>> {
         let line = SerialLine {
             baud: self.baud,
@@ -346,7 +337,6 @@ impl Config {
         Self::new(self.clock_hz, bus, &line)
     }
 
-    /// Clock of the peripheral in Hz.
     #[must_use]
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
@@ -358,7 +348,6 @@ impl Config {
         self.bus.channels
     }
 
-    /// The protocol on the line.
     #[must_use]
     pub const fn protocol(&self) -> Protocol {
         self.protocol
@@ -370,7 +359,7 @@ impl Config {
         self.address
     }
 
-    /// Slots in a tick, 1 to 127.
+    /// Slots per tick, 1 to 127.
     #[must_use]
     pub const fn slots(&self) -> u8 {
         self.bus.slots
@@ -382,31 +371,27 @@ impl Config {
         Cycles(self.bus.slots as u64 * self.step_period())
     }
 
-    /// First cycle after the self-test.
     #[must_use]
     pub const fn boot(&self) -> Instant {
         Instant(self.bus.boot_cycles as u64)
     }
 
-    /// Ticks that the queue holds, 1 to 255.
     #[must_use]
     pub const fn queue_depth(&self) -> u8 {
         self.bus.queue_depth
     }
 
-    /// One DIR line per channel, or one for all.
+    /// One DIR line per channel, or one for all channels.
     #[must_use]
     pub const fn dir_line(&self) -> DirLine {
         self.bus.dir_line
     }
 
-    /// When the pulses of one slot rise.
     #[must_use]
     pub const fn pulse_phasing(&self) -> PulsePhasing {
         self.bus.pulse_phasing
     }
 
-    /// The rate of replies in baud.
     #[must_use]
     pub const fn reply_baud(&self) -> u32 {
         self.baud
@@ -418,7 +403,7 @@ impl Config {
         Cycles(bit_cycles(self.clock_hz, if self.baud == 0 { 1 } else { self.baud }))
     }
 
-    /// The bit time of a receiver of `baud`. A rate of 0 counts as 1 baud.
+    /// Bit time of a receiver at `baud`; 0 counts as 1 baud.
     #[must_use]
     pub fn bit_of(clock_hz: u32, baud: u32) -> Cycles {
         Cycles(bit_cycles(clock_hz, baud.max(1)))
@@ -430,7 +415,6 @@ impl Config {
         self.bus.channels as usize + self.packet_address().is_some() as usize
     }
 
-    /// The address that packets begin with.
     #[must_use]
     pub const fn packet_address(&self) -> Option<u8> {
         match self.protocol {
@@ -463,8 +447,8 @@ impl Rules {
     }
 }
 
-/// A7's rules: with L = W + max(D + H, 1), simultaneous L <= Ts, with a common DIR line 2*L <= Ts;
-/// staggered L <= floor(Ts/channels), with a common DIR line also dp >= L.
+/// With L = W + max(D + H, 1): simultaneous L <= Ts, with a common DIR line 2*L <= Ts; staggered
+/// L <= floor(Ts/channels), with a common DIR line also dp >= L.
 fn pulses_fit(bus: &Bus, rules: &mut Rules) {
     let (width, setup, hold, period, settle) = (
         u64::from(bus.pulse_width_cycles),
@@ -493,7 +477,7 @@ fn pulses_fit(bus: &Bus, rules: &mut Rules) {
     }
 }
 
-/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to the nearest cycle.
+/// B = floor((2*clock_hz + baud) / (2*baud)): the bit time rounded to a cycle.
 const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
     (2 * clock_hz as u64 + baud as u64) / (2 * baud as u64)
 }

@@ -1,5 +1,5 @@
-//! The words of the framed protocol (DESIGN A6): what a frame commands, what becomes of it, and what
-//! a controller tells of itself. How frames are encoded and read is in [`crate::wire::frame`].
+//! The vocabulary of the framed protocol (DESIGN A6): commands, outcomes, replies. [`crate::wire::frame`] encodes and
+//! decodes frames.
 //!
 //! ```
 //! use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason};
@@ -7,7 +7,7 @@
 //! assert_eq!(Kind::parse(5), Some(Kind::Stop));
 //! assert_eq!(Reason::QueueFull.name(), "QUEUE_FULL");
 //! assert_eq!(FrameOutcome::Queued(3).to_string(), "3 ticks queued");
-//! assert_eq!(FrameOutcome::Short.answer(), None); // what is no frame is not answered
+//! assert_eq!(FrameOutcome::Short.answer(), None); // invalid frames get no reply
 //! ```
 
 use core::fmt;
@@ -15,7 +15,7 @@ use core::fmt;
 /// Maximum ticks in one TICKS frame.
 pub const MAX_TICKS: u8 = 32;
 
-/// Declares the meanings of one byte, each with its value and its name in A6.
+/// Declares the meanings of a byte, each with its value and its name.
 macro_rules! meanings {
     ($($(#[$meta:meta])* pub enum $name:ident {
         $($(#[$variant_meta:meta])* $variant:ident = $byte:literal $word:literal,)*
@@ -28,10 +28,8 @@ macro_rules! meanings {
         }
 
         impl $name {
-            /// All, in the order of their bytes.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            /// The meaning of a byte, if it has one.
             #[must_use]
             pub const fn parse(byte: u8) -> Option<Self> {
                 match byte {
@@ -40,7 +38,6 @@ macro_rules! meanings {
                 }
             }
 
-            /// Its name in A6.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -52,44 +49,37 @@ macro_rules! meanings {
 }
 
 meanings! {
-    /// The command of a frame.
     pub enum Kind {
-        /// Ticks for the queue.
+        /// Queue ticks.
         Ticks = 1 "TICKS",
         /// Drivers on; leaves STOPPED.
         Enable = 2 "ENABLE",
         /// Drivers off, if nothing moves.
         Disable = 3 "DISABLE",
-        /// Only a reply.
+        /// Request a reply.
         Status = 4 "STATUS",
         /// Emergency stop.
         Stop = 5 "STOP",
-        /// Expected sequence number 0, fault flags cleared.
+        /// Set the expected sequence number to 0 and clear the fault flags.
         Resync = 6 "RESYNC",
-        /// A reply with the position counters.
         Positions = 7 "POSITIONS",
     }
 
-    /// Why a frame was refused.
-    #[allow(missing_docs, reason = "the names say it")]
     pub enum Reason {
-        /// Neither the expected sequence number nor a repeat of the one before it.
+        /// Neither the expected sequence number nor a repetition of the one before it.
         BadSeq = 1 "BAD_SEQ",
-        /// Fewer free places in the queue than ticks.
+        /// Too few free places in the queue.
         QueueFull = 2 "QUEUE_FULL",
-        /// A byte has more steps than a tick has slots.
+        /// A byte requests more steps than a tick has slots.
         TooManySteps = 3 "TOO_MANY_STEPS",
         /// In the self-test; or, for DISABLE, a tick runs or waits.
         Busy = 4 "BUSY",
-        /// Stopped: ENABLE comes first.
+        /// Stopped: ENABLE is needed first.
         Stopped = 5 "STOPPED",
-        /// The body's length or count is wrong.
         BadBody = 6 "BAD_BODY",
         UnknownKind = 7 "UNKNOWN_KIND",
     }
 
-    /// The state of a controller.
-    #[allow(missing_docs, reason = "the names say it")]
     pub enum State {
         /// In the self-test after reset.
         Busy = 0 "BUSY",
@@ -103,53 +93,49 @@ meanings! {
 
 /// The status in every reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Status {
     pub state: State,
     /// Free places in the queue.
     pub free: u8,
-    /// Sequence number that the next TICKS must have.
+    /// Sequence number expected in the next TICKS.
     pub expected_seq: u8,
     pub faults: u16,
-    /// Ticks that have ended, wrapping.
+    /// Wrapping.
     pub ticks_done: u32,
 }
 
 /// A reply; the counters of POSITIONS are [`Positions`](crate::signal::Positions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Reply {
     pub address: u8,
-    /// The kind that was executed, or the reason of the refusal.
+    /// The executed kind, or the reason of the refusal.
     pub answer: Result<Kind, Reason>,
-    /// The status after it.
     pub status: Status,
 }
 
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum FrameOutcome {
-    /// Ticks that were queued.
+    /// Number of ticks queued.
     Queued(u8),
-    /// Acknowledged again, not queued again.
+    /// Acknowledged again, but not queued again.
     Repeated,
     Taken(Kind),
-    /// Refused; nothing but fault flags changed.
+    /// Refused; only fault flags changed.
     Refused(Reason),
     OtherAddress,
-    /// Not COBS, or too short.
+    /// Invalid COBS, or too short.
     Short,
     BadCrc {
         found: u32,
         expected: u32,
     },
-    /// Too long; the rest is dropped up to the next delimiter.
+    /// Too long; bytes are dropped up to the next delimiter.
     Overlong,
 }
 
 impl FrameOutcome {
-    /// The reply to it, if it gets one.
+    /// The reply to it, if there is one.
     #[must_use]
     pub const fn answer(self) -> Option<Result<Kind, Reason>> {
         match self {

@@ -1,5 +1,4 @@
-//! Segments: what a generator that runs a move by itself is given (DESIGN A8), and the rules that a
-//! list of them keeps.
+//! Segments for the segment engine, and the rules for a list of them (DESIGN A8).
 //!
 //! ```text
 //! next = start << 16                     48.16 fixed point: 1/65536 cycle
@@ -8,23 +7,22 @@
 //! dwell       next += dwell
 //! ```
 //!
-//! The intervals of a segment grow by one number from step to step, so its extremes are its first
-//! and its last interval, and its length is a sum in closed form: a segment of 2^32 steps is judged
-//! as quickly as one of one.
+//! The intervals of a segment grow by a constant, so its extremes are the first and the last interval, and its length is
+//! a closed form: validation takes the same time for any number of steps.
 //!
 //! ```
 //! use stepscope_peripheral::{segment::{CheckedSegments, PulseTimes, Refusal, Segment, SegmentList}, units::{Cycles,
 //!     Instant}};
 //!
 //! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
-//! // A ramp: 100 steps, the first after 2000 cycles, each next 10 cycles sooner.
+//! // A ramp: 100 steps, the first after 2000 cycles, each next interval 10 cycles shorter.
 //! let ramp = |add| Segment::Steps { count: 100, interval: 2000 << 16, add, right: true };
 //! let list = |add| vec![SegmentList { start: Instant(1), segments: vec![ramp(add)] }];
 //!
-//! let checked = CheckedSegments::new(pulse, list(-10 << 16), 1).expect("no pulse meets another");
+//! let checked = CheckedSegments::new(pulse, list(-10 << 16), 1).expect("pulses do not overlap");
 //! assert_eq!(checked.steps(), 100);
 //!
-//! // Twenty cycles sooner, and the 98th step comes too soon after the one before it.
+//! // With 20 cycles, the 98th step comes too soon after the one before it.
 //! let refused = CheckedSegments::new(pulse, list(-20 << 16), 1).unwrap_err();
 //! assert_eq!(refused[0].refusal, Refusal::Interval { step: 97, interval: 60 << 16 });
 //! ```
@@ -35,14 +33,12 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Bits of an interval's fraction: all times of a segment are in 1/65536 cycle.
+/// Bits of a cycle's fraction: all times of a segment are in 1/65536 cycle.
 pub const FRACTION_BITS: u32 = 16;
 /// The last cycle of 48.16 fixed point.
 pub const LAST_CYCLE: Instant = Instant(u64::MAX >> FRACTION_BITS);
 
-/// One segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Segment {
     /// Steps at intervals that grow by a constant.
     Steps {
@@ -51,7 +47,7 @@ pub enum Segment {
         interval: u64,
         /// In 1/65536 cycle, added after each step.
         add: i64,
-        /// Level of DIR: right is 1.
+        /// DIR level; right is 1.
         right: bool,
     },
     /// In 1/65536 cycle; 0 is allowed.
@@ -60,21 +56,20 @@ pub enum Segment {
 
 /// The segments of one channel, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct SegmentList {
     /// Cycle 1 or later.
     pub start: Instant,
     pub segments: Vec<Segment>,
 }
 
-/// Times of a pulse and of DIR around it.
+/// Times of a pulse and of DIR before and after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
-    /// W: how long STEP is high.
+    /// W: time that STEP is high.
     pub width: Cycles,
-    /// D: from a change of DIR to the rise of STEP.
+    /// D: time from a change of DIR to the rise of STEP.
     pub setup: Cycles,
-    /// H: from the fall of STEP to a change of DIR.
+    /// H: time from the fall of STEP to a change of DIR.
     pub hold: Cycles,
 }
 
@@ -87,31 +82,26 @@ impl PulseTimes {
     }
 }
 
-/// Why a list is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
     NoChannel,
     /// Before cycle 1, or after [`LAST_CYCLE`].
     Start,
     NoSteps,
-    /// An interval is too short for a pulse or leaves 64 bits.
+    /// An interval is too short for a pulse or exceeds 64 bits.
     Interval {
-        /// The first such step, from 0.
         step: u32,
         /// In 1/65536 cycle.
         interval: i128,
     },
-    /// The last step or the end of a dwell leaves 64 bits.
+    /// The last step or the end of a dwell exceeds 64 bits.
     End {
         /// In 1/65536 cycle.
         next: i128,
     },
 }
 
-/// A refusal and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
     pub channel: usize,
     /// `None` where the list itself is refused.
@@ -120,7 +110,7 @@ pub struct Refused {
 }
 
 /// Valid lists, one per channel.
-/// Invariant: no time in them leaves u64, and no two pulses of a channel meet.
+/// Invariant: every time fits in u64, and no two pulses of a channel overlap.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckedSegments {
     pulse: PulseTimes,
@@ -132,19 +122,19 @@ pub struct CheckedSegments {
 
 impl CheckedSegments {
     /// Validates the lists of channels 0, 1, ….
-    /// Errors: the first `most` refusals. After a time that leaves 64 bits the rest of the list is skipped; a segment
-    /// with a bad interval takes no time.
-    pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, most: usize) -> Result<Self, Vec<Refused>> {
+    /// Errors: the first `max` refusals. After a time beyond 64 bits the rest of the list is skipped; a segment with a
+    /// bad interval takes no time.
+    pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, max: usize) -> Result<Self, Vec<Refused>> {
         let mut refused = Vec::new();
         let mut all = Self { pulse, lists: Vec::new(), steps: 0, turns: 0, end: Instant::RESET };
         for (channel, list) in lists.iter().enumerate() {
-            all.judge(list, &mut |segment, refusal| {
+            all.validate(list, &mut |segment, refusal| {
                 let refusal = if channel < MAX_CHANNELS { refusal } else { Refusal::NoChannel };
-                if refused.len() < most {
+                if refused.len() < max {
                     refused.push(Refused { channel, segment, refusal });
                 }
             });
-            if channel >= MAX_CHANNELS && refused.len() < most {
+            if channel >= MAX_CHANNELS && refused.len() < max {
                 refused.push(Refused { channel, segment: None, refusal: Refusal::NoChannel });
             }
         }
@@ -156,7 +146,7 @@ impl CheckedSegments {
         if refused.is_empty() { Ok(all) } else { Err(refused) }
     }
 
-    fn judge(&mut self, list: &SegmentList, refuse: &mut dyn FnMut(Option<usize>, Refusal)) {
+    fn validate(&mut self, list: &SegmentList, refuse: &mut dyn FnMut(Option<usize>, Refusal)) {
         if list.start == Instant::RESET || list.start > LAST_CYCLE {
             return refuse(None, Refusal::Start);
         }
@@ -188,21 +178,21 @@ impl CheckedSegments {
         }
     }
 
-    /// The first step whose interval is invalid, and the interval.
+    /// The first step with an invalid interval, and the interval.
     fn first_bad(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
-        let least = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
-        let most = i128::from(u64::MAX);
+        let min = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
+        let max = i128::from(u64::MAX);
         let at = |step: u32| i128::from(interval) + i128::from(step) * i128::from(add);
-        let is_bad = |step: u32| !(least..=most).contains(&at(step));
+        let is_bad = |step: u32| !(min..=max).contains(&at(step));
         let (first, last) = (at(0), count.saturating_sub(1));
         let step = if is_bad(0) {
             0
         } else if !is_bad(last) {
             return None;
         } else if add < 0 {
-            ((first - least) / -i128::from(add) + 1) as u32
+            ((first - min) / -i128::from(add) + 1) as u32
         } else {
-            ((most - first) / i128::from(add) + 1) as u32
+            ((max - first) / i128::from(add) + 1) as u32
         };
         debug_assert!(
             is_bad(step) && !step.checked_sub(1).is_some_and(is_bad),
@@ -211,44 +201,39 @@ impl CheckedSegments {
         Some((step, at(step)))
     }
 
-    /// Times of the pulses.
     #[must_use]
     pub const fn pulse(&self) -> PulseTimes {
         self.pulse
     }
 
-    /// The lists, channel i's at i.
     #[must_use]
     pub fn lists(&self) -> &[SegmentList] {
         &self.lists
     }
 
-    /// The lists themselves.
     #[must_use]
     pub fn into_lists(self) -> Vec<SegmentList> {
         self.lists
     }
 
-    /// Steps of all channels together.
     #[must_use]
     pub const fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Maximum records: the first, two per step, and the changes of DIR.
+    /// Maximum number of records: the first, two per step, and one per change of DIR.
     #[must_use]
     pub const fn max_records(&self) -> u64 {
         self.steps.saturating_mul(2).saturating_add(self.turns).saturating_add(1)
     }
 
-    /// The last cycle in which a signal changes, 0 where there is none.
+    /// The last cycle in which a signal changes; 0 without steps.
     #[must_use]
     pub const fn end(&self) -> Instant {
         self.end
     }
 }
 
-/// The sum of interval + k*add, k from 0 to count - 1.
 fn length(count: u32, interval: u64, add: i64) -> i128 {
     let count = i128::from(count);
     count * i128::from(interval) + i128::from(add) * (count * (count - 1) / 2)

@@ -1,10 +1,9 @@
-//! The 36 signals of the peripheral, the records of a trace, and the sink that takes them
-//! (DESIGN A3).
+//! The 36 signals of the peripheral, trace records, and sinks for them (DESIGN A3).
 //!
 //! ```
 //! use stepscope_peripheral::{signal::{Levels, Record, Sink}, units::Instant};
 //!
-//! /// Counts how often EN falls.
+//! /// Counts falling edges of EN.
 //! #[derive(Default)]
 //! struct PowerCuts(u32, bool);
 //!
@@ -28,30 +27,25 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Maximum channels of a controller.
 pub const MAX_CHANNELS: usize = 16;
 
-/// Levels of all signals in one cycle, as the bits of DESIGN A3.
+/// Levels of all signals in one cycle.
 ///
 /// | bits | signal |
 /// | --- | --- |
 /// | 0..=15 | STEP of channel 0..=15 |
 /// | 16..=31 | DIR of channel 0..=15 |
 /// | 32 | EN, high = windings powered |
-/// | 33 | RX, the line as the controller hears it |
+/// | 33 | RX, the line as the receiver samples it |
 /// | 34 | TX, the controller's reply |
 /// | 35 | DE, the transceiver's transmit enable |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Levels(pub u64);
 
 impl Levels {
-    /// Bit of channel 0's DIR.
     pub const DIR_SHIFT: u32 = 16;
-    /// EN, common to all drivers.
     pub const EN: u64 = 1 << 32;
-    /// RX, idle high.
     pub const RX: u64 = 1 << 33;
-    /// TX, idle high.
     pub const TX: u64 = 1 << 34;
     /// DE, high while the controller drives the line.
     pub const DE: u64 = 1 << 35;
@@ -78,12 +72,10 @@ impl Levels {
     }
 }
 
-// The signals fill the low bits without a gap.
 const _: () = assert!(MAX_CHANNELS == u16::BITS as usize && Levels::DIR_SHIFT == u16::BITS);
 const _: () = assert!(Levels::EN | Levels::RX | Levels::TX | Levels::DE == 0xf << (2 * MAX_CHANNELS));
 const _: () = assert!(Levels::DE == 1 << (Levels::SIGNALS - 1));
 
-/// The name of the signal at a bit of the levels.
 #[must_use]
 pub fn name(bit: u32) -> Option<alloc::string::String> {
     match bit {
@@ -100,7 +92,6 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
 /// The levels from a cycle on, until the next record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Record {
     pub cycle: Instant,
     pub levels: Levels,
@@ -132,12 +123,10 @@ impl Positions {
     }
 }
 
-/// An event besides the signals.
+/// An event besides changes of signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Event {
-    /// A byte was delivered.
     Byte {
         /// Cycle of its start bit.
         seen: Instant,
@@ -145,7 +134,6 @@ pub enum Event {
     },
     /// The stop bit of a byte was low.
     FramingError {
-        /// Cycle of its start bit.
         seen: Instant,
         /// Whether bytes are dropped up to the next gap, as on a raw line.
         drops: bool,
@@ -154,25 +142,21 @@ pub enum Event {
     Gap {
         short: bool,
     },
-    /// The byte completed a packet.
     Packet(PacketOutcome),
-    /// The byte completed a frame, or was one too many.
+    /// The byte completed a frame, or exceeded its maximum length.
     Frame(FrameOutcome),
-    /// A reply was scheduled.
     Reply {
-        /// Where the first start bit falls.
+        /// First start bit.
         start: Instant,
         end: Instant,
         reply: Reply,
-        /// In the ACK of POSITIONS only.
         positions: Option<Positions>,
     },
-    /// This controller drives the line while the host or another controller does.
+    /// This controller and another node drive the line at the same time.
     Collision,
-    /// A tick with steps ended and none followed.
     Underrun,
     Pushed,
-    /// Firmware or an overload stopped the controller and emptied the queue.
+    /// Firmware or an overload stopped the controller and cleared the queue.
     Stopped,
     TickStart {
         /// One byte per channel.
@@ -183,9 +167,9 @@ pub enum Event {
     Panel {
         controller: u8,
         word: u64,
-        /// Its position in steps.
+        /// In steps.
         position: i64,
-        /// In its digits.
+        /// In display digits.
         display: i64,
     },
     /// The raw level of a stand-alone controller's input changed.
@@ -197,28 +181,22 @@ pub enum Event {
     },
 }
 
-/// What became of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum PacketOutcome {
     Queued,
     OtherAddress,
     Booting,
-    /// Firmware had stopped the controller.
     Stopped,
     TooManySteps,
     QueueFull,
 }
 
-/// Takes the records of a run, in order, and the events between them.
+/// Receives the records of a run in order, and the events between them.
 pub trait Sink {
-    /// Takes a record; cycles rise strictly.
     fn record(&mut self, record: Record);
 
-    /// Takes an event.
     fn event(&mut self, _at: Instant, _event: Event) {}
 
-    /// Whether the run should pause.
     fn paused(&self) -> bool {
         false
     }
@@ -269,7 +247,6 @@ impl<S: Sink> Sink for Option<S> {
     }
 }
 
-/// Ignores everything.
 impl Sink for () {
     fn record(&mut self, _: Record) {}
 }

@@ -1,8 +1,5 @@
-//! Points and spans of device time (DESIGN A1).
-//!
-//! Time is an integer count of clock cycles since reset. A point ([`Instant`]) and a span
-//! ([`Cycles`]) are different types: two points cannot be added, so a point where a span is wanted
-//! does not compile.
+//! Points and spans of device time in clock cycles since reset (DESIGN A1). They have different types, so adding two
+//! points does not compile.
 //!
 //! ```
 //! use stepscope_peripheral::units::{Cycles, Instant};
@@ -15,27 +12,24 @@
 
 use core::ops::{Add, AddAssign, Sub};
 
-/// A span of device time in clock cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cycles(pub u64);
 
-/// A point of device time: clock cycles since reset.
+/// A point of device time in clock cycles since reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(pub u64);
 
 impl Instant {
-    /// Reset, cycle 0. Nothing starts before cycle 1.
+    /// Nothing starts before cycle 1.
     pub const RESET: Self = Self(0);
-    /// The deadline of something that never happens.
+    /// Deadline of an event that never happens.
     pub const NEVER: Self = Self(u64::MAX);
 
-    /// The next cycle.
     #[must_use]
     pub const fn next(self) -> Self {
         Self(self.0 + 1)
     }
 
-    /// The point as seconds after reset.
     #[must_use]
     pub fn seconds(self, clock_hz: u32) -> f64 {
         self.0 as f64 / f64::from(clock_hz)

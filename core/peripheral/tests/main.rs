@@ -3,4 +3,4 @@
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod configuration;
-mod judging_order;
+mod refusal_order;

@@ -1,6 +1,5 @@
-//! What frames (DESIGN A6), raw packets (A5) and registers share: queue and sequencer, the drivers' EN, the state STOPPED
-//! and the fault flags. Commands act in a cycle p after everything else in it; EN, STEP and the start of ticks
-//! follow from p + 1 on.
+//! The state shared by frames (DESIGN A6), raw packets (A5) and registers: queue and sequencer, EN, STOPPED, fault flags.
+//! Commands act in a cycle p after everything else in it; EN, STEP and tick starts follow from p + 1 on.
 
 use crate::device::{Faults, sequencer::Sequencer, transceiver::Transceiver};
 use crate::{
@@ -14,8 +13,8 @@ use crate::{
 pub(super) struct Executor {
     slots: u8,
     boot: Instant,
-    /// From STOP or DISABLE to ENABLE: no tick is taken.
-    /// Invariant: while it is set no tick runs or waits.
+    /// From STOP or DISABLE to ENABLE, during which no tick is accepted.
+    /// Invariant: while set, no tick runs or waits.
     stopped: bool,
     pub(super) transceiver: Transceiver,
     pub(super) sequencer: Sequencer,
@@ -34,7 +33,7 @@ impl Executor {
         }
     }
 
-    /// Whether `ticks` ticks of these commands may be queued in cycle `now`: all or none.
+    /// Whether `ticks` ticks with these commands can be queued in cycle `now`: all or none.
     pub(super) fn admit(&mut self, now: Instant, commands: &[u8], ticks: usize) -> Result<(), Reason> {
         self.assert_idle_if_stopped();
         if self.stopped {
@@ -63,7 +62,7 @@ impl Executor {
         self.stopped = false;
     }
 
-    /// Switches the drivers off if nothing moves; returns whether it did.
+    /// Disables the drivers if nothing moves; returns whether it did.
     pub(super) fn disable(&mut self, now: Instant) -> bool {
         let idle = !self.sequencer.is_moving();
         if idle {
@@ -77,7 +76,7 @@ impl Executor {
         debug_assert!(!(self.stopped && self.sequencer.is_moving()), "it moves while it is stopped");
     }
 
-    /// Takes another timing; the caller has checked that no tick runs or waits.
+    /// Changes the timing; the caller has checked that no tick runs or waits.
     pub(super) fn retime(&mut self, config: &Config) {
         self.slots = config.slots();
         self.sequencer.retime(config);

@@ -1,9 +1,9 @@
-//! The fast speed (DESIGN A2): from event to event.
+//! The fast speed (DESIGN A2): from event to event, with the same trace as cycle by cycle.
 //!
 //! ```text
 //! cycle    0 1 2 3 4 5 6 7 8 9 …
 //! clock    * * * * * * * * * * *     every cycle
-//! run      * * . . . . * . * . .     only those in which a deadline falls due or the line changes
+//! run      * * . . . . * . * . .     only cycles with a deadline or a change of the line
 //! ```
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
 };
 
 impl Device {
-    /// Next cycle, from [`Self::now`] on, in which something can change while the line keeps its level.
+    /// The next cycle, from [`Self::now`] on, in which something can change while the line keeps its level.
     pub(super) fn deadline(&self) -> Instant {
         if self.now == Instant::RESET {
             return Instant::RESET;
@@ -27,7 +27,7 @@ impl Device {
         sequencer.deadline().min(transceiver.deadline()).min(gap).min(receiver)
     }
 
-    /// For how many cycles nothing can change while the line keeps its level; `None` if nothing ever does.
+    /// Number of cycles without change while the line keeps its level; `None` for ever.
     #[must_use]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
@@ -36,14 +36,14 @@ impl Device {
         }
     }
 
-    /// Skips cycles in which nothing changes, at most [`Self::cycles_until_event`].
+    /// Skips cycles without change, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline());
     }
 
-    /// Runs until cycle `until` is the next while the line stays at `line`; with [`Instant::NEVER`], until nothing can
-    /// change any more ([`Self::last_active`] then reports the last change). Stops early when the sink pauses.
+    /// Runs up to cycle `until` with the line at `line`; with [`Instant::NEVER`], until nothing can change any more
+    /// ([`Self::last_active`] then returns the last change). Stops early when the sink pauses.
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
         while self.now < until && !sink.paused() {
             if line == self.line {
@@ -60,20 +60,19 @@ impl Device {
         }
     }
 
-    /// The last cycle in which something happened, if every clocked cycle had a reason.
     #[must_use]
     pub const fn last_active(&self) -> Instant {
         self.last
     }
 
-    /// At rest, makes `now` the next cycle; otherwise does nothing.
+    /// If idle, makes `now` the next cycle; else does nothing.
     pub fn finish(&mut self, now: Instant) {
         if self.at_rest() {
             self.now = now;
         }
     }
 
-    /// Whether nothing can change any more while the line stays as it is.
+    /// Whether nothing can change any more while the line keeps its level.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.deadline() == Instant::NEVER

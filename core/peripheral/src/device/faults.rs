@@ -1,4 +1,4 @@
-//! Fault flags (DESIGN A6): the bits and names that the register FAULTS has.
+//! Fault flags (DESIGN A6) with the bits and names of the register FAULTS.
 
 use stepscope_registers::faults;
 
@@ -11,33 +11,30 @@ const KNOWN: u16 = {
     bits
 };
 
-/// Faults seen so far; they stay until RESYNC or firmware clears them.
+/// Faults so far; RESYNC or firmware clears them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults(u16);
 
 impl Faults {
-    /// A stop bit was low.
     pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
-    /// A gap cut a packet short, or a frame was not COBS or decoded to fewer than 6 bytes.
+    /// A gap cut a packet short, or a frame was invalid COBS or decoded to fewer than 6 bytes.
     pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
-    /// A frame's check failed.
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
-    /// A packet found the queue full, or a frame was refused with QUEUE_FULL.
+    /// A packet or frame was refused because the queue was full.
     pub const QUEUE_OVERFLOW: Self = Self(faults::QUEUE_OVERFLOW.mask() as u16);
-    /// A byte commanded more steps than a tick has slots.
+    /// A byte requested more steps than a tick has slots.
     pub const TOO_MANY_STEPS: Self = Self(faults::TOO_MANY_STEPS.mask() as u16);
     /// TICKS had neither the expected sequence number nor, as a repeat, the one before it.
     pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
-    /// A tick with steps ended and none followed (framed protocol).
+    /// A tick with steps ended and none followed (framed protocol only).
     pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);
     /// The supply current was too high for too long.
     pub const OVERLOAD: Self = Self(faults::OVERLOAD.mask() as u16);
     /// The self-test found no settling time on some channel.
     pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
-    /// All of them.
     pub const ALL: Self = Self::from_bits(u16::MAX);
 
     pub(super) const fn set(&mut self, fault: Self) {
@@ -48,31 +45,28 @@ impl Faults {
         self.0 &= !which.0;
     }
 
-    /// From the bits of A6; unknown bits are ignored.
+    /// Unknown bits are ignored.
     #[must_use]
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits & KNOWN)
     }
 
-    /// The faults of both.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// The bits of A6.
     #[must_use]
     pub const fn bits(self) -> u16 {
         self.0
     }
 
-    /// Whether all faults of `other` have been seen.
+    /// Whether all faults of `other` are set.
     #[must_use]
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// Names in the order of the bits.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         let flags = faults::REGISTER.fields.iter();
         flags.filter(move |flag| u32::from(self.0) & flag.mask() != 0).map(|flag| flag.name)

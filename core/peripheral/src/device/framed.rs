@@ -1,4 +1,4 @@
-//! The controller's side of the framed protocol (DESIGN A6): what each frame does, and its reply.
+//! The controller's side of the framed protocol (DESIGN A6): the effect of each frame, and its reply.
 
 use crate::device::{Faults, executor::Executor};
 use crate::{
@@ -18,7 +18,7 @@ pub(super) struct FramedProtocol {
     channels: u8,
     deframer: Deframer,
     expected_seq: u8,
-    /// Whether a TICKS was taken since reset or RESYNC: then the one before the expected is a repeat.
+    /// A TICKS frame was accepted since reset or RESYNC, so its sequence number marks a repetition.
     taken: bool,
 }
 
@@ -40,7 +40,7 @@ impl FramedProtocol {
     pub(super) fn byte(&mut self, now: Instant, byte: u8, executor: &mut Executor, sink: &mut impl Sink) {
         let Self { address, channels, deframer, expected_seq, taken } = self;
         let (address, channels) = (*address, *channels);
-        let mut answered = false;
+        let mut is_own = false;
         let outcome = match deframer.byte(byte) {
             None => return,
             Some(Deframed::Short) => {
@@ -59,14 +59,14 @@ impl FramedProtocol {
                 FrameOutcome::OtherAddress
             }
             Some(Deframed::Frame(frame)) => {
-                answered = frame.address != ALL;
+                is_own = frame.address != ALL;
                 Execution { now, channels, expected_seq, taken, executor }.frame(frame)
             }
         };
         sink.event(now, Event::Frame(outcome));
-        if let Some(answer) = outcome.answer().filter(|_| answered) {
+        if let Some(answer) = outcome.answer().filter(|_| is_own) {
             let reply = Reply { address, answer, status: executor.status(now, *expected_seq) };
-            // As they stand in this cycle: the sequencer comes before the byte.
+            // Those at the end of this cycle: the sequencer runs before the byte.
             let positions = executor.sequencer.positions();
             let positions = positions.get(..usize::from(channels)).filter(|_| answer == Ok(Kind::Positions));
             let positions = positions.and_then(Positions::new);

@@ -1,5 +1,4 @@
-//! What the registers hold beside the device itself: the timing as it was written, and a tick's commands before they are
-//! pushed.
+//! Register values that have no effect yet: the timing until COMMIT, and the commands of a tick until PUSH.
 
 use crate::{
     config::{Bus, Config, Distribution, PulsePhasing},
@@ -49,7 +48,7 @@ impl Timing {
         }
     }
 
-    /// `config` with this timing, if MODE is valid and A7's rules hold.
+    /// `config` with this timing, if it is valid.
     pub(super) fn apply(self, config: &Config) -> Option<Config> {
         let bus = Bus {
             slots: u8::try_from(self.slots).ok()?,
@@ -73,7 +72,7 @@ impl Timing {
         config.with_bus(&bus).ok()
     }
 
-    pub(super) const fn place(&mut self, offset: u32) -> Option<&mut u32> {
+    pub(super) const fn register(&mut self, offset: u32) -> Option<&mut u32> {
         match offset {
             map::slots::OFFSET => Some(&mut self.slots),
             map::step_period::OFFSET => Some(&mut self.step_period),
@@ -92,7 +91,7 @@ impl Latches {
         Self { config: config.clone(), timing: Timing::of(config), commands: [0; MAX_CHANNELS], result: 0 }
     }
 
-    /// The commands of four channels, the first in the lowest byte.
+    /// Commands of four channels, the first in the lowest byte.
     pub(super) fn commands(&self, index: usize) -> u32 {
         self.commands.as_chunks::<4>().0.get(index).map_or(0, |four| u32::from_le_bytes(*four))
     }

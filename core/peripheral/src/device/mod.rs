@@ -1,24 +1,20 @@
 //! The motion peripheral, to the clock cycle (DESIGN A2 to A7).
 //!
-//! [`Device::clock`] advances it one cycle. [`Device::cycles_until_event`] reports for how many cycles nothing can
-//! change while the line keeps its level, [`Device::advance`] skips them, and [`Device::run`] combines the three. Both
-//! speeds give the same trace.
+//! [`Device::clock`] runs one cycle; [`Device::run`] skips cycles without change. Both give the same trace.
 //!
-//! # The order within one cycle
-//! 1. EN, TX and DE change, and the line's level is heard (high while DE is);
+//! # Order within one cycle
+//! 1. EN, TX and DE change; the receiver samples the line (high while DE is);
 //! 2. the sequencer: STEP edges, a tick ends, a tick starts (from commits of earlier cycles);
 //! 3. the gap timer;
-//! 4. the byte delivered in this cycle and what it completes;
+//! 4. the byte delivered in this cycle and its effect;
 //! 5. the record, if a signal changed;
-//! 6. what firmware reads and writes ([`Device::read`], [`Device::write`]).
-//!
-//! `tests` has a case for each pair that can fall into one cycle.
+//! 6. firmware reads and writes ([`Device::read`], [`Device::write`]).
 //!
 //! ```
 //! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, trace::Digest, units::Instant};
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
-//! // The same 3000 cycles with the line idle, one by one and at once.
+//! // 3000 cycles with the line idle, one by one and at once.
 //! let (mut slow, mut slow_digest) = (Device::new(&config), Digest::default());
 //! (0..3000).for_each(|_| drop(slow.clock(true, &mut slow_digest)));
 //! let (mut fast, mut fast_digest) = (Device::new(&config), Digest::default());
@@ -61,22 +57,11 @@ use executor::Executor;
 use framed::FramedProtocol;
 use latches::Latches;
 
-/// The peripheral.
-///
-/// ```
-/// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, signal::{Levels, Record}};
-///
-/// let bus = Bus { channels: 2, slots: 4, ..Bus::default() };
-/// let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("the defaults hold");
-/// let mut device = Device::new(&config);
-/// let mut trace: Vec<Record> = Vec::new();
-/// assert_eq!(device.clock(true, &mut trace), Levels::RESET);
-/// ```
 #[derive(Clone, Debug)]
 pub struct Device {
     now: Instant,
     last: Instant,
-    /// The line as others drive it, and as the controller hears it.
+    /// The line as others drive it, and as the receiver samples it.
     line: bool,
     rx: bool,
     levels: Levels,
@@ -114,32 +99,30 @@ impl Device {
         }
     }
 
-    /// The cycle that the next call of [`Self::clock`] runs.
     #[must_use]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
-    /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
+    /// Position counters: +1 per rising STEP edge with DIR 1, -1 with DIR 0.
     #[must_use]
     pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.executor.sequencer.positions()
     }
 
-    /// Ticks that have ended.
+    /// Ticks done, wrapping.
     #[must_use]
     pub const fn ticks_done(&self) -> u32 {
         self.executor.sequencer.ticks_done()
     }
 
-    /// Faults so far.
     #[must_use]
     pub const fn faults(&self) -> Faults {
         self.executor.faults()
     }
 
-    /// Advances one cycle with the line at `line`, as others drive it, and returns the levels of all signals in it.
-    /// Cycle 0 is reset: there the line is high, whatever is given.
+    /// Runs one cycle with the line at `line`, as others drive it, and returns the levels of all signals in it.
+    /// In cycle 0, reset, the line counts as high.
     pub fn clock(&mut self, line: bool, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         debug_assert!(now <= self.deadline(), "{:?} was skipped", self.deadline());
@@ -198,7 +181,6 @@ impl Device {
         sink.event(now, Event::Packet(outcome));
     }
 
-    /// Queues the tick of a packet for this controller, or drops it.
     fn commit(&mut self, tick: Tick) -> PacketOutcome {
         match self.executor.admit(self.now, &tick, 1) {
             Ok(()) => {
@@ -212,7 +194,7 @@ impl Device {
         }
     }
 
-    /// The status that a reply in the last cycle would report; `None` on a raw line.
+    /// The status that a reply in the last cycle would contain; `None` on a raw line.
     #[must_use]
     pub fn status(&self) -> Option<Status> {
         match &self.framing {
@@ -225,31 +207,29 @@ impl Device {
         Instant(self.now.0.saturating_sub(1))
     }
 
-    /// Whether it ever drives the line.
-    #[must_use]
-    pub const fn answers(&self) -> bool {
+    const fn replies(&self) -> bool {
         matches!(self.framing, Framing::Framed(_))
     }
 
-    /// TX in cycle [`Self::now`] if this controller drives the line then, else `None`.
+    /// TX in cycle [`Self::now`] if this controller drives the line in it, else `None`.
     #[must_use]
     pub fn driven(&self) -> Option<bool> {
         let (levels, _) = self.executor.transceiver.in_cycle(self.now);
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
     }
 
-    /// A cycle after [`Self::now`] up to which this controller does not change what it does to the line, while others
-    /// keep the line at `line`; [`Instant::NEVER`] if it never will.
+    /// A cycle up to which this controller drives the line as in [`Self::now`] while others keep it at `line`;
+    /// [`Instant::NEVER`] if it never changes.
     #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
-        if !self.answers() {
+        if !self.replies() {
             return Instant::NEVER;
         }
         let transceiver = &self.executor.transceiver;
         let (levels, next) = transceiver.in_cycle(self.now);
-        let heard = self.receiver.deadline(self.before(), line || levels.has(Levels::DE));
-        // A byte that is delivered can be answered after the turnaround at the earliest.
-        let reply = if heard == Instant::NEVER { heard } else { heard + transceiver.turnaround() };
+        let byte = self.receiver.deadline(self.before(), line || levels.has(Levels::DE));
+        // A byte causes a reply after the turnaround at the earliest.
+        let reply = if byte == Instant::NEVER { byte } else { byte + transceiver.turnaround() };
         next.min(reply)
     }
 }

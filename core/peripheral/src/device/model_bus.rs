@@ -1,4 +1,4 @@
-//! The model on a firmware's bus: what is written against [`RegisterBus`] runs on it unchanged.
+//! The model on a firmware's bus: code written for [`RegisterBus`] runs on it unchanged.
 
 use crate::device::Device;
 use crate::{
@@ -8,10 +8,10 @@ use crate::{
 };
 use stepscope_registers::RegisterBus;
 
-/// The peripheral on the bus of a processor, with its serial line at rest.
+/// The peripheral on the bus of a processor, with an idle serial line.
 ///
-/// Time passes with the accesses, as it does on a chip: each takes so many cycles, and has its effect
-/// in the last of them. What happens meanwhile goes to `sink`.
+/// Time passes with the accesses: each takes some cycles and has its effect in the last of them. The trace goes to
+/// `sink`.
 ///
 /// ```
 /// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::ModelBus, signal::Record, units::Cycles};
@@ -31,25 +31,22 @@ pub struct ModelBus<S> {
 }
 
 impl<S: Sink> ModelBus<S> {
-    /// A peripheral before cycle 0; accesses take `access` cycles, at least 1.
+    /// A peripheral before cycle 0; each access takes `access` cycles, at least 1.
     #[must_use]
     pub fn new(config: &Config, access: Cycles, sink: S) -> Self {
         Self { device: Device::new(config), access: access.max(Cycles(1)), sink }
     }
 
-    /// The peripheral.
     #[must_use]
     pub const fn device(&self) -> &Device {
         &self.device
     }
 
-    /// The sink of the trace.
     #[must_use]
     pub const fn sink(&self) -> &S {
         &self.sink
     }
 
-    /// Lets time pass without an access.
     pub fn wait(&mut self, cycles: Cycles) {
         let until = Instant(self.device.now().0.saturating_add(cycles.0));
         self.device.run(true, until, &mut Unpaused(&mut self.sink));

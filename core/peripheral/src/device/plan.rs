@@ -9,7 +9,7 @@
 //!        | D |  W |                     right ─┼───│────│────────│───┌────┐
 //!        s   rise fall                         s D   W       H     D    W
 //!
-//! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), nd firing channels
+//! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), with nd channels that step
 //! ```
 
 use crate::{
@@ -21,12 +21,12 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// STEP in bits 0..=15, DIR in bits 16..=31: the low half of a trace's levels.
+/// STEP in bits 0..=15, DIR in bits 16..=31, as in a trace's levels.
 pub(super) type Lines = u32;
 
 pub(super) const STEPS: Lines = 0xffff;
 
-/// The lines from `offset` cycles after the tick's start on.
+/// The levels from `offset` cycles after the start of the tick on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Change {
     pub(super) offset: u64,
@@ -60,12 +60,12 @@ impl Plan {
         self.commands.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)
     }
 
-    /// The first entry may repeat the levels before the tick.
+    /// The first entry may repeat the current levels.
     pub(super) fn changes(&self) -> &[Change] {
         &self.changes
     }
 
-    /// Plans a tick. Ticks in a row often have the same commands, and so the same plan.
+    /// Plans a tick. Consecutive ticks often have the same commands and then share the plan.
     pub(super) fn set(&mut self, commands: Tick) {
         if commands != self.commands {
             self.commands = commands;
@@ -106,7 +106,7 @@ impl Plan {
         );
     }
 
-    /// A pulse of all of `fires`; DIR stays at `dir`.
+    /// A pulse on the channels of `fires`; DIR stays at `dir`.
     fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.push(rise, dir | Lines::from(fires));
@@ -114,7 +114,6 @@ impl Plan {
         }
     }
 
-    /// d = min(dp, floor(Ts/nd)).
     fn distance(&self, fires: u16) -> u64 {
         self.config.settle().min(self.config.step_period() / u64::from(fires.count_ones().max(1)))
     }
@@ -128,7 +127,7 @@ impl Plan {
         self.pulse(second + setup.0, fires & right, self.all_right);
     }
 
-    /// One channel after another, ascending; pulses closer than W overlap.
+    /// One channel after another in ascending order; pulses closer than W overlap.
     fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
         let (distance, width) = (self.distance(fires), self.pulse.width.0);
         let first = start + self.pulse.setup.0;
@@ -150,7 +149,7 @@ impl Plan {
         }
     }
 
-    /// The left ones ascending, then the right ones ascending; L <= d, so pulses do not overlap.
+    /// Channels to the left, then to the right, each in ascending order; L <= d, so pulses do not overlap.
     fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
         let (distance, all_right) = (self.distance(fires), self.all_right);
         let left = channels(fires & !right).map(|bit| (bit, 0));
@@ -162,7 +161,6 @@ impl Plan {
         }
     }
 
-    /// Adds a change; at the same offset the last one counts.
     fn push(&mut self, offset: u64, lines: Lines) {
         match self.changes.last_mut() {
             Some(last) if last.offset == offset => last.lines = lines,
@@ -172,13 +170,12 @@ impl Plan {
     }
 }
 
-/// Which channels fire in a slot.
 struct Firing {
     counts: [u8; MAX_CHANNELS],
     slots: u8,
     distribution: Distribution,
-    /// `spread` fires in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M), h = floor(M/2): each channel keeps
-    /// (k*c + h) mod M.
+    /// `spread` steps in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M) with h = floor(M/2), so each channel
+    /// has the remainder (k*c + h) mod M.
     remainders: [u8; MAX_CHANNELS],
 }
 
@@ -188,7 +185,7 @@ impl Firing {
         Self { counts, slots, distribution, remainders: [slots / 2; MAX_CHANNELS] }
     }
 
-    /// The channels that fire in slot `slot`; slots are requested in order.
+    /// The channels that step in `slot`; call it for each slot in order.
     fn slot(&mut self, slot: u8) -> u16 {
         let mut fires = [false; MAX_CHANNELS];
         for ((fires, count), remainder) in fires.iter_mut().zip(self.counts).zip(&mut self.remainders) {
@@ -205,7 +202,6 @@ impl Firing {
     }
 }
 
-/// A bit per channel.
 fn mask(channels: [bool; MAX_CHANNELS]) -> u16 {
     (0..).zip(channels).map(|(channel, is_set)| u16::from(is_set) << channel).sum()
 }

@@ -1,9 +1,7 @@
-//! The peripheral as firmware on the same chip sees it: the registers of [`stepscope_registers`], on
-//! the same queue, drivers and state that packets and frames work on (DESIGN A6, A7).
+//! The registers for firmware on the same chip ([`stepscope_registers`]; DESIGN A6, A7).
 //!
-//! An access takes place in the last cycle that was clocked, p, after everything else in it. It reads
-//! what is so in p; what it does to EN, STEP and the start of ticks shows from p + 1 on, as for a
-//! frame that ends in p.
+//! An access happens in the last clocked cycle p, after everything else in it. It reads the state in p; EN, STEP and tick
+//! starts follow from p + 1 on, as after a frame that ends in p.
 
 use crate::device::{Device, Faults, Framing, latches::Timing};
 use crate::{
@@ -16,7 +14,6 @@ use stepscope_registers as map;
 
 const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);
 const _: () = assert!(map::orders::REGISTER.count as usize * 4 == MAX_CHANNELS);
-// Codes of results and states are the protocol's own.
 const _: () = {
     use map::result;
     assert!(Reason::QueueFull as u32 == result::CODE_QUEUE_FULL);
@@ -34,7 +31,7 @@ fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
 }
 
 impl Device {
-    /// Reads the register at the byte offset in the last cycle that was run; 0 where there is none.
+    /// Reads the register at the byte offset in the last clocked cycle; 0 if there is none.
     #[must_use]
     pub fn read(&self, offset: u32) -> u32 {
         let (latches, config) = (&self.latches, &self.latches.config);
@@ -55,18 +52,18 @@ impl Device {
             map::ticks_done::OFFSET => self.ticks_done(),
             _ => {
                 let mut timing = latches.timing;
-                timing.place(offset).map_or(0, |value| *value)
+                timing.register(offset).map_or(0, |value| *value)
             }
         }
     }
 
-    /// Writes the register at the byte offset in the last cycle that was run, after everything else in it; it acts
-    /// from the next cycle on. Ignored before cycle 0 and where no register can be written.
+    /// Writes the register at the byte offset in the last clocked cycle, after everything else in it. Ignored before
+    /// cycle 0 and if no register there is writable.
     pub fn write(&mut self, offset: u32, value: u32, sink: &mut impl Sink) {
         if self.now == Instant::RESET {
             return;
         }
-        // `finish` must not go back behind an access.
+        // `finish` must not set a time before an access.
         self.last = self.before();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_commands(index, value);
@@ -80,8 +77,8 @@ impl Device {
                     value & (map::mode::DISTRIBUTION.mask() | map::mode::PULSES.mask());
             }
             _ => {
-                if let Some(place) = self.latches.timing.place(offset) {
-                    *place = value;
+                if let Some(register) = self.latches.timing.register(offset) {
+                    *register = value;
                 }
             }
         }

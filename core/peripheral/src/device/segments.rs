@@ -1,10 +1,10 @@
-//! The segment engine: a generator that runs a move without a line (DESIGN A8).
+//! The segment engine: a pulse generator that runs a move without a serial line (DESIGN A8).
 //!
 //! ```text
 //!          segment begins                  DIR  at max(next >> 16, last fall + H)
 //! next   ──┬───────────┬─────────┬─────    STEP at next >> 16, W long
 //! DIR    __│__╱────────│─────────│─────
-//! STEP   ──┐_______┌───┐_____┌───┐_____    per channel the events are in order:
+//! STEP   ──┐_______┌───┐_____┌───┐_____    order of the events of a channel:
 //!           H ╎  D ╎ W ╎                   fall <= DIR <= rise < fall
 //! ```
 
@@ -50,17 +50,14 @@ struct Channel {
     left: u32,
     interval: u64,
     add: i64,
-    /// A8's `next`: while a step is to come, its time.
+    /// Time of the pending step (A8's `next`).
     next: u64,
     position: i32,
     right: bool,
-    /// When DIR takes that direction; [`Instant::NEVER`] if it has.
     turn: Instant,
-    /// When STEP rises next; [`Instant::NEVER`] at the list's end.
     rise: Instant,
-    /// When STEP falls; [`Instant::NEVER`] while it is low.
     fall: Instant,
-    /// Last fall + H: DIR keeps its level until then.
+    /// Last fall + H: DIR must not change before.
     held: Instant,
 }
 
@@ -87,7 +84,6 @@ impl Channel {
         self.fall.min(self.turn).min(self.rise)
     }
 
-    /// Schedules the next step of the list, with the change of DIR before it.
     fn schedule_step(&mut self, segments: &[Segment]) {
         self.rise = Instant::NEVER;
         while self.left == 0 {
@@ -126,21 +122,18 @@ impl SegmentEngine {
         }
     }
 
-    /// The cycle that the next call of [`Self::clock`] runs.
     #[must_use]
     pub const fn now(&self) -> Instant {
         self.now
     }
 
-    /// Position counters: rising STEP edges, +1 where DIR is 1, -1 where it is 0.
     #[must_use]
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         let mut positions = [0; MAX_CHANNELS];
-        positions.iter_mut().zip(&self.channels).for_each(|(place, channel)| *place = channel.position);
+        positions.iter_mut().zip(&self.channels).for_each(|(position, channel)| *position = channel.position);
         positions
     }
 
-    /// Advances one cycle and returns the levels of all signals in it.
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         debug_assert!(now <= self.deadline, "{:?} was skipped", self.deadline);
@@ -152,7 +145,7 @@ impl SegmentEngine {
         self.levels
     }
 
-    /// Everything due in cycle `now`: at least one signal changes, except at reset.
+    /// Applies everything due in cycle `now`: at least one signal changes, except at reset.
     fn act(&mut self, now: Instant) {
         let pulse = self.lists.pulse();
         self.deadline = Instant::NEVER;
@@ -183,7 +176,7 @@ impl SegmentEngine {
     }
 
     /// The supply current was too high for too long: in the next cycle EN and STEP fall, DIR keeps its level, and
-    /// no step follows. Does nothing before cycle 0.
+    /// no step follows. Has no effect before cycle 0.
     pub fn overload(&mut self) {
         if self.now == Instant::RESET || self.overloaded {
             return;
@@ -195,13 +188,13 @@ impl SegmentEngine {
         self.deadline = self.now;
     }
 
-    /// Faults so far: OVERLOAD or none.
+    /// OVERLOAD or none.
     #[must_use]
     pub const fn faults(&self) -> Faults {
         if self.overloaded { Faults::OVERLOAD } else { Faults::from_bits(0) }
     }
 
-    /// For how many cycles nothing can change; `None` if nothing ever does.
+    /// Number of cycles without change; `None` for ever.
     #[must_use]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline {
@@ -210,14 +203,13 @@ impl SegmentEngine {
         }
     }
 
-    /// Skips cycles in which nothing changes, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline);
     }
 
-    /// Runs until cycle `until` is the next; with [`Instant::NEVER`], until nothing can change any more. Then the last
-    /// cycle run is that of the last change. Stops early when the sink pauses.
+    /// Runs up to cycle `until`; with [`Instant::NEVER`], up to and including the last change. Stops early when the
+    /// sink pauses.
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         while self.now < until && !sink.paused() {
             if self.deadline >= until {
@@ -231,7 +223,6 @@ impl SegmentEngine {
         }
     }
 
-    /// Whether nothing can change any more.
     #[must_use]
     pub const fn at_rest(&self) -> bool {
         self.deadline.0 == Instant::NEVER.0

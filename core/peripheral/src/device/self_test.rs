@@ -1,5 +1,5 @@
-//! What a plant's sensors make a controller do (PLANT F7): stop where the supply current is too great for too long, and
-//! measure in its boot how long that current takes to settle.
+//! Reactions to a plant's sensors (PLANT F7): stop on overload, and measure the settling time of the supply current during
+//! boot.
 //!
 //! ```text
 //! channel i, S = 1 + i*24*Ts
@@ -20,33 +20,32 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-const STEPS_A_CHANNEL: u64 = 24;
+const STEPS_PER_CHANNEL: u64 = 24;
 const REST_STEPS: u64 = 10;
 
 /// One channel's part of a self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SelfTest {
-    /// S: where it begins.
+    /// S: its start.
     pub start: Instant,
-    /// r: STEP rises.
+    /// r: rise of STEP.
     pub rise: Instant,
-    /// Ts: how long the current is sampled from then on.
+    /// Ts: time from the rise during which the current is sampled.
     pub step: Cycles,
 }
 
 impl SelfTest {
-    /// The part of `channel`.
     #[must_use]
     pub const fn of(config: &Config, channel: u8) -> Self {
         let step = config.step_period();
-        let start = 1 + channel as u64 * STEPS_A_CHANNEL * step;
+        let start = 1 + channel as u64 * STEPS_PER_CHANNEL * step;
         Self { start: Instant(start), rise: Instant(start + REST_STEPS * step), step: Cycles(step) }
     }
 
-    /// Minimum boot of a controller that runs all parts.
+    /// Minimum boot time for all parts.
     #[must_use]
     pub const fn boot(config: &Config) -> Cycles {
-        Cycles(1 + config.channels() as u64 * STEPS_A_CHANNEL * config.step_period())
+        Cycles(1 + config.channels() as u64 * STEPS_PER_CHANNEL * config.step_period())
     }
 }
 
@@ -74,8 +73,8 @@ fn changes(config: &Config) -> Vec<Change> {
 }
 
 impl Device {
-    /// A peripheral before cycle 0 with a self-test in its boot, which must last [`SelfTest::boot`]. The caller
-    /// measures and reports the result ([`Self::settles_in`]).
+    /// A peripheral before cycle 0 with a self-test during boot, which must last [`SelfTest::boot`]. The caller measures
+    /// and reports the result with [`Self::settles_in`].
     #[must_use]
     pub fn with_self_test(config: &Config) -> Self {
         let mut device = Self::new(config);
@@ -83,19 +82,19 @@ impl Device {
         device
     }
 
-    /// Takes the result of a self-test at the end of the latest cycle: the settling time dp. If a channel has none,
-    /// dp is T_step and fault SELF_TEST is set. On a common DIR line dp is at least a pulse with DIR around it.
+    /// Sets the measured settling time dp at the end of the latest cycle. If a channel has none, dp is Ts and fault
+    /// SELF_TEST is set. On a common DIR line dp is at least one pulse with DIR around it.
     pub fn settles_in(&mut self, found: Option<Cycles>) {
         let config = &self.latches.config;
         let bus = config.bus().clone();
         let around = bus.dir_setup_cycles.saturating_add(bus.dir_hold_cycles).max(1);
-        let least = match config.dir_line() {
+        let min = match config.dir_line() {
             DirLine::PerChannel => 0,
             DirLine::Common => bus.pulse_width_cycles.saturating_add(around),
         };
         let found_cycles =
             found.map_or(bus.step_period_cycles, |Cycles(cycles)| u32::try_from(cycles).unwrap_or(u32::MAX));
-        let settle_cycles = found_cycles.max(least);
+        let settle_cycles = found_cycles.max(min);
         if let Ok(config) = config.with_bus(&Bus { settle_cycles, ..bus }) {
             self.executor.retime(&config);
             self.latches.timing.settle = settle_cycles;
@@ -106,7 +105,7 @@ impl Device {
         }
     }
 
-    /// The supply current was too high for too long: STOP and fault OVERLOAD, at the end of the latest cycle.
+    /// The supply current was too high for too long: STOP and fault OVERLOAD at the end of the latest cycle.
     pub fn overload(&mut self, sink: &mut impl Sink) {
         if self.now == Instant::RESET {
             return;

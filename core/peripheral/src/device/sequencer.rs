@@ -1,8 +1,8 @@
 //! The queue and the tick sequencer (DESIGN A7).
 //!
-//! The tick at the head of the queue starts at c0 = max(p + 1, e): p its commit cycle, e the end of
-//! the tick before. It leaves the queue at c0 and ends at e = c0 + M*Ts; ticks_done counts there.
-//! When the queue is empty at e the sequencer is idle: STEP = 0, DIR keeps its level.
+//! The tick at the head of the queue starts at c0 = max(p + 1, e), where p is its commit cycle and e the end of the tick
+//! before. It leaves the queue at c0 and ends at e = c0 + M*Ts, where ticks_done counts. With the queue empty at e, the
+//! sequencer is idle: STEP = 0, DIR keeps its level.
 
 use crate::device::{
     Faults,
@@ -24,14 +24,14 @@ pub(super) struct Sequencer {
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
-    /// What is left of a self-test, the next change last.
-    /// Invariant: while any is left no tick runs, because the self-test ends with the boot.
+    /// The rest of a self-test, the next change last.
+    /// Invariant: while there is any, no tick runs, because the self-test ends with the boot.
     self_test: Vec<Change>,
     halt: bool,
     framed: bool,
     faults: Faults,
     /// Next cycle in which the sequencer acts; [`Instant::NEVER`] when idle.
-    /// Invariant: no cycle is run past it.
+    /// Invariant: no later cycle is clocked.
     deadline: Instant,
     lines: Lines,
     positions: [i32; MAX_CHANNELS],
@@ -64,7 +64,7 @@ impl Sequencer {
         }
     }
 
-    /// Plays these changes during the boot; their offsets count from reset.
+    /// Plays these changes during boot; their offsets count from reset.
     pub(super) fn test(&mut self, mut changes: Vec<Change>) {
         changes.reverse();
         self.deadline = changes.last().map_or(Instant::NEVER, |first| Instant(first.offset));
@@ -83,7 +83,7 @@ impl Sequencer {
         self.positions
     }
 
-    /// Queues a tick that was committed in cycle `now`; the caller has checked that there is room.
+    /// Queues a tick committed in cycle `now`; the caller has checked that there is room.
     pub(super) fn push(&mut self, now: Instant, tick: Tick) {
         debug_assert!(self.queue.len() < self.depth, "no room for a tick that was admitted");
         if !self.is_moving() {
@@ -100,7 +100,7 @@ impl Sequencer {
         self.faults.clear(which);
     }
 
-    /// Takes another timing; the caller has checked that no tick runs or waits.
+    /// Changes the timing; the caller has checked that no tick runs or waits.
     pub(super) fn retime(&mut self, config: &Config) {
         debug_assert!(!self.is_moving(), "another timing while a tick runs or waits");
         self.tick = config.tick();
@@ -115,7 +115,7 @@ impl Sequencer {
         (self.depth - self.queue.len()) as u8
     }
 
-    /// Abandons the tick that runs and those that wait: STEP falls in the cycle after `now`, DIR keeps its level.
+    /// Drops all ticks: STEP falls in the cycle after `now`, DIR keeps its level.
     pub(super) fn stop(&mut self, now: Instant) {
         self.running = None;
         self.queue.clear();
@@ -141,7 +141,7 @@ impl Sequencer {
         }
     }
 
-    /// The plan's change that falls due in cycle `now`, or the tick's end.
+    /// Applies the change of the plan due in cycle `now`, or ends the tick.
     fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
         match self.plan.changes().get(running.next) {
             Some(change) if running.c0 + Cycles(change.offset) == now => {
@@ -159,7 +159,6 @@ impl Sequencer {
         self.deadline = self.self_test.last().map_or(Instant::NEVER, |next| Instant(next.offset));
     }
 
-    /// Sets STEP and DIR, and counts the pulses that rise.
     fn set_lines(&mut self, lines: Lines) {
         let mut rising = lines & !self.lines & STEPS;
         while rising != 0 {

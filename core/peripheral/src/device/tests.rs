@@ -82,14 +82,14 @@ fn run(bus: &Bus, protocol: Protocol, sends: &[(u64, Vec<u8>)]) -> (Device, Left
         if slow.next_change() == device.now() {
             slow.change();
         }
-        device.clock(slow.heard(true), &mut clocked);
+        device.clock(slow.level(true), &mut clocked);
     }
     let (mut device, mut fast, mut left) = (Device::new(&config), line(), Left::default());
     while device.now() < end {
         if fast.next_change() == device.now() {
             fast.change();
         }
-        device.run(fast.heard(true), fast.next_change().min(end), &mut left);
+        device.run(fast.level(true), fast.next_change().min(end), &mut left);
     }
     assert_eq!(left, clocked, "both speeds leave the same");
     (device, left)
@@ -156,7 +156,7 @@ fn ignoring_ends_before_the_byte_that_is_delivered_in_the_gaps_cycle() {
             if line.next_change() == device.now() {
                 line.change();
             }
-            device.clock(line.heard(true), &mut left);
+            device.clock(line.level(true), &mut left);
         }
         assert_eq!(left.starts(), if taken { vec![byte + 1] } else { vec![] }, "delivered in {byte}");
         assert_eq!(device.faults(), Faults::FRAMING);
@@ -308,7 +308,7 @@ fn who_looks_at_what_is_driven_next_changes_nothing_else() {
         if line.next_change() == now {
             line.change();
         }
-        let level = line.heard(true);
+        let level = line.level(true);
         let [plain, watched] = &mut devices;
         let drives = watched.driven();
         assert_eq!(plain.read(map::status::OFFSET), watched.read(map::status::OFFSET), "before {now:?}");

@@ -1,4 +1,4 @@
-//! The signals that a frame moves (DESIGN A6): EN, and the reply on TX with DE around it.
+//! Signals that a frame changes (DESIGN A6): EN, and the reply on TX with DE around it.
 //!
 //! ```text
 //! p            p + 10*B    p + 11*B                     t + floor(10*clock_hz/receiver_baud)
@@ -23,7 +23,7 @@ pub(super) struct Transceiver {
     bit: Cycles,
     levels: u64,
     enable: Option<(Instant, bool)>,
-    /// One at most: while it is sent the receiver is deaf, and before it no frame can end.
+    /// At most one: the receiver is deaf while it is sent, and no frame can end before it starts.
     reply: Option<Reply>,
     next: Instant,
 }
@@ -60,7 +60,7 @@ impl Transceiver {
         self.next
     }
 
-    /// EN, TX and DE in cycle `now`, which is the next one, and when they change after it.
+    /// EN, TX and DE in cycle `now`, the next one, and when they change after it.
     pub(super) fn in_cycle(&self, now: Instant) -> (Levels, Instant) {
         if now != self.next {
             return (Levels(self.levels), self.next);
@@ -92,14 +92,14 @@ impl Transceiver {
                 self.reply = None;
             }
         }
-        self.look_ahead(now);
+        self.schedule_next(now);
     }
 
     const fn set(&mut self, mask: u64, high: bool) {
         self.levels = if high { self.levels | mask } else { self.levels & !mask };
     }
 
-    fn look_ahead(&mut self, now: Instant) {
+    fn schedule_next(&mut self, now: Instant) {
         let enable = self.enable.map_or(Instant::NEVER, |(at, _)| at);
         let reply = self.reply.as_ref().map_or(Instant::NEVER, |reply| {
             if now < reply.rise { reply.rise } else { reply.sender.next_edge().min(reply.fall) }
@@ -107,7 +107,6 @@ impl Transceiver {
         self.next = enable.min(reply);
     }
 
-    /// From the end of a frame to the rise of DE.
     pub(super) const fn turnaround(&self) -> Cycles {
         Cycles(TURNAROUND_BITS * self.bit.0)
     }
@@ -115,10 +114,10 @@ impl Transceiver {
     pub(super) fn enable(&mut self, now: Instant, high: bool) {
         debug_assert!(self.enable.is_none_or(|(at, _)| at == now.next()), "EN was due before {now:?}");
         self.enable = Some((now.next(), high));
-        self.look_ahead(now);
+        self.schedule_next(now);
     }
 
-    /// Answers a frame that ended in cycle `now`. Returns the first start bit and the fall of DE.
+    /// Replies to a frame that ended in cycle `now`. Returns the first start bit and the fall of DE.
     pub(super) fn reply(&mut self, now: Instant, bytes: &[u8]) -> (Instant, Instant) {
         debug_assert!(self.reply.is_none(), "a second reply before the first has been sent");
         debug_assert!(!bytes.is_empty() && bytes.len() <= REPLY_LEN, "a reply of {} bytes", bytes.len());
@@ -129,7 +128,7 @@ impl Transceiver {
         schedule.push(start, bytes);
         let sender = Sender::new(Rc::new(schedule), self.clock_hz, self.baud);
         self.reply = Some(Reply { rise, fall, sender });
-        self.look_ahead(now);
+        self.schedule_next(now);
         (start, fall)
     }
 }

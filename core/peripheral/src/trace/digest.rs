@@ -1,10 +1,9 @@
-//! The digest of a trace: XXH64, seed 0, over two little-endian words a record (DESIGN A3).
+//! The digest of a trace: XXH64, seed 0, over two little-endian words per record (DESIGN A3).
 
 use crate::signal::{Record, Sink};
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
-/// The digest of the records so far.
 #[derive(Clone)]
 pub struct Digest {
     hasher: XxHash64,
@@ -18,19 +17,17 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// The digest; 16 hexadecimal digits when printed with `{:016x}`.
+    /// The digest; print it with `{:016x}`.
     #[must_use]
     pub fn value(&self) -> u64 {
         self.hasher.finish()
     }
 
-    /// Number of records so far.
     #[must_use]
     pub const fn records(&self) -> u64 {
         self.records
     }
 
-    /// The digest of a stored trace.
     #[must_use]
     pub fn of(records: &[Record]) -> u64 {
         let mut digest = Self::default();

@@ -1,4 +1,4 @@
-//! A trace as the contract has it: its digest, its text, and the steps in it (DESIGN A3).
+//! Traces: digest, text form, and steps (DESIGN A3).
 //!
 //! ```
 //! use stepscope_peripheral::{signal::{Levels, Record}, trace::{Digest, parse_line, steps, write_record},
@@ -28,14 +28,13 @@ use crate::{
     units::Instant,
 };
 
-/// The levels in a cycle.
 #[must_use]
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     let after = trace.partition_point(|record| record.cycle <= at);
     after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }
 
-/// The signals that exports show: STEP and DIR of the used channels, then EN, RX, TX, DE.
+/// Signals shown by exports: STEP and DIR of each channel, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
     let channels = 0..u32::from(channels);
     channels.flat_map(|channel| [channel, 16 + channel]).chain(32..36)

@@ -1,14 +1,12 @@
-//! The steps that one channel really makes: when, and where they lead.
+//! The actual steps of a channel: cycles and positions.
 
 use crate::signal::Record;
 use alloc::vec::Vec;
 
-/// One rising STEP edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Step {
     pub cycle: u64,
-    /// In steps from the start of the run.
+    /// In steps from the start of the trace.
     pub position: i32,
 }
 
@@ -21,16 +19,15 @@ impl Step {
     }
 }
 
-/// All steps of a channel in a trace.
 #[must_use]
 pub fn steps(trace: &[Record], channel: u8) -> Vec<Step> {
     steps_in(trace, channel).collect()
 }
 
-/// As [`steps`], one by one.
+/// The same as an iterator.
 pub fn steps_in(trace: &[Record], channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
-    // A trace may begin within a pulse.
+    // A trace may start within a pulse.
     let (mut before, mut position) = (trace.first().map_or(0, |record| record.levels.step()), 0_i32);
     trace.iter().filter_map(move |record| {
         let step = record.levels.step();

@@ -1,4 +1,4 @@
-//! A trace as text: one record a line, cycle and levels in hexadecimal, a space between.
+//! A trace as text: one record per line, cycle and levels in hexadecimal with a space between.
 
 use crate::{
     signal::{Levels, Record},
@@ -7,12 +7,10 @@ use crate::{
 use core::fmt;
 
 /// Writes one record and a line feed: `1f4a 700000001`.
-/// Errors: those of the writer.
 pub fn write_record(out: &mut impl fmt::Write, record: Record) -> fmt::Result {
     writeln!(out, "{:x} {:x}", record.cycle.0, record.levels.0)
 }
 
-/// A line that is not a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParseError;
 
@@ -24,8 +22,8 @@ impl fmt::Display for ParseError {
 
 impl core::error::Error for ParseError {}
 
-/// Reads one line that [`write_record`] wrote.
-/// Errors: [`ParseError`] if it is no record.
+/// Reads a line written by [`write_record`].
+/// Errors: [`ParseError`] if it is not a record.
 pub fn parse_line(line: &str) -> Result<Record, ParseError> {
     let (cycle, levels) = line.trim_end().split_once(' ').ok_or(ParseError)?;
     let number = |text| u64::from_str_radix(text, 16).map_err(|_| ParseError);

@@ -1,4 +1,4 @@
-//! When the bits and bytes of a sender begin (DESIGN A4), for everyone who needs to know.
+//! When the bits and bytes of a sender begin (DESIGN A4).
 //!
 //! ```text
 //! bit k of a byte      t0 + floor(k * clock_hz / baud)
@@ -8,7 +8,7 @@
 //! ```
 //! use stepscope_peripheral::{units::Cycles, wire::BitTimes};
 //!
-//! let times = BitTimes::new(16_000_000, 115_200); // 138.9 cycles a bit
+//! let times = BitTimes::new(16_000_000, 115_200); // 138.9 cycles per bit
 //! assert_eq!([0, 1, 2].map(|bit| times.bit(bit)), [Cycles(0), Cycles(138), Cycles(277)]);
 //! assert_eq!(times.byte(1), Cycles(1388));
 //! ```
@@ -18,7 +18,6 @@ use crate::units::Cycles;
 /// Bits of a byte on the line: start, eight data bits, stop.
 pub const BYTE_BITS: u64 = 10;
 
-/// Bit and byte times at one rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTimes {
     clock_hz: u64,
@@ -26,34 +25,39 @@ pub struct BitTimes {
 }
 
 impl BitTimes {
-    /// At `baud` bits a second; 0 counts as 1.
+    /// At `baud` bits per second; 0 counts as 1.
     #[must_use]
     pub const fn new(clock_hz: u32, baud: u32) -> Self {
         Self { clock_hz: clock_hz as u64, baud: if baud == 0 { 1 } else { baud as u64 } }
     }
 
-    /// From a byte's start to the start of its bit `index`: 0 the start bit, 10 what follows the stop bit.
+    /// From the start of a byte to its bit `index`: 0 the start bit, 10 the end of the stop bit. Saturates.
     #[must_use]
     pub const fn bit(self, index: u64) -> Cycles {
-        Cycles(index * self.clock_hz / self.baud)
+        // At 1 GHz the product exceeds 64 bits after 1.8e9 bytes in a row.
+        let Some(product) = index.checked_mul(self.clock_hz) else {
+            let cycles = index as u128 * self.clock_hz as u128 / self.baud as u128;
+            return Cycles(if cycles > u64::MAX as u128 { u64::MAX } else { cycles as u64 });
+        };
+        Cycles(product / self.baud)
     }
 
-    /// From the first byte's start to the start of byte `index` of bytes in a row.
+    /// From the start of the first byte to the start of byte `index` of bytes in a row. Saturates.
     #[must_use]
     pub const fn byte(self, index: u64) -> Cycles {
-        self.bit(BYTE_BITS * index)
+        self.bit(BYTE_BITS.saturating_mul(index))
     }
 
-    /// How long `count` bytes in a row hold the line, to the end of the last stop bit.
+    /// Time that `count` bytes in a row take, to the end of the last stop bit. Saturates.
     #[must_use]
     pub const fn bytes(self, count: u64) -> Cycles {
         match count {
             0 => Cycles(0),
-            _ => Cycles(self.byte(count - 1).0 + self.bit(BYTE_BITS).0),
+            _ => Cycles(self.byte(count - 1).0.saturating_add(self.bit(BYTE_BITS).0)),
         }
     }
 
-    /// Of bytes in a row, the one that begins nearest to `after` the first one's start.
+    /// Of bytes in a row, the one whose start is nearest to `after` the start of the first.
     #[must_use]
     pub const fn nearest_byte(self, after: Cycles) -> u64 {
         let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
@@ -78,5 +82,15 @@ mod tests {
             [0, 0, 1, 1, 1, 2]
         );
         assert_eq!(BitTimes::new(7, 0).bit(1), Cycles(7));
+    }
+
+    #[test]
+    fn late_bytes_of_a_fast_clock_do_not_overflow() {
+        let times = BitTimes::new(1_000_000_000, 1_000_000);
+        for byte in [1_800_000_000, 1_900_000_000, 1 << 50] {
+            assert_eq!(times.byte(byte), Cycles(10_000 * byte));
+            assert_eq!(times.nearest_byte(times.byte(byte)), byte);
+        }
+        assert_eq!((times.byte(1 << 60), times.bytes(u64::MAX)), (Cycles(u64::MAX), Cycles(u64::MAX)));
     }
 }

@@ -1,41 +1,37 @@
-//! COBS read byte by byte (DESIGN A6): what each byte on the wire is to the content that it carries.
+//! A byte-wise COBS decoder that reports the role of each byte (DESIGN A6): controller, host and dissector share it.
 //!
 //! ```text
 //! wire     code  d  d  code  d  …  00       a code is the distance to the next zero, or to the end
-//! content        d  d    0   d  …           255 is the distance to the next code alone: no zero stood there
+//! content        d  d    0   d  …           255 is the distance to the next code, without a zero there
 //! ```
-//!
-//! The one place where COBS is taken apart: the controller, the host and the dissector read through it.
 //!
 //! ```
 //! use stepscope_peripheral::wire::cobs::{CobsByte, CobsDecoder};
 //!
 //! let mut reader = CobsDecoder::default();
-//! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // carries 7, 0, 8
+//! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // contains 7, 0, 8
 //! assert_eq!(read[1..], [CobsByte::Content, CobsByte::Zero, CobsByte::Content, CobsByte::End]);
 //! ```
 
 use cobs::{DecodeResult, DecoderState};
 
-/// The role of one byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum CobsByte {
     /// The first code of a frame.
     First,
     /// A code without a zero, or the zero of an empty run.
     Overhead,
     Content,
-    /// A code in place of a zero of the content.
+    /// A code in place of a zero in the content.
     Zero,
-    /// The delimiter of a whole frame.
+    /// The delimiter of a complete frame.
     End,
     /// A delimiter too early: the bytes before it are not COBS.
     Broken,
 }
 
 impl CobsByte {
-    /// The content of `byte`, which has this role.
+    /// The content of `byte` in this role.
     #[must_use]
     pub const fn content(self, byte: u8) -> Option<u8> {
         match self {
@@ -46,7 +42,6 @@ impl CobsByte {
     }
 }
 
-/// Reads byte by byte.
 #[derive(Debug)]
 pub struct CobsDecoder(DecoderState);
 
@@ -86,7 +81,7 @@ impl CobsDecoder {
         !matches!(self.0, DecoderState::Idle)
     }
 
-    /// Whether a delimiter here would end a whole frame.
+    /// Whether a delimiter would now end a complete frame.
     #[must_use]
     pub const fn is_whole(&self) -> bool {
         matches!(self.0, DecoderState::Grab(0) | DecoderState::GrabChain(0))

@@ -1,17 +1,16 @@
-//! Frames (DESIGN A6): what the framed protocol says, with a CRC and a delimiter.
+//! Frames of the framed protocol, with CRC and delimiter (DESIGN A6).
 //!
 //! ```text
-//! wire     COBS( address kind body crc ) 00       COBS keeps 00 for the delimiter
+//! wire     COBS( address kind body crc ) 00
 //! crc      CRC-32/ISCSI (Castagnoli) over address, kind and body, little-endian
 //! ```
 //!
-//! Both sides of the line read and write here: the controller takes frames and gives replies, the
-//! host the other way round.
+//! The controller decodes frames and encodes replies; the host does the opposite.
 //!
 //! ```
 //! use stepscope_peripheral::{protocol::Kind, wire::frame::{Deframed, Deframer, Ticks, emit}};
 //!
-//! // Two ticks of one channel for controller 7: 5 steps right, 3 left.
+//! // Two ticks of one channel of controller 7: 5 steps right, 3 left.
 //! let wire = emit(7, Kind::Ticks as u8, &Ticks::emit(0, 1, &[0x85, 0x03]));
 //! let mut deframer = Deframer::default();
 //! let (last, bytes) = wire.split_last().expect("a delimiter");
@@ -30,12 +29,10 @@ use crate::wire::{
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 
-/// CRC-32/ISCSI.
 pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
-/// The delimiter: the end of a frame.
 pub const DELIMITER: u8 = 0;
 
-/// `content` (address, kind, body) with its CRC, in COBS, with the delimiter.
+/// `content` (address, kind, body) with CRC, COBS and delimiter.
 #[must_use]
 pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     let mut content = content.to_vec();
@@ -45,33 +42,27 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// Bytes of the CRC.
 pub const CRC_LEN: usize = 4;
 /// Minimum decoded bytes of a frame: address, kind and CRC.
 pub const MIN_DECODED: usize = 2 + CRC_LEN;
-/// Maximum decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
-/// Bytes of a status.
 pub const STATUS_LEN: usize = 9;
-/// Bytes of a position counter.
 pub const POSITION_LEN: usize = 4;
-/// Bytes of an ACK on the wire, in COBS with its delimiter; POSITIONS has its counters in addition.
+/// Bytes of an ACK on the wire, with COBS and delimiter; POSITIONS adds its counters.
 pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
-/// Bytes of a NAK on the wire: an ACK's, and the reason.
+/// Bytes of a NAK on the wire: an ACK and the reason.
 pub const NAK_LEN: usize = ACK_LEN + 1;
 /// Maximum bytes of a reply on the wire: POSITIONS with all channels.
 pub const REPLY_LEN: usize = reply_len(Kind::Positions, MAX_CHANNELS as u8);
-/// COBS needs one code per so many bytes.
 const COBS_RUN: usize = 254;
-/// Set in the kind of a reply that acknowledges.
+/// Set in the kind of a positive reply.
 pub const ACK: u8 = 0x80;
-/// Kind of a reply that refuses.
+/// Kind of a negative reply.
 pub const NAK: u8 = 0xff;
 
-// The longest TICKS frame fits.
 const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);
 const _: () = assert!(ACK_LEN == 17 && NAK_LEN == 18 && REPLY_LEN == 81);
-// COBS needs one byte; the delimiter is the other.
+// COBS adds one byte, and the delimiter is another.
 const _: () = assert!(REPLY_LEN - 2 <= COBS_RUN);
 // Kinds, their acknowledgements and NAK are distinct.
 const _: () = {
@@ -107,7 +98,7 @@ fn parse_status(bytes: &[u8]) -> Option<Status> {
 }
 
 impl Reply {
-    /// The reply in bytes. `positions` are those of the ACK of POSITIONS.
+    /// Encodes the reply; `positions` for the ACK of POSITIONS only.
     #[must_use]
     pub fn emit(&self, positions: Option<&Positions>) -> Vec<u8> {
         debug_assert_eq!(positions.is_some(), self.answer == Ok(Kind::Positions), "{self:?}");
@@ -122,7 +113,7 @@ impl Reply {
         emit(self.address, kind, &body)
     }
 
-    /// The reply in a frame; its position counters are [`Frame::positions`].
+    /// Decodes a reply; [`Frame::positions`] has its position counters.
     #[must_use]
     pub fn parse(frame: Frame<'_>) -> Option<Self> {
         parse_reply(frame).map(|(reply, _)| reply)
@@ -130,13 +121,13 @@ impl Reply {
 }
 
 fn parse_reply(frame: Frame<'_>) -> Option<(Reply, Option<Positions>)> {
-    let (answer, told) = if frame.kind == NAK {
-        let (&reason, told) = frame.body.split_first()?;
-        (Err(Reason::parse(reason)?), told)
+    let (answer, content) = if frame.kind == NAK {
+        let (&reason, content) = frame.body.split_first()?;
+        (Err(Reason::parse(reason)?), content)
     } else {
         (Ok(Kind::parse(frame.kind & !ACK).filter(|_| frame.kind & ACK != 0)?), frame.body)
     };
-    let (status, rest) = told.split_at_checked(STATUS_LEN)?;
+    let (status, rest) = content.split_at_checked(STATUS_LEN)?;
     let positions = match (answer, rest) {
         (Ok(Kind::Positions), counters) => Some(parse_positions(counters)?),
         (_, []) => None,
@@ -153,11 +144,9 @@ fn parse_positions(bytes: &[u8]) -> Option<Positions> {
     Positions::new(used)
 }
 
-/// A frame whose CRC is right.
+/// A frame with a valid CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Frame<'a> {
-    /// 255 addresses all.
     pub address: u8,
     pub kind: u8,
     pub body: &'a [u8],
@@ -171,7 +160,6 @@ impl Frame<'_> {
     }
 }
 
-/// A frame in bytes, with CRC and delimiter.
 #[must_use]
 pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
@@ -181,7 +169,6 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
 
 /// The body of a TICKS frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Ticks<'a> {
     pub seq: u8,
     channels: usize,
@@ -189,7 +176,7 @@ pub struct Ticks<'a> {
 }
 
 impl<'a> Ticks<'a> {
-    /// Reads a body for a controller with `channels` channels; `None` is BAD_BODY.
+    /// Decodes the body for a controller with `channels` channels; `None` is BAD_BODY.
     #[must_use]
     pub fn parse(body: &'a [u8], channels: u8) -> Option<Self> {
         let (&[seq, count], commands) = body.split_first_chunk()?;
@@ -198,7 +185,7 @@ impl<'a> Ticks<'a> {
         fits.then_some(Self { seq, channels, commands })
     }
 
-    /// The body of ticks, `channels` bytes each.
+    /// The body for ticks of `channels` bytes each.
     #[must_use]
     pub fn emit(seq: u8, channels: u8, commands: &[u8]) -> Vec<u8> {
         let count = commands.len() / usize::from(channels.max(1));
@@ -208,7 +195,7 @@ impl<'a> Ticks<'a> {
         body
     }
 
-    /// How many, 1..=32.
+    /// Number of ticks, 1..=32.
     #[must_use]
     pub fn count(&self) -> usize {
         self.commands.len() / self.channels
@@ -220,41 +207,36 @@ impl<'a> Ticks<'a> {
         self.commands
     }
 
-    /// The ticks one by one.
     pub fn iter(&self) -> impl Iterator<Item = Tick> + use<'a> {
         self.commands.chunks(self.channels).map(|commands| {
             let mut tick = [0; MAX_CHANNELS];
-            tick.iter_mut().zip(commands).for_each(|(place, &byte)| *place = byte);
+            tick.iter_mut().zip(commands).for_each(|(command, &byte)| *command = byte);
             tick
         })
     }
 }
 
-/// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Deframed<'a> {
-    /// A frame whose CRC is right.
+    /// A frame with a valid CRC.
     Frame(Frame<'a>),
-    /// Not COBS, or too short for a frame.
     Short,
-    /// The CRC is wrong.
     BadCrc {
         found: u32,
-        /// The CRC of what came before it.
+        /// The CRC of the content.
         expected: u32,
     },
-    /// Too long; the rest is dropped up to the next delimiter.
+    /// Too long; bytes are dropped up to the next delimiter.
     Overlong,
 }
 
-/// Joins bytes to frames.
+/// Assembles frames from bytes.
 #[derive(Clone, Debug)]
 pub struct Deframer {
     cobs: CobsDecoder,
     /// Invariant: at most [`MAX_DECODED`].
     content: Vec<u8>,
-    /// Drops bytes up to the next delimiter.
+    /// Bytes are dropped up to the next delimiter.
     dropping: bool,
 }
 

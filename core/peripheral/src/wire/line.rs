@@ -1,26 +1,22 @@
-//! The level of the serial line (DESIGN A4, A9): what the host sends, what controllers reply, and
-//! what is forced upon it.
-//!
-//! A level that is forced is heard whatever is sent; else the line is the AND of all that send. The
-//! line tells when what the host sends or what is forced changes next, so a run can skip what lies
-//! between.
+//! The level of the serial line (DESIGN A4, A9): a forced level, else the AND of all senders. [`Line::next_change`] lets a
+//! run skip the cycles between changes.
 //!
 //! ```
 //! use std::rc::Rc;
 //! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::{Device, Faults}, signal::Record,
 //!     units::{Cycles, Instant}, wire::{ForcedLevel, Line, Schedule}};
 //!
-//! // A packet of one channel, and a break that is held over its stop bit.
+//! // A packet of one channel, and a break over its stop bit.
 //! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
 //! let broken = ForcedLevel { start: Instant(2000), end: Instant(5000), level: false };
 //! let mut line = Line::new(Rc::new(host), &[broken], 16_000_000, 115_200);
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
 //! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
-//! // From change to change of the line, which the device does not answer on.
+//! // From change to change of the line; the device does not reply.
 //! while device.now() < Instant(20_000) {
 //!     let next = line.next_change().min(Instant(20_000));
-//!     device.run(line.heard(true), next, &mut trace);
+//!     device.run(line.level(true), next, &mut trace);
 //!     if next == line.next_change() {
 //!         line.change();
 //!     }
@@ -32,9 +28,7 @@ use crate::units::Instant;
 use crate::wire::{Schedule, sender::Sender};
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
-/// A level forced on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ForcedLevel {
     pub start: Instant,
     pub end: Instant,
@@ -47,18 +41,17 @@ impl ForcedLevel {
     }
 }
 
-/// The line, from change to change.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
-    /// Invariant: disjoint and rising; those before `passed` are over.
+    /// Invariant: disjoint and rising; those before `passed` have ended.
     forced: Rc<Vec<ForcedLevel>>,
     passed: usize,
     force: Option<bool>,
     next: Instant,
-    /// Next change of the level that is heard while no controller sends, tracked while levels remain to be forced: a
-    /// forced level may equal the line's own. Else [`Instant::RESET`].
-    next_heard: Instant,
+    /// Next change of the level while no controller sends; [`Instant::RESET`] without future forced levels. It may be
+    /// later than `next`, because a forced level may equal the line's own.
+    next_level_change: Instant,
 }
 
 impl Line {
@@ -72,56 +65,54 @@ impl Line {
             passed: 0,
             force: None,
             next: Instant::NEVER,
-            next_heard: Instant::NEVER,
+            next_level_change: Instant::NEVER,
         };
-        line.look_ahead();
-        line.find_heard();
+        line.schedule_next();
+        line.find_level_change();
         line
     }
 
-    /// What the host has sent and will send, as far as it is known.
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         self.sender.schedule()
     }
 
-    /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
-        self.look_ahead();
-        self.find_heard();
+        self.schedule_next();
+        self.find_level_change();
     }
 
-    /// Adds bytes to the last send. The first must not begin before the next cycle.
+    /// Adds bytes to the last send. The first byte must not begin before the next cycle.
     pub fn extend(&mut self, bytes: &[u8]) {
         self.sender.extend(bytes);
-        self.look_ahead();
-        self.find_heard();
+        self.schedule_next();
+        self.find_level_change();
     }
 
-    /// Forgets what has been sent, to bound the memory of an endless line.
+    /// Removes past sends, to bound the memory of an endless line.
     pub fn forget_sent(&mut self) {
         self.sender.forget_sent();
     }
 
-    /// Forces a level in future cycles; it wins over earlier ones.
+    /// Forces a level in future cycles; it replaces earlier ones.
     pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.ends_by(new.start));
         let end = forced.partition_point(|one| !new.ends_by(one.start));
-        let met = forced.get(first..end).unwrap_or_default();
-        let before = met.first().filter(|one| one.start < new.start);
-        let after = met.last().filter(|one| one.end > new.end);
+        let overlapping = forced.get(first..end).unwrap_or_default();
+        let before = overlapping.first().filter(|one| one.start < new.start);
+        let after = overlapping.last().filter(|one| one.end > new.end);
         let before = before.map(|one| ForcedLevel { end: new.start, ..*one });
         let after = after.map(|one| ForcedLevel { start: new.end, ..*one });
         forced.splice(first..end, [before, Some(new), after].into_iter().flatten());
         let around = first.saturating_sub(1)..forced.len().min(first + 4);
         debug_assert!(
             is_flat(forced.get(around).unwrap_or_default()),
-            "{new:?} meets what was forced before"
+            "{new:?} overlaps what was forced before"
         );
-        self.look_ahead();
-        self.find_heard();
+        self.schedule_next();
+        self.find_level_change();
     }
 
     /// Forced levels, past and future, rising in time and disjoint.
@@ -130,13 +121,13 @@ impl Line {
         &self.forced
     }
 
-    /// The level in the current cycle while all others together send `others`.
+    /// The level in the current cycle while all controllers together send `others`.
     #[must_use]
-    pub fn heard(&self, others: bool) -> bool {
+    pub fn level(&self, others: bool) -> bool {
         self.force.unwrap_or(self.sender.level() && others)
     }
 
-    /// The level as the host hears it, while controllers send `others`.
+    /// The level that the host receives while controllers send `others`.
     #[must_use]
     pub fn replied(&self, others: bool) -> bool {
         self.force.unwrap_or(others)
@@ -154,25 +145,25 @@ impl Line {
         self.next
     }
 
-    /// Whether no audible change is left while no controller sends.
+    /// Whether the level no longer changes while no controller sends.
     #[must_use]
     pub fn is_over(&self) -> bool {
-        self.next == Instant::NEVER || self.next_heard == Instant::NEVER
+        self.next == Instant::NEVER || self.next_level_change == Instant::NEVER
     }
 
-    fn find_heard(&mut self) {
+    fn find_level_change(&mut self) {
         if self.passed == self.forced.len() {
-            self.next_heard = Instant::RESET;
+            self.next_level_change = Instant::RESET;
             return;
         }
-        let (mut ahead, level) = (self.clone(), self.heard(true));
-        self.next_heard = loop {
+        let (mut ahead, level) = (self.clone(), self.level(true));
+        self.next_level_change = loop {
             let now = ahead.next;
             if now == Instant::NEVER {
                 break now;
             }
             ahead.enter(now);
-            if ahead.heard(true) != level {
+            if ahead.level(true) != level {
                 break now;
             }
         };
@@ -182,8 +173,8 @@ impl Line {
     pub fn change(&mut self) {
         let now = self.next;
         self.enter(now);
-        if now == self.next_heard {
-            self.find_heard();
+        if now == self.next_level_change {
+            self.find_level_change();
         }
     }
 
@@ -195,7 +186,7 @@ impl Line {
         if self.passed < self.forced.len() {
             self.follow_forced(now);
         }
-        self.look_ahead();
+        self.schedule_next();
     }
 
     fn follow_forced(&mut self, now: Instant) {
@@ -203,13 +194,13 @@ impl Line {
             self.passed += 1;
         }
         if self.passed == self.forced.len() {
-            self.next_heard = Instant::RESET;
+            self.next_level_change = Instant::RESET;
         }
         self.force =
             self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
     }
 
-    fn look_ahead(&mut self) {
+    fn schedule_next(&mut self) {
         let force = self
             .forced
             .get(self.passed)
@@ -218,7 +209,7 @@ impl Line {
     }
 }
 
-/// Makes overlapping levels disjoint and rising: the later entry wins.
+/// Makes overlapping levels disjoint and rising; the later entry wins.
 fn flatten(forced: &[ForcedLevel]) -> Vec<ForcedLevel> {
     let mut bounds: Vec<(Instant, usize)> =
         forced.iter().enumerate().flat_map(|(i, f)| [(f.start, i), (f.end, i)]).collect();
@@ -271,12 +262,12 @@ mod tests {
         while !line.is_over() {
             let at = line.next_change();
             line.change();
-            if line.heard(true) != level {
+            if line.level(true) != level {
                 level = !level;
                 found.push(at.0);
             }
         }
-        assert!(line.heard(true), "the line ends idle");
+        assert!(line.level(true), "the line ends idle");
         found
     }
 
@@ -342,7 +333,7 @@ mod tests {
                 assert_eq!(line.is_over(), changes.len() == due.len(), "{before:?} {new:?} {changes:?}");
                 let at = line.next_change();
                 line.change();
-                if core::mem::replace(&mut level, line.heard(true)) != line.heard(true) {
+                if core::mem::replace(&mut level, line.level(true)) != line.level(true) {
                     changes.push(at.0);
                 }
             }

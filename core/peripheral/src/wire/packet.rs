@@ -1,16 +1,15 @@
-//! Raw packets (DESIGN A5, RU 2704486): bytes, and the commands that they mean.
+//! Raw packets (DESIGN A5, RU 2704486).
 //!
-//! A packet is one byte a channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps;
-//! on an addressed line the controller's address stands first. Raw packets have no end mark: a
-//! pause of more than 45 bit times is a gap, and the next byte begins a packet.
+//! A packet has one byte per channel, bit 7 the direction (1 = right), bits 6..=0 the number of steps; on an addressed
+//! line the controller's address comes first. A pause of more than 45 bit times is a gap: the next byte begins a packet.
 //!
 //! ```
 //! use stepscope_peripheral::wire::packet::ChannelCommand;
 //!
-//! let order = ChannelCommand { right: true, steps: 5 };
-//! assert_eq!(order.emit(), Some(0x85));
-//! assert_eq!(ChannelCommand::parse(0x85), order);
-//! assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None); // seven bits hold 127
+//! let command = ChannelCommand { right: true, steps: 5 };
+//! assert_eq!(command.emit(), Some(0x85));
+//! assert_eq!(ChannelCommand::parse(0x85), command);
+//! assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None); // seven bits hold at most 127
 //! ```
 
 use crate::{
@@ -19,16 +18,14 @@ use crate::{
 };
 
 const RIGHT: u8 = 1 << 7;
-/// Maximum steps of a command, in the bits below the direction.
 pub const MAX_STEPS: u8 = RIGHT - 1;
-/// The address of all controllers.
+/// Broadcast address.
 pub const ALL: u8 = 255;
-/// Bit times after the last byte that still continue a packet.
+/// Maximum pause within a packet in bit times.
 pub const GAP_BITS: u64 = 45;
 
 /// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ChannelCommand {
     pub right: bool,
     /// Steps, 0..=127.
@@ -36,7 +33,6 @@ pub struct ChannelCommand {
 }
 
 impl ChannelCommand {
-    /// Reads a byte.
     #[must_use]
     pub const fn parse(byte: u8) -> Self {
         Self { right: byte & RIGHT != 0, steps: byte & MAX_STEPS }
@@ -53,22 +49,19 @@ impl ChannelCommand {
 /// One tick's commands, one byte per channel; unused channels have 0.
 pub type Tick = [u8; MAX_CHANNELS];
 
-/// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unpacked {
-    /// A packet for this controller.
     Own(Tick),
-    /// A packet for another controller.
     OtherAddress,
 }
 
-/// Joins bytes to packets.
+/// Assembles packets from bytes.
 #[derive(Clone, Debug)]
 pub struct Unpacker {
     channels: u8,
     address: Option<u8>,
     gap: Cycles,
-    /// Commands so far, and bytes of the packet so far, with the address.
+    /// Commands so far, and received bytes with the address.
     /// Invariant: fewer bytes than a packet.
     commands: Tick,
     received: u8,
@@ -76,7 +69,7 @@ pub struct Unpacker {
     /// After a framing error, until a gap.
     ignoring: bool,
     /// When the gap ends the packet.
-    /// Invariant: [`Instant::NEVER`] exactly where no packet is open and nothing is ignored.
+    /// Invariant: [`Instant::NEVER`] exactly if no packet is open and nothing is ignored.
     deadline: Instant,
 }
 
@@ -96,13 +89,12 @@ impl Unpacker {
         }
     }
 
-    /// When the gap falls due; [`Instant::NEVER`] if no packet is open.
     #[must_use]
     pub const fn deadline(&self) -> Instant {
         self.deadline
     }
 
-    /// The gap falls due: true if it cuts a packet short.
+    /// The gap is due; returns whether it cuts a packet short.
     pub const fn gap(&mut self) -> bool {
         debug_assert!(self.received > 0 || self.ignoring, "nothing is open that a gap could end");
         let short = self.received > 0;

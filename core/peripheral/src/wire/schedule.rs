@@ -1,7 +1,5 @@
-//! The host's sends: bytes at cycles (DESIGN A9).
-//!
-//! A recorded line is such a schedule itself; packets are paced: packet j starts at boot + 1 + j*M*Ts, so tick follows
-//! tick without a pause.
+//! The host's sends: bytes at cycles (DESIGN A9). Packet j of a paced schedule starts at boot + 1 + j*M*Ts, so ticks follow
+//! each other without a pause.
 //!
 //! ```
 //! use stepscope_peripheral::{units::Instant, wire::{Schedule, schedule::line_time}};
@@ -18,11 +16,8 @@ use crate::wire::BitTimes;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Bytes sent back to back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Sent<'a> {
-    /// Cycle in which the first start bit falls.
     pub start: Instant,
     pub bytes: &'a [u8],
 }
@@ -37,8 +32,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// One packet per tick of `tick` cycles, from `start` on. The caller checks that the line can carry them
-    /// ([`line_time`]).
+    /// One packet per tick of `tick` cycles, from `start` on. The caller checks with [`line_time`] that the line is fast
+    /// enough.
     #[must_use]
     pub fn paced(start: Instant, tick: Cycles, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
         let mut schedule = Self::default();
@@ -61,7 +56,7 @@ impl Schedule {
         self.sends.push((start, self.bytes.len()));
     }
 
-    /// Adds bytes to the last send; without sends nothing.
+    /// Adds bytes to the last send, if there is one.
     pub fn extend(&mut self, bytes: &[u8]) {
         debug_assert!(!self.sends.is_empty(), "there is no send to extend");
         if let Some((_, end)) = self.sends.last_mut() {
@@ -70,40 +65,37 @@ impl Schedule {
         }
     }
 
-    /// Number of sends.
     #[must_use]
     pub fn len(&self) -> usize {
         self.sends.len()
     }
 
-    /// Whether nothing is sent.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.sends.is_empty()
     }
 
-    /// Bytes of all sends.
     #[must_use]
     pub fn total_bytes(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Send `index`, or `None` past the last.
+    /// Send `index`; `None` past the last.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<Sent<'_>> {
-        let (start, places) = self.places(index)?;
-        self.bytes.get(places).map(|bytes| Sent { start, bytes })
+        let (start, range) = self.byte_range(index)?;
+        self.bytes.get(range).map(|bytes| Sent { start, bytes })
     }
 
-    /// Start of a send, and the places of its bytes.
-    pub(super) fn places(&self, index: usize) -> Option<(Instant, Range<usize>)> {
+    /// Start of a send, and the range of its bytes.
+    pub(super) fn byte_range(&self, index: usize) -> Option<(Instant, Range<usize>)> {
         let &(start, end) = self.sends.get(index)?;
         let first = index.checked_sub(1).and_then(|before| self.sends.get(before)).map_or(0, |s| s.1);
         Some((start, first..end))
     }
 
-    pub(super) fn byte(&self, place: usize) -> Option<u8> {
-        self.bytes.get(place).copied()
+    pub(super) fn byte(&self, index: usize) -> Option<u8> {
+        self.bytes.get(index).copied()
     }
 
     /// The last send that begins in cycle `at` or before.
@@ -113,13 +105,12 @@ impl Schedule {
         self.get(after.checked_sub(1)?)
     }
 
-    /// All sends in order.
     pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
         (0..self.len()).filter_map(|index| self.get(index))
     }
 }
 
-/// Cycles that `bytes` bytes in a row hold the line, to the end of the last stop bit; a rate of 0 counts as 1 baud.
+/// Cycles that `bytes` bytes in a row take, to the end of the last stop bit; a rate of 0 counts as 1 baud.
 #[must_use]
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
     BitTimes::new(clock_hz, baud).bytes(bytes).0

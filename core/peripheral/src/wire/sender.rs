@@ -1,4 +1,4 @@
-//! The sender of the serial line (DESIGN A4): bytes as edges, exact to the cycle.
+//! The sender of the serial line (DESIGN A4): bytes as edges, to the cycle. Host and controllers share it.
 //!
 //! ```text
 //!  idle  start  d0    d1        d7   stop
@@ -6,9 +6,6 @@
 //!       └─────┴─────┴─────┴   ┴─────┘
 //!       t0    |     |  bit k begins at t0 + floor(k*clock_hz/baud)
 //! ```
-//!
-//! The j-th of bytes sent back to back from t0 starts at t0 + floor(10*j*clock_hz/baud). Host and
-//! controllers send by the same rule.
 //!
 //! ```
 //! use std::rc::Rc;
@@ -22,7 +19,7 @@
 //!     edges.push(sender.next_edge().0);
 //!     sender.pass();
 //! }
-//! // 16 cycles a bit: the start bit falls, four zeros later the line rises, and stays for the stop bit.
+//! // 16 cycles per bit: the start bit falls, the line rises four zeros later and stays high for the stop bit.
 //! assert_eq!(edges, [100, 180]);
 //! ```
 
@@ -31,20 +28,19 @@ use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
 use alloc::{rc::Rc, vec::Vec};
 use core::ops::Range;
 
-/// Iterates over the edges of a schedule's bytes.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
     times: BitTimes,
-    /// Sends that have begun; of the last one the start, the bytes that have begun, and the places of the others.
+    /// Sends begun; of the last one its start, the bytes begun, and the range of the other bytes.
     sends: usize,
     send_start: Instant,
     bytes_begun: u64,
-    places: Range<usize>,
+    rest: Range<usize>,
     byte_start: Instant,
-    /// Bits of the current byte that differ from the bit before them and have not passed, the start bit lowest.
+    /// Bits of the current byte that differ from the bit before and are not passed yet, the start bit lowest.
     edges: u16,
-    /// Where the first of them is; [`Instant::NEVER`] without one.
+    /// Cycle of the lowest one; [`Instant::NEVER`] without one.
     next: Instant,
     level: bool,
 }
@@ -59,7 +55,7 @@ impl Sender {
             sends: 0,
             send_start: Instant::NEVER,
             bytes_begun: 0,
-            places: 0..0,
+            rest: 0..0,
             byte_start: Instant::NEVER,
             edges: 0,
             next: Instant::NEVER,
@@ -69,13 +65,11 @@ impl Sender {
         sender
     }
 
-    /// All that has been sent and will be.
     #[must_use]
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
-    /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         Rc::make_mut(&mut self.schedule).push(start, bytes);
         if self.edges == 0 {
@@ -83,56 +77,53 @@ impl Sender {
         }
     }
 
-    /// Adds bytes to the last send. The first must not begin before the next cycle.
+    /// Adds bytes to the last send. The first byte must not begin before the next cycle.
     pub fn extend(&mut self, bytes: &[u8]) {
         let schedule = Rc::make_mut(&mut self.schedule);
         schedule.extend(bytes);
         if self.sends == schedule.len() {
-            self.places.end = schedule.total_bytes();
+            self.rest.end = schedule.total_bytes();
         }
         if self.edges == 0 {
             self.load();
         }
     }
 
-    /// Forgets the bytes that have been sent, if the last send has begun.
     pub fn forget_sent(&mut self) {
         if self.sends == 0 || self.sends < self.schedule.len() {
             return;
         }
-        let rest: Vec<u8> = self.places.clone().filter_map(|place| self.schedule.byte(place)).collect();
+        let rest: Vec<u8> = self.rest.clone().filter_map(|index| self.schedule.byte(index)).collect();
         let mut schedule = Schedule::default();
         schedule.push(self.send_start, &rest);
-        (self.sends, self.places) = (1, 0..rest.len());
+        (self.sends, self.rest) = (1, 0..rest.len());
         self.schedule = Rc::new(schedule);
     }
 
-    /// The current level.
     #[must_use]
     pub const fn level(&self) -> bool {
         self.level
     }
 
     fn load(&mut self) {
-        while self.places.is_empty() {
-            let Some((start, places)) = self.schedule.places(self.sends) else {
+        while self.rest.is_empty() {
+            let Some((start, rest)) = self.schedule.byte_range(self.sends) else {
                 (self.edges, self.next) = (0, Instant::NEVER);
                 return;
             };
             self.sends += 1;
-            (self.send_start, self.places, self.bytes_begun) = (start, places, 0);
+            (self.send_start, self.rest, self.bytes_begun) = (start, rest, 0);
         }
-        let byte = self.schedule.byte(self.places.start).unwrap_or_default();
-        self.places.start += 1;
+        let byte = self.schedule.byte(self.rest.start).unwrap_or_default();
+        self.rest.start += 1;
         self.byte_start = self.send_start + self.times.byte(self.bytes_begun);
         self.bytes_begun += 1;
-        // Start bit 0, data, stop bit 1; before the start bit the line is high.
+        // Start bit 0, data, stop bit 1; the line is high before the start bit.
         let frame = u16::from(byte) << 1 | 1 << 9;
         self.edges = (frame ^ (frame << 1 | 1)) & ((1 << BYTE_BITS) - 1);
         self.next = self.byte_start;
     }
 
-    /// Cycle of the next edge; [`Instant::NEVER`] without one.
     #[must_use]
     pub const fn next_edge(&self) -> Instant {
         self.next

@@ -1,10 +1,10 @@
-//! The receiver of the serial line (DESIGN A4): 8N1, one look a bit.
+//! The receiver of the serial line (DESIGN A4): 8N1, one sample per bit.
 //!
 //! ```text
-//! seen low at t; looks again at t + floor(B/2): high = a glitch, arms again in the next cycle
+//! low at t: samples again at t + floor(B/2); high is a glitch, and the receiver is armed from the next cycle
 //! data bit i at t + floor(B/2) + (i+1)*B, stop bit at t + floor(B/2) + 9*B
-//! stop high: the byte is delivered in that cycle, armed from the next
-//! stop low: framing error; arms in the cycle after the first later one that is high
+//! stop bit high: the byte is delivered in that cycle, armed from the next
+//! stop bit low: framing error; armed from the cycle after the first later one that is high
 //! ```
 //!
 //! ```
@@ -13,19 +13,17 @@
 //! // Bits of 16 cycles; the line is low from cycle 100 to 179: a start bit and four zeros.
 //! let mut receiver = Receiver::new(Cycles(16));
 //! let level = |cycle: u64| !(100..180).contains(&cycle);
-//! let heard = (1..300).find_map(|cycle| {
-//!     receiver.clock(Instant(cycle), level(cycle)).map(|heard| (cycle, heard))
+//! let event = (1..300).find_map(|cycle| {
+//!     receiver.clock(Instant(cycle), level(cycle)).map(|event| (cycle, event))
 //! });
-//! assert_eq!(heard, Some((252, RxEvent::Byte(0xf0)))); // 100 + 8 + 9 * 16
+//! assert_eq!(event, Some((252, RxEvent::Byte(0xf0)))); // 100 + 8 + 9 * 16
 //! ```
 
 use crate::units::{Cycles, Instant};
 
 const STOP: u32 = 9;
 
-/// What the receiver heard in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum RxEvent {
     Byte(u8),
     /// A byte whose stop bit was low.
@@ -34,15 +32,17 @@ pub enum RxEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Waits for the line to be low.
     Armed,
     /// Within a byte: the next bit to sample (0 start, 1..=8 data, 9 stop), when, and the data bits so far.
-    Sampling { bit: u32, at: Instant, byte: u8 },
+    Sampling {
+        bit: u32,
+        at: Instant,
+        byte: u8,
+    },
     /// After a framing error: waits for the line to be high.
     Broken,
 }
 
-/// The receiver.
 #[derive(Clone, Debug)]
 pub struct Receiver {
     bit_cycles: Cycles,
@@ -51,13 +51,11 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// An armed receiver of bit time `bit_cycles`.
     #[must_use]
     pub const fn new(bit_cycles: Cycles) -> Self {
         Self { bit_cycles, state: State::Armed, seen: Instant::RESET }
     }
 
-    /// Where the latest start bit was seen.
     #[must_use]
     pub const fn seen(&self) -> Instant {
         self.seen
@@ -74,7 +72,7 @@ impl Receiver {
         }
     }
 
-    /// Cycle `now` with the line at `rx`. No cycle of [`Self::deadline`] may have been skipped.
+    /// Runs cycle `now` with the line at `rx`. No cycle of [`Self::deadline`] may be skipped.
     pub fn clock(&mut self, now: Instant, rx: bool) -> Option<RxEvent> {
         match self.state {
             State::Armed if !rx => {

@@ -109,7 +109,7 @@ impl Bus {
         }
         for (index, node) in nodes.iter_mut().enumerate() {
             let others_low = low - u32::from(node.drives == Some(false));
-            node.hears = line.heard(others_low == 0);
+            node.hears = line.level(others_low == 0);
             let collides = node.drives.is_some() && (host_sends || driving > 1);
             if collides && !node.collides {
                 sinks.get_mut(index).event(now, Event::Collision);

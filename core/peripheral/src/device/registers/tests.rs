@@ -241,7 +241,7 @@ fn the_reply_to_positions_tells_what_the_registers_read_in_its_cycle() {
             if line.next_change() == now {
                 line.change();
             }
-            bench.device.clock(line.heard(true), &mut bench.left);
+            bench.device.clock(line.level(true), &mut bench.left);
             if now == Instant(100) {
                 bench.write(map::orders::OFFSET, 0x0284);
                 bench.write(map::push::OFFSET, 0);

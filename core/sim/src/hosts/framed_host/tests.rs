@@ -61,7 +61,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
             line.change();
         }
         let (driven, sending) = (device.driven().unwrap_or(true), host.is_sending(now));
-        let level = line.heard(true);
+        let level = line.level(true);
         host.clock(now, sending || line.replied(driven), &mut meant);
         if let Some(sent) = meant.schedule().get(frames.len()) {
             let (bytes, crashed) = spoil(frames.len(), sent.bytes);

@@ -1,4 +1,4 @@
-//! In which order a TICKS frame is judged (DESIGN A6), walked from its first reason to its last:
+//! In which order a TICKS frame is validated (DESIGN A6), walked from its first reason to its last:
 //!
 //! ```text
 //! BAD_BODY > repeat > BAD_SEQ > STOPPED > BUSY > TOO_MANY_STEPS > QUEUE_FULL > queued
@@ -48,12 +48,12 @@ const BOOTING: Bus = Bus { boot_cycles: LONG, ..BUS };
 
 /// What became of the frames, and what was replied.
 #[derive(Default)]
-struct ValidatedScenario {
+struct Log {
     outcomes: Vec<FrameOutcome>,
     replies: Vec<Reply>,
 }
 
-impl Sink for ValidatedScenario {
+impl Sink for Log {
     fn record(&mut self, _: Record) {}
 
     fn event(&mut self, _: Instant, event: Event) {
@@ -71,7 +71,7 @@ type Sent<'a> = (Kind, &'a [u8]);
 type Case<'a> = (&'a Bus, &'a [Sent<'a>], &'a [u8], FrameOutcome, Faults);
 
 /// Sends the frames of `before` to all, which is never answered, and then TICKS with this body to the controller.
-fn judge(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
+fn send_ticks(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
     let serial = SerialLine { baud: BAUD, protocol: Protocol::Framed, ..SerialLine::default() };
     let config = Config::new(CLOCK_HZ, bus, &serial).expect("it holds");
     let mut schedule = Schedule::default();
@@ -82,23 +82,23 @@ fn judge(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
         schedule.push(end, &frame);
         end += Cycles(APART);
     }
-    let (mut device, mut judged) = (Device::new(&config), ValidatedScenario::default());
+    let (mut device, mut log) = (Device::new(&config), Log::default());
     let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
     while device.now() < end {
         if line.next_change() == device.now() {
             line.change();
         }
-        device.run(line.heard(true), line.next_change().min(end), &mut judged);
+        device.run(line.level(true), line.next_change().min(end), &mut log);
     }
-    assert_eq!(judged.outcomes.len(), before.len() + 1, "each frame is judged");
-    let outcome = *judged.outcomes.last().expect("the last one, too");
-    let answers: Vec<_> = judged.replies.iter().map(|reply| Some(reply.answer)).collect();
+    assert_eq!(log.outcomes.len(), before.len() + 1, "each frame is validated");
+    let outcome = *log.outcomes.last().expect("the last one, too");
+    let answers: Vec<_> = log.replies.iter().map(|reply| Some(reply.answer)).collect();
     assert_eq!(answers, [outcome.answer()], "the one frame for this controller alone is answered");
     (outcome, device.faults())
 }
 
 #[test]
-fn of_two_reasons_that_hold_at_once_the_earlier_is_told() {
+fn of_two_reasons_that_hold_at_once_the_earlier_is_reported() {
     let refused = FrameOutcome::Refused;
     let taken: Sent = (Kind::Ticks, &[0, 1, 1]);
     let [stop, enable, resync]: [Sent; 3] =
@@ -141,7 +141,7 @@ fn of_two_reasons_that_hold_at_once_the_earlier_is_told() {
         ],
     ];
     for (bus, before, body, outcome, faults) in rows.into_iter().flatten() {
-        assert_eq!(judge(bus, before, body), (outcome, faults), "{before:?}, then TICKS {body:?}");
+        assert_eq!(send_ticks(bus, before, body), (outcome, faults), "{before:?}, then TICKS {body:?}");
     }
     // Each row's second is the next one's first.
     assert!(rows.windows(2).all(|pair| pair[0][1].3 == pair[1][0].3), "the walk has no gap");
@@ -151,6 +151,6 @@ fn of_two_reasons_that_hold_at_once_the_earlier_is_told() {
 fn a_frame_for_which_every_later_reason_holds_is_refused_for_its_sequence_number() {
     // Stopped, in the self-test, five steps in four slots, three ticks for two places.
     let body = Ticks::emit(1, 1, &[5, 5, 5]);
-    let (outcome, faults) = judge(&BOOTING, &[(Kind::Stop, &[])], &body);
+    let (outcome, faults) = send_ticks(&BOOTING, &[(Kind::Stop, &[])], &body);
     assert_eq!((outcome, faults), (FrameOutcome::Refused(Reason::BadSeq), Faults::BAD_SEQ));
 }
