@@ -117,8 +117,9 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), F
         match found.iter_mut().find(|alone| alone.setup.motors.first() == Some(motor)) {
             Some(alone) => alone.channels.push(channel),
             None => {
-                found
-                    .extend(setup.alone(channel).map(|setup| SingleMotor { channels: vec![channel], setup }));
+                found.extend(
+                    setup.single_motor(channel).map(|setup| SingleMotor { channels: vec![channel], setup }),
+                );
             }
         }
     }
@@ -225,7 +226,7 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let (common, path) = (&arguments.common, &arguments.common.scenario);
     let ramp = arguments.ramp.get();
     let (_, _, motors) = motors(common)?;
-    let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_a_turn);
+    let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_per_turn);
     // The pull-out rates take longer, so they come first.
     let all = on_threads(common, ("limits", "searches"), 2 * motors.len(), |index| {
         let Some(alone) = motors.get(index / 2) else { return Ok(None) };

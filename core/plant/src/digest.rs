@@ -1,9 +1,9 @@
-//! The digest of a plant: XXH64, seed 0, at each twentieth point (F8).
+//! XXH64 digest of a plant, seed 0, over every twentieth grid point (PLANT F8).
 
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
-const EVERY: u32 = 20;
+const PERIOD: u32 = 20;
 
 #[derive(Clone)]
 pub(crate) struct Digest {
@@ -13,7 +13,7 @@ pub(crate) struct Digest {
 
 impl Default for Digest {
     fn default() -> Self {
-        Self { hasher: XxHash64::with_seed(0), wait: EVERY }
+        Self { hasher: XxHash64::with_seed(0), wait: PERIOD }
     }
 }
 
@@ -24,12 +24,11 @@ impl core::fmt::Debug for Digest {
 }
 
 impl Digest {
-    #[inline(always)]
     pub(crate) fn is_due(&mut self) -> bool {
         self.wait -= 1;
         let is_due = self.wait == 0;
         if is_due {
-            self.wait = EVERY;
+            self.wait = PERIOD;
         }
         is_due
     }

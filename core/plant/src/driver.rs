@@ -1,29 +1,28 @@
-//! The driver of one motor: from the count of steps to target currents, from those to the voltages of the phases (F4).
+//! The driver of one motor: from step counts to target currents, and from those to phase voltages (PLANT F4).
 
 use crate::{
     parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel},
     sincos::{nearest, sincos},
 };
 
-/// What a driver does to a phase in one (sub-)step.
+/// What a driver applies to a phase in one (sub-)step.
 #[derive(Clone, Copy)]
 pub(crate) struct Applied {
     pub(crate) v: f64,
     pub(crate) is_open: bool,
-    /// The current has decayed through the diodes at the step's end.
+    /// The current reaches 0 through the diodes by the end of the step.
     pub(crate) ends: bool,
 }
 
 impl Applied {
-    #[inline(always)]
     const fn voltage(v: f64) -> Self {
         Self { v, is_open: false, ends: false }
     }
 }
 
-/// What [`Phase`] is asked with, in each (sub-)step: e, i, and the constants of the step.
+/// Back EMF, current and the constants of a (sub-)step.
 #[derive(Clone, Copy)]
-pub(crate) struct Ask {
+pub(crate) struct PhaseInput {
     pub(crate) e: f64,
     pub(crate) i: f64,
     pub(crate) r: f64,
@@ -42,9 +41,9 @@ pub(crate) struct Phase {
 struct Chopper {
     is_off: bool,
     count: u32,
-    /// In this off-time the current has been seen to have passed 0.
+    /// The current has passed 0 in this off-time.
     has_passed: bool,
-    /// The voltage in parts of the bus', for a current to the right: 1 on, -1 fast, 0 slow.
+    /// Voltage in units of the bus voltage for a positive current: 1 on, -1 fast decay, 0 slow decay.
     part: f64,
 }
 
@@ -61,13 +60,12 @@ impl ChopperTimes {
     }
 }
 
-/// Whole number nearest to `x` >= 0, halves up.
+/// Nearest integer to `x` >= 0, halves up.
 fn round_half_up(x: f64) -> u32 {
     let whole = x as u32;
     whole.saturating_add(u32::from(x - f64::from(whole) >= 0.5))
 }
 
-#[inline(always)]
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
@@ -84,36 +82,33 @@ impl Phase {
         Self { target, share, chopper }
     }
 
-    #[inline(always)]
-    fn averaged(&self, ask: &Ask) -> Applied {
+    fn averaged(&self, input: &PhaseInput) -> Applied {
         let t = self.target;
-        let mut v = ask.e + ask.r * ask.i + (t - ask.i) * ask.ra;
-        let braking = self.share * ask.bus;
-        let most = if t > 0.0 { ask.bus } else { braking };
-        let least = if t < 0.0 { -ask.bus } else { -braking };
-        if v > most {
-            v = most;
+        let mut v = input.e + input.r * input.i + (t - input.i) * input.ra;
+        let braking = self.share * input.bus;
+        let max = if t > 0.0 { input.bus } else { braking };
+        let min = if t < 0.0 { -input.bus } else { -braking };
+        // Not f64::min and max: the sign of a zero would depend on the platform.
+        if v > max {
+            v = max;
         }
-        if v < least {
-            v = least;
+        if v < min {
+            v = min;
         }
         Applied::voltage(v)
     }
 
-    /// The direction in which a chopper drives: that of the target, of the current where it is 0.
-    #[inline(always)]
+    /// Sign of the target or, for target 0, of the current.
     fn direction(&self, i: f64) -> f64 {
         let given = if self.target == 0.0 { i } else { self.target };
         if given < 0.0 { -1.0 } else { 1.0 }
     }
 
-    #[inline(always)]
-    fn chopped(&self, ask: &Ask) -> Applied {
+    fn chopped(&self, input: &PhaseInput) -> Applied {
         let part = self.chopper.part;
-        Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(ask.i) * ask.bus) })
+        Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(input.i) * input.bus) })
     }
 
-    #[inline]
     fn decide(&mut self, times: ChopperTimes, i: f64) {
         let along = self.direction(i) * i;
         let fast = || round_half_up(self.share * f64::from(times.off));
@@ -137,21 +132,20 @@ impl Phase {
         }
     }
 
-    /// EN = 0: what is left of the current runs through the diodes into the bus.
-    #[inline]
-    fn through_diodes(ask: &Ask, diodes: f64) -> Applied {
-        let against = ask.bus + diodes;
-        if ask.i == 0.0 {
-            return if ask.e.abs() > against {
-                Applied::voltage(sign(ask.e) * against)
+    /// EN = 0: the diodes return the remaining current to the bus.
+    fn through_diodes(input: &PhaseInput, diodes: f64) -> Applied {
+        let against = input.bus + diodes;
+        if input.i == 0.0 {
+            return if input.e.abs() > against {
+                Applied::voltage(sign(input.e) * against)
             } else {
                 Applied { v: 0.0, is_open: true, ends: false }
             };
         }
-        let v = -sign(ask.i) * against;
-        let zero = ask.e + ask.r * ask.i - ask.i * ask.ra;
+        let v = -sign(input.i) * against;
+        let zero = input.e + input.r * input.i - input.i * input.ra;
         let (is_nearer, is_beyond) =
-            if ask.i > 0.0 { (zero > v, zero > 0.0) } else { (zero < v, zero < 0.0) };
+            if input.i > 0.0 { (zero > v, zero > 0.0) } else { (zero < v, zero < 0.0) };
         if is_nearer {
             Applied { v: if is_beyond { 0.0 } else { zero }, is_open: false, ends: true }
         } else {
@@ -194,14 +188,13 @@ impl Driver {
         driver
     }
 
-    #[inline(always)]
     pub(crate) fn command(&self) -> f64 {
         self.commanded as f64 / self.microsteps as f64
     }
 
     fn targets(&self) -> [f64; 2] {
-        let place = self.commanded.rem_euclid(4 * self.microsteps);
-        let (mut s, mut c) = sincos(place as f64 / self.microsteps as f64 + 0.5);
+        let position = self.commanded.rem_euclid(4 * self.microsteps);
+        let (mut s, mut c) = sincos(position as f64 / self.microsteps as f64 + 0.5);
         if let Some(n) = self.levels {
             s = nearest(s * n) / n;
             c = nearest(c * n) / n;
@@ -226,8 +219,7 @@ impl Driver {
         }
     }
 
-    /// A grid point with EN = 1.
-    #[inline(always)]
+    /// Called at each grid point with EN = 1.
     pub(crate) fn decide(&mut self, i_a: f64, i_b: f64) {
         if self.regulator == CurrentControl::Chopper {
             self.phases[0].decide(self.times, i_a);
@@ -235,15 +227,14 @@ impl Driver {
         }
     }
 
-    #[inline(always)]
-    pub(crate) fn voltage(&self, phase: usize, ask: &Ask, powered: bool) -> Applied {
-        let Some(held) = self.phases.get(phase) else { return Applied::voltage(0.0) };
+    pub(crate) fn voltage(&self, phase: usize, input: &PhaseInput, powered: bool) -> Applied {
+        let Some(phase) = self.phases.get(phase) else { return Applied::voltage(0.0) };
         if !powered {
-            Phase::through_diodes(ask, self.diodes)
+            Phase::through_diodes(input, self.diodes)
         } else if self.regulator == CurrentControl::Averaged {
-            held.averaged(ask)
+            phase.averaged(input)
         } else {
-            held.chopped(ask)
+            phase.chopped(input)
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Where the energy goes that a motor takes from the bus (F8): what a step's equations lose is summed step by step, what
-//! is stored follows from the state, and what is left over tells how exact the steps are.
+//! The energy that a motor takes from the bus (PLANT F8). Losses are summed step by step, stored energy follows from the
+//! state, and the remainder shows how exact the steps are.
 
 use crate::{
     motor_constants::{Coupling, MotorConstants, TURN},
@@ -7,7 +7,7 @@ use crate::{
     state::State,
 };
 
-/// Sums of a motor since the start, in J; copper's still wants R/3.
+/// Sums since the start in J; `copper` still lacks the factor R/3.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EnergyAccount {
     pub(crate) bus: f64,
@@ -19,29 +19,27 @@ pub(crate) struct EnergyAccount {
     start: f64,
 }
 
-/// The energy of a motor since the start of the run, each part in J:
-/// bus = copper + friction + viscous + diodes + load + stored.
+/// Energies of a motor since the start of the run in J: bus = copper + friction + viscous + diodes + load + stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct EnergyBalance {
     pub bus: f64,
-    /// Lost in the resistances of windings and bridge.
+    /// Losses in windings and bridge.
     pub copper: f64,
-    /// Lost to Coulomb friction, the load torque's too.
+    /// Losses to Coulomb friction of rotor and load.
     pub friction: f64,
-    /// Lost to viscous friction and in the coupling's damper.
+    /// Losses to viscous friction and the damping of the coupling.
     pub viscous: f64,
     pub diodes: f64,
-    /// Work against gravity and the torque that goes round with the load.
+    /// Work against gravity and the sinusoidal torque of the load.
     pub load: f64,
-    /// Stored in inductances, masses, the coupling and the detent, more than at the start.
+    /// Increase of the energy in inductances, masses, coupling and detent.
     pub stored: f64,
-    /// All that went through, with positive sign: what the error is held against.
+    /// Largest of the energies, by amount: the scale of [`Self::error`].
     pub turnover: f64,
 }
 
 impl EnergyBalance {
-    /// What is left over, in parts of all that went through: 0 but for the steps' error.
+    /// Part of the turnover that the balance does not explain.
     #[must_use]
     pub fn error(&self) -> f64 {
         let spent = self.copper + self.friction + self.viscous + self.diodes + self.load + self.stored;
@@ -50,13 +48,12 @@ impl EnergyBalance {
 }
 
 impl EnergyAccount {
-    pub(crate) fn new(machine: &MotorConstants, state: &State) -> Self {
-        Self { start: stored(machine, state), ..Self::default() }
+    pub(crate) fn new(constants: &MotorConstants, state: &State) -> Self {
+        Self { start: stored(constants, state), ..Self::default() }
     }
 
-    /// A (sub-)step of the second mass: its speeds before, after, and after but for friction; the rotor's before and in
-    /// the middle.
-    #[inline(always)]
+    /// A (sub-)step of the load. `of_load`: its speed before, after, and after without friction; `of_rotor`: the rotor's
+    /// speed before and at the midpoint.
     pub(crate) fn coupled(
         &mut self,
         c: &Coupling,
@@ -72,27 +69,26 @@ impl EnergyAccount {
         self.viscous += h * c.damping * (before - w) * (middle - w_m);
     }
 
-    pub(crate) fn balance(&self, machine: &MotorConstants, state: &State) -> EnergyBalance {
-        let copper = machine.r / 3.0 * self.copper;
+    pub(crate) fn balance(&self, constants: &MotorConstants, state: &State) -> EnergyBalance {
+        let copper = constants.r / 3.0 * self.copper;
         let Self { bus, friction, viscous, diodes, load, start, .. } = *self;
-        let stored = stored(machine, state) - start;
+        let stored = stored(constants, state) - start;
         let turnover =
             bus.abs().max(copper + friction.abs() + viscous + diodes).max(load.abs()).max(start.abs());
         EnergyBalance { bus, copper, friction, viscous, diodes, load, stored, turnover }
     }
 }
 
-/// What inductances, masses, the coupling's spring and the detent hold, in J.
-fn stored(machine: &MotorConstants, state: &State) -> f64 {
+fn stored(constants: &MotorConstants, state: &State) -> f64 {
     let State { x, w, i_a, i_b, x_load, w_load } = *state;
-    let mut stored = 0.5 * machine.l * (i_a * i_a + i_b * i_b) + 0.5 * machine.m * w * w;
-    if let Some(c) = &machine.coupling {
+    let mut stored = 0.5 * constants.l * (i_a * i_a + i_b * i_b) + 0.5 * constants.m * w * w;
+    if let Some(c) = &constants.coupling {
         let twist = x_load - x;
         stored += 0.5 * c.mass * w_load * w_load + 0.5 * c.stiffness * twist * twist;
     }
-    if machine.detent != 0.0 {
+    if constants.detent != 0.0 {
         // The force is -D sin(2*pi*q).
-        stored -= machine.detent / TURN * sincos(4.0 * (x + 0.5)).1;
+        stored -= constants.detent / TURN * sincos(4.0 * (x + 0.5)).1;
     }
     stored
 }

@@ -1,10 +1,10 @@
-//! What the edges of a bus do to drivers, motors, their supply and the sensors (the design's Part F).
+//! Drivers, motors, supply and sensors on the STEP, DIR and EN edges of a bus (PLANT.md, Part F).
 //!
-//! A plant knows channels, levels and cycles; packets, motions and files it never learns of. All of it is + - * / on f64
-//! in the order that the contract writes, so every target gives the same bits; a digest tells.
+//! The crate knows channels, levels and cycles, but no packets, motions or files. It computes with + - * / on f64 in the
+//! order of the contract, so every target gives the same bits.
 //!
 //! ```text
-//! parameters, limits -> machine (constants) -> driver, supply, sensors -> rotor (one sub-step) -> plant (the grid)
+//! parameters, limits -> constants -> driver, supply, sensors -> rotor (one sub-step) -> plant (the grid)
 //! ```
 //!
 //! ```
@@ -13,13 +13,14 @@
 //!
 //! let motor = MotorModel { microsteps: 1, ..MotorModel::default() };
 //! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("it holds");
-//! // One full step to the right in cycle 1600, and 100 ms to come to rest.
+//! // One full step to the right in cycle 1600, then 100 ms to settle.
 //! let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
 //! plant.record(Record { cycle: Instant(1600), levels }, &mut ());
 //! plant.advance(1_600_000, &mut ());
 //! assert!((plant.state(0).expect("a motor").x - 1.0).abs() < 0.05);
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

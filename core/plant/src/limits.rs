@@ -1,4 +1,4 @@
-//! The range of each number of a plant (F9); rules that join several stand in [`stability`](crate::stability).
+//! The range of each number of a plant (PLANT F9); [`stability`](crate::stability) has rules that combine several.
 //!
 //! ```
 //! assert!(stepscope_plant::limits::SOURCE_OHM.contains(&0.1));
@@ -6,57 +6,46 @@
 
 use core::ops::RangeInclusive;
 
-/// A friction, stiction, gravity's amount or amplitude in mN*m.
+/// Friction, stiction, detent, or the amplitude of a torque.
 pub const TORQUE_MN_M: RangeInclusive<f64> = 0.0..=1e6;
-/// A torque with a sign in mN*m.
+/// Gravity; positive to the left.
 pub const SIGNED_TORQUE_MN_M: RangeInclusive<f64> = -1e6..=1e6;
-/// A viscous friction or damping in uN*m*s.
 pub const VISCOUS_UN_M_S: RangeInclusive<f64> = 0.0..=1e9;
-/// Periods of a torque in a turn.
 pub const SINE_PER_TURN: RangeInclusive<f64> = 0.001..=1000.0;
-/// A phase in degrees.
 pub const SINE_PHASE_DEG: RangeInclusive<f64> = -360.0..=360.0;
 /// Stiffness of a coupling in N*m/rad.
 pub const COUPLING_N_M_RAD: RangeInclusive<f64> = 0.001..=1e6;
-/// The share of an off-time that decays fast.
+/// Share of the off-time with fast decay.
 pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
-/// Off-time and blanking of a chopper in us.
+/// Off-time and blanking of a chopper.
 pub const CHOPPER_US: RangeInclusive<f64> = 0.0..=1e6;
-/// Steps of the converter of a driver.
 pub const DAC_LEVELS: RangeInclusive<u64> = 1..=1023;
-/// Resistance of a bridge in ohm.
 pub const BRIDGE_OHM: RangeInclusive<f64> = 0.0..=10.0;
-/// Forward voltage of a diode in V.
 pub const DIODE_V: RangeInclusive<f64> = 0.0..=2.0;
-/// Cycles of a grid step.
+/// Cycles per grid step.
 pub const STEP_CYCLES: RangeInclusive<u64> = 1..=1_000_000;
-/// Resistance of the source in ohm.
 pub const SOURCE_OHM: RangeInclusive<f64> = 0.001..=100.0;
-/// Capacitance of the buffer in uF.
 pub const BUFFER_UF: RangeInclusive<f64> = 10.0..=1e6;
-/// Current of a driver for itself in mA.
+/// Idle current of a driver.
 pub const IDLE_MA: RangeInclusive<f64> = 0.0..=1e6;
-/// Time that a run goes on after its last step, in s.
+/// Duration of a run after its last step.
 pub const TAIL_S: RangeInclusive<f64> = 0.0..=10.0;
-/// Bandwidth of a sensor in Hz.
 pub const BANDWIDTH_HZ: RangeInclusive<f64> = 0.1..=1e9;
-/// Low passes of a sensor.
 pub const POLES: RangeInclusive<u64> = 1..=3;
-/// Grid steps from conversion to conversion, or from code to code.
+/// Grid steps per conversion of a sensor.
 pub const PERIOD_STEPS: RangeInclusive<u64> = 1..=1_000_000;
-/// Step of a converter.
+/// Step of a converter in its unit.
 pub const LSB: RangeInclusive<f64> = 1e-6..=1000.0;
-/// Maximum code of a converter.
 pub const ADC_MAX: RangeInclusive<u64> = 1..=8_388_607;
 /// Offset of an encoder in codes.
 pub const OFFSET_LSB: RangeInclusive<f64> = -1e6..=1e6;
 /// Noise and play of an encoder in codes.
 pub const NOISE_LSB: RangeInclusive<f64> = 0.0..=1e6;
-/// Seed of the noise: what a JSON number holds exactly.
+/// Seed of the noise: the integers that a JSON number holds exactly.
 pub const SEED: RangeInclusive<u64> = 0..=9_007_199_254_740_991;
-/// Current of an overload in A.
+/// Overload current.
 pub const THRESHOLD_A: RangeInclusive<f64> = 0.001..=1e4;
-/// Conversions in a row that are one.
+/// Consecutive conversions of an overload.
 pub const SAMPLES: RangeInclusive<u64> = 1..=1_000_000;
-/// Most that each of the numbers of [`stability`](crate::stability) may be.
+/// Maximum of each number of [`stability`](crate::stability).
 pub const STABLE: f64 = 0.25;

@@ -1,13 +1,12 @@
-//! Steps that a rotor loses, four full steps at a time: the next place at which the same currents hold it (F8).
+//! Lost steps, four full steps at a time: the distance to the next position that the same currents hold (PLANT F8).
 
 use crate::sincos::nearest;
 
 /// A slip of four full steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Slip {
     pub cycle: u64,
-    /// Whether the rotor fell behind to the left of its command (it lost steps to the right).
+    /// The rotor is to the left of its command: it lost steps to the right.
     pub is_behind: bool,
 }
 
@@ -18,9 +17,8 @@ pub(crate) struct LostSteps {
 }
 
 impl LostSteps {
-    /// A point with EN = 1, `error` full steps behind the command.
-    #[inline(always)]
-    pub(crate) fn look(&mut self, error: f64, cycle: u64) -> Option<Slip> {
+    /// Called at each grid point with EN = 1; `error` is command minus position in full steps.
+    pub(crate) fn update(&mut self, error: f64, cycle: u64) -> Option<Slip> {
         let d = error - self.lost_steps;
         let is_behind = d > 2.5;
         let is_ahead = d < -2.5;

@@ -1,7 +1,7 @@
-//! Running measures of a plant (F8): following error, slips, overshoot and settling after the last step, currents, voltage.
+//! Running measures of a plant (PLANT F8): following error, slips, overshoot, settling after the last step, currents, voltage.
 //!
-//! Where a rotor comes to rest is known at the end alone. Until then `Tail` keeps of its positions since the last STEP
-//! those above (and below) all that came later: among them is the last one that was too far off, whatever the end is.
+//! The final position is known only at the end. Until then `Tail` saves, of the positions since the last STEP, those above
+//! (below) all later ones: the last position too far from the end is one of them, wherever the end is.
 //!
 //! ```
 //! use stepscope_plant::{Plant, measures::Measures, parameters::{MotorModel, Setup}};
@@ -25,14 +25,13 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Slips of a motor that are kept with their cycles; all are counted.
+/// Maximum number of slips saved with their cycles; all are counted.
 pub const MAX_SLIPS: usize = 10_000;
-/// How far from its place a rotor is still moving, in full steps.
+/// Maximum distance from the final position of a settled rotor, in full steps.
 pub const SETTLED: f64 = 0.05;
 
-/// Minimum, maximum and mean square of something at points.
+/// Minimum, maximum and root mean square of a value over grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Extremes {
     pub least: f64,
     pub greatest: f64,
@@ -47,7 +46,6 @@ impl Default for Extremes {
 }
 
 impl Extremes {
-    #[inline(always)]
     fn add(&mut self, value: f64) {
         if value < self.least {
             self.least = value;
@@ -59,20 +57,20 @@ impl Extremes {
         self.points += 1;
     }
 
-    /// The root of the mean square; 0 before the first point.
+    /// Root mean square; 0 before the first point.
     #[must_use]
     pub fn rms(&self) -> f64 {
         if self.points == 0 { 0.0 } else { square_root(self.squares / self.points as f64) }
     }
 
-    /// The maximum amount; 0 before the first point.
+    /// Largest absolute value; 0 before the first point.
     #[must_use]
     pub fn peak(&self) -> f64 {
         if self.points == 0 { 0.0 } else { self.greatest.max(-self.least) }
     }
 }
 
-/// The positions of a rotor since its last STEP, as far as the end may ask for them.
+/// Positions of a rotor since its last STEP that can decide when it has settled.
 #[derive(Clone, Debug, Default)]
 struct Tail {
     above: Vec<(u64, f64)>,
@@ -85,7 +83,6 @@ impl Tail {
         self.below.clear();
     }
 
-    #[inline(always)]
     fn add(&mut self, cycle: u64, x: f64) {
         while self.above.last().is_some_and(|&(_, value)| value <= x) {
             self.above.pop();
@@ -97,7 +94,7 @@ impl Tail {
         self.below.push((cycle, x));
     }
 
-    /// The last cycle at which it was more than `off` from `end`.
+    /// The last cycle in which it was more than `off` from `end`.
     fn last_off(&self, end: f64, off: f64) -> Option<u64> {
         let above = self.above.iter().rev().find(|&&(_, x)| x - end > off);
         let below = self.below.iter().rev().find(|&&(_, x)| end - x > off);
@@ -114,7 +111,7 @@ struct AfterStep {
 }
 
 #[derive(Clone, Debug, Default)]
-struct MotorModel {
+struct MotorMeasures {
     worst: (f64, u64),
     fastest: (f64, u64),
     fastest_load: f64,
@@ -126,88 +123,82 @@ struct MotorModel {
     tail: Tail,
 }
 
-/// Takes the measures of a whole run.
 #[derive(Clone, Debug, Default)]
 pub struct Measures {
-    motors: Vec<MotorModel>,
+    motors: Vec<MotorMeasures>,
     load: Extremes,
     bus: Extremes,
     collapsed: Option<u64>,
-    /// Sum and count of the sensor's readings before the first step.
+    /// Sum and number of the sensor readings before the first step.
     rest: (f64, u64),
     has_stepped: bool,
-    /// Steps of each motor, and the sensor's readings from the first motor's fifth on.
+    /// Steps per motor, and the sensor readings from the first motor's fifth step on.
     steps: Vec<u64>,
     sensor: Extremes,
 }
 
-/// Steps of the first motor before the supply current's deviation counts, and steps of each that there must be.
+/// The deviation starts with this step of the first motor, and needs at least `MIN_STEPS` of each motor.
 const FIRST_STEPS: u64 = 5;
 const MIN_STEPS: u64 = 8;
 
-/// What one motor did.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct MotorResult {
     pub state: State,
-    /// Where it is told to be, in full steps.
+    /// Commanded position in full steps.
     pub command: f64,
     /// Lost full steps, positive to the right.
     pub lost: i64,
-    /// Each slip of four full steps, the first [`MAX_SLIPS`] of them.
+    /// The first [`MAX_SLIPS`] slips of four full steps.
     pub slips: Vec<Slip>,
     pub slip_count: u64,
-    /// How many STEPs had come by the first slip.
+    /// Steps before the first slip.
     pub first_slip_step: Option<u64>,
-    /// The maximum amount by which it was off its command, in full steps, with its sign (positive: behind to the left), and
-    /// the point's cycle.
+    /// Command minus position where their distance is maximal, in full steps, and the cycle.
     pub following_error: (f64, u64),
-    /// The rotor's maximum speed in full steps/s, without sign, and the point's cycle.
+    /// Maximum speed of the rotor without sign in full steps/s, and the cycle.
     pub fastest: (f64, u64),
-    /// The load's maximum speed; the rotor's where no coupling is between them.
+    /// Maximum speed of the load; without a coupling the rotor's.
     pub fastest_load: f64,
-    /// Its last STEP, and by how much it went past its last command, in full steps in that direction; `None` without a step.
+    /// Distance beyond the last command in the direction of the last step, in full steps; `None` without a step.
     pub overshoot: Option<f64>,
-    /// Cycles from the last STEP until it stays within 0.05 full steps of where it ends; `None` without a step.
+    /// Cycles from the last STEP until it stays within 0.05 full steps of its final position; `None` without a step.
     pub settling: Option<u64>,
     pub last_step: Option<u64>,
-    /// Peak of the greater phase current in A.
+    /// Larger peak of both phase currents in A.
     pub phase_peak_a: f64,
-    /// Root of the mean square of both phase currents in A.
+    /// Root mean square of both phase currents in A.
     pub phase_rms_a: f64,
     pub energy: EnergyBalance,
 }
 
-/// What a plant did.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct PlantResult {
     pub cycle: u64,
     pub digest: u64,
-    /// The motor of channel 0, 1, ….
+    /// One per channel.
     pub motors: Vec<MotorResult>,
-    /// Current of the supply in A.
+    /// Supply current in A.
     pub load_a: Extremes,
-    /// Voltage of the bus in V.
+    /// Bus voltage in V.
     pub bus_v: Extremes,
-    /// The first point at which the bus had fallen to a sixteenth of the source's voltage.
+    /// Cycle of the first point at which the bus is at 1/16 of the source voltage or less.
     pub collapsed: Option<u64>,
-    /// How far the sensor of the supply current went from its rest before the first step, from the first motor's fifth step
-    /// on; `None` where a motor makes fewer than eight.
+    /// Deviation of the measured supply current from its mean before the first step, from the first motor's fifth step
+    /// on; `None` if a motor makes fewer than eight steps.
     pub deviation: Option<Deviation>,
 }
 
 impl Measures {
-    /// Measures that begin at the plant's first point.
+    /// Measures from the plant's first point on.
     #[must_use]
     pub fn new(plant: &Plant) -> Self {
-        let motors = alloc::vec![MotorModel::default(); plant.motors()];
+        let motors = alloc::vec![MotorMeasures::default(); plant.motors()];
         let mut new = Self { motors, steps: alloc::vec![0; plant.motors()], ..Self::default() };
         new.bus.add(plant.bus_v());
         new
     }
 
-    /// What the plant has done until now.
+    /// The measures so far.
     #[must_use]
     pub fn result(&self, plant: &Plant) -> PlantResult {
         PlantResult {
@@ -236,14 +227,14 @@ impl Measures {
         Some(Deviation { rest_a, above_a: above_a.max(0.0), below_a: below_a.max(0.0) })
     }
 
-    /// The slips so far of a motor, the first [`MAX_SLIPS`] of them.
+    /// The first [`MAX_SLIPS`] slips of a motor so far.
     #[must_use]
     pub fn slips(&self, channel: usize) -> &[Slip] {
         self.motors.get(channel).map_or(&[], |motor| &motor.slips)
     }
 }
 
-impl MotorModel {
+impl MotorMeasures {
     fn result(&self, plant: &Plant, channel: usize) -> MotorResult {
         let state = plant.state(channel).copied().unwrap_or_default();
         let command = plant.command(channel);
@@ -272,7 +263,6 @@ impl MotorModel {
         }
     }
 
-    #[inline(always)]
     fn point(&mut self, state: &State, command: f64, cycle: u64) {
         let error = command - state.x;
         if error.abs() > self.worst.0.abs() {
@@ -297,7 +287,6 @@ impl MotorModel {
 }
 
 impl Observer for Measures {
-    #[inline(always)]
     fn point(&mut self, plant: &Plant) {
         let cycle = plant.cycle();
         for (channel, motor) in self.motors.iter_mut().enumerate() {

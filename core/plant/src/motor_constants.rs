@@ -1,4 +1,4 @@
-//! The constants of one motor's equations, in full steps (F2), and of a step of so many cycles (F3).
+//! Constants of a motor's equations in full steps (PLANT F2), and of a step of some cycles (F3).
 
 use crate::{
     parameters::MotorModel,
@@ -7,7 +7,6 @@ use crate::{
 use core::f64::consts::{SQRT_2, TAU};
 
 pub(crate) const DEGREE: f64 = 0.017_453_292_519_943_295;
-/// 2*pi, 6.283185307179586.
 pub(crate) const TURN: f64 = TAU;
 
 #[derive(Clone, Debug)]
@@ -16,7 +15,7 @@ pub(crate) struct MotorConstants {
     pub(crate) k: f64,
     pub(crate) r: f64,
     pub(crate) l: f64,
-    /// Of the rotor, and of the load where no coupling is between them.
+    /// Mass of the rotor; without a coupling also of the load.
     pub(crate) m: f64,
     pub(crate) b: f64,
     pub(crate) detent: f64,
@@ -35,7 +34,6 @@ pub(crate) struct Load {
 }
 
 impl Load {
-    #[inline(always)]
     pub(crate) fn at(&self, y: f64) -> f64 {
         let mut force = 0.0;
         if self.gravity != 0.0 {
@@ -99,12 +97,11 @@ impl MotorConstants {
         }
     }
 
-    #[inline(always)]
     pub(crate) fn detent(&self, sn: f64, cs: f64) -> f64 {
         self.detent * (2.0 * (2.0 * sn * cs) * (1.0 - 2.0 * sn * sn))
     }
 
-    /// The force on a rotor at rest at `x` with these currents (F4's F).
+    /// Force on a rotor at rest at `x`.
     pub(crate) fn force_at_rest(&self, x: f64, i_a: f64, i_b: f64) -> f64 {
         let (sn, cs) = sincos(x + 0.5);
         let mut force = self.k * cs * i_b - self.k * sn * i_a;
@@ -114,6 +111,7 @@ impl MotorConstants {
         force + self.load.at(x)
     }
 
+    /// Rest position between -1 and 1 by bisection; 0 if the force has no such zero.
     pub(crate) fn rest(&self, i_a: f64, i_b: f64) -> f64 {
         let force = |x| self.force_at_rest(x, i_a, i_b);
         if force(0.0) == 0.0 || !(force(-1.0) > 0.0 && 0.0 > force(1.0)) {
@@ -142,10 +140,10 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    pub(crate) fn new(machine: &MotorConstants, cycles: u64, clock_hz: f64) -> Self {
+    pub(crate) fn new(constants: &MotorConstants, cycles: u64, clock_hz: f64) -> Self {
         let h = cycles as f64 / clock_hz;
-        let (phi1, phi2) = phi(machine.r * h / machine.l);
-        let a = h / machine.l * phi1;
-        Self { h, hh: 0.5 * h, a, b: h / machine.l * phi2, ra: 1.0 / a }
+        let (phi1, phi2) = phi(constants.r * h / constants.l);
+        let a = h / constants.l * phi1;
+        Self { h, hh: 0.5 * h, a, b: h / constants.l * phi2, ra: 1.0 / a }
     }
 }

@@ -1,9 +1,9 @@
-//! The plant in time: edges in, a grid of points out (F1).
+//! The plant in time: edges in, a grid of points out (PLANT F1).
 //!
 //! ```text
-//! point n            n*N: the state, EN and the commands as before a change in that very cycle
-//! grid step          each motor alone, in sub-steps that end where its STEP rises or EN changes
-//! point n + 1        current of the supply, voltage, sensors, lost steps, digest; then choppers decide
+//! point n            n*N: state, EN and commands before any change in that cycle
+//! grid step          each motor by itself, in sub-steps that end where its STEP rises or EN changes
+//! point n + 1        supply current, voltage, sensors, lost steps, digest; then choppers decide
 //! ```
 
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
     energy::EnergyBalance,
     lost_steps::{LostSteps, Slip},
     parameters::Setup,
-    refusal::{Refusal, Refused, judge},
+    refusal::{Refusal, Refused, validate},
     rotor::Rotor,
     sensors::{Chain, Encoder},
     state::State,
@@ -20,16 +20,16 @@ use crate::{
 use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Levels, Record};
 
-/// Drivers, motors, supply and sensors behind the bus of one controller.
+/// Drivers, motors, supply and sensors on the bus of one controller.
 ///
-/// [`Plant::record`] gives it the bus' edges, [`Plant::advance`] tells it that there are no more before a cycle. In which
-/// portions that happens cannot be seen.
+/// [`Plant::record`] takes the edges of the bus; [`Plant::advance`] declares that none comes before a cycle. How a run
+/// is divided into calls has no effect on the result.
 #[derive(Clone, Debug)]
 pub struct Plant {
     clock_hz: f64,
     step_cycles: u64,
     h: f64,
-    /// Cycle of the point before the grid step that is under way.
+    /// Cycle of the point before the current grid step.
     point: u64,
     levels: Levels,
     motors: Vec<Rotor>,
@@ -45,35 +45,32 @@ pub struct Plant {
     events: PointEvents,
 }
 
-/// What happened at a point next to what can be asked of the [`Plant`].
+/// What happened at the latest point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct PointEvents {
     pub converted: bool,
     pub encoded: bool,
     pub overload: bool,
 }
 
-/// Looks at a plant while it runs.
+/// Observes a plant while it runs.
 pub trait Observer {
-    /// A grid point has been reached; [`Plant::cycle`] tells its cycle.
+    /// Called at each grid point, after the plant has reached it.
     fn point(&mut self, plant: &Plant);
 
-    /// A motor has slipped by four full steps.
+    /// A motor slipped by four full steps.
     fn slip(&mut self, _channel: usize, _slip: Slip) {}
 
-    /// STEP rises on some channels, with their DIR.
+    /// STEP rises on the channels of the mask `_rises`, with the DIR levels `_right`.
     fn steps(&mut self, _cycle: u64, _rises: u16, _right: u16) {}
 }
 
-/// Nobody looks.
+/// Ignores everything.
 impl Observer for () {
-    #[inline(always)]
     fn point(&mut self, _: &Plant) {}
 }
 
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    #[inline(always)]
     fn point(&mut self, plant: &Plant) {
         self.0.point(plant);
         self.1.point(plant);
@@ -91,7 +88,6 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 }
 
 impl<O: Observer> Observer for &mut O {
-    #[inline(always)]
     fn point(&mut self, plant: &Plant) {
         (**self).point(plant);
     }
@@ -106,7 +102,6 @@ impl<O: Observer> Observer for &mut O {
 }
 
 impl<O: Observer> Observer for Option<O> {
-    #[inline(always)]
     fn point(&mut self, plant: &Plant) {
         if let Some(observer) = self {
             observer.point(plant);
@@ -131,7 +126,7 @@ struct Overload {
     threshold_a: f64,
     samples: u32,
     in_a_row: u32,
-    /// The cycles of the latest two conversions, and whether they were at or above it.
+    /// Cycle and result of the latest two conversions; true at or above the threshold.
     latest: [(u64, bool); 2],
 }
 
@@ -141,9 +136,9 @@ impl Overload {
         self.latest = [self.latest[1], (cycle, is_over)];
     }
 
-    /// ENABLE in the cycle before `rise`, in which EN is high again: a conversion in that very cycle, which is looked at
-    /// last, counts already.
-    fn begin_anew(&mut self, rise: u64) {
+    /// EN rises again in cycle `rise`. A conversion in the cycle before, in which ENABLE came, already counts: conversions
+    /// come last in a cycle.
+    fn restart(&mut self, rise: u64) {
         let counts = |(cycle, is_over): &&(u64, bool)| *is_over && cycle + 1 >= rise;
         self.in_a_row = self.latest.iter().rev().take_while(counts).count() as u32;
     }
@@ -157,9 +152,9 @@ struct Accelerometer {
 
 impl Plant {
     /// A plant at point 0: currents at their targets, rotors at rest.
-    /// Errors: every number that is out of its range; where all are in it, every one of F3's limits, or a supply that is too weak.
+    /// Errors: every number out of range; if there is none, every violated limit of stability, or a supply too weak.
     pub fn new(setup: &Setup) -> Result<Self, Vec<Refused>> {
-        let refused = judge(setup);
+        let refused = validate(setup);
         if !refused.is_empty() {
             return Err(refused);
         }
@@ -207,7 +202,7 @@ impl Plant {
         })
     }
 
-    /// Tells the levels from a cycle on; all records before it have been told.
+    /// Sets the levels from a cycle on. Records come in order.
     pub fn record(&mut self, record: Record, observer: &mut dyn Observer) {
         let cycle = record.cycle.0;
         self.advance(cycle, observer);
@@ -223,7 +218,7 @@ impl Plant {
                 }
             }
             if let Some(overload) = self.overload.as_mut().filter(|_| is_powered) {
-                overload.begin_anew(cycle);
+                overload.restart(cycle);
             }
         }
         let rises = record.levels.step() & !before.step();
@@ -239,14 +234,12 @@ impl Plant {
         }
     }
 
-    /// Goes on through every point that is known when no level changes before `cycle`: those in cycles up to `cycle`.
     pub fn advance(&mut self, cycle: u64, observer: &mut dyn Observer) {
         while self.next_point() <= cycle {
             self.grid_step(observer);
         }
     }
 
-    #[inline(always)]
     fn grid_step(&mut self, observer: &mut dyn Observer) {
         let (powered, bus) = (self.levels.has(Levels::EN), self.supply.v);
         let mut energy = 0.0;
@@ -268,12 +261,12 @@ impl Plant {
         for (accelerometer, motor) in self.accelerometers.iter_mut().zip(&self.motors) {
             let (w, before) = (motor.state.w_load, accelerometer.before);
             accelerometer.before = w;
-            accelerometer.chain.advance((w - before) / self.h * motor.machine.g);
+            accelerometer.chain.advance((w - before) / self.h * motor.constants.g);
         }
         if powered {
             for (channel, (motor, lost)) in self.motors.iter_mut().zip(&mut self.lost).enumerate() {
                 let error = motor.driver.command() - motor.state.x;
-                if let Some(slip) = lost.look(error, self.point) {
+                if let Some(slip) = lost.update(error, self.point) {
                     observer.slip(channel, slip);
                 }
             }
@@ -307,76 +300,66 @@ impl Plant {
         self.point.saturating_add(self.step_cycles)
     }
 
-    /// Cycle of the point that has been reached.
+    /// Cycle of the latest point.
     #[must_use]
     pub const fn cycle(&self) -> u64 {
         self.point
     }
 
-    /// Cycles of a grid step, N.
     #[must_use]
     pub const fn step_cycles(&self) -> u64 {
         self.step_cycles
     }
 
-    /// Cycles a second.
     #[must_use]
     pub const fn clock_hz(&self) -> f64 {
         self.clock_hz
     }
 
-    /// How many motors there are.
     #[must_use]
     pub fn motors(&self) -> usize {
         self.motors.len()
     }
 
-    /// A motor's state at the point; between points, while a step is under way, what of it is known. `None` where there is
-    /// no such channel.
+    /// A motor's state at the latest point, or after its latest sub-step. `None` without such a channel.
     #[must_use]
-    #[inline]
     pub fn state(&self, channel: usize) -> Option<&State> {
         self.motors.get(channel).map(|motor| &motor.state)
     }
 
-    /// The commanded position in full steps, u/microsteps; 0 where there is no such channel.
+    /// Commanded position in full steps; 0 without such a channel.
     #[must_use]
-    #[inline]
     pub fn command(&self, channel: usize) -> f64 {
         self.motors.get(channel).map_or(0.0, |motor| motor.driver.command())
     }
 
-    /// Lost full steps of a motor so far, four at a time; positive where it lost steps to the right.
+    /// Lost full steps of a motor so far; positive where it lost steps to the right.
     #[must_use]
     pub fn lost(&self, channel: usize) -> i64 {
         self.lost.get(channel).map_or(0, |lost| 4 * lost.lost)
     }
 
-    /// Whether EN is high.
     #[must_use]
     pub const fn is_powered(&self) -> bool {
         self.levels.has(Levels::EN)
     }
 
-    /// Voltage of the bus in V.
     #[must_use]
     pub const fn bus_v(&self) -> f64 {
         self.supply.v
     }
 
-    /// Current of the drivers in the last grid step in A.
     #[must_use]
     pub const fn load_a(&self) -> f64 {
         self.supply.i_load
     }
 
-    /// Whether the bus has fallen to a sixteenth of the source's voltage.
+    /// Whether the bus is at 1/16 of the source voltage or less.
     #[must_use]
     pub const fn has_collapsed(&self) -> bool {
         self.supply.has_collapsed
     }
 
-    /// The sensor of the supply current.
     #[must_use]
     pub const fn current_sensor(&self) -> &Chain {
         &self.current
@@ -388,35 +371,32 @@ impl Plant {
         self.encoders.get(channel).map_or(0, |encoder| encoder.code)
     }
 
-    /// The accelerometer on a motor's load, in rad/s^2; `None` where there is none.
+    /// The accelerometer on a motor's load, in rad/s^2, if there is one.
     #[must_use]
     pub fn accelerometer(&self, channel: usize) -> Option<&Chain> {
         self.accelerometers.get(channel).map(|accelerometer| &accelerometer.chain)
     }
 
-    /// What happened at the point.
     #[must_use]
     pub const fn events(&self) -> PointEvents {
         self.events
     }
 
-    /// Where a motor's energy went; `None` where there is no such channel.
     #[must_use]
     pub fn energy(&self, channel: usize) -> Option<EnergyBalance> {
-        self.motors.get(channel).map(|motor| motor.energy.balance(&motor.machine, &motor.state))
+        self.motors.get(channel).map(|motor| motor.energy.balance(&motor.constants, &motor.state))
     }
 
-    /// The digest so far.
     #[must_use]
     pub fn digest(&self) -> u64 {
         self.digest.value()
     }
 
-    /// Puts a motor where a test of the equations wants it.
+    /// Sets a motor's state, for tests of the equations.
     pub fn set_state(&mut self, channel: usize, state: State) {
         if let Some(motor) = self.motors.get_mut(channel) {
             motor.state = state;
-            motor.energy = crate::energy::EnergyAccount::new(&motor.machine, &motor.state);
+            motor.energy = crate::energy::EnergyAccount::new(&motor.constants, &motor.state);
         }
     }
 }

@@ -1,10 +1,10 @@
-//! What a motor can do: the highest rate at which it starts and stops, the highest to which a ramp brings it, and where it
-//! resonates (F8). Each trial is a plant of one motor and edges of its own.
+//! Searches for a motor's limits: start-stop rate, pull-out rate, resonance (PLANT F8). Each trial is a plant with one
+//! motor and its own edges.
 //!
 //! ```text
-//! start-stop   | | | | | |            so many steps at one rate, then 0.2 s to come to rest
+//! start-stop   | | | | | |            some steps at one rate, then 0.2 s of rest
 //! pull-out     |   |  | ||||||||||    s(t) = a*t^2/2 up to the rate, then 0.1 s of it
-//! resonance    | | | | | | | | |      0.6 s of one rate; looked at in the second half
+//! resonance    | | | | | | | | |      0.6 s of one rate; the second half is measured
 //! ```
 //!
 //! ```
@@ -27,24 +27,23 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Cycle of the first step of a trial.
 pub const FIRST_STEP: u64 = 1600;
-/// Time to come to rest after a trial of starting and stopping, in s.
+/// Rest after a start-stop trial, in s.
 pub const REST_S: f64 = 0.2;
-/// Time that a ramp's end rate is held, in s.
+/// Time at the end rate of a ramp, in s.
 pub const HOLD_S: f64 = 0.1;
-/// Acceleration of a ramp, in steps/s^2, where none is given.
+/// Default acceleration of a ramp in steps/s^2.
 pub const RAMP_STEPS_S2: f64 = 200_000.0;
-/// Time of a rate of the resonance map, in s.
+/// Time per rate of the resonance map, in s.
 pub const MAP_S: f64 = 0.6;
 
 const FIRST_RATE: f64 = 4000.0;
-/// It must work at this one.
+/// The search fails below this rate.
 const MIN_RATE: f64 = 500.0;
-const GREATEST_RATE: f64 = 5e6;
+const MAX_RATE: f64 = 5e6;
 const NEAR: f64 = 1.002;
 
-/// A search for the highest rate that holds: doubled while it does, then halved geometrically.
+/// A search for the highest rate that holds: doubled until one fails, then bisected geometrically.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Search {
     holds: Option<f64>,
@@ -52,19 +51,19 @@ pub struct Search {
 }
 
 impl Search {
-    /// The next rate to try, in steps/s; `None` when the search is over.
+    /// The next rate to try in steps/s; `None` at the end.
     #[must_use]
     pub fn rate(&self) -> Option<f64> {
         match (self.holds, self.fails) {
             (None, None) => Some(FIRST_RATE),
             (None, Some(fails)) => (fails > MIN_RATE).then_some(MIN_RATE),
-            (Some(holds), None) => (holds < GREATEST_RATE).then_some(2.0 * holds),
+            (Some(holds), None) => (holds < MAX_RATE).then_some(2.0 * holds),
             (Some(holds), Some(fails)) => (fails > NEAR * holds).then(|| square_root(holds * fails)),
         }
     }
 
-    /// Tells whether that rate holds.
-    pub fn tell(&mut self, holds: bool) {
+    /// Reports whether that rate holds.
+    pub fn report(&mut self, holds: bool) {
         let Some(rate) = self.rate() else { return };
         if holds {
             self.holds = Some(rate);
@@ -73,40 +72,40 @@ impl Search {
         }
     }
 
-    /// The highest rate that held, in steps/s; `None` where not even 500 did.
+    /// The highest rate that held in steps/s; `None` if not even 500 did.
     #[must_use]
     pub const fn found(&self) -> Option<f64> {
         self.holds
     }
 
-    /// How far the search has come, 0..=1.
+    /// Progress of the search, 0..=1.
     #[must_use]
     pub fn progress(&self) -> f64 {
         match (self.holds, self.fails) {
-            // From a factor of two to the end there are nine to ten halvings.
+            // A factor of two needs nine to ten bisections.
             (Some(holds), Some(fails)) => (0.3 + 0.7 * (1.0 - (fails / holds - 1.0) / 7.0)).clamp(0.3, 1.0),
             _ => 0.1,
         }
     }
 }
 
-/// The highest rate that holds, in steps/s; `None` where not even 500 does.
-/// Errors: the first of a trial.
+/// The highest rate that holds in steps/s; `None` if not even 500 does.
+/// Errors: the first error of a trial.
 pub fn search<E>(mut holds: impl FnMut(f64) -> Result<bool, E>) -> Result<Option<f64>, E> {
     let mut search = Search::default();
     while let Some(rate) = search.rate() {
-        search.tell(holds(rate)?);
+        search.report(holds(rate)?);
     }
     Ok(search.found())
 }
 
-/// Rises of STEP at one rate, the first in [`FIRST_STEP`]: step k floor(k*clock_hz/rate + 1/2) later.
+/// Rises of STEP at a constant rate: the k-th is round(k*clock_hz/rate) cycles after [`FIRST_STEP`].
 pub fn even(clock_hz: u32, rate: f64, steps: u64) -> impl Iterator<Item = u64> {
     let cycles = f64::from(clock_hz);
     (0..steps).map(move |k| FIRST_STEP + (k as f64 * cycles / rate + 0.5) as u64)
 }
 
-/// Rises of STEP on a ramp of `a` steps/s^2 to a rate, and that held for `hold_s`: step k where s(t) = k - 1/2.
+/// Rises of STEP on a ramp of `a` steps/s^2 to a rate that is held for `hold_s`: step k where s(t) = k - 1/2.
 pub fn ramp(clock_hz: u32, rate: f64, a: f64, hold_s: f64) -> impl Iterator<Item = u64> {
     let (cycles, ramp_s) = (f64::from(clock_hz), rate / a);
     let ramp_steps = 0.5 * a * ramp_s * ramp_s;
@@ -119,7 +118,7 @@ pub fn ramp(clock_hz: u32, rate: f64, a: f64, hold_s: f64) -> impl Iterator<Item
         .map(move |t| FIRST_STEP + (t * cycles + 0.5) as u64)
 }
 
-/// Runs a plant of one motor with these rises of STEP to the right, then to `end` cycles after the last.
+/// Runs a plant with these rises of STEP to the right, and `after` cycles after the last.
 fn trial<O: Observer>(
     setup: &Setup,
     rises: impl Iterator<Item = u64>,
@@ -132,7 +131,7 @@ fn trial<O: Observer>(
     let mut last = 0;
     for rise in rises {
         if rise > last + 1 {
-            // The pulse before has fallen by then; where exactly means nothing to the plant.
+            // The plant ignores falling edges, so any cycle before the next rise will do.
             plant.record(Record { cycle: Instant(last + 1), levels: right }, observer);
         }
         plant.record(Record { cycle: Instant(rise), levels: high }, observer);
@@ -147,7 +146,7 @@ fn span(setup: &Setup, seconds: f64) -> u64 {
     (f64::from(setup.clock_hz) * seconds + 0.5) as u64
 }
 
-/// Whether the motor of channel 0 makes `steps` at an even rate from rest and stops at its place.
+/// Whether the motor of channel 0 makes `steps` at a constant rate from rest and stops at the commanded position.
 /// Errors: those of the plant.
 pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
@@ -157,7 +156,7 @@ pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>
     Ok(!slipped.has && error.abs() < 1.0)
 }
 
-/// Whether a ramp of `a` steps/s^2 brings the motor of channel 0 to a rate and keeps it there.
+/// Whether a ramp of `a` steps/s^2 brings the motor of channel 0 to a rate and it stays there.
 /// Errors: those of the plant.
 pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
@@ -165,20 +164,18 @@ pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
     Ok(!slipped.has)
 }
 
-/// What the motor does at one even rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
-    /// Peak to peak of rate*t - x in the second half, in full steps.
+    /// Peak-to-peak value of rate*t - x in the second half, in full steps.
     pub swing: f64,
-    /// Whether steps are lost.
     pub loses: bool,
 }
 
-/// The motor of channel 0 at an even rate in steps/s, for 0.6 s.
+/// Runs the motor of channel 0 at a constant rate in steps/s for 0.6 s.
 /// Errors: those of the plant.
 pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
     let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
-    // Steps go on to the end of the time, so that the last part of it is no standing still.
+    // Steps continue to the end, so that the last part is no standstill.
     let steps = (rate * MAP_S) as u64 + 1;
     let from = FIRST_STEP + span(setup, 0.5 * MAP_S);
     let to = FIRST_STEP + span(setup, MAP_S);

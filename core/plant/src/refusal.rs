@@ -1,4 +1,4 @@
-//! Why a plant is refused, with the numbers.
+//! Validation of a plant's parameters, with the numbers of each error.
 
 use crate::{
     limits,
@@ -9,31 +9,28 @@ use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// Why a [`Setup`] makes no plant.
+/// Why a [`Setup`] is no valid plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
     /// A number is out of its range.
     Range { field: &'static str, given: f64, least: f64, greatest: f64 },
-    /// One of F3's numbers is above 0.25: the grid is too coarse for this motor.
+    /// A number of [`stability`](crate::stability) is above 0.25: the grid is too coarse for this motor.
     Unstable {
         measure: Measure,
         /// Its value at a whole grid step.
         value: f64,
         step_cycles: u32,
     },
-    /// The source cannot give what the motors draw at rest (F5: no number).
+    /// The source cannot supply the motors at rest.
     TooWeak {
-        /// Resistance of the source in ohm.
         source_ohm: f64,
-        /// What the windings take at rest in W.
+        /// Power of the windings at rest in W.
         power_w: f64,
     },
 }
 
-/// A refusal and the motor that it is about; `None` where it is about the whole plant.
+/// A refusal and its motor; `None` for the whole plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
     pub channel: Option<usize>,
     pub refusal: Refusal,
@@ -76,7 +73,7 @@ struct Ranges<'a>(&'a mut Vec<Refused>, Option<usize>);
 
 impl Ranges<'_> {
     fn number(&mut self, field: &'static str, given: f64, range: &RangeInclusive<f64>) {
-        // Not-a-number is in no range.
+        // NaN is in no range.
         if !range.contains(&given) {
             let (least, greatest) = (*range.start(), *range.end());
             let refusal = Refusal::Range { field, given, least, greatest };
@@ -89,8 +86,8 @@ impl Ranges<'_> {
     }
 }
 
-/// Everything that is wrong with `setup` but for what its supply's first point tells.
-pub(crate) fn judge(setup: &Setup) -> Vec<Refused> {
+/// All errors of `setup` but a supply that is too weak, which only the first point shows.
+pub(crate) fn validate(setup: &Setup) -> Vec<Refused> {
     let mut refused = Vec::new();
     let mut whole = Ranges(&mut refused, None);
     whole.whole("motors", setup.motors.len() as u64, &(1..=MAX_CHANNELS as u64));
@@ -102,7 +99,7 @@ pub(crate) fn judge(setup: &Setup) -> Vec<Refused> {
     whole.number("buffer_uf", supply.buffer_uf.unwrap_or(10.0), &limits::BUFFER_UF);
     whole.number("idle_ma", supply.idle_ma, &limits::IDLE_MA);
     for chain in core::iter::once(&setup.current_sensor).chain(&setup.accelerometer) {
-        judge_chain(&mut whole, chain);
+        validate_chain(&mut whole, chain);
     }
     let encoder = &setup.encoder;
     whole.whole("encoder.period_steps", encoder.period_steps.into(), &limits::PERIOD_STEPS);
@@ -114,7 +111,7 @@ pub(crate) fn judge(setup: &Setup) -> Vec<Refused> {
         whole.whole("protection.samples", protection.samples.into(), &limits::SAMPLES);
     }
     for (channel, motor) in setup.motors.iter().enumerate() {
-        judge_motor(&mut Ranges(&mut refused, Some(channel)), motor);
+        validate_motor(&mut Ranges(&mut refused, Some(channel)), motor);
     }
     if refused.is_empty() {
         let (cycles, clock_hz) = (setup.grid_cycles(), f64::from(setup.clock_hz));
@@ -131,7 +128,7 @@ pub(crate) fn judge(setup: &Setup) -> Vec<Refused> {
     refused
 }
 
-fn judge_chain(ranges: &mut Ranges<'_>, chain: &SensorChain) {
+fn validate_chain(ranges: &mut Ranges<'_>, chain: &SensorChain) {
     ranges.number("current_sensor.bandwidth_hz", chain.bandwidth_hz, &limits::BANDWIDTH_HZ);
     ranges.whole("current_sensor.poles", chain.poles.into(), &limits::POLES);
     ranges.whole("current_sensor.adc_steps", chain.adc_steps.into(), &limits::PERIOD_STEPS);
@@ -139,7 +136,7 @@ fn judge_chain(ranges: &mut Ranges<'_>, chain: &SensorChain) {
     ranges.whole("current_sensor.adc_max", chain.adc_max.into(), &limits::ADC_MAX);
 }
 
-fn judge_motor(ranges: &mut Ranges<'_>, motor: &MotorModel) {
+fn validate_motor(ranges: &mut Ranges<'_>, motor: &MotorModel) {
     let above_0 = f64::MIN_POSITIVE..=1e9;
     ranges.number("full_step_deg", motor.full_step_deg, &(0.001..=90.0));
     ranges.whole("microsteps", motor.microsteps.into(), &(1..=512));
@@ -159,7 +156,7 @@ fn judge_motor(ranges: &mut Ranges<'_>, motor: &MotorModel) {
     ranges.number("sine_torque_mn_m", motor.sine_torque_mn_m, &limits::TORQUE_MN_M);
     ranges.number("sine_per_turn", motor.sine_per_turn, &limits::SINE_PER_TURN);
     ranges.number("sine_phase_deg", motor.sine_phase_deg, &limits::SINE_PHASE_DEG);
-    // A mass of its own each where a coupling is between them.
+    // A coupling separates two masses, and each must be positive.
     let coupled = motor.coupling_n_m_rad.is_some();
     let (rotor, load) = (motor.rotor_inertia_g_cm2, motor.load_inertia_g_cm2);
     ranges.number("rotor_inertia_g_cm2", rotor, if coupled || load <= 0.0 { &above_0 } else { &(0.0..=1e9) });

@@ -1,9 +1,9 @@
-//! The square root without a mathematics library: IEEE 754 leaves its bits no choice, so whole numbers can find them.
+//! A correctly rounded square root in integer arithmetic: the same bits as IEEE 754, without a mathematics library.
 
-/// The square root of `x`, correctly rounded; not-a-number below 0.
+/// The square root of `x`, correctly rounded; NaN below 0.
 ///
-/// x = m*2^e with e even and m a whole number of 109 or 110 bits has the root r*2^(e/2), r the whole root of m; r has 55
-/// bits, two more than an f64 keeps, and what is left over tells whether the cut-off bits are exactly a half.
+/// x = m*2^e with e even and 109 or 110 bits in m has the root r*2^(e/2), where r is the integer root of m. r has 55 bits,
+/// two more than an f64; the remainder decides whether the cut-off bits are exactly a half.
 pub(crate) fn square_root(x: f64) -> f64 {
     if x.is_nan() || x < 0.0 {
         return f64::NAN;
@@ -13,7 +13,6 @@ pub(crate) fn square_root(x: f64) -> f64 {
     }
     let bits = x.to_bits();
     let (fraction, exponent) = (bits & ((1 << 52) - 1), (bits >> 52) as i32);
-    // x = significand * 2^exponent.
     let (significand, exponent) =
         if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
     let up = significand.leading_zeros() as i32 - 11;
@@ -22,9 +21,8 @@ pub(crate) fn square_root(x: f64) -> f64 {
     let m = u128::from(significand) << (56 + odd);
     let half_exponent = (exponent - odd - 56) / 2;
     let root = whole_root(m);
-    // The sticky bit: something is left over.
     let sticky = u64::from(u128::from(root) * u128::from(root) != m);
-    // Between 2^54 and 2^55: two bits more than the significand's 53, of which conversion rounds to even.
+    // Between 2^54 and 2^55; the conversion rounds to 53 bits, ties to even.
     let rounded = ((root << 1) | sticky) as f64;
     rounded * power_of_two(half_exponent - 1)
 }
@@ -46,7 +44,7 @@ fn whole_root(m: u128) -> u64 {
     root as u64
 }
 
-/// 2^n where it is a normal number, as it is for roots.
+/// 2^n for a normal number, which every root is.
 const fn power_of_two(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }

@@ -1,12 +1,12 @@
-//! One motor in time: the state of its currents and masses, and a (sub-)step of it (F3).
+//! One motor in time: currents, masses, and one (sub-)step of their equations (PLANT F3).
 //!
 //! ```text
-//! half a step of x; the currents' mean with constant voltage and back-EMF, exactly; the speed by the implicit
-//! midpoint; friction; the currents; the other half of x
+//! half a step of x; mean currents at constant voltage and back EMF, exactly; speed by the implicit midpoint rule;
+//! friction; currents; the other half of x
 //! ```
 
 use crate::{
-    driver::{Ask, Driver},
+    driver::{Driver, PhaseInput},
     energy::EnergyAccount,
     motor_constants::{MotorConstants, Span},
     parameters::MotorModel,
@@ -16,7 +16,7 @@ use crate::{
 
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor {
-    pub(crate) machine: MotorConstants,
+    pub(crate) constants: MotorConstants,
     pub(crate) driver: Driver,
     pub(crate) state: State,
     pub(crate) energy: EnergyAccount,
@@ -24,12 +24,11 @@ pub(crate) struct Rotor {
     step_cycles: u64,
     clock_hz: f64,
     passed: u64,
-    /// Energy that it took from the bus in this grid step, in J.
+    /// Energy taken from the bus in this grid step, in J.
     from_bus: f64,
 }
 
-/// `value` moved towards 0 by `by`, at most to 0.
-#[inline(always)]
+/// `value` moved toward 0 by `by`, at most to 0.
 fn towards_zero(value: f64, by: f64) -> f64 {
     if value.abs() <= by {
         0.0
@@ -42,33 +41,32 @@ fn towards_zero(value: f64, by: f64) -> f64 {
 
 impl Rotor {
     pub(crate) fn new(motor: &MotorModel, clock_hz: f64, step_cycles: u32) -> Self {
-        let (machine, driver) = (MotorConstants::new(motor), Driver::new(motor, clock_hz, step_cycles));
+        let (constants, driver) = (MotorConstants::new(motor), Driver::new(motor, clock_hz, step_cycles));
         let [i_a, i_b] = [driver.phases[0].target, driver.phases[1].target];
-        let x = machine.rest(i_a, i_b);
-        let x_load = machine.coupling.as_ref().map_or(x, |c| x + machine.load.at(x) / c.stiffness);
+        let x = constants.rest(i_a, i_b);
+        let x_load = constants.coupling.as_ref().map_or(x, |c| x + constants.load.at(x) / c.stiffness);
         let state = State { x, w: 0.0, i_a, i_b, x_load, w_load: 0.0 };
-        let whole = Span::new(&machine, step_cycles.into(), clock_hz);
-        let energy = EnergyAccount::new(&machine, &state);
+        let whole = Span::new(&constants, step_cycles.into(), clock_hz);
+        let energy = EnergyAccount::new(&constants, &state);
         let step_cycles = step_cycles.into();
-        Self { machine, driver, state, energy, whole, step_cycles, clock_hz, passed: 0, from_bus: 0.0 }
+        Self { constants, driver, state, energy, whole, step_cycles, clock_hz, passed: 0, from_bus: 0.0 }
     }
 
-    /// What the windings take from the bus at the start, in W.
+    /// Power of the windings at the start, in W.
     pub(crate) fn first_power(&self) -> f64 {
         let State { i_a, i_b, .. } = self.state;
-        self.machine.r * (i_a * i_a + i_b * i_b)
+        self.constants.r * (i_a * i_a + i_b * i_b)
     }
 
     pub(crate) fn advance(&mut self, to: u64, bus: f64, powered: bool) {
         if to > self.passed {
-            let span = Span::new(&self.machine, to - self.passed, self.clock_hz);
+            let span = Span::new(&self.constants, to - self.passed, self.clock_hz);
             self.step(&span, bus, powered);
             self.passed = to;
         }
     }
 
-    /// Goes on to the next grid point; gives the energy that it took from the bus since the one before, in J.
-    #[inline(always)]
+    /// Advances to the next grid point; returns the energy taken from the bus since the last one, in J.
     pub(crate) fn finish(&mut self, bus: f64, powered: bool) -> f64 {
         if self.passed == 0 {
             let whole = self.whole;
@@ -80,45 +78,44 @@ impl Rotor {
         core::mem::take(&mut self.from_bus)
     }
 
-    #[inline(always)]
     fn step(&mut self, span: &Span, bus: f64, powered: bool) {
-        let Self { machine, driver, state, .. } = self;
+        let Self { constants, driver, state, .. } = self;
         let State { x, w, i_a, i_b, .. } = *state;
         let Span { h, hh, ra, .. } = *span;
-        let (k, r, m) = (machine.k, machine.r, machine.m);
+        let (k, r, m) = (constants.k, constants.r, constants.m);
 
         let y = x + w * hh;
         let (sn, cs) = sincos(y + 0.5);
         let (k_a, k_b) = (-(k * sn), k * cs);
-        let a = driver.voltage(0, &Ask { e: k_a * w, i: i_a, r, ra, bus }, powered);
-        let b = driver.voltage(1, &Ask { e: k_b * w, i: i_b, r, ra, bus }, powered);
+        let a = driver.voltage(0, &PhaseInput { e: k_a * w, i: i_a, r, ra, bus }, powered);
+        let b = driver.voltage(1, &PhaseInput { e: k_b * w, i: i_b, r, ra, bus }, powered);
         let (u_a, u_b) = (a.v - r * i_a, b.v - r * i_b);
         let (a_a, b_a) = if a.is_open { (0.0, 0.0) } else { (span.a, span.b) };
         let (a_b, b_b) = if b.is_open { (0.0, 0.0) } else { (span.a, span.b) };
 
         let mut f = 0.0;
-        if machine.detent != 0.0 {
-            f -= machine.detent(sn, cs);
+        if constants.detent != 0.0 {
+            f -= constants.detent(sn, cs);
         }
         let mut spring = 0.0;
         let mut y_load = y;
         let load;
-        if let Some(c) = &machine.coupling {
+        if let Some(c) = &constants.coupling {
             y_load = state.x_load + state.w_load * hh;
             spring = c.stiffness * (y_load - y) + c.damping * (state.w_load - w);
             f += spring;
-            load = machine.load.at(y_load);
+            load = constants.load.at(y_load);
         } else {
-            load = machine.load.at(y);
+            load = constants.load.at(y);
             f += load;
         }
 
         let torque = k_a * (i_a + b_a * u_a) + k_b * (i_b + b_b * u_b) + f;
-        let den = m + hh * (machine.b + (b_a * k_a * k_a + b_b * k_b * k_b));
+        let den = m + hh * (constants.b + (b_a * k_a * k_a + b_b * k_b * k_b));
         let w_m = (m * w + hh * torque) / den;
         let free = 2.0 * w_m - w;
-        let slide = h * machine.friction / den;
-        let hold = if w == 0.0 { h * machine.stiction / den } else { slide };
+        let slide = h * constants.friction / den;
+        let hold = if w == 0.0 { h * constants.stiction / den } else { slide };
         let w_1 = if free.abs() <= hold {
             0.0
         } else if free > 0.0 {
@@ -137,7 +134,7 @@ impl Rotor {
         state.x = y + w_1 * hh;
         state.w = w_1;
         let energy = &mut self.energy;
-        if let Some(c) = &machine.coupling {
+        if let Some(c) = &constants.coupling {
             let pushed = state.w_load + h * (load - spring) / c.mass;
             let w_l = towards_zero(pushed, h * c.friction / c.mass);
             energy.coupled(c, [state.w_load, w_l, pushed], (w, w_m), load, h);
@@ -160,7 +157,7 @@ impl Rotor {
         self.from_bus += taken;
         energy.bus += taken;
         energy.friction += (free - w_1) * den * w_m;
-        energy.viscous += h * machine.b * w_m * w_m;
+        energy.viscous += h * constants.b * w_m * w_m;
         energy.copper +=
             h * (i_a * i_a + i_a * next_a + next_a * next_a + i_b * i_b + i_b * next_b + next_b * next_b);
     }

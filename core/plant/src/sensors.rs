@@ -1,4 +1,4 @@
-//! What measures the plant: current sensors and accelerometers behind low passes and a converter, and encoders (F6).
+//! Sensors: low-pass filters and converters of current and acceleration, and encoders (PLANT F6).
 
 use crate::{
     motor_constants::TURN,
@@ -7,7 +7,6 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Low passes and a converter.
 #[derive(Clone, Debug)]
 pub struct Chain {
     poles: Vec<f64>,
@@ -20,8 +19,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// A chain that has long had the input `steady`, on a grid of `h` seconds.
-    #[must_use]
+    /// A chain in steady state at the input `steady`, on a grid of `h` seconds.
     pub(crate) fn new(chain: &SensorChain, h: f64, steady: f64) -> Self {
         let mut new = Self {
             poles: alloc::vec![steady; usize::from(chain.poles)],
@@ -36,7 +34,6 @@ impl Chain {
         new
     }
 
-    #[inline]
     pub(crate) fn advance(&mut self, input: f64) -> bool {
         let mut input = input;
         for s in &mut self.poles {
@@ -56,19 +53,18 @@ impl Chain {
         nearest(self.filtered() / self.lsb).clamp(-self.adc_max, self.adc_max) as i32
     }
 
-    /// Behind the last low pass.
+    /// Output of the last filter.
     #[must_use]
     pub fn filtered(&self) -> f64 {
         self.poles.last().copied().unwrap_or(0.0)
     }
 
-    /// The latest conversion.
     #[must_use]
     pub const fn code(&self) -> i32 {
         self.code
     }
 
-    /// What the latest conversion stands for.
+    /// Value of the latest conversion.
     #[must_use]
     pub fn reading(&self) -> f64 {
         f64::from(self.code) * self.lsb
@@ -77,7 +73,7 @@ impl Chain {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Encoder {
-    codes_a_step: f64,
+    turns_per_step: f64,
     offset: f64,
     noise: f64,
     hysteresis: f64,
@@ -90,7 +86,7 @@ impl Encoder {
     pub(crate) fn new(encoder: &parameters::Encoder, channel: u64, full_step_deg: f64) -> Self {
         let seed = encoder.seed ^ (channel + 1).wrapping_mul(SplitMix64::STEP);
         Self {
-            codes_a_step: full_step_deg / 360.0,
+            turns_per_step: full_step_deg / 360.0,
             offset: encoder.offset_lsb,
             noise: encoder.noise_lsb,
             hysteresis: encoder.hysteresis_lsb,
@@ -102,7 +98,7 @@ impl Encoder {
 
     pub(crate) fn read(&mut self, x: f64) {
         let noise = self.noise * (self.random.next() - self.random.next());
-        let input = x * self.codes_a_step * 4096.0 + self.offset + noise;
+        let input = x * self.turns_per_step * 4096.0 + self.offset + noise;
         if input > self.out + self.hysteresis {
             self.out = input - self.hysteresis;
         } else if input < self.out - self.hysteresis {
@@ -123,7 +119,7 @@ struct SplitMix64(u64);
 impl SplitMix64 {
     const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-    /// The top 53 bits of the next value, as a part of 1.
+    /// The top 53 bits of the next value, as a fraction of 1.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(Self::STEP);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

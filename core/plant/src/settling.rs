@@ -1,5 +1,5 @@
-//! How long the supply current needs to settle after a step, the patent's delta t_p, and how far motors that step together
-//! pull it from its rest (F8).
+//! Settling time of the supply current after a step (the patent's delta t_p), and its deviation while motors step together
+//! (PLANT F8).
 //!
 //! ```
 //! use stepscope_plant::settling::{SHARE, Sample, StepResponse};
@@ -13,38 +13,36 @@
 use crate::plant::{Observer, Plant};
 use alloc::vec::Vec;
 
-/// What still counts as settled, in parts of the peak.
+/// Settled means within this share of the peak.
 pub const SHARE: f64 = 0.2;
-/// Rests of this many T_step give the current before the step.
+/// Step periods of rest before a step, from which the rest current follows.
 pub const REST_STEPS: u64 = 10;
 
-/// A reading of the current sensor at a point.
+/// A reading of the current sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Sample {
     pub cycle: u64,
-    /// The current in A, or in whole codes of the converter: what is made of samples has the same unit.
+    /// In A, or in codes of the converter; results have the same unit.
     pub current: f64,
 }
 
-/// The supply current around one step of a motor that rested.
+/// The supply current around one step of a motor at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct StepResponse {
     pub rest_a: f64,
     pub least_a: f64,
     pub greatest_a: f64,
-    /// Cycles from STEP's rise to the first sample, from the maximum on, that is at most a share above i_q: the patent's
-    /// word, the default. `None` if not within T_step, and where no sample differs from i_q.
+    /// Cycles from the rise of STEP to the first sample, from the maximum on, that is at most a share of the peak above
+    /// rest: the default. `None` if not within a step period, or if no sample differs from rest.
     pub reached: Option<u64>,
-    /// Cycles to the last sample that is off by more than that share. `None` if it is the last one there is, and where no
-    /// sample differs from i_q.
+    /// Cycles to the last sample that is off by more than that share. `None` if it is the last of all, or if no sample
+    /// differs from rest.
     pub settled: Option<u64>,
 }
 
 impl StepResponse {
-    /// Of samples around a rise of STEP in cycle `rise`: before it they count from `from` on, after it for `t_step` cycles.
-    /// `None` where there are none on one side.
+    /// Measures samples around a rise of STEP in cycle `rise`: from `from` up to it, and `t_step` cycles after it.
+    /// `None` without samples on one side.
     #[must_use]
     pub fn of(samples: &[Sample], from: u64, rise: u64, t_step: u64, share: f64) -> Option<Self> {
         let within = |after: u64, to: u64| {
@@ -71,7 +69,8 @@ impl StepResponse {
     }
 }
 
-/// The mean of samples; `None` of none. Of equal ones it is their value, so that a current that never changes has no peak.
+/// The mean of samples; `None` of none. Summing differences from the first gives equal samples exactly their value, so that
+/// a constant current has no peak.
 #[must_use]
 pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
     let first = samples.next()?.current;
@@ -79,19 +78,18 @@ pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
     Some(first + sum / f64::from(count))
 }
 
-/// How far the supply current is pulled from its rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Its mean at rest, i_q, in A.
+    /// Mean at rest in A.
     pub rest_a: f64,
-    /// The maximum above it, at least 0.
+    /// Maximum above it, at least 0.
     pub above_a: f64,
-    /// The maximum below it, at least 0.
+    /// Maximum below it, at least 0.
     pub below_a: f64,
 }
 
 impl Deviation {
-    /// Of samples, those up to `first_step` at rest; those after `from` count.
+    /// Of samples: those up to `first_step` are at rest, those after `from` count.
     #[must_use]
     pub fn of(samples: &[Sample], first_step: u64, from: u64) -> Option<Self> {
         let rest_a = mean(samples.iter().filter(|sample| sample.cycle <= first_step))?;
@@ -100,16 +98,14 @@ impl Deviation {
         Some(Self { rest_a, above_a, below_a: -below })
     }
 
-    /// The greater of both.
     #[must_use]
     pub const fn greatest_a(&self) -> f64 {
         self.above_a.max(self.below_a)
     }
 }
 
-/// Keeps what the current sensor says at each point.
+/// Records the readings of the current sensor.
 #[derive(Clone, Debug, Default)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct SensorLog {
     pub samples: Vec<Sample>,
     /// Rises of STEP of channel 0.

@@ -1,13 +1,11 @@
-//! Sine and cosine of quarter turns, and the shares of an exponential: polynomials and + - * / alone, so every
-//! target has the same bits (F3).
+//! Sine and cosine of quarter turns, and parts of an exponential: polynomials of + - * / only, so every target has the
+//! same bits (PLANT F3).
 
-use core::hint::black_box;
-
-/// 3*2^51: what is added to it loses its fraction to the nearest even whole number.
+/// 3*2^51: adding it to a number rounds the number to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Of the sine and of the cosine, from the highest power down.
-static TERMS: [[f64; 2]; 7] = [
+/// Coefficients of sine and cosine, highest power first.
+const TERMS: [[f64; 2]; 7] = [
     [5.692_172_921_967_927e-8, -6.386_603_083_791_852e-9],
     [-3.598_843_235_212_085e-6, 4.710_874_778_818_172e-7],
     [0.000_160_441_184_787_359_83, -2.520_204_237_306_060_7e-5],
@@ -17,17 +15,10 @@ static TERMS: [[f64; 2]; 7] = [
     [core::f64::consts::FRAC_PI_2, -1.233_700_550_136_169_7],
 ];
 
-/// They come from memory in browsers, which would make each constant anew whenever it is used.
-#[inline(always)]
-fn terms() -> &'static [[f64; 2]; 7] {
-    if cfg!(target_arch = "wasm32") { black_box(&TERMS) } else { &TERMS }
-}
-
-/// From here on, 2^51, the sum with [`ROUND`] has other last bits than the whole number.
+/// From 2^51 on, the last bits of the sum with [`ROUND`] are not those of the integer.
 const FAR: f64 = 2_251_799_813_685_248.0;
 
-/// The nearest whole number, of two the even one; |q| below 2^51.
-#[inline(always)]
+/// The nearest integer, ties to even; |q| below 2^51.
 pub(crate) fn nearest(q: f64) -> f64 {
     (q + ROUND) - ROUND
 }
@@ -38,18 +29,16 @@ pub(crate) fn nearest(q: f64) -> f64 {
 /// assert_eq!(stepscope_plant::sincos(1.0), (1.0, 0.0));
 /// assert!((stepscope_plant::sincos(0.5).0 - 0.5_f64.sqrt()).abs() < 1e-11);
 /// ```
-#[inline(always)]
 #[must_use]
 pub fn sincos(q: f64) -> (f64, f64) {
     let t = q + ROUND;
     let n = t - ROUND;
     let r = q - n;
     let z = r * r;
-    // Both at once.
-    let [highest, rest @ ..] = terms();
+    let [highest, rest @ ..] = &TERMS;
     let [s, c] = rest.iter().fold(*highest, |[s, c], [of_s, of_c]| [of_s + z * s, of_c + z * c]);
     let (s, c) = (r * s, 1.0 + z * c);
-    // The last bits of t's significand are those of the whole number: 3*2^51 has none there.
+    // 3*2^51 has zeros in the last bits, so those of the sum are the integer's.
     let quarter = if n > -FAR && n < FAR { t.to_bits() & 3 } else { far_quarter(n) };
     let (sine, cosine) = if quarter & 1 == 0 { (s, c) } else { (c, s) };
     let negative = |is| (is as u64) << 63;
@@ -61,11 +50,11 @@ pub fn sincos(q: f64) -> (f64, f64) {
 
 #[cold]
 fn far_quarter(n: f64) -> u64 {
-    // The remainder of two numbers is exact.
+    // The remainder of floats is exact.
     (n % 4.0) as i64 as u64 & 3
 }
 
-/// (phi1, phi2) of `z`: (1 - e^-z)/z and (e^-z - 1 + z)/z^2, exact to the last digits for 0 <= z <= 0.25.
+/// (phi1, phi2) = ((1 - e^-z)/z, (e^-z - 1 + z)/z^2), exact to the last digits for 0 <= z <= 0.25.
 pub(crate) fn phi(z: f64) -> (f64, f64) {
     let mut p = 1.0;
     for n in (3..=13).rev() {

@@ -1,5 +1,5 @@
-//! Whether the grid is fine enough for the equations (F3): four numbers a motor, each at most 0.25, and the natural
-//! frequency of a rotor that is held by its currents.
+//! Whether the grid is fine enough for the equations (PLANT F3): four numbers per motor, each at most 0.25, and the natural
+//! frequency of a rotor held by its currents.
 //!
 //! ```
 //! use stepscope_plant::{parameters::MotorModel, stability::Natural};
@@ -14,12 +14,12 @@ use crate::{
     root::square_root,
 };
 
-/// A rotor that is held by its currents swings like a pendulum, while it is little off its place.
+/// Small oscillations of a rotor around the position that its currents hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Natural {
-    /// f_n = sqrt(p*k*I/J)/(2*pi) in Hz; J is the rotor's and the load's inertia, with a coupling the rotor's alone.
+    /// f_n = sqrt(p*k*I/J)/(2*pi) in Hz; J includes the load unless a coupling separates it.
     pub frequency_hz: f64,
-    /// viscous/(4*pi*f_n*J): how fast it comes to rest without any other friction.
+    /// viscous/(4*pi*f_n*J): the damping without other friction.
     pub damping_ratio: f64,
 }
 
@@ -27,9 +27,9 @@ impl Natural {
     /// Of a motor at its peak current.
     #[must_use]
     pub fn of(motor: &MotorModel) -> Self {
-        let machine = MotorConstants::new(motor);
-        let inertia = machine.m / (machine.g * machine.g);
-        let k = machine.k / machine.g;
+        let constants = MotorConstants::new(motor);
+        let inertia = constants.m / (constants.g * constants.g);
+        let k = constants.k / constants.g;
         let frequency_hz =
             square_root(90.0 / motor.full_step_deg * k * motor.peak_current_a / inertia) / TURN;
         let damping_ratio = motor.viscous_un_m_s / 1e6 / (2.0 * TURN * frequency_hz * inertia);
@@ -37,7 +37,7 @@ impl Natural {
     }
 }
 
-/// Which number is too great for the grid.
+/// A number that limits the grid step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// R*h/L: the currents.
@@ -51,7 +51,6 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// As the contract writes it.
     #[must_use]
     pub const fn formula(self) -> &'static str {
         match self {
@@ -65,14 +64,14 @@ impl Measure {
 
 /// The numbers of a motor on a grid of `h` seconds.
 pub(crate) fn measures(motor: &MotorModel, h: f64) -> impl Iterator<Item = (Measure, f64)> {
-    let machine = MotorConstants::new(motor);
+    let constants = MotorConstants::new(motor);
     let natural = Natural::of(motor).frequency_hz;
-    let (spring, damper) = machine.coupling.as_ref().map_or((0.0, 0.0), |c| {
-        let masses = 1.0 / machine.m + 1.0 / c.mass;
+    let (spring, damper) = constants.coupling.as_ref().map_or((0.0, 0.0), |c| {
+        let masses = 1.0 / constants.m + 1.0 / c.mass;
         (h * square_root(c.stiffness * masses), h * c.damping * masses)
     });
     [
-        (Measure::Electrical, machine.r * h / machine.l),
+        (Measure::Electrical, constants.r * h / constants.l),
         (Measure::Rotor, TURN * natural * h),
         (Measure::Spring, spring),
         (Measure::Damper, damper),

@@ -1,24 +1,24 @@
-//! The bus that feeds all drivers of a plant: its voltage and the current that is drawn from it (F5).
+//! The bus that feeds all drivers of a plant: voltage and current (PLANT F5).
 
 use crate::{parameters, root::square_root};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Supply {
     pub(crate) v: f64,
-    /// Current of the drivers in the grid step before the point, in A.
+    /// Current of the drivers in the last grid step, in A.
     pub(crate) i_load: f64,
     idle: f64,
     h: f64,
     supply_v: f64,
     source_ohm: f64,
     source_sinks: bool,
-    /// hc = h/Cb and gg.
+    /// The constants h/C and h/(2*C*R) of the buffer.
     buffer: Option<(f64, f64)>,
     pub(crate) has_collapsed: bool,
 }
 
 impl Supply {
-    /// `None` where the source cannot give what the motors draw at the start.
+    /// `None` if the source cannot supply the motors at the start.
     pub(crate) fn new(supply: &parameters::Supply, h: f64, motors: usize, first_power: f64) -> Option<Self> {
         let &parameters::Supply { supply_v, source_ohm, source_sinks, idle_ma, buffer_uf } = supply;
         let idle = idle_ma / 1000.0 * motors as f64;
@@ -38,8 +38,7 @@ impl Supply {
         (!v.is_nan()).then_some(new)
     }
 
-    /// The next point, after a grid step in which the motors took so much energy.
-    #[inline(always)]
+    /// Advances to the next point, after a grid step in which the motors took `energy` J.
     pub(crate) fn advance(&mut self, energy: f64) {
         self.i_load = energy / (self.v * self.h) + self.idle;
         let Some((hc, gg)) = self.buffer else { return };

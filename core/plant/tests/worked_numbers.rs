@@ -68,7 +68,7 @@ fn the_supply_current_dips_and_peaks_while_a_phase_turns_round() {
 fn search(mut holds: impl FnMut(f64) -> bool) -> f64 {
     let mut search = Search::default();
     while let Some(rate) = search.rate() {
-        search.tell(holds(rate));
+        search.report(holds(rate));
     }
     search.found().expect("a rate holds")
 }

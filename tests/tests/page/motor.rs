@@ -71,8 +71,8 @@ fn of_a_motor_that_stalls_the_view_says_why() -> Result<()> {
     in_browser(|page| async move {
         let preset = PLANT_PRESETS.iter().find(|preset| preset.id == "song-2021-stall").expect("a preset");
         let known = Known::preset(preset)?;
-        let setup = known.experiment.plants().expect("a plant").setups[0].alone(0).expect("a motor");
-        let most = search(|rate| starts(&setup, rate, setup.motors[0].steps_a_turn())).expect("a plant");
+        let setup = known.experiment.plants().expect("a plant").setups[0].single_motor(0).expect("a motor");
+        let most = search(|rate| starts(&setup, rate, setup.motors[0].steps_per_turn())).expect("a plant");
         page.open(&format!("#{}", known.link)).await?;
         page.until(&format!("{VERDICT}.includes('loses 188 full steps')")).await?;
         let why = format!("above its start-stop rate of {} steps/s", most.expect("it starts").floor());
@@ -116,12 +116,12 @@ fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
         let preset =
             PLANT_PRESETS.iter().find(|preset| preset.id == "patent-2019-figure-2").expect("a preset");
         let known = Known::preset(preset)?;
-        let setup = known.experiment.plants().expect("a plant").setups[0].alone(0).expect("a motor");
+        let setup = known.experiment.plants().expect("a plant").setups[0].single_motor(0).expect("a motor");
         page.open(&format!("#{}&v=tstudy.ymotor", known.link)).await?;
         until_found(&page).await?;
         let found = values(&page, "Motor limits").await?;
         let rate = |found: Option<f64>| format!("{} steps/s", found.expect("a rate").floor());
-        let start = search(|rate| starts(&setup, rate, setup.motors[0].steps_a_turn())).expect("a plant");
+        let start = search(|rate| starts(&setup, rate, setup.motors[0].steps_per_turn())).expect("a plant");
         let pull = search(|rate| pulls(&setup, rate, RAMP_STEPS_S2)).expect("a plant");
         ensure!(found[..2] == [rate(start), rate(pull)], "{found:?}");
         // The patent's figures: a settling time that can be taken, and the ratio of both ways.

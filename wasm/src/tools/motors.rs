@@ -77,7 +77,7 @@ impl ValidatedScenario {
     /// If the scenario has problems, or no such motor.
     pub fn start_stop(&self, controller: usize, channel: usize) -> Result<Option<f64>, JsError> {
         let setup = self.motor(controller, channel)?;
-        let steps = setup.motors[0].steps_a_turn();
+        let steps = setup.motors[0].steps_per_turn();
         search(|rate| starts(&setup, rate, steps)).map_err(refused)
     }
 
@@ -207,7 +207,8 @@ impl ValidatedScenario {
     /// One motor with its supply.
     fn motor(&self, controller: usize, channel: usize) -> Result<Setup, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
-        let setup = experiment.plants().and_then(|plants| plants.setups.get(controller)?.alone(channel));
+        let setup =
+            experiment.plants().and_then(|plants| plants.setups.get(controller)?.single_motor(channel));
         setup.ok_or_else(|| JsError::new("the scenario's plant has no such motor"))
     }
 }

@@ -146,7 +146,7 @@ pub fn settling_with(
     t_step: u64,
     share: f64,
 ) -> Result<(StepResponse, Vec<CurrentAt>), Vec<Refused>> {
-    let mut plant = Plant::new(&setup.alone(channel).ok_or_else(Vec::new)?)?;
+    let mut plant = Plant::new(&setup.single_motor(channel).ok_or_else(Vec::new)?)?;
     let mut log = SensorLog::default();
     // As in the self-test: S = 1.
     let (from, rise) = (1, 1 + REST_STEPS * t_step);
