@@ -1,5 +1,5 @@
-//! Example firmware for the peripheral: a driver on top of the registers ([`stepscope_registers`]), without
-//! allocation or the standard library. It runs unchanged on a chip and, in tests, on the model.
+//! Example firmware: a driver for the registers of the peripheral ([`stepscope_registers`]), without allocation or the
+//! standard library. It runs unchanged on a chip and, in tests, on the model.
 //!
 //! A motion is a sequence of ticks with one command per channel. Call [`Driver::fill`] often enough that the queue
 //! never runs empty.
@@ -17,20 +17,18 @@
 //! }
 //! ```
 #![no_std]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 use core::fmt;
 use stepscope_registers::{
     RegisterBus, capabilities, control, faults, id, orders, position, push, result, slots, status, ticks_done,
 };
 
-/// An error of the driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
     /// No peripheral; the value of the ID register.
     NotFound(u32),
-    /// Unknown version of the register map.
     UnknownVersion(u32),
-    /// The queue is full; try again.
     Full,
     /// More steps than slots per tick, or no such channel.
     TooManySteps,
@@ -38,7 +36,6 @@ pub enum Error {
     Busy,
     /// Stopped; call [`Driver::enable`] first.
     Stopped,
-    /// An unknown result.
     Unexpected(u32),
 }
 
@@ -49,9 +46,9 @@ impl fmt::Display for Error {
                 write!(f, "no peripheral: ID is {id:#010x}, not {:#010x}", id::MAGIC_STEP)
             }
             Self::UnknownVersion(version) => write!(f, "register map {version}, this driver knows 1"),
-            Self::Full => f.write_str("the queue is full; come again"),
+            Self::Full => f.write_str("the queue is full; try again"),
             Self::TooManySteps => f.write_str("more steps than the tick has slots; give fewer"),
-            Self::Busy => f.write_str("busy; come again"),
+            Self::Busy => f.write_str("busy; try again"),
             Self::Stopped => f.write_str("stopped; enable first"),
             Self::Unexpected(code) => write!(f, "unknown result {code}"),
         }
@@ -60,7 +57,6 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChannelCommand {
     /// Right (DIR high) or left; sets DIR even without steps.
@@ -70,25 +66,22 @@ pub struct ChannelCommand {
 }
 
 impl ChannelCommand {
-    /// Steps to the right.
     #[must_use]
     pub const fn right(steps: u8) -> Self {
         Self { right: true, steps }
     }
 
-    /// Steps to the left.
     #[must_use]
     pub const fn left(steps: u8) -> Self {
         Self { right: false, steps }
     }
 
-    /// `None` for more than 127 steps.
+    /// `None` above 127 steps.
     const fn byte(self) -> Option<u8> {
         if self.steps > 127 { None } else { Some((self.right as u8) << 7 | self.steps) }
     }
 }
 
-/// The peripheral behind a bus.
 #[derive(Debug)]
 pub struct Driver<B> {
     bus: B,
@@ -110,12 +103,11 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
-    /// The bus.
     pub const fn bus(&mut self) -> &mut B {
         &mut self.bus
     }
 
-    /// Waits for the end of the self-test after reset.
+    /// Waits until the self-test after reset has ended.
     pub fn wait_for_self_test(&mut self) {
         while status::STATE.of(self.bus.read(status::OFFSET)) == status::STATE_BUSY {}
     }
@@ -131,9 +123,6 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     /// Enables the drivers and leaves STOPPED.
-    ///
-    /// # Errors
-    /// None according to the data sheet.
     pub fn enable(&mut self) -> Result<(), Error> {
         self.command(control::ENABLE.mask())
     }
@@ -146,8 +135,7 @@ impl<B: RegisterBus> Driver<B> {
         self.command(control::DISABLE.mask())
     }
 
-    /// Emergency stop: no pulses from the next cycle on, drivers off, queue empty. A single write, so interrupts may
-    /// call it.
+    /// Emergency stop: no pulses from the next cycle on, drivers off, queue cleared. A single write, safe in interrupts.
     pub fn stop(&mut self) {
         self.bus.write(control::OFFSET, control::STOP.mask());
     }
@@ -163,8 +151,8 @@ impl<B: RegisterBus> Driver<B> {
         }
         for (first, offset) in (0..channels).step_by(4).zip((orders::OFFSET..).step_by(4)) {
             let mut four = [0; 4];
-            for (byte, order) in four.iter_mut().zip(tick.iter().skip(first)) {
-                *byte = order.byte().ok_or(Error::TooManySteps)?;
+            for (byte, command) in four.iter_mut().zip(tick.iter().skip(first)) {
+                *byte = command.byte().ok_or(Error::TooManySteps)?;
             }
             self.bus.write(offset, u32::from_le_bytes(four));
         }
@@ -192,7 +180,7 @@ impl<B: RegisterBus> Driver<B> {
     /// Whether all ticks are done.
     ///
     /// # Errors
-    /// [`Error::Stopped`]: they will not be.
+    /// [`Error::Stopped`]: remaining ticks never run.
     pub fn is_done(&mut self) -> Result<bool, Error> {
         let read = self.bus.read(status::OFFSET);
         match status::STATE.of(read) {
@@ -201,7 +189,6 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
-    /// Ticks done since reset, wrapping.
     pub fn ticks_done(&mut self) -> u32 {
         self.bus.read(ticks_done::OFFSET)
     }

@@ -1,4 +1,4 @@
-//! Buttons (G2): what each means in each state.
+//! The effect of each button in each state (CONTROLLER G2).
 
 use crate::{
     controller::{Controller, Edit, NEVER, Paused, Press},
@@ -12,7 +12,7 @@ use stepscope_peripheral::units::Instant;
 const ENTRY: u32 = 1_000_000;
 
 impl Controller {
-    /// All that were pressed or released in this cycle, in their order.
+    /// Handles the buttons pressed or released in this cycle, in their order.
     pub(crate) fn buttons(&mut self, now: u64) {
         if !self.inputs.has_edges() {
             return;
@@ -24,7 +24,7 @@ impl Controller {
             if self.inputs.is_released(button) && self.jogs(button) {
                 self.end_jog();
             }
-            // The end of a move that one brings comes before the next one.
+            // A move that this button ended must end before the next button.
             self.ended(now);
         }
     }
@@ -98,12 +98,12 @@ impl Controller {
         true
     }
 
-    /// PAUSING goes on; it brakes on only for `until`.
+    /// Continues a pausing move; it keeps braking only for `until`.
     fn stop_braking(&mut self) {
         let Some(motion) = &mut self.motion else { return };
         let inputs = &self.inputs;
         let is_met = motion.until.is_some_and(|(input, level)| inputs.level(input) == level);
-        motion.until_met |= motion.is_heeding() && is_met;
+        motion.until_met |= motion.is_active() && is_met;
         motion.brakes = motion.until_met;
         let purpose = motion.purpose;
         self.state = self.state_of(purpose);
@@ -171,7 +171,7 @@ impl Controller {
         self.edit = Edit { number, entry: None };
     }
 
-    /// An entry out of range is dropped, else it is stored; the next number comes then, and with nothing entered.
+    /// Stores an entry that is in range. Then, or without an entry, selects the next number.
     fn take_entry(&mut self) {
         if let Some(entry) = self.edit.entry.take() {
             match self.numbers.store(&self.parameters, self.edit.number, entry) {

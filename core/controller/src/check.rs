@@ -1,4 +1,4 @@
-//! What is wrong with controllers, all of it at once (CONTROLLER.md, "The format" and "Refused").
+//! Validation of controllers (CONTROLLER.md, "The format" and "Refused").
 
 use crate::{
     checked::CheckedSetup,
@@ -18,23 +18,23 @@ use core::ops::RangeInclusive;
 use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
 
 impl Setup {
-    /// Validates it, and makes what a [`StandAlone`](crate::StandAlone) takes.
+    /// Validates the controllers.
     /// Errors: everything that is refused, in the order of the fields.
     pub fn check(self) -> Result<CheckedSetup, Vec<Refused>> {
-        let mut judge = Judgement { refused: Vec::new(), controller: None };
-        judge.bus(&self);
+        let mut check = Check { refused: Vec::new(), controller: None };
+        check.bus(&self);
         for (index, parameters) in self.controllers.iter().enumerate() {
-            judge.controller = Some(index);
-            judge.parameters(&self, parameters);
+            check.controller = Some(index);
+            check.parameters(&self, parameters);
         }
-        if !judge.refused.is_empty() {
-            return Err(judge.refused);
+        if !check.refused.is_empty() {
+            return Err(check.refused);
         }
         let warned = self.warnings();
         Ok(CheckedSetup::new(self, warned))
     }
 
-    /// What holds, but may not be meant; of controllers whose numbers are in range.
+    /// Warnings for controllers whose numbers are in range.
     fn warnings(&self) -> Vec<Warned> {
         let mut warned = Vec::new();
         for (controller, parameters) in self.controllers.iter().enumerate() {
@@ -68,7 +68,7 @@ impl Setup {
 }
 
 impl Parameters {
-    /// Whether a move by a length never comes to its speed, and goes at the start-stop rate all the way.
+    /// Whether a move never reaches its speed, so that all of it runs at the start-stop rate.
     fn short_move_of(&self, length: u32, given_hz: u32, level: u32) -> Option<Warning> {
         let steps = Numbers::new(self).steps(length.into());
         let (start_speed_hz, acceleration_hz_s) =
@@ -79,12 +79,12 @@ impl Parameters {
     }
 }
 
-struct Judgement {
+struct Check {
     refused: Vec<Refused>,
     controller: Option<usize>,
 }
 
-impl Judgement {
+impl Check {
     fn refuse(&mut self, path: impl Into<String>, refusal: Refusal) {
         self.refused.push(Refused { controller: self.controller, path: path.into(), refusal });
     }
@@ -108,8 +108,8 @@ impl Judgement {
         self.range("bus.pulse_width_cycles", setup.pulse.width.0, &limits::PULSE_WIDTH_CYCLES);
         self.range("bus.dir_setup_cycles", setup.pulse.setup.0, &limits::DIR_CYCLES);
         self.range("bus.dir_hold_cycles", setup.pulse.hold.0, &limits::DIR_CYCLES);
-        let greatest = i128::from(setup.channels).clamp(1, *limits::CHANNELS.end());
-        self.range("source.standalone", setup.controllers.len() as i128, &(1..=greatest));
+        let max = i128::from(setup.channels).clamp(1, *limits::CHANNELS.end());
+        self.range("source.standalone", setup.controllers.len() as i128, &(1..=max));
     }
 
     fn parameters(&mut self, setup: &Setup, parameters: &Parameters) {
@@ -137,8 +137,8 @@ impl Judgement {
         }
         if let Some(soft) = &parameters.soft_limits {
             self.range("soft_limits.min_steps", soft.min_steps, &limits::STEPS);
-            let least = i128::from(soft.min_steps).clamp(*limits::STEPS.start(), *limits::STEPS.end());
-            self.range("soft_limits.max_steps", soft.max_steps, &(least..=*limits::STEPS.end()));
+            let min = i128::from(soft.min_steps).clamp(*limits::STEPS.start(), *limits::STEPS.end());
+            self.range("soft_limits.max_steps", soft.max_steps, &(min..=*limits::STEPS.end()));
         }
         if let Some(axis) = &parameters.axis {
             self.axis(axis);
@@ -174,7 +174,7 @@ impl Judgement {
                 }
             }
             Group::MoveTo(group) => {
-                self.range(path("move_to.length"), group.length, &limits::PLACE);
+                self.range(path("move_to.length"), group.length, &limits::TARGET);
                 self.speed(path("move_to.speed_hz"), group.speed_hz, parameters);
                 self.range(path("move_to.level"), group.level, &limits::LEVEL);
                 self.range(path("move_to.delay_ms"), group.delay_ms, &limits::DELAY_MS);
@@ -259,7 +259,7 @@ impl Judgement {
     }
 
     fn axis(&mut self, axis: &Axis) {
-        let places = [
+        let positions = [
             ("axis.start_steps", Some(axis.start_steps)),
             ("axis.min_switch_at", axis.min_switch_at),
             ("axis.max_switch_at", axis.max_switch_at),
@@ -268,8 +268,8 @@ impl Judgement {
             ("axis.hard_min", axis.hard_min),
             ("axis.hard_max", axis.hard_max),
         ];
-        for (path, place) in places {
-            self.range(path, place.unwrap_or(0), &limits::STEPS);
+        for (path, position) in positions {
+            self.range(path, position.unwrap_or(0), &limits::STEPS);
         }
         match (axis.home_from, axis.home_to) {
             (Some(_), None) => self.refuse("axis.home_to", Refusal::HalfSwitch { missing: "home_to" }),
@@ -304,7 +304,7 @@ impl Judgement {
         }
         for (index, input) in twice(inputs) {
             let refusal = Refusal::Twice { name: input.change.name(), cycle: input.cycle };
-            self.refuse("inputs".to_string() + &format!("[{index}]"), refusal);
+            self.refuse(format!("inputs[{index}]"), refusal);
         }
     }
 }
@@ -325,7 +325,7 @@ fn out_of_range(given: i128, range: &RangeInclusive<i128>) -> Option<Refusal> {
     (!range.contains(&given)).then_some(Refusal::Range { given, least, greatest })
 }
 
-/// Why this signal is nothing for the script of this controller.
+/// Why the script of this controller must not contain this signal.
 fn forbidden(parameters: &Parameters, controller: usize, signal: Signal) -> Option<Refusal> {
     let axis = parameters.axis.as_ref();
     let by = match signal {
@@ -340,7 +340,7 @@ fn forbidden(parameters: &Parameters, controller: usize, signal: Signal) -> Opti
     by.map(|by| Refusal::Driven { signal, by })
 }
 
-/// Entries of an input that has one before it in the same cycle, in the order of the script.
+/// Entries that set an input a second time in the same cycle, in the order of the script.
 fn twice(inputs: &[Input]) -> Vec<(usize, Input)> {
     let key = |&(index, input): &(usize, Input)| {
         let signal = match input.change {

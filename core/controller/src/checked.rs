@@ -1,5 +1,4 @@
-//! Controllers that hold every rule.
-
+//! Valid controllers.
 use crate::{
     parameters::{Parameters, Setup},
     refusal::Warned,
@@ -7,7 +6,7 @@ use crate::{
 use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::segment::PulseTimes;
 
-/// Controllers that hold every rule of CONTROLLER.md, "The format"; cheap to clone.
+/// Valid controllers; cheap to clone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckedSetup {
     clock_hz: u32,
@@ -24,7 +23,7 @@ impl CheckedSetup {
         Self { clock_hz, channels, pulse, controllers, warned: warned.into() }
     }
 
-    /// What they were made of, to be changed and validated again.
+    /// The parameters, to be changed and validated again.
     #[must_use]
     pub fn setup(&self) -> Setup {
         let Self { clock_hz, channels, pulse, .. } = *self;
@@ -32,31 +31,27 @@ impl CheckedSetup {
         Setup { clock_hz, channels, pulse, controllers }
     }
 
-    /// f, cycles a second.
     #[must_use]
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    /// Channels of the bus.
     #[must_use]
     pub const fn channels(&self) -> u8 {
         self.channels
     }
 
-    /// W, D and H.
     #[must_use]
     pub const fn pulse(&self) -> PulseTimes {
         self.pulse
     }
 
-    /// Controller i's parameters at i.
     #[must_use]
     pub fn controllers(&self) -> &[Rc<Parameters>] {
         &self.controllers
     }
 
-    /// What holds, but may not be meant.
+    /// Valid parameters that may be unintended.
     #[must_use]
     pub fn warnings(&self) -> &[Warned] {
         &self.warned

@@ -1,15 +1,14 @@
-//! What a chip has to offer so that the machine drives real pins: levels of its inputs, STEP, DIR and EN, a panel, an
-//! EEPROM, and a timer that runs freely. A [`Runner`](crate::Runner) does the rest; a cycle of the machine is a tick of
-//! that timer, `clock_hz` of them a second.
+//! Drives the pins of a chip: a [`Runner`](crate::Runner) needs inputs, STEP, DIR and EN, a panel, an EEPROM, and a
+//! free-running timer of `clock_hz` ticks per second. One tick is one cycle of the machine.
 //!
-//! The chip calls [`Runner::poll`](crate::Runner::poll) when the tick comes that the call before named, and when an input
-//! changes. It may call it more often.
+//! The chip calls [`Runner::poll`](crate::Runner::poll) at the tick returned by the last call and when an input changes. It
+//! may call it more often.
 //!
 //! ```
 //! use stepscope_controller::{Runner, State, chip::{Chip, Face, RawLevels}, input::Signal, parameters::Setup};
 //! use stepscope_peripheral::{signal::Levels, units::Instant};
 //!
-//! /// A chip without pins, whose EEPROM takes no time, and somebody who presses start at tick 3 000 000.
+//! /// A chip without pins, whose EEPROM takes no time. Start is pressed at tick 3 000 000.
 //! struct Bench { now: u64, rises: u32, memory: Vec<u8> }
 //! impl Chip for Bench {
 //!     fn now(&mut self) -> Instant { Instant(self.now) }
@@ -24,7 +23,7 @@
 //! let checked = Setup::default().check().expect("the defaults hold");
 //! let mut chip = Bench { now: 0, rises: 0, memory: Runner::factory_memory(&checked) };
 //! let mut runner = Runner::power_up(Instant(0), &checked, &mut chip).expect("it is one controller");
-//! // A chip sleeps until a tick or an input comes; this one has no time to lose.
+//! // A real chip sleeps until a tick or an input; this one skips the time.
 //! let mut wake = Some(Instant(0));
 //! while let Some(at) = wake.or((chip.now < 3_000_000).then_some(Instant(3_000_000))) {
 //!     chip.now = at.0;
@@ -42,54 +41,50 @@ use stepscope_peripheral::{signal::Levels, units::Instant};
 
 /// A chip with one controller on it.
 pub trait Chip {
-    /// The tick that it is: a timer that runs freely, never back, and never around. A timer of fewer bits is counted on
-    /// in software.
+    /// The current tick of a free-running timer that neither goes back nor wraps. Extend shorter timers in software.
     fn now(&mut self) -> Instant;
 
-    /// Levels of all inputs as they are now, not debounced. What has no pin keeps its level of
-    /// [`RawLevels::default`].
+    /// Current levels of all inputs, not debounced. Inputs without a pin keep their level of [`RawLevels::default`].
     fn inputs(&mut self) -> RawLevels;
 
-    /// Puts the levels of STEP 0, DIR 0 and EN on their pins, now. RX, TX and DE are none of this chip's.
+    /// Sets the pins of STEP 0, DIR 0 and EN now. This chip has no RX, TX and DE.
     fn write_pins(&mut self, levels: Levels);
 
-    /// The panel shows something else: state, alarm, trust, outputs, group or loop, or what is edited. While it moves the
-    /// position changes with each step and this is not called; [`Runner::face`](crate::Runner::face) tells it at any time.
-    /// An edge may be due in the very tick, so a slow display is written elsewhere.
+    /// The panel changed: state, alarm, trust, outputs, group, loop or edited number. It is not called for each step of a
+    /// move; [`Runner::face`](crate::Runner::face) returns the position at any time. Update a slow display later: an edge
+    /// may be due in the same tick.
     fn show(&mut self, face: Face);
 
-    /// A byte of the EEPROM, while none is being written.
+    /// Reads a byte of the EEPROM while none is being written.
     fn read_byte(&mut self, address: usize) -> u8;
 
-    /// Begins to write a byte of the EEPROM and does not wait; none is being written.
+    /// Begins to write a byte of the EEPROM while none is being written, and does not wait.
     fn begin_byte(&mut self, address: usize, byte: u8);
 
-    /// Whether the byte that was begun last is still being written.
+    /// Whether the last byte is still being written.
     fn is_writing(&mut self) -> bool;
 }
 
-/// Levels of all inputs, a bit each.
+/// Levels of all inputs, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawLevels(u32);
 
 const _: () = assert!(SIGNALS <= u32::BITS as usize);
 
 impl Default for RawLevels {
-    /// Nothing is pressed and no switch is closed; the power is there.
+    /// Nothing is pressed, no switch is closed, the power is on.
     fn default() -> Self {
         Self(1 << Signal::Power as u32)
     }
 }
 
 impl RawLevels {
-    /// The same, with this level of one of them.
     #[must_use]
     pub const fn with(self, signal: Signal, level: bool) -> Self {
         let bit = 1 << signal as u32;
         Self(if level { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// The level of one of them.
     #[must_use]
     pub const fn level(self, signal: Signal) -> bool {
         self.0 >> signal as u32 & 1 != 0
@@ -100,29 +95,26 @@ impl RawLevels {
     }
 }
 
-/// What stands on the panel.
+/// Contents of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Face {
     pub at: Instant,
-    /// State, alarm, trust, outputs, group and loop.
     pub word: Word,
-    /// Position in steps.
+    /// In steps.
     pub position: i64,
-    /// What the display shows, in its digits.
+    /// In display digits.
     pub display: i64,
     pub decimals: u8,
 }
 
 impl Face {
-    /// Six characters of the LCD. A number that is edited has no decimal point.
+    /// Six characters of the LCD. An edited number has no decimal point.
     #[must_use]
     pub fn lcd(self) -> String {
         let is_length = self.word.state() != crate::State::Edit;
         panel::lcd(self.display, if is_length { self.decimals } else { 0 })
     }
 
-    /// What the LED does.
     #[must_use]
     pub fn led(self) -> Led {
         self.word.led()

@@ -1,14 +1,14 @@
-//! A controller, and one cycle of it (G1).
+//! A controller and one cycle of it (CONTROLLER G1).
 //!
 //! ```text
-//! orders of the cycle before, panel -> 1 engine -> 2 memory -> 3 inputs -> 4 reactions -> 5 memory begins
+//! effects of the last cycle, panel -> 1 engine -> 2 memory -> 3 inputs -> 4 reactions -> 5 memory begins
 //! ```
 //!
-//! What it does is in the files that add to it: `pulses` (1, 3), `store` (2, 5), `reactions` (4) with `power`, `buttons`,
-//! `moves`, `program` and `homing`.
+//! Other files extend it: `pulses` (1, 3), `store` (2, 5), `reactions` (4) with `power`, `buttons`, `moves`, `program` and
+//! `homing`.
 
 use crate::{
-    axis::Place,
+    axis::VirtualAxis,
     checked::CheckedSetup,
     debounce::{Inputs, Times},
     eeprom::Eeprom,
@@ -26,7 +26,7 @@ use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::{segment::PulseTimes, units::Instant};
 
 pub(crate) const NEVER: u64 = u64::MAX;
-/// Groups that a window of the groups begun last takes up.
+/// Groups per window of the most recent groups.
 const WINDOW: u64 = 1024;
 
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub(crate) struct Program {
 #[derive(Clone, Debug)]
 pub(crate) enum Paused {
     Move(Motion),
-    /// A state without a move, and what was left of its time.
+    /// A state without a move, and the rest of its time.
     Time(State, Option<u64>),
 }
 
@@ -51,23 +51,21 @@ pub(crate) struct Edit {
     pub(crate) entry: Option<u32>,
 }
 
-/// A press that did nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Press {
     pub cycle: Instant,
     pub button: Signal,
-    /// The state in which it means nothing, or did not do what it means.
+    /// The state in which it had no effect.
     pub state: State,
 }
 
-/// Groups that began, for the message of a run that does not end.
+/// Statistics of groups that began, for the message about a run without end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Begun {
     pub(crate) count: u64,
-    /// `count` when a step rose or a group waited last.
+    /// `count` at the last step or wait.
     pub(crate) progress: u64,
-    /// Minimum and maximum number of the groups of the window before, and of this one.
+    /// Minimum and maximum group number of the previous and the current window.
     before: Option<(u32, u32)>,
     window: Option<(u32, u32)>,
 }
@@ -82,14 +80,14 @@ impl Begun {
         self.window = Some((first.min(number), last.max(number)));
     }
 
-    /// Minimum and maximum number of the groups that began last.
+    /// Minimum and maximum number of the most recent groups.
     pub(crate) fn range(&self) -> (u32, u32) {
         let (first, last) = self.window.or(self.before).unwrap_or((0, 0));
         let (before_first, before_last) = self.before.unwrap_or((first, last));
         (first.min(before_first), last.max(before_last))
     }
 
-    /// Whether they go round without a step or a wait.
+    /// Whether they repeat without a step or a wait.
     pub(crate) const fn is_endless(&self) -> bool {
         self.count - self.progress > WINDOW
     }
@@ -113,23 +111,21 @@ pub(crate) struct Controller {
     pub(crate) paused: Option<Paused>,
     pub(crate) edit: Edit,
     pub(crate) numbers: Numbers,
-    /// Whether `ok` has changed a number since they were read or saved.
+    /// Whether a number was changed since the numbers were read or saved.
     pub(crate) is_changed: bool,
     pub(crate) inputs: Inputs,
     pub(crate) script: Script,
-    pub(crate) axis: Place,
+    pub(crate) axis: VirtualAxis,
     pub(crate) eeprom: Eeprom,
     pub(crate) newest: Option<Valid>,
     pub(crate) writes_journal: bool,
-    /// Whether the opening record after a read is wanted, or complete.
+    /// Whether the opening record after a read is needed, or complete.
     pub(crate) wants_opening: bool,
     pub(crate) is_opened: bool,
     pub(crate) wants_save: bool,
-    /// Whether the newest record stays the newest whatever is written: its number is the maximum that there is.
+    /// Whether no record can become newer, because the newest has the maximum sequence number.
     pub(crate) is_stuck: bool,
-    /// Whether memory held no valid record when it was read.
     pub(crate) is_unknown: bool,
-    /// Whether memory has been read since power-up.
     pub(crate) is_read: bool,
     pub(crate) reads: u64,
     pub(crate) dies: u64,
@@ -170,7 +166,7 @@ impl Controller {
             is_changed: false,
             inputs: Inputs::new(times),
             script,
-            axis: Place::new(parameters.axis.as_ref()),
+            axis: VirtualAxis::new(parameters.axis.as_ref()),
             eeprom: Eeprom::new(len, memory.byte_write_cycles, &memory.initial, &factory),
             newest: None,
             writes_journal: false,
@@ -190,7 +186,7 @@ impl Controller {
             shows: 0,
         };
         controller.newest = controller.find_newest();
-        // At reset debounced = raw, that of cycle 0: the switches that the axis holds closed.
+        // At reset the debounced levels are the raw ones of cycle 0, with the switches that the axis closes.
         controller.switches(0);
         controller.inputs.restart();
         controller
@@ -198,24 +194,23 @@ impl Controller {
 
     pub(crate) fn cycle(&mut self, now: u64) {
         self.eeprom.settle(now);
-        self.pins.take_orders(now);
+        self.pins.apply_pending(now);
         self.show(now);
         self.engine(now);
         self.complete_byte(now);
-        self.hear(now);
+        self.read_inputs(now);
         self.react(now);
         self.begin_record(now);
         self.shows = if self.shown == Some(self.face()) { NEVER } else { now.saturating_add(1) };
     }
 
-    /// The next cycle in which something can change; what has to be done by `now` is due in `now`.
+    /// The next cycle in which something can change; everything due by `now` must be done in `now`.
     pub(crate) fn due(&self) -> u64 {
         let motion = self.motion.as_ref().map_or(NEVER, Motion::rise);
         let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies).min(self.eeprom.due());
         motion.min(waits).min(self.shows).min(self.inputs.due()).min(self.script.due())
     }
 
-    /// Whether it jogs, has no limit ahead, and no input is to come.
     pub(crate) fn jogs_without_end(&self) -> bool {
         let endless = |motion: &Motion| {
             let jogs = matches!(motion.purpose, Purpose::Jog(_)) && motion.is_due && !motion.brakes;
@@ -225,13 +220,13 @@ impl Controller {
         is_last && self.motion.as_ref().is_some_and(endless)
     }
 
-    /// The panel's record of this cycle, where there is one.
+    /// Adds the panel's record of this cycle, if it changed.
     fn show(&mut self, now: u64) {
         if self.shows > now {
             return;
         }
         let (word, display) = self.face();
-        // In EDIT the display counts, else the word alone: it is the same from record to record.
+        // Only in EDIT a change of the display adds a record.
         self.shown = Some((word, display));
         let (cycle, display) = (Instant(now), self.display());
         self.panel.push(PanelRecord { cycle, word, position: self.position.into(), display });
@@ -258,12 +253,10 @@ impl Controller {
         }
     }
 
-    /// `ms` in whole cycles, rounded down.
     pub(crate) fn cycles(&self, ms: u32) -> u64 {
         u64::from(ms) * u64::from(self.clock_hz) / 1000
     }
 
-    /// Whether a step at this interval is beyond the start-stop range.
     pub(crate) fn is_jump(&self, rate_interval: u64) -> bool {
         rate_interval < interval(self.clock_hz, self.parameters.start_speed_hz.into())
     }

@@ -1,8 +1,8 @@
-//! Levels of the inputs, raw and debounced (G1.3).
+//! Raw and debounced levels of the inputs (CONTROLLER G1.3).
 //!
 //! ```text
-//! raw        ___┌─┐_┌────────────   the debounced level takes the raw one in the first c
-//! debounced  _______________┌────   such that the raw one has stood through c - N..c
+//! raw        ___┌─┐_┌────────────   the debounced level follows in the first cycle c
+//! debounced  _______________┌────   in which the raw level has been constant for c - N..c
 //!                   ╎<- N ->╎
 //! ```
 
@@ -33,7 +33,7 @@ pub(crate) struct Inputs {
     times: Times,
     raw: u32,
     debounced: u32,
-    /// When each debounced level takes the raw one; [`NEVER`] where they agree.
+    /// When each debounced level follows the raw one; [`NEVER`] if they agree.
     due: [u64; SIGNALS],
     first_due: u64,
     pressed: u32,
@@ -45,14 +45,14 @@ const fn bit(signal: Signal) -> u32 {
 }
 
 impl Inputs {
-    /// Before its first entry an input is 0, power 1.
+    /// Initially all inputs are 0, power 1.
     pub(crate) fn new(times: Times) -> Self {
         let raw = bit(Signal::Power);
         let due = [NEVER; SIGNALS];
         Self { times, raw, debounced: raw, due, first_due: NEVER, pressed: 0, released: 0 }
     }
 
-    /// The raw level from cycle `now` on; without power nothing is debounced.
+    /// Sets the raw level from cycle `now` on; without power nothing is debounced.
     pub(crate) fn set(&mut self, now: u64, signal: Signal, level: bool, debounces: bool) {
         if self.raw(signal) == level {
             return;
@@ -68,7 +68,7 @@ impl Inputs {
         self.first_due = self.due.iter().copied().min().unwrap_or(NEVER);
     }
 
-    /// Debounced levels take the raw ones that have stood long enough in cycle `now`.
+    /// Updates the debounced levels that are due in cycle `now`.
     pub(crate) fn debounce(&mut self, now: u64) {
         (self.pressed, self.released) = (0, 0);
         if self.first_due > now {
@@ -87,14 +87,14 @@ impl Inputs {
         self.first_due = self.due.iter().copied().min().unwrap_or(NEVER);
     }
 
-    /// SELF_TEST begins: debounced = raw, and nothing is pressed.
+    /// SELF_TEST begins: the debounced levels are the raw ones, without edges.
     pub(crate) fn restart(&mut self) {
         self.debounced = self.raw;
         (self.pressed, self.released) = (0, 0);
         (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
     }
 
-    /// The power fails for good: from now on nothing is debounced.
+    /// The power is off: nothing is debounced from now on.
     pub(crate) fn die(&mut self) {
         (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
     }

@@ -1,16 +1,16 @@
-//! The EEPROM (G7): bytes that take their time, one after another, and what a cut leaves of one.
+//! The EEPROM (CONTROLLER G7): bytes are written one after another, and a power cut leaves one half-written.
 //!
 //! ```text
 //!  begun b       b + w         b + 2w
-//!     ╎  byte 0    ╎   byte 1    ╎     a byte begun in b is there in b + w, and the next begins
-//!     ╎      ╎dead in b + x            0xFF if 2x < w, else new OR 0x0F; not touched if x = 0
+//!     ╎  byte 0    ╎   byte 1    ╎     a byte begun in b is complete in b + w, and the next begins
+//!     ╎      ╎power off in b + x       0xFF if 2x < w, else new OR 0x0F; unchanged if x = 0
 //! ```
 
 use crate::parameters::Initial;
 use alloc::{vec, vec::Vec};
 
 const ERASED: u8 = 0xff;
-/// What of a byte that was cut late is still erased.
+/// Bits that stay erased in a byte whose write is cut late.
 const CUT_LATE: u8 = 0x0f;
 
 #[derive(Clone, Debug)]
@@ -23,15 +23,13 @@ pub(crate) struct Eeprom {
 
 #[derive(Clone, Debug)]
 struct Writing {
-    /// Address of its next byte, the one that is under way.
     address: usize,
     left: vec::IntoIter<u8>,
     byte: u8,
     begun: u64,
-    /// It is not there before this cycle, however long it takes by w.
+    /// Not complete before this cycle, even after `byte_write_cycles`.
     not_before: u64,
-    /// The record stands there already, and is written again and again: nothing changes but the wear, so nothing is due until
-    /// something else is.
+    /// The record is already there and is written again and again: only the wear changes, so nothing is due.
     repeats: bool,
 }
 
@@ -61,7 +59,6 @@ impl Eeprom {
         self.writing.is_none()
     }
 
-    /// When the byte under way was begun; `None` where none is.
     pub(crate) fn begun(&self) -> Option<u64> {
         self.writing.as_ref().map(|writing| writing.begun)
     }
@@ -76,27 +73,26 @@ impl Eeprom {
         self.writing.as_ref().map_or(u64::MAX, due)
     }
 
-    /// When the byte under way was begun, its address, and the byte; `None` where none is.
+    /// When the current byte was begun, its address, and the byte.
     pub(crate) fn under_way(&self) -> Option<(u64, usize, u8)> {
         self.writing.as_ref().map(|writing| (writing.begun, writing.address, writing.byte))
     }
 
-    /// The byte under way is not there before `cycle`: the cell of a chip takes longer.
+    /// Delays the current byte until `cycle`: the cell of a chip is slower.
     pub(crate) const fn postpone(&mut self, cycle: u64) {
         if let Some(writing) = &mut self.writing {
             (writing.not_before, writing.repeats) = (cycle, false);
         }
     }
 
-    /// What it holds from address 0 on; the rest stays.
     pub(crate) fn load(&mut self, memory: &[u8]) {
         for (byte, given) in self.bytes.iter_mut().zip(memory) {
             *byte = *given;
         }
     }
 
-    /// Begins to write a record; one at a time. One that would be wanted again when it is there `repeats`, where its bytes
-    /// stand there already.
+    /// Begins to write a record. `repeats` if the same record would be needed again afterwards; it has an effect only if
+    /// its bytes are already there.
     pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>, repeats: bool) {
         debug_assert!(self.writing.is_none(), "a record is under way");
         let there = self.bytes.get(address..address.saturating_add(record.len()));
@@ -106,7 +102,7 @@ impl Eeprom {
         self.writing = first.map(|byte| Writing { address, left, byte, begun: now, not_before: 0, repeats });
     }
 
-    /// What a record that repeats has come to by the end of the cycle before `now`: from here on it is one like any other.
+    /// Computes how far a repeated record has come by the end of the cycle before `now`; then it is an ordinary one.
     pub(crate) fn settle(&mut self, now: u64) {
         let Some(writing) = self.writing.as_mut().filter(|writing| writing.repeats) else { return };
         writing.repeats = false;
@@ -114,8 +110,8 @@ impl Eeprom {
         let written = now.saturating_sub(1).saturating_sub(writing.begun) / self.byte_write_cycles;
         let (records, part) = (written / bytes, written % bytes);
         let cells = self.writes.iter_mut().skip(writing.address).zip(0..bytes);
-        for (writes, place) in cells {
-            let more = u32::try_from(records + u64::from(place < part)).unwrap_or(u32::MAX);
+        for (writes, index) in cells {
+            let more = u32::try_from(records + u64::from(index < part)).unwrap_or(u32::MAX);
             *writes = writes.saturating_add(more);
         }
         writing.begun += written * self.byte_write_cycles;
@@ -126,7 +122,7 @@ impl Eeprom {
         }
     }
 
-    /// A byte is complete in cycle `now`: whether it was the last of its record.
+    /// Completes a byte due in cycle `now`; returns whether it was the last of its record.
     pub(crate) fn complete(&mut self, now: u64) -> bool {
         if self.due() > now {
             return false;
@@ -143,8 +139,8 @@ impl Eeprom {
         is_last
     }
 
-    /// The power falls in cycle `now`: the byte under way is finished, one begun in `now` is not, and what is left of the
-    /// record is dropped.
+    /// The power fails in cycle `now`: the current byte is finished unless it began in `now`; the rest of the record is
+    /// dropped.
     pub(crate) fn drop_rest(&mut self, now: u64) {
         match &mut self.writing {
             Some(writing) if writing.begun < now => writing.left = Vec::new().into_iter(),

@@ -1,4 +1,4 @@
-//! Inputs that come while a run goes on, such as a person's at a page.
+//! Inputs entered during a run, for example on a page.
 
 use crate::{
     check,
@@ -11,12 +11,10 @@ use crate::{
 use core::fmt;
 use stepscope_peripheral::units::Instant;
 
-/// Why an input cannot be entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum NotEntered {
     NoController,
-    /// Its cycle has been run, or is none that an input may have.
+    /// Its cycle has passed, or is out of range.
     Past {
         cycle: Instant,
         least: Instant,
@@ -40,7 +38,7 @@ impl fmt::Display for NotEntered {
 impl core::error::Error for NotEntered {}
 
 impl StandAlone {
-    /// Leaves out what the scripts still have: from now on only what is entered is heard.
+    /// Drops the rest of the scripts: from now on only entered inputs count.
     pub fn drop_inputs(&mut self) {
         for (controller, due) in self.controllers.iter_mut().zip(&mut self.due) {
             controller.script.clear();
@@ -48,8 +46,8 @@ impl StandAlone {
         }
     }
 
-    /// An input of a cycle that has not been run, such as a person's at a page.
-    /// Errors: what a script would be refused for, too.
+    /// Enters an input in a cycle that has not been run.
+    /// Errors: as for an entry of a script.
     pub fn enter(&mut self, at: Instant, controller: usize, change: Change) -> Result<(), NotEntered> {
         let input = Input { cycle: at, change };
         let parameters = self.checked.controllers().get(controller).ok_or(NotEntered::NoController)?;
@@ -67,11 +65,11 @@ impl StandAlone {
         Ok(())
     }
 
-    /// Puts an entry that is allowed into the scripts of all that hear it.
+    /// Adds a valid entry to the scripts of all controllers that it is for.
     pub(crate) fn insert(&mut self, controller: usize, input: Input) {
-        let hears = |index| index == controller || script::is_shared(input.change);
+        let is_for = |index| index == controller || script::is_shared(input.change);
         for (index, (other, due)) in self.controllers.iter_mut().zip(&mut self.due).enumerate() {
-            if hears(index) {
+            if is_for(index) {
                 other.script.enter(input);
                 *due = (*due).min(input.cycle.0);
             }

@@ -1,9 +1,9 @@
-//! Homing (G6): to the switch, off it, and slowly to it again.
+//! Homing (CONTROLLER G6): to the switch, off it, and slowly to it again.
 //!
 //! ```text
 //! switch closed      ────┐┌──────────┐┌───         seek, coarse: until it closes
-//! seek         ──────────┘│          ││            off, coarse: until it has opened, and pull_off_steps more
-//! off               ┌─────┘          ││            fine: until it closes; there is position_steps
+//! seek         ──────────┘│          ││            off, coarse: until it opens, and pull_off_steps more
+//! off               ┌─────┘          ││            fine: until it closes, at position_steps
 //! fine              └────────────────┘└ return
 //! ```
 
@@ -39,12 +39,12 @@ impl Controller {
         self.begin_move(now, motion);
     }
 
-    /// The switch, heeded while a step is due or the leg waits.
+    /// Checks the switch while a step is due or the leg waits.
     pub(crate) fn homing_switch(&mut self) {
         let (Some(motion), Some(home)) = (&mut self.motion, &self.parameters.home) else { return };
         let Purpose::Leg(leg) = motion.purpose else { return };
         let is_closed = self.inputs.level(home.switch);
-        if !motion.is_heeding() || motion.is_found || is_closed == (leg == Leg::Off) {
+        if !motion.is_active() || motion.is_found || is_closed == (leg == Leg::Off) {
             return;
         }
         motion.is_found = true;
@@ -57,7 +57,7 @@ impl Controller {
         }
         motion.stop();
         if leg == Leg::Fine {
-            // 2^31 is -2^31 of the counter, which wraps.
+            // 2^31 wraps to -2^31.
             self.position = home.position_steps as i32;
             self.trust = 2;
             self.axis.zero_is_set(self.position);
@@ -65,7 +65,6 @@ impl Controller {
         self.pins.keep_dir();
     }
 
-    /// A leg is over: the next one begins, or homing ends.
     pub(crate) fn end_leg(&mut self, now: u64, leg: Leg, motion: &Motion) {
         let switch = self.parameters.home.as_ref().map(|home| home.switch);
         let is_closed = switch.is_some_and(|switch| self.inputs.level(switch));
@@ -84,7 +83,7 @@ impl Controller {
         self.parameters.home.as_ref().map_or(0, |home| home.position_steps)
     }
 
-    /// Homing is done: READY, or the program goes on from here.
+    /// Homing is done: READY, or the program continues.
     pub(crate) fn end_homing(&mut self, now: u64) {
         if self.program.is_some() {
             self.take_position_as_base();

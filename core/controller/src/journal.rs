@@ -1,4 +1,4 @@
-//! The records of the memory (G7): the journal of positions, and the two banks of numbers.
+//! Records of the memory (CONTROLLER G7): the journal of positions, and two banks of numbers.
 //!
 //! ```text
 //! record   seq u32 | position i32 | flags u8 | group u8 | loop u16 | CRC-32C     16 bytes, from address 16*slot
@@ -20,7 +20,7 @@ const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 pub(crate) struct Entry {
     pub(crate) position: i32,
     pub(crate) trust: u8,
-    /// Whether the position is not known while it is the newest.
+    /// Whether the position is unknown while this is the newest record.
     pub(crate) is_open: bool,
     pub(crate) group: u8,
     pub(crate) loop_: u16,
@@ -64,7 +64,7 @@ impl Entry {
     }
 }
 
-/// The newest record of a journal of `slots`: valid, of the maximum sequence number, of equals the last.
+/// The newest record of a journal of `slots`: valid, with the maximum sequence number; of equal ones the last.
 pub(crate) fn newest(memory: &[u8], slots: usize) -> Option<Valid> {
     let records = memory.chunks_exact(RECORD).take(slots).enumerate();
     let valid = records.filter_map(|(slot, bytes)| {
@@ -74,26 +74,26 @@ pub(crate) fn newest(memory: &[u8], slots: usize) -> Option<Valid> {
     valid.max_by_key(|valid| valid.seq)
 }
 
-/// Address and bytes of the record that comes after the newest one.
+/// Address and bytes of the record after the newest one.
 pub(crate) fn next(newest: Option<Valid>, slots: usize, entry: Entry) -> (usize, Vec<u8>) {
     let (slot, seq) =
         newest.map_or((0, 1), |newest| ((newest.slot + 1) % slots.max(1), newest.seq.wrapping_add(1)));
     (slot * RECORD, checked(seq, entry.bytes()))
 }
 
-/// The record of a memory that comes from the factory: closed, position 0, trust 2.
+/// The record of a factory memory: closed, position 0, trust 2.
 pub(crate) fn factory() -> Vec<u8> {
     next(None, 1, Entry { position: 0, trust: 2, is_open: false, group: 0, loop_: 0 }).1
 }
 
-/// Where bank 0 or 1 of `numbers` numbers is behind a journal of `slots`.
+/// Address range of bank 0 or 1 of `numbers` numbers after a journal of `slots`.
 fn bank(slots: usize, numbers: usize, index: usize) -> Range<usize> {
     let len = 2 * WORD + WORD * numbers;
     let start = RECORD * slots + index * len;
     start..start + len
 }
 
-/// Index and sequence number of the newest valid bank, and its numbers.
+/// Index, sequence number and numbers of the newest valid bank.
 fn newest_bank(memory: &[u8], slots: usize, numbers: usize) -> Option<(usize, u32, Vec<i32>)> {
     let banks = [0, 1].into_iter().filter_map(|index| {
         let (seq, content) = opened(memory.get(bank(slots, numbers, index))?)?;
@@ -108,7 +108,7 @@ pub(crate) fn saved(memory: &[u8], slots: usize, numbers: usize) -> Option<Vec<i
     Some(newest_bank(memory, slots, numbers)?.2)
 }
 
-/// Address and bytes of a save of these numbers: into the bank that is not the newest valid one.
+/// Address and bytes to save these numbers in the bank that is not the newest.
 pub(crate) fn save(memory: &[u8], slots: usize, numbers: &[i32]) -> (usize, Vec<u8>) {
     let newest = newest_bank(memory, slots, numbers.len());
     let (index, seq) = newest.map_or((0, 1), |(index, seq, _)| (1 - index, seq.wrapping_add(1)));

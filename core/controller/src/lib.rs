@@ -1,13 +1,12 @@
-//! The stand-alone controller (CONTROLLER.md, Part G of the design): buttons, programs, jogs, homing, limits, and a
-//! memory that survives power cuts, to the clock cycle. It makes STEP, DIR and EN by itself; nothing is sent.
+//! The stand-alone controller (CONTROLLER.md): buttons, programs, jogs, homing, limits, and a memory that survives power
+//! cuts, to the clock cycle. It generates STEP, DIR and EN by itself, without a serial line.
 //!
-//! It knows no motion, no file and no host: of the peripheral it takes units, signals and times of pulses. Whole numbers
-//! alone, so every target gives the same bits.
+//! It depends on no motion, file or host, and computes in integers only, so every target gives the same bits.
 //!
 //! ```text
 //! limits, input, parameters -> refusal, check, checked -> table, motion, pins, debounce, axis, numbers, eeprom, journal,
-//! script, panel -> controller (state, one cycle) -> pulses, store, power, buttons, moves, homing, program (what it does)
-//! -> machine (all of them on a bus), enter, report -> powered_up, chip (what hardware offers), runner (the machine on it)
+//! script, panel -> controller (state, one cycle) -> pulses, store, power, buttons, moves, homing, program (effects)
+//! -> machine (all controllers of a bus), enter, report -> powered_up, chip (the hardware), runner (the machine on it)
 //! ```
 //!
 //! ```
@@ -20,14 +19,15 @@
 //! machine.run(Instant::NEVER, &mut trace);
 //! assert_eq!(machine.state(0), Some(State::Ready));
 //!
-//! // A person holds the button for 0.1 s: 1000 Hz, the first step at once.
+//! // Hold the button for 0.1 s: 1000 Hz, the first step at once.
 //! let now = machine.now().0;
-//! machine.enter(Instant(now), 0, Change::Level(Signal::JogPlus, true)).expect("it is to come");
-//! machine.enter(Instant(now + 1_600_000), 0, Change::Level(Signal::JogPlus, false)).expect("so is this");
+//! machine.enter(Instant(now), 0, Change::Level(Signal::JogPlus, true)).expect("not in the past");
+//! machine.enter(Instant(now + 1_600_000), 0, Change::Level(Signal::JogPlus, false)).expect("not in the past");
 //! machine.run(Instant::NEVER, &mut trace);
 //! assert_eq!(machine.position(0), Some(100));
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

@@ -1,4 +1,4 @@
-//! All stand-alone controllers of a scenario on one bus (Part G), cycle by cycle or event by event.
+//! All stand-alone controllers of a bus (CONTROLLER G1), cycle by cycle or event by event.
 
 use crate::{
     checked::CheckedSetup,
@@ -16,23 +16,6 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
 };
 
-/// The controllers: controller i drives channel i, and the bus shows the AND of their EN.
-///
-/// ```
-/// use stepscope_controller::{StandAlone, State, input::{Change, Input, Signal}, parameters::{Group, Move,
-///     Parameters, Setup}};
-/// use stepscope_peripheral::{signal::Record, units::Instant};
-///
-/// // One unit of 100 steps to the right, as soon as memory is read and start is held for 10 ms.
-/// let groups = vec![Group::Move(Move { length: 10, ..Move::default() })];
-/// let start = Input { cycle: Instant(2_500_000), change: Change::Level(Signal::Start, true) };
-/// let setup = Setup { controllers: vec![Parameters { groups, inputs: vec![start], ..Parameters::default() }], ..Setup::default() };
-/// let mut machine = StandAlone::new(&setup.check().expect("it holds"));
-/// let mut trace: Vec<Record> = Vec::new();
-/// machine.run(Instant::NEVER, &mut trace);
-/// assert_eq!((machine.state(0), machine.position(0)), (Some(State::Ready), Some(100)));
-/// assert_eq!(trace.len(), 1 + 1 + 2 * 100, "reset, DIR, and two edges a step");
-/// ```
 #[derive(Clone, Debug)]
 pub struct StandAlone {
     pub(crate) checked: CheckedSetup,
@@ -54,7 +37,7 @@ impl StandAlone {
         let shared = script::sorted(shared.filter(|input| script::is_shared(input.change)));
         let make = |(index, parameters): (usize, &Rc<Parameters>)| {
             let own = script::sorted(parameters.inputs.iter().copied());
-            // The first one has what all share among its own.
+            // The first controller has the shared entries among its own.
             let script = Script::new(own, if index == 0 { Rc::new([]) } else { shared.clone() });
             Controller::new(checked, parameters, script)
         };
@@ -71,20 +54,19 @@ impl StandAlone {
         }
     }
 
-    /// The cycle that the next call of [`Self::clock`] is; as many have passed.
+    /// The next cycle to run.
     #[must_use]
     pub const fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// Advances one cycle and gives the levels of all signals in it.
+    /// Runs one cycle and returns the levels of all signals in it.
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         self.due.fill(0);
         self.cycle(sink);
         self.levels
     }
 
-    /// Runs the next cycle, in the controllers for which something is due.
     fn cycle(&mut self, sink: &mut impl Sink) {
         let now = self.now;
         (self.now, self.acted) = (now.saturating_add(1), now);
@@ -93,13 +75,13 @@ impl StandAlone {
                 if *due > now {
                     continue;
                 }
-                // What the axis holds closed at reset is told in cycle 0.
-                let heard = if now == 0 { 1 << Signal::Power as u32 } else { controller.inputs.all_raw() };
+                // Cycle 0 reports the switches that the axis closes at reset.
+                let before = if now == 0 { 1 << Signal::Power as u32 } else { controller.inputs.all_raw() };
                 let (begun, shown) = (controller.begun.count, controller.panel.len());
                 controller.cycle(now);
                 *due = controller.due().max(self.now);
                 self.begun += controller.begun.count - begun;
-                tell(index as u8, controller, (now, heard, shown), sink);
+                report(index as u8, controller, (now, before, shown), sink);
             }
         }
         let levels = self.shown();
@@ -145,7 +127,7 @@ impl StandAlone {
         self.due.iter().copied().min().map_or(NEVER, |due| if due == NEVER { due } else { due.max(self.now) })
     }
 
-    /// For how many cycles nothing can change; `None` if it is for ever.
+    /// Number of cycles without change; `None` for ever.
     #[must_use]
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
@@ -154,20 +136,18 @@ impl StandAlone {
         }
     }
 
-    /// Passes cycles in which nothing changes: no more than [`Self::cycles_until_event`] says. What goes beyond
-    /// is not skipped.
+    /// Skips cycles without change, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         self.now = self.now.saturating_add(cycles.0).min(self.deadline());
     }
 
-    /// Runs until cycle `until` is the next, as fast as the events allow; with [`Instant::NEVER`], until nothing can
-    /// change any more: then the last cycle run is the last in which something could. Stops early where the sink asks for
-    /// a pause, and where too many groups have begun ([`Self::work`]).
+    /// Runs up to cycle `until`; with [`Instant::NEVER`], up to and including the last cycle in which something can
+    /// change. Stops early when the sink pauses, and when too many groups have begun ([`Self::work`]).
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         self.run_events(until, u64::MAX, sink);
     }
 
-    /// The same for no more than so many cycles in which something can change; false where there were more.
+    /// The same for at most `events` cycles with changes; returns whether that was enough.
     pub fn run_events(&mut self, until: Instant, events: u64, sink: &mut impl Sink) -> bool {
         for _ in 0..events {
             if sink.paused() {
@@ -187,7 +167,6 @@ impl StandAlone {
         false
     }
 
-    /// Memories that write the same again and again have come so far.
     fn settle(&mut self) {
         for (controller, due) in self.controllers.iter_mut().zip(&mut self.due) {
             controller.eeprom.settle(self.now);
@@ -195,32 +174,33 @@ impl StandAlone {
         }
     }
 
-    /// The first cycle after the last in which something could change, once nothing can any more.
+    /// The first cycle after the last in which something could change, once the run has ended.
     #[must_use]
     pub const fn rests_from(&self) -> Instant {
         Instant(self.acted.saturating_add(1))
     }
 
-    /// Whether nothing can change any more: no input left, no move, timer or write under way. A memory that writes the
-    /// same record again and again, because no sequence number is greater than its newest, keeps no run from its end.
+    /// Whether nothing can change any more. A memory that writes the same record again and again, because its sequence
+    /// number is the maximum, does not keep a run from ending.
     #[must_use]
     pub fn at_rest(&self) -> bool {
         self.now > 0
             && (self.work.is_some() || self.controllers.iter().all(|controller| controller.due() == NEVER))
     }
 
-    /// Too many groups have begun: the run has ended there.
+    /// Set if the run ended because too many groups have begun.
     #[must_use]
     pub const fn work(&self) -> Option<Work> {
         self.work
     }
 }
 
-/// Tells what changed in cycle `now` next to the bus: raw levels that were `heard`, and a panel with so many records before.
-fn tell(index: u8, controller: &Controller, (now, heard, shown): (u64, u32, usize), sink: &mut impl Sink) {
+/// Reports the changes of cycle `now` besides the bus: raw levels compared with `before`, and the panel record after the
+/// first `shown` ones.
+fn report(index: u8, controller: &Controller, (now, before, shown): (u64, u32, usize), sink: &mut impl Sink) {
     let raw = controller.inputs.all_raw();
-    let changed = |signal: &Signal| (raw ^ heard) >> *signal as u32 & 1 != 0;
-    if raw != heard {
+    let changed = |signal: &Signal| (raw ^ before) >> *signal as u32 & 1 != 0;
+    if raw != before {
         for signal in Signal::ALL.into_iter().filter(changed) {
             let level = controller.inputs.raw(signal);
             let event = Event::Input { controller: index, input: signal as u8, level };

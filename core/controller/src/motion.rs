@@ -1,8 +1,8 @@
-//! A move (G4): how many steps are left, how high it has climbed, and when its next step rises.
+//! A move (CONTROLLER G4): remaining steps, height of the climb, and time of the next step.
 //!
 //! ```text
-//! rate   top ┤      ┌────────┐          u climbs by one a step to the top, runs on the plateau, and comes down
-//!            │    ┌─┘        └─┐        while rem <= u; a brake comes down from where it is
+//! rate   top ┤      ┌────────┐          u rises by one per step to the top, runs on the plateau, and falls
+//!            │    ┌─┘        └─┐        while rem <= u; a brake falls from the current height
 //!          1 ┤  ┌─┘            └─┐
 //! next += interval; STEP rises in next >> 16
 //! ```
@@ -30,17 +30,15 @@ pub(crate) enum Leg {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// A group of a program.
     Group,
     Return,
-    /// A jog; the state to which it goes back.
+    /// A jog, and the state after it.
     Jog(State),
-    /// A leg of homing.
     Leg(Leg),
     HomeReturn,
 }
 
-/// The height to which a move climbs, and its rate there.
+/// The height to which a move climbs, and the rate there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Climb {
     pub(crate) table: Table,
@@ -57,21 +55,21 @@ pub(crate) struct Motion {
     climb: Climb,
     clock_hz: u32,
     row: Option<(Row, u64)>,
-    /// What the first step waits, if not its rate's interval.
+    /// Time before the first step, if not the interval of its rate.
     pub(crate) first_interval: Option<u64>,
     pub(crate) profile: Option<u32>,
-    /// Time of the step that is due, in 1/65536 cycle.
+    /// Time of the pending step in 1/65536 cycle.
     next: u128,
     pub(crate) is_due: bool,
     pub(crate) waits: bool,
     pub(crate) brakes: bool,
     pub(crate) is_limited: bool,
-    /// The level at which it ends early, and whether that has come.
+    /// The level that ends the move early.
     pub(crate) until: Option<(Signal, bool)>,
     pub(crate) until_met: bool,
-    /// Of a leg of homing: whether the switch has done what the leg looks for.
+    /// Whether the switch did what a leg of homing waits for.
     pub(crate) is_found: bool,
-    /// Rate interval of the step that is due, and of the one made last.
+    /// Rate interval of the pending step.
     due_interval: u64,
     pub(crate) last_interval: Option<u64>,
 }
@@ -101,19 +99,19 @@ impl Motion {
         }
     }
 
-    /// It begins in cycle `now`: its time is (now + 1) << 16.
+    /// Begins in cycle `now`: the move's time starts at (now + 1) << 16.
     pub(crate) fn begin(&mut self, now: u64, profile: &[u64]) {
         self.waits = false;
         self.next = (u128::from(now) + 1) << FRACTION_BITS;
         self.decide(profile);
     }
 
-    /// Cycle in which the step that is due rises; `u64::MAX` without one, and beyond all cycles.
+    /// Cycle in which the pending step rises; `u64::MAX` without one.
     pub(crate) fn rise(&self) -> u64 {
         if self.is_due { u64::try_from(self.next >> FRACTION_BITS).unwrap_or(u64::MAX) } else { u64::MAX }
     }
 
-    /// The step that is due rises, and the next one is decided: whether it is the move's first, and its rate interval.
+    /// Executes the pending step and schedules the next; returns whether it was the first, and its rate interval.
     pub(crate) fn step(&mut self, profile: &[u64]) -> (bool, u64) {
         let (is_first, made) = (self.last_interval.is_none(), self.due_interval);
         self.last_interval = Some(made);
@@ -145,7 +143,7 @@ impl Motion {
         self.next += u128::from(self.first_interval.take().unwrap_or(self.due_interval));
     }
 
-    /// I(R(k)) of ramp step `k`; the row is looked up when it changes.
+    /// I(R(k)) of ramp step `k`, with the current row cached.
     fn ramp(&mut self, k: u64) -> u64 {
         match self.row {
             Some((row, interval)) if (row.first..=row.last).contains(&k) => interval,
@@ -158,12 +156,12 @@ impl Motion {
         }
     }
 
-    /// Stops at once: the step that is due does not rise, and stays in `rem`.
+    /// Stops at once: the pending step does not rise, and stays in `rem`.
     pub(crate) const fn stop(&mut self) {
         (self.is_due, self.waits) = (false, false);
     }
 
-    /// Brakes, if it does not yet: at once from height 0 or while it waits. A `profile` does not.
+    /// Brakes; at once from height 0 or while it waits. A `profile` does not brake.
     pub(crate) const fn brake(&mut self) {
         if self.brakes || self.profile.is_some() {
             return;
@@ -174,8 +172,8 @@ impl Motion {
         }
     }
 
-    /// Whether a step is due, or the move waits: then switches and levels are heeded.
-    pub(crate) const fn is_heeding(&self) -> bool {
+    /// Whether a step is due or the move waits, so that switches and levels have an effect.
+    pub(crate) const fn is_active(&self) -> bool {
         self.is_due || self.waits
     }
 }

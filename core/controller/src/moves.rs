@@ -1,4 +1,4 @@
-//! How a move begins and ends (G4), and the moves that are not a program's: jogs and the return (G6).
+//! Begin and end of moves (CONTROLLER G4), jogs and the return (G6).
 
 use crate::{
     controller::{Controller, Paused},
@@ -27,14 +27,14 @@ impl Controller {
         }
     }
 
-    /// A move of so many steps, positive to the right, by G3.
+    /// A move of `steps` steps, positive to the right, by G3.
     pub(crate) fn planned(&self, purpose: Purpose, steps: i128, speed_hz: u32, level: u32) -> Motion {
         let rem = u64::try_from(steps.unsigned_abs()).unwrap_or(ENDLESS);
         let climb = self.climb(rem, speed_hz, level);
         Motion::new(purpose, steps > 0, rem, climb, self.clock_hz)
     }
 
-    /// Whether an order of some steps would end outside of the soft limits.
+    /// Whether a move of `steps` would end outside the soft limits.
     pub(crate) fn is_outside(&self, steps: i128) -> bool {
         let target = i128::from(self.position) + steps;
         let outside = |min: i64, max: i64| target < i128::from(min) || target > i128::from(max);
@@ -46,7 +46,7 @@ impl Controller {
                 .is_some_and(|soft| outside(soft.min_steps, soft.max_steps))
     }
 
-    /// Whether a limit switch is in the way of this move; homing's own switch is none.
+    /// Whether a limit switch blocks this move; homing's own switch does not.
     pub(crate) fn is_limited(&self, motion: &Motion) -> bool {
         let switch = if motion.right { Signal::LimitMax } else { Signal::LimitMin };
         let is_own = matches!(motion.purpose, Purpose::Leg(_))
@@ -54,7 +54,7 @@ impl Controller {
         self.limit(motion.right) && !is_own
     }
 
-    /// A move begins in cycle `now`, waits, or ends at once.
+    /// Begins a move in cycle `now`; it may wait for memory, or end at once.
     pub(crate) fn begin_move(&mut self, now: u64, mut motion: Motion) {
         motion.is_limited = motion.rem > 0 && self.is_limited(&motion);
         motion.until_met = motion.rem > 0
@@ -85,17 +85,16 @@ impl Controller {
         }
     }
 
-    /// A move ends whose last pulse has fallen, or that was stopped while STEP is low.
+    /// Ends a move whose last pulse has fallen, or that was stopped while STEP is low.
     pub(crate) fn ended(&mut self, now: u64) {
-        if !self.pins.step && self.motion.as_ref().is_some_and(|motion| !motion.is_heeding()) {
+        if !self.pins.step && self.motion.as_ref().is_some_and(|motion| !motion.is_active()) {
             self.end_move(now);
         }
     }
 
-    /// The move is over; what comes next begins in the same cycle.
     fn end_move(&mut self, now: u64) {
         let Some(motion) = self.motion.take() else { return };
-        self.judge_last_step(&motion);
+        self.check_last_step(&motion);
         match motion.purpose {
             Purpose::Jog(back) => self.state = back,
             Purpose::Leg(leg) => self.end_leg(now, leg, &motion),
@@ -112,30 +111,28 @@ impl Controller {
         }
     }
 
-    /// The rest of a move that was paused begins as a move of its own.
     pub(crate) fn begin_rest(&mut self, now: u64, paused: &Motion) {
         let steps = i128::from(paused.rem) * if paused.right { 1 } else { -1 };
-        let (speed_hz, level) = self.asked(paused.purpose);
+        let (speed_hz, level) = self.speed_and_level(paused.purpose);
         let mut motion = self.planned(paused.purpose, steps, speed_hz, level);
         motion.until = paused.until;
         self.begin_move(now, motion);
     }
 
-    fn asked(&self, purpose: Purpose) -> (u32, u32) {
+    fn speed_and_level(&self, purpose: Purpose) -> (u32, u32) {
         match purpose {
-            Purpose::Group => self.asked_of_group(),
+            Purpose::Group => self.group_speed_and_level(),
             _ => (self.numbers.return_speed_hz(), self.numbers.return_level()),
         }
     }
 
-    /// Trust is lost where the last step that was made is beyond the start-stop range.
-    pub(crate) fn judge_last_step(&mut self, motion: &Motion) {
+    /// Trust is lost if the last step was beyond the start-stop range.
+    pub(crate) fn check_last_step(&mut self, motion: &Motion) {
         if motion.last_interval.is_some_and(|interval| self.is_jump(interval)) {
             self.trust = 0;
         }
     }
 
-    /// The state of a move that was paused, when it goes on.
     pub(crate) const fn state_of(&self, purpose: Purpose) -> State {
         match purpose {
             Purpose::Return => State::Returning,
@@ -174,7 +171,7 @@ impl Controller {
         self.keep_dir_of_stopped();
     }
 
-    /// The return to zero begins: as the return, or as the end of homing.
+    /// Begins the return to zero, by itself or as the end of homing.
     pub(crate) fn return_to_zero(&mut self, now: u64, purpose: Purpose) {
         let steps = -i128::from(self.position);
         if self.is_outside(steps) {

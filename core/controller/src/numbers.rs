@@ -1,6 +1,6 @@
-//! The numbers that the panel can change (G8), and which of them are in range.
+//! The numbers that the panel can change, and their ranges (CONTROLLER G8).
 //!
-//! | number | what |
+//! | number | content |
 //! | --- | --- |
 //! | 0 to 7 | pulses_per_unit, decimals, jog.speed_hz, jog.fine_hz, return.speed_hz, return.level, loops, used |
 //! | 8 + 5*k to 12 + 5*k | length, speed_hz, direction, level, delay_ms of `move` k (from 0) |
@@ -78,7 +78,7 @@ impl Numbers {
         all.then_some(Self(numbers))
     }
 
-    /// Stores an entry, if it is in range: whether it is, and whether it changed the number.
+    /// Stores an entry if it is in range; returns whether it changed the number.
     pub(crate) fn store(&mut self, parameters: &Parameters, index: usize, entry: u32) -> Option<bool> {
         let is_in_range = range(parameters, index).contains(&entry.into());
         let number = self.0.get_mut(index).filter(|_| is_in_range)?;
@@ -129,7 +129,7 @@ impl Numbers {
         self.get(7) as u32
     }
 
-    /// The numbers of the `move` that is group `group` (from 1).
+    /// The numbers of group `group` (from 1), a `move`.
     pub(crate) fn of_move(&self, parameters: &Parameters, group: u32) -> MoveNumbers {
         let before = parameters.groups.iter().take(group.saturating_sub(1) as usize);
         let before = before.filter(|group| matches!(group, Group::Move(_))).count();
@@ -143,13 +143,13 @@ impl Numbers {
         }
     }
 
-    /// P(x) = floor((2*x*N + 10^d)/(2*10^d)): `digits` of the display in steps.
+    /// P(x) = floor((2*x*N + 10^d)/(2*10^d)): display digits in steps.
     pub(crate) fn steps(&self, digits: i64) -> i128 {
         let scale = i128::from(self.scale());
         (2 * i128::from(digits) * i128::from(self.pulses_per_unit()) + scale).div_euclid(2 * scale)
     }
 
-    /// A position in digits of the display: sign*floor((2*|position|*10^d + N)/(2*N)).
+    /// A position in display digits: sign*floor((2*|position|*10^d + N)/(2*N)).
     pub(crate) fn digits(&self, position: i32) -> i64 {
         let position = i64::from(position);
         let pulses = self.pulses_per_unit();

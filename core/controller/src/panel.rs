@@ -1,4 +1,4 @@
-//! What the panel shows (G8): its records, their digest, the LCD and the LED.
+//! The panel (CONTROLLER G8): records, their digest, LCD and LED.
 //!
 //! ```
 //! use stepscope_controller::panel::{lcd, Led, Word};
@@ -16,22 +16,20 @@ use core::hash::Hasher;
 use stepscope_peripheral::units::Instant;
 use twox_hash::XxHash64;
 
-/// The panel from a cycle on, as things are at the end of the cycle before.
+/// The panel from a cycle on, at the end of the cycle before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct PanelRecord {
-    /// Cycle 0, or one in which the word, or in EDIT the display, changed.
+    /// Cycle 0, or a change of the word or, in EDIT, of the display.
     pub cycle: Instant,
     pub word: Word,
-    /// Position in steps.
     pub position: i64,
-    /// What the display shows, in its digits; in EDIT the entry or the value of a number.
+    /// In display digits; in EDIT the entry or the value of a number.
     pub display: i64,
 }
 
 /// State, alarm, trust, outputs, group and loop in one word.
 ///
-/// | bits | what |
+/// | bits | content |
 /// | --- | --- |
 /// | 0..=3 | state |
 /// | 4..=7 | alarm |
@@ -42,14 +40,11 @@ pub struct PanelRecord {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word(pub u64);
 
-/// How the LED blinks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Led {
-    /// Quickly: an alarm.
     Quick,
-    /// It is on: at rest with trust 2.
+    /// On: idle with trust 2.
     On,
-    /// Slowly: anything else.
     Slow,
 }
 
@@ -59,25 +54,22 @@ impl Word {
         Self(low | u64::from(outputs & 15) << 12 | (group & 0x1ff) << 16 | (loop_ & 0xffff) << 32)
     }
 
-    /// The state.
     #[must_use]
     pub fn state(self) -> State {
         State::ALL.get(self.0 as usize & 15).copied().unwrap_or(State::Off)
     }
 
-    /// The alarm.
     #[must_use]
     pub fn alarm(self) -> Alarm {
         Alarm::ALL.get((self.0 >> 4) as usize & 15).copied().unwrap_or(Alarm::None)
     }
 
-    /// Trust: 0 LOST, 1 HELD, 2 SURE.
     #[must_use]
     pub const fn trust(self) -> u8 {
         (self.0 >> 8) as u8 & 3
     }
 
-    /// Outputs 0 to 3, a bit each.
+    /// Outputs 0 to 3, one bit each.
     #[must_use]
     pub const fn outputs(self) -> u8 {
         (self.0 >> 12) as u8 & 15
@@ -89,13 +81,11 @@ impl Word {
         (self.0 >> 16) as u16 & 0x1ff
     }
 
-    /// Loop from 1; 0 without program.
     #[must_use]
     pub const fn loop_(self) -> u16 {
         (self.0 >> 32) as u16
     }
 
-    /// What the LED does.
     #[must_use]
     pub fn led(self) -> Led {
         match self.state() {
@@ -106,7 +96,7 @@ impl Word {
     }
 }
 
-/// Six characters of the LCD: `display` with `decimals` (0 to 3) decimal places, dashes over 999999 and under -99999.
+/// Six characters of the LCD: `display` with `decimals` (0 to 3) decimal places, dashes above 999999 and below -99999.
 #[must_use]
 pub fn lcd(display: i64, decimals: u8) -> String {
     if !(-99_999..=999_999).contains(&display) {
@@ -119,13 +109,12 @@ pub fn lcd(display: i64, decimals: u8) -> String {
         let (places, scale) = (usize::from(decimals.min(3)), 10_u64.pow(decimals.min(3).into()));
         format!("{sign}{}.{:0places$}", digits / scale, digits % scale)
     };
-    // The point stands between two digits and takes none of the six places.
+    // The point does not take one of the six characters.
     let width = 6 + usize::from(decimals > 0 && text.len() > 6);
     format!("{text:>width$}")
 }
 
-/// Digest of the panels of all controllers: XXH64, seed 0, over their records as four little-endian words each, controller
-/// after controller.
+/// Digest of the panels of all controllers: XXH64, seed 0, over four little-endian words per record.
 pub fn digest<'a>(panels: impl IntoIterator<Item = &'a [PanelRecord]>) -> u64 {
     let mut hasher = XxHash64::with_seed(0);
     for record in panels.into_iter().flatten() {

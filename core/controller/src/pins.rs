@@ -1,8 +1,8 @@
-//! STEP, DIR and EN of one channel (G1.1, G4).
+//! STEP, DIR and EN of one channel (CONTROLLER G1.1, G4).
 //!
 //! ```text
-//! EN    ─────────────┐         what a cause in cycle c does to EN and to a pulse that is cut shows from c + 1 on,
-//! STEP  _┌──┐__┌─────┘____     as does what the death and a restart do to DIR
+//! EN    ─────────────┐         changes of EN and a cut pulse show one cycle after their cause in c,
+//! STEP  _┌──┐__┌─────┘____     as does the reset of DIR after power-off and restart
 //!               c    c + 1
 //! ```
 
@@ -19,7 +19,8 @@ pub(crate) struct Pins {
     next_en: bool,
     is_cut: bool,
     clears_dir: bool,
-    ordered: u64,
+    /// When the effects in `next_en`, `is_cut` and `clears_dir` take place.
+    pending: u64,
 }
 
 impl Pins {
@@ -34,20 +35,20 @@ impl Pins {
             next_en: true,
             is_cut: false,
             clears_dir: false,
-            ordered: NEVER,
+            pending: NEVER,
         }
     }
 
-    /// Before cycle 0, where the driver is not to be powered at all.
+    /// Before cycle 0, if the driver must not be powered.
     pub(crate) const fn stay_off(&mut self) {
         (self.en, self.next_en) = (false, false);
     }
 
-    pub(crate) fn take_orders(&mut self, now: u64) {
-        if self.ordered > now {
+    pub(crate) fn apply_pending(&mut self, now: u64) {
+        if self.pending > now {
             return;
         }
-        self.ordered = NEVER;
+        self.pending = NEVER;
         self.en = self.next_en;
         if self.is_cut {
             (self.step, self.fall, self.last_fall) = (false, NEVER, Some(now));
@@ -58,7 +59,6 @@ impl Pins {
         (self.is_cut, self.clears_dir) = (false, false);
     }
 
-    /// The pulse falls and DIR changes, where they are due.
     pub(crate) const fn fall_and_turn(&mut self, now: u64) {
         if self.fall <= now {
             (self.step, self.fall, self.last_fall) = (false, NEVER, Some(now));
@@ -74,7 +74,7 @@ impl Pins {
         self.fall = now.saturating_add(width);
     }
 
-    /// A move to the right or left begins: DIR changes if it must, `hold` cycles after the last fall at the earliest.
+    /// Begins a move to the right or left: DIR changes if needed, at least `hold` cycles after the last fall.
     pub(crate) fn turn(&mut self, now: u64, right: bool, hold: u64) {
         self.turn = if right == self.dir {
             NEVER
@@ -84,43 +84,42 @@ impl Pins {
         };
     }
 
-    /// A change of DIR still to come does not come.
+    /// Cancels a pending change of DIR.
     pub(crate) const fn keep_dir(&mut self) {
         self.turn = NEVER;
     }
 
-    /// From the next cycle on EN is 0, and a pulse that is high is cut.
+    /// From the next cycle on EN is 0 and a high pulse is cut.
     pub(crate) const fn power_off(&mut self, now: u64) {
         self.is_cut = self.step;
         self.turn = NEVER;
-        self.order_en(now, false);
+        self.set_en(now, false);
     }
 
     pub(crate) const fn power_on(&mut self, now: u64) {
-        self.order_en(now, true);
+        self.set_en(now, true);
     }
 
     pub(crate) const fn clear_dir(&mut self, now: u64) {
         self.clears_dir = true;
-        self.order(now);
+        self.schedule(now);
     }
 
-    const fn order_en(&mut self, now: u64, en: bool) {
+    const fn set_en(&mut self, now: u64, en: bool) {
         self.next_en = en;
         if self.is_cut || self.en != en {
-            self.order(now);
+            self.schedule(now);
         } else if !self.clears_dir {
-            self.ordered = NEVER;
+            self.pending = NEVER;
         }
     }
 
-    const fn order(&mut self, now: u64) {
-        self.ordered = now.saturating_add(1);
+    const fn schedule(&mut self, now: u64) {
+        self.pending = now.saturating_add(1);
     }
 
-    /// The next cycle in which a pin changes by itself.
     pub(crate) fn due(&self) -> u64 {
-        self.fall.min(self.turn).min(self.ordered)
+        self.fall.min(self.turn).min(self.pending)
     }
 }
 
@@ -134,7 +133,7 @@ mod tests {
         pins.rise(10, 8);
         pins.power_off(12);
         assert!(pins.step && pins.en && pins.due() == 13);
-        pins.take_orders(13);
+        pins.apply_pending(13);
         assert!(!pins.step && !pins.en && pins.due() == NEVER);
         // Begin of a move, hold, change of DIR.
         for (now, hold, expected) in [(13, 0, 14), (13, 4, 17), (20, 4, 21)] {

@@ -1,4 +1,4 @@
-//! Power, the emergency stop and the self-test (G2).
+//! Power, emergency stop and self-test (CONTROLLER G2).
 
 use crate::{
     controller::{Controller, NEVER},
@@ -8,8 +8,8 @@ use crate::{
 };
 
 impl Controller {
-    /// Power, before all else: whether the other reactions of this cycle follow.
-    pub(crate) fn heeds_power(&mut self, now: u64) -> bool {
+    /// Reacts to the power before anything else; returns whether the other reactions of this cycle follow.
+    pub(crate) fn power(&mut self, now: u64) -> bool {
         let has_power = self.inputs.raw(Signal::Power);
         match self.state {
             State::Off if has_power => self.restart(now),
@@ -39,7 +39,7 @@ impl Controller {
         true
     }
 
-    /// Without power: from its fall on the supply holds up, then it dies.
+    /// Without power: the hold-up time, then power-off.
     fn hold_up(&mut self, now: u64) {
         if self.dies == NEVER {
             self.dies = now.saturating_add(self.parameters.memory.hold_up_cycles);
@@ -83,7 +83,7 @@ impl Controller {
     fn motor_off(&mut self, now: u64) {
         self.pins.power_off(now);
         if let Some(motion) = self.motion.take() {
-            self.judge_last_step(&motion);
+            self.check_last_step(&motion);
         }
         self.trust = self.trust.min(1);
         self.outputs = 0;

@@ -1,5 +1,5 @@
-//! The machine where a chip's power comes up and its EEPROM takes the time that it takes: what a
-//! [`Runner`](crate::Runner) needs beside what everybody may ask.
+//! Power-up of a machine on a chip, and EEPROM timing by the chip: internals for a [`Runner`](crate::Runner)
+//! (CONTROLLER G2, G7).
 
 use crate::{
     chip::RawLevels,
@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use stepscope_peripheral::units::Instant;
 
 impl StandAlone {
-    /// Before cycle 0 of a power-up: as s of G2's restart, with these raw levels and this memory, and without a script.
+    /// A machine before cycle 0 of a power-up, with these raw levels and this memory, and without a script.
     pub(crate) fn power_up(checked: &crate::CheckedSetup, levels: RawLevels, memory: &[u8]) -> Self {
         let mut machine = Self::new(checked);
         machine.drop_inputs();
@@ -21,8 +21,8 @@ impl StandAlone {
         machine
     }
 
-    /// The level of an input of the first controller from cycle `at` on; whether it was entered: not where it has an entry
-    /// in that cycle. `at` has not been run.
+    /// Enters the level of an input of the first controller from cycle `at` on, unless the input has an entry in that
+    /// cycle; returns whether it did. `at` has not been run.
     pub(crate) fn enter_level(&mut self, at: Instant, signal: Signal, level: bool) -> bool {
         let input = Input { cycle: at, change: Change::Level(signal, level) };
         let is_free = self.controllers.first().is_some_and(|controller| !controller.script.has(input));
@@ -32,7 +32,6 @@ impl StandAlone {
         is_free
     }
 
-    /// Leaves out what is kept of the past: panel, presses without meaning, and how many groups have begun.
     pub(crate) fn forget(&mut self) {
         for controller in &mut self.controllers {
             controller.panel.clear();
@@ -42,12 +41,11 @@ impl StandAlone {
         self.begun = 0;
     }
 
-    /// When the byte under way of the first controller is complete.
     pub(crate) fn byte_due(&self) -> u64 {
         self.controllers.first().map_or(u64::MAX, |controller| controller.eeprom.due())
     }
 
-    /// The cycle in which that byte was begun, its address, and the byte.
+    /// When that byte was begun, its address, and the byte.
     pub(crate) fn byte_under_way(&self) -> Option<(Instant, usize, u8)> {
         let (begun, address, byte) = self.controllers.first()?.eeprom.under_way()?;
         Some((Instant(begun), address, byte))
@@ -62,7 +60,7 @@ impl StandAlone {
 }
 
 impl Controller {
-    /// SELF_TEST begins with debounced = raw: what is held is no press, and with the E-stop pressed EN stays 0.
+    /// SELF_TEST begins with the raw levels debounced, so held buttons are no presses; an active E-stop keeps EN at 0.
     fn power_up(&mut self, levels: RawLevels, memory: &[u8]) {
         self.eeprom.load(memory);
         self.newest = self.find_newest();

@@ -1,4 +1,4 @@
-//! Programs (G5): groups that begin, end, repeat and jump.
+//! Programs (CONTROLLER G5): groups that begin, end, repeat and jump.
 
 use crate::{
     controller::{Controller, NEVER, Paused, Program},
@@ -42,12 +42,12 @@ impl Controller {
     }
 
     fn begin_move_group(&mut self, now: u64, number: u32, group: &Move) {
-        let asked = self.numbers.of_move(&self.parameters, number);
-        let length = i64::from(asked.length) * if asked.right { 1 } else { -1 };
+        let numbers = self.numbers.of_move(&self.parameters, number);
+        let length = i64::from(numbers.length) * if numbers.right { 1 } else { -1 };
         let Some(program) = &mut self.program else { return };
         program.sum = program.sum.saturating_add(length);
         let until = group.until.as_ref().map(|until| (until.input, until.level));
-        self.go_to_sum(now, asked.speed_hz, asked.level, until);
+        self.go_to_sum(now, numbers.speed_hz, numbers.level, until);
     }
 
     fn begin_move_to(&mut self, now: u64, group: &MoveTo) {
@@ -56,7 +56,7 @@ impl Controller {
         self.go_to_sum(now, group.speed_hz, group.level.into(), None);
     }
 
-    /// To b + P(T).
+    /// Moves to b + P(T).
     fn go_to_sum(&mut self, now: u64, speed_hz: u32, level: u32, until: Option<(Signal, bool)>) {
         let Some(program) = &self.program else { return };
         let target = program.base + self.numbers.steps(program.sum);
@@ -112,18 +112,17 @@ impl Controller {
         group.input.is_none_or(|input| self.inputs.level(input) == group.level)
     }
 
-    pub(crate) fn asked_of_group(&self) -> (u32, u32) {
+    pub(crate) fn group_speed_and_level(&self) -> (u32, u32) {
         let number = self.program.as_ref().map_or(1, |program| program.group);
         match self.parameters.groups.get(number as usize - 1) {
             Some(Group::MoveTo(group)) => (group.speed_hz, group.level.into()),
             _ => {
-                let asked = self.numbers.of_move(&self.parameters, number);
-                (asked.speed_hz, asked.level)
+                let numbers = self.numbers.of_move(&self.parameters, number);
+                (numbers.speed_hz, numbers.level)
             }
         }
     }
 
-    /// The move of a group has ended, or its rest was given up.
     pub(crate) fn end_move_group(&mut self, now: u64, motion: &Motion) {
         if motion.until_met {
             self.take_position_as_base();
@@ -145,7 +144,7 @@ impl Controller {
         }
     }
 
-    /// A group ends in `now`: `next` or the group after it comes next, and group and loop are its own from here on.
+    /// Ends a group in `now`; `next` or the group after it follows, and is the current group from now on.
     pub(crate) fn end_group(&mut self, now: u64, delay: u64, next: Option<u32>) {
         let (used, loops) = (self.numbers.used(), self.numbers.loops());
         let Some(program) = &mut self.program else { return };
@@ -182,7 +181,7 @@ impl Controller {
         }
     }
 
-    /// Whether the level is there that the `wait` waits for.
+    /// Whether the input has the level of the current `wait`.
     pub(crate) fn is_waited(&self) -> bool {
         self.wait().is_some_and(|group| self.inputs.level(group.input) == group.level)
     }
@@ -194,7 +193,7 @@ impl Controller {
         }
     }
 
-    /// The condition of WAIT; what went on with no time left is over, too.
+    /// Ends a `wait` whose level is there, or that resumed with no time left.
     pub(crate) fn wait_condition(&mut self, now: u64) {
         if self.state != State::Wait {
             return;

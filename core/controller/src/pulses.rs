@@ -1,4 +1,4 @@
-//! The engine (G1.1) and the inputs (G1.3) of a cycle.
+//! The engine (CONTROLLER G1.1) and the inputs (G1.3) of a cycle.
 
 use crate::{
     controller::Controller,
@@ -7,7 +7,7 @@ use crate::{
     state::State,
 };
 
-/// The intervals of a `profile` that is group `group`; none of any other.
+/// The intervals of group `group` if it is a `profile`, else none.
 pub(crate) fn profile(parameters: &Parameters, group: Option<u32>) -> &[u64] {
     let index = group.and_then(|group| usize::try_from(group).ok()?.checked_sub(1));
     match index.and_then(|index| parameters.groups.get(index)) {
@@ -39,8 +39,8 @@ impl Controller {
         self.begun.progress = self.begun.count;
     }
 
-    /// The script's entries, the switches that the axis drives, debouncing.
-    pub(crate) fn hear(&mut self, now: u64) {
+    /// Applies the script, the switches of the axis, and debouncing.
+    pub(crate) fn read_inputs(&mut self, now: u64) {
         let debounces = self.state != State::Off;
         while let Some(change) = self.script.take(now) {
             match change {

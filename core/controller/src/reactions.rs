@@ -1,4 +1,4 @@
-//! What a controller does about what it heard, in the order of G1.4.
+//! Reactions to the inputs of a cycle, in the order of CONTROLLER G1.4.
 
 use crate::{
     controller::{Controller, NEVER, Paused},
@@ -7,7 +7,7 @@ use crate::{
 
 impl Controller {
     pub(crate) fn react(&mut self, now: u64) {
-        if !self.heeds_power(now) {
+        if !self.power(now) {
             return;
         }
         self.estop(now);
@@ -22,10 +22,10 @@ impl Controller {
         self.self_test(now);
     }
 
-    /// Limits, while a step is due or the move waits.
+    /// Checks the limits while a step is due or the move waits.
     fn limits(&mut self) {
         let Some(motion) = &self.motion else { return };
-        if !motion.is_heeding() || !self.is_limited(motion) {
+        if !motion.is_active() || !self.is_limited(motion) {
             return;
         }
         if let Some(motion) = &mut self.motion {
@@ -35,11 +35,11 @@ impl Controller {
         }
     }
 
-    /// `until`, while a step is due or the move waits, and it does not brake yet.
+    /// Checks `until` while a step is due or the move waits, unless it brakes already.
     fn until(&mut self) {
         let inputs = &self.inputs;
         let Some(motion) = &mut self.motion else { return };
-        if motion.is_heeding()
+        if motion.is_active()
             && !motion.brakes
             && motion.until.is_some_and(|(input, level)| inputs.level(input) == level)
         {
@@ -49,14 +49,13 @@ impl Controller {
         }
     }
 
-    /// A move that stands: a change of DIR still to come does not come.
     pub(crate) fn keep_dir_of_stopped(&mut self) {
-        if self.motion.as_ref().is_some_and(|motion| !motion.is_heeding()) {
+        if self.motion.as_ref().is_some_and(|motion| !motion.is_active()) {
             self.pins.keep_dir();
         }
     }
 
-    /// A group begins, or a wait has been too long.
+    /// Begins a group, or ends a `wait` by its timeout.
     fn time(&mut self, now: u64) {
         if self.timer > now {
             return;

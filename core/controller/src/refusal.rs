@@ -1,65 +1,51 @@
-//! Why controllers are refused, with the numbers (CONTROLLER.md, "Refused").
+//! Errors and warnings of controllers, with the numbers (CONTROLLER.md, "Refused").
 
 use crate::input::Signal;
 use alloc::string::String;
 use core::fmt;
 use stepscope_peripheral::units::{Cycles, Instant};
 
-/// Why a [`Setup`](crate::parameters::Setup) makes no machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Refusal {
-    /// A number, or how many there are of something, is out of its range.
+    /// A number or a count is out of its range.
     Range {
         given: i128,
         least: i128,
         greatest: i128,
     },
-    /// Steps at this speed would come sooner than a pulse allows.
     TooFast {
-        /// The speed in Hz.
         given_hz: u32,
-        /// Whole cycles from step to step at it.
         step: Cycles,
         /// W + max(H + D, 1).
         pulse: Cycles,
-        /// The fastest that is allowed in Hz.
         max_hz: u64,
     },
-    /// A speed is above the fastest that may be requested, or below 10 Hz.
+    /// A speed is above `max_speed_hz` or below 10 Hz.
     Speed {
-        /// The speed in Hz.
         given_hz: u32,
-        /// `max_speed_hz`.
         max_speed_hz: u32,
     },
-    /// An interval of a `profile` is shorter than a pulse allows.
+    /// An interval of a `profile` is shorter than a pulse allows; both in 1/65536 cycle.
     ShortInterval {
-        /// The interval in 1/65536 cycle.
         given: u64,
-        /// Lm in 1/65536 cycle.
         least: u64,
     },
-    /// A speed of homing is above the start-stop range.
+    /// A speed of homing is above the start-stop rate.
     AboveStartSpeed {
-        /// The speed in Hz.
         given_hz: u32,
-        /// `start_speed_hz`.
         start_speed_hz: u32,
     },
     /// The first group of a `repeat` is not before it.
     NotBefore {
         given: u32,
-        /// Number of the `repeat`.
         group: u32,
     },
     NoSuchGroup {
         given: u32,
         groups: u32,
     },
-    /// A group `home` without [`Parameters::home`](crate::parameters::Parameters::home).
     NoHome,
-    /// This signal cannot stand here.
+    /// This signal is not allowed here.
     WrongSignal {
         given: Signal,
         allowed: &'static str,
@@ -68,37 +54,34 @@ pub enum Refusal {
     HalfSwitch {
         missing: &'static str,
     },
-    /// The script has a switch that the axis drives.
+    /// The script contains a switch that the axis drives.
     Driven {
         signal: Signal,
-        /// The field of the axis that drives it.
+        /// The field of the axis.
         by: &'static str,
     },
-    /// Power, E-stop and clear are the first controller's, for all.
+    /// Only the first controller has power, E-stop and clear, for all.
     FirstControllers {
         signal: Signal,
     },
     /// An input has two entries in a cycle.
     Twice {
-        /// Its name: a signal's, or `push_steps`.
+        /// A signal's name, or `push_steps`.
         name: &'static str,
         cycle: Instant,
     },
-    /// More bytes than the memory has.
     LongMemory {
         given: usize,
         bytes: usize,
     },
 }
 
-/// A refusal and where it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Refused {
-    /// Which controller; `None` where it is about the bus or all of them.
+    /// `None` for the bus or all controllers.
     pub controller: Option<usize>,
-    /// The field, as a scenario names it: within the controller, such as `groups[2].repeat.first`, or `clock_hz`,
-    /// `bus.channels` and their like.
+    /// The field as in a scenario: within the controller, such as `groups[2].repeat.first`, or `clock_hz` or
+    /// `bus.channels`.
     pub path: String,
     pub refusal: Refusal,
 }
@@ -179,44 +162,32 @@ impl fmt::Display for Refused {
 
 impl core::error::Error for Refused {}
 
-/// What holds, but may not be meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Warning {
     /// With `power_loss` a cut can leave the position unknown.
     ShortHoldUp {
-        /// `hold_up_cycles`.
         given: u64,
-        /// 17*w - 1, which is just enough.
+        /// 17*w - 1, the minimum.
         enough: u64,
     },
-    /// `debounce_cycles` is 0: a button that bounces is pressed several times.
+    /// `debounce_cycles` is 0: a bouncing button counts as several presses.
     NoDebounce,
-    /// Every jog jumps beyond the start-stop range, and costs trust.
-    JogCostsTrust {
-        /// `jog.speed_hz`.
-        given_hz: u32,
-        /// `start_speed_hz`.
-        start_speed_hz: u32,
-    },
-    /// A move of the program is too short for its speed, and goes at the start-stop rate all the way.
+    /// Every jog exceeds the start-stop rate, which costs trust.
+    JogCostsTrust { given_hz: u32, start_speed_hz: u32 },
+    /// A move is too short for its speed, so all of it runs at the start-stop rate.
     ShortMove {
         steps: i128,
-        /// Up to its speed and down again.
+        /// Steps to its speed and down again.
         needed: u64,
-        /// Its `speed_hz`.
         given_hz: u32,
-        /// `start_speed_hz`.
         start_speed_hz: u32,
     },
 }
 
-/// A warning and where it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Warned {
     pub controller: usize,
-    /// The field within it, as a scenario names it.
+    /// The field within the controller, as in a scenario.
     pub path: String,
     pub warning: Warning,
 }

@@ -1,19 +1,18 @@
-//! The machine on a chip: brought up to the tick that it is, with the inputs as they are, and asked when to wake next.
+//! The machine on a chip (CONTROLLER G7): runs it up to the current tick with the current inputs, and returns the next
+//! wake-up time.
 //!
 //! ```text
 //! tick     ──┬───────────────┬──────╎────┬─────────┬──>   the chip wakes at `wake`, late by L, or for an input
 //!         poll(now)       input    wake  poll     poll
-//! cycle    ──┬───────────────┬──────┬ ─ ─ ┬────────┬──>   the machine's time stands still while the chip is late:
+//! cycle    ──┬───────────────┬──────┬ ─ ─ ┬────────┬──>   the machine's time stops while the chip is late:
 //!            run        enter, run  c     c       c + n   cycle = tick - origin, and origin grows by L
 //! ```
 //!
-//! So a late chip makes edges late, by what all its lateness adds up to ([`Runner::lateness`]), and never closer to each
-//! other than the machine has them: no pulse is too short, no rate too high, none is lost. What the chip hears now it acts
-//! on now. Edges are exact to the tick only as far as the chip wakes in time: one that knows how long that takes lets its
-//! timer wake it so much earlier, and waits for the tick. What a poll itself takes until the pin changes is not told.
+//! So a late chip makes edges late by the total lateness ([`Runner::lateness`]), but never closer to each other: no pulse
+//! is too short, no rate too high, no edge lost. The time from a poll to the change of a pin is not counted.
 //!
-//! A byte of the memory is written when the chip says so, at the earliest `byte_write_cycles` after its begin. So no step
-//! rises before the opening record is in the EEPROM itself, however slow that is (G7).
+//! A byte of memory is complete when the chip reports it, at least `byte_write_cycles` after its begin, so no step rises
+//! before the opening record is in a slow EEPROM.
 
 use crate::{
     checked::CheckedSetup,
@@ -31,15 +30,14 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
 };
 
-/// Part of `byte_write_cycles` after which a chip that is still writing is asked again.
-const ASK_AGAIN: u64 = 64;
+/// A chip that is still writing is polled again after this part of `byte_write_cycles`.
+const WRITE_POLLS: u64 = 64;
 
-/// Why controllers cannot run on a chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotRunnable {
-    /// A chip has one controller; these are so many.
+    /// A chip has one controller.
     Controllers(usize),
-    /// It has a virtual axis, which would drive its switches.
+    /// A virtual axis would drive the switches.
     Axis,
 }
 
@@ -54,33 +52,30 @@ impl fmt::Display for NotRunnable {
 
 impl core::error::Error for NotRunnable {}
 
-/// How late the chip woke for cycles in which something was to happen.
+/// How late the chip woke for cycles with events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Lateness {
     pub last: Cycles,
-    /// The worst time since power-up.
     pub worst: Cycles,
-    /// All of it since power-up: so much later than without it an edge is now.
+    /// Sum since power-up: the present delay of an edge.
     pub total: Cycles,
 }
 
-/// One controller on a chip, from a power-up on.
 #[derive(Clone, Debug)]
 pub struct Runner {
     machine: StandAlone,
     checked: CheckedSetup,
-    /// The tick of the machine's cycle 0, later by all lateness since.
+    /// The tick of cycle 0, plus all lateness since.
     origin: u64,
     lateness: Lateness,
-    heard: RawLevels,
-    /// The cycle in which the byte was begun that the chip got last.
+    levels: RawLevels,
+    /// When the byte last passed to the chip was begun.
     begun: Option<Instant>,
 }
 
 impl Runner {
-    /// Power comes up: cycle 0 of the machine, which is s of G2, is tick `now`. Memory is what the chip's EEPROM holds, an
-    /// input that is held is no press, and neither the script nor `memory.initial` counts. Nothing is written yet.
+    /// Power-up: cycle 0 of the machine is tick `now`. Memory is the chip's EEPROM; held inputs are no presses; the script
+    /// and `memory.initial` have no effect. Nothing is written yet.
     /// Errors: more than one controller, or a virtual axis.
     pub fn power_up(now: Instant, checked: &CheckedSetup, chip: &mut impl Chip) -> Result<Self, NotRunnable> {
         let [parameters] = checked.controllers() else {
@@ -93,28 +88,27 @@ impl Runner {
     }
 
     fn new(now: Instant, checked: &CheckedSetup, chip: &mut impl Chip) -> Self {
-        let heard = chip.inputs();
+        let levels = chip.inputs();
         let len = checked.controllers().first().map_or(0, |parameters| parameters.memory_len());
         let memory: Vec<u8> = (0..len).map(|address| chip.read_byte(address)).collect();
         Self {
-            machine: StandAlone::power_up(checked, heard, &memory),
+            machine: StandAlone::power_up(checked, levels, &memory),
             checked: checked.clone(),
             origin: now.0,
             lateness: Lateness::default(),
-            heard,
+            levels,
             begun: None,
         }
     }
 
-    /// What the EEPROM of a new chip has to hold, from address 0: `memory.initial`.
+    /// Initial EEPROM contents of a new chip, from address 0: `memory.initial`.
     #[must_use]
     pub fn factory_memory(checked: &CheckedSetup) -> Vec<u8> {
         StandAlone::new(checked).memory(0).to_vec()
     }
 
-    /// Brings the machine up to tick `now`: hears the inputs, writes pins that change, shows what is shown, begins a byte
-    /// of memory. The tick at which to call it again; `None` where only an input can bring something. Where the tick has
-    /// passed already, at once.
+    /// Runs the machine up to tick `now`: reads inputs, writes pins and panel, begins a byte of memory. Returns the tick
+    /// of the next call, which may have passed; `None` until an input changes.
     pub fn poll(&mut self, now: Instant, chip: &mut impl Chip) -> Option<Instant> {
         if now.0 < self.origin {
             return Some(Instant(self.origin));
@@ -126,7 +120,7 @@ impl Runner {
         let cycle = self.stand_still(now);
         let is_off = self.machine.state(0) == Some(State::Off);
         if !is_off {
-            self.hear(cycle, levels);
+            self.read_inputs(cycle, levels);
         }
         self.run(cycle, chip);
         if is_off && levels.level(Signal::Power) {
@@ -135,17 +129,17 @@ impl Runner {
         self.wake()
     }
 
-    /// A byte that would be complete by `now` is not: the chip still writes it.
+    /// Delays a byte that would be complete by `now` but that the chip is still writing.
     fn wait_for_byte(&mut self, now: Instant) {
         let cycle = now.0 - self.origin;
         if self.machine.byte_due() <= cycle {
             let write = self.checked.controllers().first().map_or(0, |one| one.memory.byte_write_cycles);
-            let again = (u64::from(write) / ASK_AGAIN).max(1);
+            let again = (u64::from(write) / WRITE_POLLS).max(1);
             self.machine.postpone_byte(cycle.saturating_add(again));
         }
     }
 
-    /// The cycle that `now` is. Where one was due before, it is that one, and the machine's time has stood still since.
+    /// The cycle of tick `now`. If an earlier one was due, it is that one: the machine's time has stopped since.
     fn stand_still(&mut self, now: Instant) -> u64 {
         let (cycle, deadline) = (now.0 - self.origin, self.deadline());
         if deadline == NEVER || cycle < deadline {
@@ -162,14 +156,14 @@ impl Runner {
         deadline
     }
 
-    /// Inputs that have changed, from `cycle` on or, where that has been run, from the next one.
-    fn hear(&mut self, cycle: u64, levels: RawLevels) {
+    /// Enters changed inputs from `cycle` on or, if that has been run, from the next cycle.
+    fn read_inputs(&mut self, cycle: u64, levels: RawLevels) {
         let at = Instant(cycle.max(self.machine.now().0).max(1));
-        for signal in levels.changed(self.heard) {
+        for signal in levels.changed(self.levels) {
             let level = levels.level(signal);
-            // An input that has changed in this very cycle already is heard in the next.
+            // A second change in one cycle is entered in the next.
             if self.machine.enter_level(at, signal, level) {
-                self.heard = self.heard.with(signal, level);
+                self.levels = self.levels.with(signal, level);
             }
         }
     }
@@ -178,7 +172,7 @@ impl Runner {
         let decimals = self.decimals();
         let origin = self.origin;
         self.machine.run(Instant(cycle.saturating_add(1)), &mut Outlet { chip, origin, decimals });
-        // What a run keeps of all its past has no end on a chip.
+        // A chip runs without end, so the history must not grow.
         self.machine.forget();
         if let Some((begun, address, byte)) = self.machine.byte_under_way()
             && self.begun != Some(begun)
@@ -188,7 +182,7 @@ impl Runner {
         }
     }
 
-    /// The power is back, and the chip has outlived the machine's hold-up: the restart of G2, from what the EEPROM holds.
+    /// The power is back before the chip stopped: restarts from the contents of the EEPROM.
     fn power_up_again(&mut self, now: Instant, chip: &mut impl Chip) -> Instant {
         let next = Instant(now.0.saturating_add(1));
         if !chip.is_writing() {
@@ -213,19 +207,17 @@ impl Runner {
         decimals.and_then(|&decimals| u8::try_from(decimals).ok()).unwrap_or(0)
     }
 
-    /// The machine, to be looked at.
     #[must_use]
     pub const fn machine(&self) -> &StandAlone {
         &self.machine
     }
 
-    /// How late the chip woke since power-up.
     #[must_use]
     pub const fn lateness(&self) -> Lateness {
         self.lateness
     }
 
-    /// What stands on the panel at the cycle that was run last.
+    /// The panel in the last cycle.
     #[must_use]
     pub fn face(&self) -> Face {
         Face {
@@ -238,7 +230,7 @@ impl Runner {
     }
 }
 
-/// Where what changes in a cycle goes: to pins and panel.
+/// Passes the changes of a cycle to pins and panel.
 struct Outlet<'c, C> {
     chip: &'c mut C,
     origin: u64,

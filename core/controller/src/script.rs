@@ -1,9 +1,9 @@
-//! The entries that a controller still has to hear, in the order of their cycles.
+//! The future entries of a controller's script, in the order of their cycles (CONTROLLER G1.3).
 
 use crate::input::{Change, Input, Signal};
 use alloc::{collections::VecDeque, rc::Rc, vec::Vec};
 
-/// Entries in the order of their cycles, and how many of them have been taken.
+/// Entries in the order of their cycles, and the number already taken.
 #[derive(Clone, Debug, Default)]
 struct Queue {
     entries: Rc<[Input]>,
@@ -12,12 +12,12 @@ struct Queue {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Script {
-    /// Its own, and what it shares with all others: power, E-stop and clear of the first one.
+    /// Its own entries, and those shared by all: power, E-stop and clear of the first controller.
     queues: [Queue; 2],
     live: VecDeque<Input>,
 }
 
-/// Whether an entry of the first controller is for all of them.
+/// Whether an entry of the first controller applies to all.
 pub(crate) const fn is_shared(change: Change) -> bool {
     matches!(change, Change::Level(Signal::Power | Signal::Estop | Signal::Clear, _))
 }
@@ -74,7 +74,6 @@ impl Script {
         *self = Self::default();
     }
 
-    /// Adds an entry of a cycle that has not been run.
     pub(crate) fn enter(&mut self, input: Input) {
         let index = self.live.partition_point(|other| other.cycle <= input.cycle);
         self.live.insert(index, input);

@@ -1,4 +1,4 @@
-//! What is written into memory, when, and what is read from it (G7).
+//! Reading and writing memory (CONTROLLER G7).
 
 use crate::{
     controller::Controller,
@@ -21,7 +21,7 @@ impl Controller {
         !self.writes_journal && self.newest.is_some_and(|newest| newest.entry.is_open)
     }
 
-    /// A byte that is due is there; with the last of a record the record is complete.
+    /// Completes a byte that is due, and with its last byte the record.
     pub(crate) fn complete_byte(&mut self, now: u64) {
         if !self.eeprom.complete(now) {
             return;
@@ -34,7 +34,7 @@ impl Controller {
         }
     }
 
-    /// What memory says: position and trust. `None` where it holds no valid record.
+    /// Position and trust in memory; `None` without a valid record.
     pub(crate) fn believed(&self) -> Option<(i32, u8)> {
         let entry = self.find_newest()?.entry;
         Some((entry.position, if entry.is_open { 0 } else { entry.trust.min(1) }))
@@ -61,7 +61,7 @@ impl Controller {
         self.is_read && self.newest.is_none_or(differs)
     }
 
-    /// Whether a record of the journal is wanted, and whether it is an open one.
+    /// Whether a journal record is needed, and whether it is an open one.
     fn wanted(&self) -> Option<bool> {
         match (self.state, self.parameters.memory.policy) {
             (State::Off, _) => None,
@@ -79,7 +79,7 @@ impl Controller {
         }
     }
 
-    /// Memory, if idle and something is wanted, begins to write.
+    /// Begins to write if memory is idle and a record is needed.
     pub(crate) fn begin_record(&mut self, now: u64) {
         if !self.eeprom.is_idle() {
             return;

@@ -1,4 +1,4 @@
-//! The table of G3 (B3's staircase): rates that are each held for some steps, in whole numbers.
+//! The acceleration table in integers (CONTROLLER G3; the staircase of Zhang 2012).
 //!
 //! ```text
 //! row n (from 1)   dS_n = 30*(1 + floor((n - 1)/5))                 steps
@@ -6,15 +6,15 @@
 //!                  f_n  = round_half_up(sqrt(f_1^2 + 2*a*S_(n-1)))  Hz
 //! ```
 //!
-//! Five rows of as many steps are a block; the blocks before block b have 75*b*(b + 1) steps. So each row is found in
-//! closed form, and none is kept.
+//! Five rows of equal length are a block; the blocks before block b have 75*b*(b + 1) steps. So each row has a closed form
+//! and none is stored.
 
-/// Steps of the first row, and what is added to them.
+/// Steps of the first row, and the increment per block.
 const FIRST_STEPS: u64 = 30;
 const EQUAL_ROWS: u64 = 5;
-/// Half the steps of a block, for each of its number.
+/// Half the steps of block b, divided by b.
 const HALF_BLOCK: u64 = FIRST_STEPS * EQUAL_ROWS / 2;
-/// Binary digits of the row at which every table has passed every speed: 10^7 Hz from 10 Hz with 1 Hz/s.
+/// Binary digits of the row at which every table exceeds every speed: 10^7 Hz from 10 Hz with 1 Hz/s.
 const ROW_BITS: u32 = 24;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl Table {
         let climbed = 2 * u128::from(self.acceleration_hz_s) * u128::from(steps_after(n.saturating_sub(1)));
         let square = start * start + climbed;
         let root = square.isqrt();
-        // Up from root + 1/2 on, whose square is root^2 + root + 1/4.
+        // Round up from root + 1/2 on, whose square is root^2 + root + 1/4.
         (root + u128::from(square > root * root + root)) as u64
     }
 

@@ -1,18 +1,16 @@
-//! A run that would not end (CONTROLLER.md, "Refused": WORK).
+//! A run without end (CONTROLLER.md, "Refused": WORK).
 
 use crate::limits;
 use core::fmt;
 
-/// The run ended because too many groups began (G, "Refused").
+/// The run ended because too many groups began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Work {
-    /// The controller whose group was one too many.
     pub controller: usize,
-    /// Minimum number of the groups that began last.
+    /// Minimum and maximum number of the groups that began last.
     pub first_group: u32,
     pub last_group: u32,
-    /// Whether they went round without a step, a wait or a delay.
+    /// Whether they repeated without a step, a wait or a delay.
     pub is_endless: bool,
 }
 

@@ -9,10 +9,10 @@
 //! let checked = Setup::default().check().expect("the defaults hold");
 //! let mut bench = Bench::new(&checked, [], Vec::<Record>::new());
 //! bench.begin_byte(3, 0x20);
-//! // It asked to be woken at tick 7, and is two ticks late.
+//! // The chip requested tick 7 and wakes two ticks late.
 //! let _ = bench.sleep(Some(Instant(7)), 2);
 //! assert!(bench.now() == Instant(9) && bench.is_writing());
-//! // The power is gone early in the byte: its cell is erased.
+//! // The power fails early in the byte, so its cell is erased.
 //! bench.power_off();
 //! assert_eq!(bench.read_byte(3), 0xff);
 //! ```
@@ -30,11 +30,10 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// The erased bits of a byte whose write was cut late (G7).
+/// Bits that stay erased in a byte whose write is cut late (CONTROLLER G7).
 const CUT_LATE: u8 = 0x0f;
 const ERASED: u8 = 0xff;
 
-/// A byte being written.
 #[derive(Clone, Copy, Debug)]
 struct Byte {
     address: usize,
@@ -42,25 +41,21 @@ struct Byte {
     begun: u64,
 }
 
-/// The chip; `S` receives the edges of its pins.
 #[derive(Clone, Debug)]
 pub struct Bench<S> {
     now: u64,
     levels: RawLevels,
-    /// In reverse order of their ticks.
+    /// The next one last.
     presses: Vec<Input>,
     pins: Option<Levels>,
-    /// Receives the edges.
     pub sink: S,
-    /// Panel records.
     pub shown: Vec<PanelRecord>,
     memory: Vec<u8>,
     writing: Option<Byte>,
-    /// Ticks to write a byte.
     pub byte_write_ticks: u64,
     /// Position of the axis in steps.
-    pub place: i64,
-    /// Range of positions in which the home switch is closed.
+    pub position: i64,
+    /// Positions at which the home switch is closed.
     pub home_switch: Option<(i64, i64)>,
 }
 
@@ -80,12 +75,12 @@ impl<S: Sink> Bench<S> {
             memory: Runner::factory_memory(checked),
             writing: None,
             byte_write_ticks: write.into(),
-            place: 0,
+            position: 0,
             home_switch: None,
         }
     }
 
-    /// Sleeps until tick `wake` or an input change, and then `late` ticks more. Breaks if neither will come.
+    /// Sleeps until tick `wake` or an input change, and `late` ticks more. Breaks if neither comes.
     pub fn sleep(&mut self, wake: Option<Instant>, late: u64) -> ControlFlow<()> {
         let press = self.presses.last().map(|input| input.cycle);
         let switch = (self.levels != self.with_switch()).then_some(Instant(self.now + 1));
@@ -114,7 +109,7 @@ impl<S: Sink> Bench<S> {
 
     fn with_switch(&self) -> RawLevels {
         self.home_switch.map_or(self.levels, |(from, to)| {
-            self.levels.with(Signal::HomeSwitch, (from..=to).contains(&self.place))
+            self.levels.with(Signal::HomeSwitch, (from..=to).contains(&self.position))
         })
     }
 
@@ -149,7 +144,7 @@ impl<S: Sink> Chip for Bench<S> {
             self.sink.record(Record { cycle: Instant(self.now), levels });
         }
         if levels.step() & !before.step() & 1 != 0 && levels.has(Levels::EN) {
-            self.place += if levels.dir() & 1 != 0 { 1 } else { -1 };
+            self.position += if levels.dir() & 1 != 0 { 1 } else { -1 };
         }
     }
 

@@ -1,5 +1,5 @@
-//! Extends a timer of few bits to 64; one tick is one cycle of the machine. Read it at least once per turn of the
-//! counter; [`Clock::nap`] limits sleeps accordingly.
+//! Extends a timer of up to 32 bits to 64. Read it at least once per turn of the counter; [`Clock::nap`] limits sleeps
+//! accordingly.
 //!
 //! ```
 //! use stepscope_controller_firmware::clock::Clock;
@@ -12,7 +12,6 @@
 
 use stepscope_peripheral::units::{Cycles, Instant};
 
-/// Extends a timer.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     mask: u32,
@@ -27,18 +26,18 @@ impl Clock {
         Self { mask, tick: 0 }
     }
 
-    /// The tick for this counter value (counted up), at most one turn after the last call.
+    /// The tick at this value of an up-counter, at most one turn after the last call.
     pub fn tick(&mut self, counter: u32) -> Instant {
         let passed = counter.wrapping_sub(self.tick as u32) & self.mask;
         self.tick += u64::from(passed);
         Instant(self.tick)
     }
 
-    /// The time to sleep until `wake`, at most half a turn of the counter.
+    /// Time to sleep until `wake`, at most half a turn of the counter.
     #[must_use]
     pub fn nap(&self, wake: Option<Instant>) -> Cycles {
-        let most = u64::from(self.mask / 2);
-        Cycles(wake.map_or(most, |wake| wake.0.saturating_sub(self.tick).min(most)))
+        let max = u64::from(self.mask / 2);
+        Cycles(wake.map_or(max, |wake| wake.0.saturating_sub(self.tick).min(max)))
     }
 }
 

@@ -1,7 +1,8 @@
-//! A program for a chip with a stand-alone controller (CONTROLLER.md), and its parts.
+//! A stand-alone controller for a chip (CONTROLLER.md), and its parts.
 #![doc = ""]
 #![doc = include_str!("../README.md")]
 #![no_std]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 
@@ -13,8 +14,8 @@ use core::ops::ControlFlow;
 use stepscope_controller::{CheckedSetup, NotRunnable, Runner, chip::Chip};
 use stepscope_peripheral::units::Instant;
 
-/// Runs from power-up until `sleep` breaks, which on a chip is never. `sleep` waits until the given tick or an input
-/// change, and may return early; on a chip it also refreshes the display from [`Runner::face`].
+/// Runs from power-up until `sleep` breaks, which on a chip is never. `sleep` waits for the given tick or an input change,
+/// and may return early; on a chip it also refreshes the display from [`Runner::face`].
 ///
 /// # Errors
 /// See [`Runner::power_up`].

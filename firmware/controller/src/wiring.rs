@@ -1,13 +1,12 @@
 //! Maps port bits to signals. A button pulls its pin low. Emergency stop and limits are contacts that open, so that a
-//! broken wire stops the machine; so does the supply monitor, which pulls its pin low when the voltage falls. The
-//! driver's EN is active low.
+//! broken wire stops the machine; so does the supply monitor, which pulls its pin low on undervoltage.
 //!
 //! ```
 //! use stepscope_controller::input::Signal;
 //! use stepscope_controller_firmware::wiring::{Contact, levels};
 //!
 //! const PANEL: &[Contact] = &[Contact::closes(Signal::Start, 0), Contact::opens(Signal::Estop, 1)];
-//! // Pull-ups hold the pins high: start is not pressed, and the wire of the emergency stop is broken.
+//! // Pull-ups hold the pins high: start is released, and the wire of the emergency stop is broken.
 //! let levels = levels(PANEL, 0b11);
 //! assert!(!levels.level(Signal::Start) && levels.level(Signal::Estop));
 //! ```
@@ -15,11 +14,11 @@
 use stepscope_controller::{chip::RawLevels, input::Signal};
 use stepscope_peripheral::signal::Levels;
 
-/// A contact between a pin with a pull-up and ground.
+/// A contact between ground and a pin with a pull-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
     signal: Signal,
-    /// Bit of the input port, 0 to 31.
+    /// 0 to 31.
     bit: u8,
     /// Level of the pin for signal 1.
     active: bool,
@@ -48,14 +47,13 @@ pub fn levels(contacts: &[Contact], port: u32) -> RawLevels {
     })
 }
 
-/// STEP in the output port.
+// Bits of the output port.
 pub const STEP: u32 = 1 << 0;
-/// DIR in the output port.
 pub const DIR: u32 = 1 << 1;
-/// The driver's enable input, active low, in the output port.
+/// The driver's enable input, active low.
 pub const NOT_EN: u32 = 1 << 2;
 
-/// The output port's value.
+/// Value of the output port.
 #[must_use]
 pub const fn port(levels: Levels) -> u32 {
     let step = if levels.step() & 1 != 0 { STEP } else { 0 };

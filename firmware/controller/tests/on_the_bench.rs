@@ -120,7 +120,7 @@ fn a_chip_that_dies_and_starts_anew_has_the_same_edges() {
     }
     let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
     assert_eq!(format!("{:016x}", chip.sink.value()), POWER_CUT.1.trim());
-    assert_eq!(runner.machine().position(0).map(i64::from), Some(chip.place));
+    assert_eq!(runner.machine().position(0).map(i64::from), Some(chip.position));
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
         })
         .expect("it runs");
         assert_eq!(chip.sink.len(), in_time.sink.len(), "{most}");
-        assert_eq!((chip.place, runner.machine().position(0)), (in_time.place, Some(0)));
+        assert_eq!((chip.position, runner.machine().position(0)), (in_time.position, Some(0)));
         let lateness = runner.lateness();
         assert!(lateness.worst.0 <= most && lateness.total >= lateness.worst && lateness.total.0 > 0);
 
@@ -195,7 +195,7 @@ fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
             let runner = Runner::power_up(chip.now(), &checked, &mut chip).expect("it runs");
             match runner.machine().believed_after_power_up(0) {
                 Some((position, 1..)) => {
-                    assert_eq!(i64::from(position), chip.place, "{policy:?} {round}: cut in {cut}");
+                    assert_eq!(i64::from(position), chip.position, "{policy:?} {round}: cut in {cut}");
                     known += 1;
                 }
                 _ => lost += 1,
@@ -220,7 +220,7 @@ fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
         let expected = (policy == Policy::WriteAhead).then_some(10_000 + 16 * 50_000);
         assert_eq!(first.is_some(), expected.is_some(), "{policy:?}");
         assert!(first >= expected, "{first:?}");
-        assert_eq!(chip.place, if expected.is_some() { 10 } else { 0 });
+        assert_eq!(chip.position, if expected.is_some() { 10 } else { 0 });
     }
 }
 
@@ -242,7 +242,7 @@ fn a_limit_switch_that_is_closed_at_power_up_counts() {
     let closed = level(0, Signal::LimitMax, true);
     let mut chip = Bench::new(&checked, start().into_iter().chain([closed]), Digest::default());
     let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
-    assert_eq!((runner.machine().alarm(0), chip.place), (Some(Alarm::Limit), 0));
+    assert_eq!((runner.machine().alarm(0), chip.position), (Some(Alarm::Limit), 0));
 }
 
 #[test]
@@ -265,11 +265,11 @@ fn homing_to_a_real_switch_finds_the_place_of_it() {
     for most in [0, 40, 5000] {
         let (checked, inputs) = split(json);
         let (mut chip, mut dice) = (Bench::new(&checked, inputs, Digest::default()), Dice(9));
-        (chip.place, chip.home_switch) = (800, Some((-30, 0)));
+        (chip.position, chip.home_switch) = (800, Some((-30, 0)));
         let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, dice.below(most + 1)))
             .expect("it runs");
         let machine = runner.machine();
-        assert_eq!((machine.position(0), machine.trust(0), chip.place), (Some(0), Some(2), 0), "{most}");
+        assert_eq!((machine.position(0), machine.trust(0), chip.position), (Some(0), Some(2), 0), "{most}");
     }
 }
 

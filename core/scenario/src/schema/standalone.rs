@@ -263,7 +263,7 @@ settings! {
     /// A move to a position.
     pub struct MoveToGroup {
         /// Position in digits of the display.
-        pub length: i64 = 0 => POSITION_OF_GROUP.signed(signed(&limits::PLACE)),
+        pub length: i64 = 0 => POSITION_OF_GROUP.signed(signed(&limits::TARGET)),
         /// Rate of the plateau.
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
