@@ -24,10 +24,7 @@ use stepscope_core::{
     },
     motion::{
         AxisPlan, Cause, ScheduledStep, plan_lists, round_half_up,
-        step_tables::{
-            EntryFormat, Form, Side, Stored, Tolerance, stored, stored_quickly, stored_steps,
-            stored_steps_quickly,
-        },
+        step_tables::{EntryFormat, Form, Side, Stored, Tolerance, stored, stored_steps},
     },
     peripheral::{config::Config, segment::PulseTimes, trace::steps},
     scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
@@ -233,17 +230,15 @@ impl Axes {
     }
 
     fn stored(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
-        let form = match form {
-            FormName::Exact => Form::Exact,
-            FormName::Document => Form::Document,
-            FormName::Compressed => Form::Compressed(self.tolerance),
+        let form = match (form, self.search) {
+            (FormName::Exact, _) => Form::Exact,
+            (FormName::Document, _) => Form::Document,
+            (FormName::Compressed, Search::Fewest) => Form::Compressed(self.tolerance),
+            (FormName::Compressed, Search::Quick) => Form::Quick(self.tolerance),
         };
-        let (pulse, clock_hz) = (self.pulse, self.clock_hz);
-        match (steps, self.search) {
-            (Steps::Planned(plan), Search::Fewest) => stored(plan, form, format, pulse, clock_hz),
-            (Steps::Planned(plan), Search::Quick) => stored_quickly(plan, form, format, pulse, clock_hz),
-            (Steps::Listed(steps), Search::Fewest) => stored_steps(steps, form, format, pulse),
-            (Steps::Listed(steps), Search::Quick) => stored_steps_quickly(steps, form, format, pulse),
+        match steps {
+            Steps::Planned(plan) => stored(plan, form, format, self.pulse, self.clock_hz),
+            Steps::Listed(steps) => stored_steps(steps, form, format, self.pulse),
         }
     }
 

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use std::rc::Rc;
 use stepscope_core::{
     motion::{
-        AxisPlan, Curve, Profile,
+        AxisPlan, Profile,
         mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Speed},
         moves::{
             Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,

@@ -10,7 +10,7 @@ use stepscope_core::{
         moves::{Constant, Cosine, Dwell, Move, SineSegments, Staircase, Trapezoid, TrapezoidMethod},
         step_tables::{
             EntryFormat, Form, MAX_TOLERANCE, Side, Stored, TimingError, Tolerance, compressed,
-            compressed_quickly, stored, stored_quickly,
+            compressed_quickly, stored,
         },
     },
     peripheral::{
@@ -40,7 +40,8 @@ fn trapezoid(steps: f64, start: f64, top: f64, acceleration: f64, method: Trapez
 }
 
 fn kept(moves: Vec<Move>, form: Form, format: EntryFormat) -> Stored {
-    stored_quickly(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
+    let form = if let Form::Compressed(tolerance) = form { Form::Quick(tolerance) } else { form };
+    stored(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
 }
 
 /// Cycles and ways of the steps that the segment engine makes of a list, from its start.
@@ -85,8 +86,8 @@ proptest! {
         let due: Vec<ScheduledStep> = plan.due_steps(CLOCK_HZ).collect();
         // The search for the fewest takes the longer the wider the windows are.
         let narrow = tolerance.cycles.0 << format.fraction_bits < 40;
-        let store = if narrow { stored } else { stored_quickly };
-        let made = store(&plan, Form::Compressed(tolerance), format, PULSE, CLOCK_HZ);
+        let form = if narrow { Form::Compressed(tolerance) } else { Form::Quick(tolerance) };
+        let made = stored(&plan, form, format, PULSE, CLOCK_HZ);
         let made = made.unwrap_or_else(|cause| panic!("{cause}"));
         let found = run(&made.list);
         prop_assert_eq!(found.len(), due.len());

@@ -3,10 +3,7 @@
 use super::driven::{Driven, MotionSource};
 use crate::json::Tables;
 use serde_json::{Value, json};
-use stepscope_core::{
-    inspect::motion::torque::{Moment, Ramps},
-    motion::Curve,
-};
+use stepscope_core::inspect::motion::torque::{Moment, Ramps};
 
 pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     driven.iter().map(|Driven { axis, machine, source, demand, agreement }| {

@@ -7,7 +7,7 @@ use stepscope_core::{
         motion::torque::{Demand, Machine, Moment, Ramps},
         plant::model_agreement::Agreement,
     },
-    motion::{Curve, PlannedMove},
+    motion::PlannedMove,
 };
 
 const MAX_SHOWN: usize = 20;

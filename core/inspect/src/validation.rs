@@ -21,7 +21,7 @@ use alloc::{
     vec::Vec,
 };
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, Curve, PlannedMove, grouped, moves::Axis};
+use stepscope_motion::{AxisPlan, PlannedMove, grouped, moves::Axis};
 use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};

@@ -1,23 +1,20 @@
-//! Searches by halving: the first whole number for which something holds, and the border between two numbers. A predicate
-//! changes once, from no to yes; of several changes one is found. All of it is integers or + - * /, so every target gets
-//! the same bits.
+//! Bisection: the first integer for which a predicate holds, and the border between two numbers. The predicate changes
+//! once, from false to true. Only integers and + - * / are used, so every target gets the same bits.
 //!
 //! ```
 //! use stepscope_motion::bisection::border;
 //!
-//! let (last_that_holds, first_that_does_not) = border(0.0, 2.0, |x| x * x <= 2.0);
-//! assert!(last_that_holds * last_that_holds <= 2.0);
-//! assert!(first_that_does_not - last_that_holds < 1e-15);
+//! let (low, high) = border(0.0, 2.0, |x| x * x <= 2.0);
+//! assert!(low * low <= 2.0 && high - low < 1e-15);
 //! ```
 
-/// Halvings after which two numbers are no further apart than 2^-60 of what they were: less than an f64 tells apart,
-/// unless one of them is 0.
+/// Number of halvings: the distance shrinks to 2^-60, less than an f64 resolves unless one of the numbers is 0.
 pub const HALVINGS: u32 = 60;
 
-const MAX_CLIMBED: u64 = 1 << 32;
+const MAX_FIRST: u64 = 1 << 32;
 
-/// The least number of `from..to` for which `holds`, or `to` where there is none; it holds for all that follow.
-pub(crate) fn least(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
+/// The first number of `from..to` for which `holds`, or `to` if there is none.
+pub(crate) fn first(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
     let (mut from, mut to) = (from, to);
     while from < to {
         let middle = from + (to - from) / 2;
@@ -26,21 +23,20 @@ pub(crate) fn least(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
     from
 }
 
-/// The least number from 0 on for which `holds`, in as many tries as it has digits; it holds for all that follow, and
-/// for one below 2^32.
-pub(crate) fn climbed(holds: impl Fn(u64) -> bool) -> u64 {
+/// The first number from 0 on for which `holds`, below 2^32. The number of tries is logarithmic in the result.
+pub(crate) fn first_from_zero(holds: impl Fn(u64) -> bool) -> u64 {
     let (mut from, mut to) = (0, 1);
-    while !holds(to) && to < MAX_CLIMBED {
+    while !holds(to) && to < MAX_FIRST {
         (from, to) = (to, 2 * to);
     }
-    least(from, to, holds)
+    first(from, to, holds)
 }
 
-/// The least number of `0..end` for which `holds`, or `end` where there is none; it holds for all that follow. Two tries
-/// where it is next to `near`, two more each time that it is twice as far away.
-pub(crate) fn least_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u64 {
+/// The first number of `0..end` for which `holds`, or `end` if there is none. The number of tries is logarithmic in its
+/// distance from `near`.
+pub(crate) fn first_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u64 {
     let near = near.min(end);
-    // Invariant: it holds for none before `from`, and for all from `to` on.
+    // Invariant: false before `from`, true from `to` on.
     let (mut from, mut to, mut width) = (near, near, 1);
     while to < end && !holds(to) {
         from = to + 1;
@@ -52,12 +48,11 @@ pub(crate) fn least_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u6
         from = from.saturating_sub(width);
         width = width.saturating_mul(2);
     }
-    least(from, to, holds)
+    first(from, to, holds)
 }
 
-/// Both sides of the number between `from` and `to` (which may be the lesser) up to which `holds` and beyond which it does
-/// not: the last that was tried and held, else `from`, and the first that did not, else `to`. They are [`HALVINGS`]
-/// halvings apart; neither `from` nor `to` is tried.
+/// The border between `from`, where `holds` is true, and `to` (which may be less), where it is false: the last number for
+/// which it was true, and the first for which it was not. Neither `from` nor `to` is tried.
 pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
     let (mut from, mut to) = (from, to);
     for _ in 0..HALVINGS {
@@ -69,11 +64,9 @@ pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bracket {
-    /// Below the root, or at it.
-    ///
-    /// Invariant: `low <= high`; both only come nearer.
+    /// At or below the root.
+    /// Invariant: `low <= high`; the interval only shrinks.
     pub(crate) low: f64,
-    /// Above the root, or at it.
     pub(crate) high: f64,
 }
 
@@ -88,7 +81,6 @@ impl Bracket {
         if is_above { self.low = x } else { self.high = x }
     }
 
-    /// Half way, where a step has left it.
     pub(crate) fn middle(&self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
@@ -100,21 +92,21 @@ mod tests {
     use core::cell::Cell;
 
     #[test]
-    fn the_least_that_holds_is_found_wherever_it_is() {
+    fn the_first_that_holds_is_found_wherever_it_is() {
         for answer in 0..=40 {
             let holds = |n: u64| n >= answer;
-            assert_eq!(climbed(holds), answer);
+            assert_eq!(first_from_zero(holds), answer);
             for (from, to) in (0..40).flat_map(|from| (from..40).map(move |to| (from, to))) {
-                assert_eq!(least(from, to, holds), answer.clamp(from, to), "{answer} of {from}..{to}");
+                assert_eq!(first(from, to, holds), answer.clamp(from, to), "{answer} of {from}..{to}");
             }
             for (near, end) in (0..50).flat_map(|near| (0..40).map(move |end| (near, end))) {
-                assert_eq!(least_near(near, end, holds), answer.min(end), "{answer} near {near} of {end}");
+                assert_eq!(first_near(near, end, holds), answer.min(end), "{answer} near {near} of {end}");
             }
         }
         for answer in [1 << 31, (1 << 32) - 1, 1 << 32] {
-            assert_eq!(climbed(|n| n >= answer), answer);
+            assert_eq!(first_from_zero(|n| n >= answer), answer);
         }
-        assert_eq!(climbed(|_| false), 1 << 32, "it gives up");
+        assert_eq!(first_from_zero(|_| false), 1 << 32, "it gives up");
     }
 
     #[test]
@@ -124,7 +116,7 @@ mod tests {
             [(500, 500, 2), (501, 500, 3), (499, 500, 3), (510, 500, 10), (0, 500, 20), (999, 500, 20)];
         for (answer, near, most) in rows {
             let tries = Cell::new(0);
-            let found = least_near(near, 1000, |n| {
+            let found = first_near(near, 1000, |n| {
                 tries.set(tries.get() + 1);
                 n >= answer
             });

@@ -1,18 +1,18 @@
-//! Phase sequences of a two-phase motor (DESIGN B2, Sonobe 2011): which currents its phases A and B have after k steps.
+//! Phase sequences of a two-phase motor (DESIGN B2, Sonobe 2011): the currents of phases A and B after k steps.
 //!
 //! ```text
 //!               k   0   1   2   3   4   5   6   7   8
-//! one-phase     A  +1   0  -1   0  +1                      a full step each, one phase on
+//! one-phase     A  +1   0  -1   0  +1                      full steps, one phase on
 //!               B   0  +1   0  -1   0
-//! two-phase     A  +1  -1  -1  +1  +1                      a full step each, both on: sqrt(2) times the torque,
-//!               B  +1  +1  -1  -1  +1                      half a step beside the one-phase positions
-//! 1-2-phase     A  +1  +1   0  -1  -1  -1   0  +1  +1      half a step each, one and both in turn
+//! two-phase     A  +1  -1  -1  +1  +1                      full steps, both on: sqrt(2) times the torque,
+//!               B  +1  +1  -1  -1  +1                      half a step from the one-phase positions
+//! 1-2-phase     A  +1  +1   0  -1  -1  -1   0  +1  +1      half steps, one and both in turn
 //!               B   0  +1  +1  +1   0  -1  -1  -1   0
-//! microstep n   A   cos(90 deg*k/n)                        1/n of a full step each, the torque even
+//! microstep n   A   cos(90 deg*k/n)                        1/n of a full step, constant torque
 //!               B   sin(90 deg*k/n)
 //! ```
 //!
-//! Four full steps are one electrical period: the rotor has gone on by one tooth, and the currents repeat.
+//! Four full steps are one electrical period: the rotor has moved by one tooth, and the currents repeat.
 //!
 //! ```
 //! use stepscope_motion::excitation::Excitation;
@@ -24,21 +24,18 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-/// How the phases are excited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Excitation {
-    /// One phase at a time.
     OnePhase,
-    /// Both phases all the time.
     TwoPhase,
     /// One and two in turn: half steps.
     OneTwoPhase,
-    /// Sine and cosine in so many microsteps a full step; 0 counts as 1.
+    /// Sine and cosine in this number of microsteps per full step; 0 counts as 1.
     Microstep(u16),
 }
 
 impl Excitation {
-    /// Steps of this excitation in a full step of the motor.
+    /// Steps of this excitation per full step of the motor.
     #[must_use]
     pub fn steps_per_full_step(self) -> u16 {
         match self {
@@ -48,7 +45,6 @@ impl Excitation {
         }
     }
 
-    /// Steps of one electrical period, after which the currents repeat.
     #[must_use]
     pub fn steps_per_period(self) -> u32 {
         4 * u32::from(self.steps_per_full_step())
@@ -58,8 +54,8 @@ impl Excitation {
     #[must_use]
     pub fn currents(self, steps: i64) -> (f64, f64) {
         let per_full = i64::from(self.steps_per_full_step());
-        let place = steps.rem_euclid(4 * per_full);
-        let (quarter, rest) = (place / per_full, place % per_full);
+        let phase = steps.rem_euclid(4 * per_full);
+        let (quarter, rest) = (phase / per_full, phase % per_full);
         let (a, b) = match self {
             Self::TwoPhase => (1.0, 1.0),
             _ if rest == 0 => (1.0, 0.0),
@@ -69,7 +65,7 @@ impl Excitation {
                 (libm::cos(angle), libm::sin(angle))
             }
         };
-        // A quarter of the period takes A to B and B to -A. Adding 0 leaves no -0.
+        // A quarter of the period turns A into B and B into -A. Adding 0 avoids -0.
         match quarter {
             0 => (a, b),
             1 => (0.0 - b, a),

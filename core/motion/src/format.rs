@@ -1,8 +1,8 @@
-//! What there is to say of a move, in words: numbers as people write them.
+//! Texts about a move, with numbers as people write them.
 
 use alloc::{format, string::String};
 
-/// A whole number with groups of three digits and a true minus, as the page prints them.
+/// An integer with digit groups and a true minus.
 #[must_use]
 pub fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
@@ -17,7 +17,7 @@ pub fn grouped(value: f64) -> String {
     text
 }
 
-/// The longest ramp with which a bus still follows a move of `duration_s`, where there is one.
+/// Text about the longest ramp with which a bus can follow a move of `duration_s`.
 pub(super) fn ramp_up_to(longest_s: Option<f64>, duration_s: f64) -> String {
     longest_s.map_or_else(String::new, |longest_s| {
         let longest_s = longest_s.min(duration_s / 2.0);
@@ -25,7 +25,7 @@ pub(super) fn ramp_up_to(longest_s: Option<f64>, duration_s: f64) -> String {
     })
 }
 
-/// So many of something, with its plural where it is one.
+/// A number with its noun, in the plural unless it is one.
 pub(super) fn count(number: u64, one: &str, several: &str) -> String {
     format!("{} {}", grouped(number as f64), if number == 1 { one } else { several })
 }

@@ -1,26 +1,27 @@
-//! Motions: what an axis is to do, as position, speed and acceleration over time, and the ticks, segments and tables
-//! that its steps become (DESIGN Part B).
+//! Motions: position, speed and acceleration of an axis over time, and its ticks, segments and step tables (DESIGN
+//! Part B).
 //!
 //! ```text
-//! moves, mechanics, motor, limits    what a scenario gives
+//! moves, mechanics, motor, limits    the input from a scenario
 //! curves                             position over time, one file per kind of move
 //! timing                             when each step is due, to the cycle
 //! planners                           moves to curves, axis by axis
 //! step_tables                        steps to ticks, segments and tables
 //! ```
 //!
-//! Positions are in steps, f64, and not rounded: [`round_half_up`] is the one rounding (B1's R). All mathematics beyond
-//! + - * / and the square root comes from `libm`, so a plan has the same bits on every target.
+//! Positions are in steps, as f64; only [`round_half_up`] rounds them. Mathematics beyond + - * / and the square root comes
+//! from `libm`, so a plan has the same bits on every target.
 //!
 //! ```
 //! use stepscope_motion::{moves::Axis, plan_axis};
 //!
-//! // The default axis makes one turn of 3200 steps by a cosine S-curve.
+//! // By default an axis makes one turn of 3200 steps with a cosine S-curve.
 //! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
 //! assert_eq!((plan.steps(), plan.duration_s()), (3200, 0.4));
 //! assert_eq!((plan.position(0.2), plan.speed(0.2)), (1600.0, 16_000.0));
 //! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 
@@ -36,11 +37,11 @@ pub mod limits;
 pub mod mechanics;
 pub mod motor;
 pub mod moves;
-mod parameters;
 mod planners;
 pub mod problem;
 pub mod step_tables;
 mod timing;
+mod validator;
 
 pub use curves::{
     breakpoints::{Breakpoints, Interval},
@@ -53,19 +54,16 @@ pub use planners::{
     plan::{plan_axis, plan_lists, plan_move},
     profile::Profile,
 };
-pub use problem::{Cause, Problem, Validator, ValueError};
+pub use problem::{Cause, Problem, ValueError};
 pub use timing::ScheduledStep;
+pub use validator::{MAX_PROBLEMS, Validator};
 
-/// Highest speed that a plan may have, in steps/s.
 pub const MAX_SPEED: f64 = 1e7;
 
-/// B1's R(x) = floor(x + 1/2), exact: the sum is not formed, so 0.49999999999999994 gives 0.
-///
-/// Beyond the range of i64 it gives the end of that range, for not-a-number 0.
+/// floor(x + 1/2), exactly: the sum is not formed, so 0.49999999999999994 gives 0. Saturates; NaN gives 0.
 #[must_use]
 pub fn round_half_up(x: f64) -> i64 {
-    // Truncation instead of `libm::floor`: the same result, and quick on every target. Both
-    // differences are exact, because |x - truncated| < 1.
+    // Truncation is faster than `libm::floor` on every target. Both differences are exact, because |x - truncated| < 1.
     let truncated = x as i64;
     let rest = x - truncated as f64;
     if rest >= 0.5 {
@@ -77,8 +75,8 @@ pub fn round_half_up(x: f64) -> i64 {
     }
 }
 
-/// The square root. IEEE 754 leaves it no choice of bits, so every target may take its own:
-/// wasm has an instruction for it, and `libm` there has ten times its time.
+/// The square root. IEEE 754 defines every bit, so each target may use its own: wasm has an instruction for it, which is
+/// ten times as fast as `libm`.
 fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     let root = x.sqrt();

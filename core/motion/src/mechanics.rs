@@ -1,35 +1,33 @@
-//! Lengths, speeds, accelerations and jerks with their units, and the mechanics that turn them into steps (DESIGN B1).
+//! Distances, speeds, accelerations and jerks with units, and the mechanics that convert them to steps (DESIGN B1).
 //!
-//! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimetres and degrees need mechanics
-//! that have them; where an axis has none, the quantity is refused with the remedy.
+//! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimeters and degrees need mechanics that define them;
+//! otherwise the quantity is refused.
 //!
 //! ```
 //! use stepscope_motion::mechanics::{Distance, Mechanics, Screw};
 //!
 //! let screw = Mechanics::Screw(Screw { lead_mm: 8.0, ..Screw::default() });
-//! // 200 full steps of 16 microsteps a turn, and 8 mm a turn.
+//! // 200 full steps of 16 microsteps per turn, and 8 mm per turn.
 //! assert_eq!(Distance::Millimetres(2.0).in_steps(&screw), Ok(800.0));
 //! let refused = Distance::Millimetres(2.0).in_steps(&Mechanics::default()).unwrap_err();
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
 use crate::{
-    parameters::parameters,
     round_half_up,
     timing::{Double, Exact},
 };
 use core::f64::consts::PI;
+use stepscope_peripheral::parameters;
 
-/// What one step is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mechanics {
-    /// A turning shaft: degrees.
     Rotary(Rotary),
-    /// A wheel, pulley or gear: 2*pi*radius mm a turn, and degrees.
+    /// A wheel, pulley or gear: 2*pi*radius mm per turn, and degrees.
     Wheel(Wheel),
-    /// A screw: its lead in mm a turn, and degrees.
+    /// A screw: its lead in mm per turn, and degrees.
     Screw(Screw),
-    /// A measured or given length of one step: mm.
+    /// A given length of one step: mm.
     Direct(Direct),
 }
 
@@ -39,72 +37,54 @@ impl Default for Mechanics {
     }
 }
 
-parameters! {
-    /// A turning shaft.
+parameters! { (Clone, Debug, PartialEq)
     pub struct Rotary {
-        /// Full step of the motor in degrees.
         pub full_step_deg: f64 = 1.8,
-        /// Microsteps in a full step, 1 to 512.
         pub microsteps: u16 = 16,
     }
-}
 
-parameters! {
     /// A wheel, pulley or gear on the shaft.
     pub struct Wheel {
-        /// Full step of the motor in degrees.
         pub full_step_deg: f64 = 1.8,
-        /// Microsteps in a full step, 1 to 512.
         pub microsteps: u16 = 16,
-        /// Radius in mm.
         pub radius_mm: f64 = 10.0,
     }
-}
 
-parameters! {
-    /// A screw on the shaft.
     pub struct Screw {
-        /// Full step of the motor in degrees.
         pub full_step_deg: f64 = 1.8,
-        /// Microsteps in a full step, 1 to 512.
         pub microsteps: u16 = 16,
-        /// Travel of the nut in one turn, in mm.
         pub lead_mm: f64 = 8.0,
     }
-}
 
-parameters! {
-    /// A given length of one step.
     pub struct Direct {
-        /// Length of one step in mm.
         pub step_mm: f64 = 0.01,
     }
 }
 
 impl Mechanics {
-    /// Full step of the motor in degrees, where the mechanics have one.
+    /// Full step in degrees and microsteps.
+    pub(crate) fn shaft(&self) -> Option<(f64, u16)> {
+        match self {
+            Self::Rotary(m) => Some((m.full_step_deg, m.microsteps)),
+            Self::Wheel(m) => Some((m.full_step_deg, m.microsteps)),
+            Self::Screw(m) => Some((m.full_step_deg, m.microsteps)),
+            Self::Direct(_) => None,
+        }
+    }
+
+    /// Full step of the motor in degrees, if the mechanics have one.
     #[must_use]
     pub fn full_step_deg(&self) -> Option<f64> {
-        match self {
-            Self::Rotary(m) => Some(m.full_step_deg),
-            Self::Wheel(m) => Some(m.full_step_deg),
-            Self::Screw(m) => Some(m.full_step_deg),
-            Self::Direct(_) => None,
-        }
+        self.shaft().map(|(full_step_deg, _)| full_step_deg)
     }
 
-    /// Angle of one step in degrees, where the mechanics have one.
+    /// Angle of one step in degrees, if the mechanics have one.
     #[must_use]
     pub fn step_deg(&self) -> Option<f64> {
-        match self {
-            Self::Rotary(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
-            Self::Wheel(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
-            Self::Screw(m) => Some(m.full_step_deg / f64::from(m.microsteps)),
-            Self::Direct(_) => None,
-        }
+        self.shaft().map(|(full_step_deg, microsteps)| full_step_deg / f64::from(microsteps))
     }
 
-    /// Length of one step in mm, where the mechanics have one.
+    /// Length of one step in mm, if the mechanics have one.
     #[must_use]
     pub fn step_mm(&self) -> Option<f64> {
         match self {
@@ -115,8 +95,8 @@ impl Mechanics {
         }
     }
 
-    /// Whether a number, and all its own, which are above 0, are printed as decimals.
-    fn can_tell(&self, number: f64) -> bool {
+    /// Whether `number` and the mechanics' own numbers, which must be above 0, have decimals.
+    fn has_decimals(&self, number: f64) -> bool {
         let (one, other) = match self {
             Self::Rotary(m) => (m.full_step_deg, 1.0),
             Self::Wheel(m) => (m.full_step_deg, 1.0),
@@ -126,18 +106,12 @@ impl Mechanics {
         number.is_finite() && [one, other].iter().all(|own| *own > 0.0 && own.is_finite())
     }
 
-    /// So many degrees in steps.
     fn degrees(&self, given: Exact) -> Option<Exact> {
-        let (full_step_deg, microsteps) = match self {
-            Self::Rotary(m) => (m.full_step_deg, m.microsteps),
-            Self::Wheel(m) => (m.full_step_deg, m.microsteps),
-            Self::Screw(m) => (m.full_step_deg, m.microsteps),
-            Self::Direct(_) => return None,
-        };
+        let (full_step_deg, microsteps) = self.shaft()?;
         Some(given.times(microsteps.into()).divided_by(full_step_deg))
     }
 
-    /// So many millimetres in steps; none of a wheel, whose circumference has pi.
+    /// Millimeters in steps; `None` for a wheel, whose circumference contains pi.
     fn millimetres(&self, given: Exact) -> Option<Exact> {
         match self {
             Self::Rotary(_) | Self::Wheel(_) => None,
@@ -146,7 +120,7 @@ impl Mechanics {
         }
     }
 
-    fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Rotary(_) => "rotary",
             Self::Wheel(_) => "wheel",
@@ -156,12 +130,9 @@ impl Mechanics {
     }
 }
 
-/// A quantity whose unit the axis's mechanics do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchUnit {
-    /// The unit that was given.
     pub unit: &'static str,
-    /// The kind of the axis's mechanics.
     pub mechanics: &'static str,
 }
 
@@ -174,7 +145,6 @@ macro_rules! quantity {
         }
 
         impl $name {
-            /// The number as given, in its own unit.
             #[must_use]
             pub const fn value(&self) -> f64 {
                 match self {
@@ -182,7 +152,6 @@ macro_rules! quantity {
                 }
             }
 
-            /// The unit as JSON names it.
             #[must_use]
             pub const fn unit(&self) -> &'static str {
                 match self {
@@ -190,10 +159,10 @@ macro_rules! quantity {
                 }
             }
 
-            /// One step (a second, a second squared or cubed) in this quantity's unit.
+            /// One step (per s, s^2 or s^3) in this quantity's unit.
             ///
             /// # Errors
-            /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+            /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
             pub fn step(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
                 let step: Option<f64> = match self {
                     $(Self::$variant(_) => {
@@ -204,34 +173,32 @@ macro_rules! quantity {
                 step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
             }
 
-            /// The quantity in steps (a second, a second squared or cubed): the nearest number to what its decimal makes
-            /// (DESIGN B1), of a wheel's millimetres the quotient.
+            /// The quantity in steps (per s, s^2 or s^3), correctly rounded from its decimals; with pi, a quotient.
             ///
             /// # Errors
-            /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+            /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
                 let quotient = self.step(mechanics).map(|step| self.value() / step)?;
                 Ok(self.exact_quotient(mechanics).map_or(quotient, |exact| exact.nearest()))
             }
 
-            /// [`Self::in_steps`] with all its digits; a quotient with pi has those that are printed.
-            #[allow(dead_code, reason = "of a distance whole steps are asked for")]
+            /// [`Self::in_steps`] in 106 bits; with pi, the decimal of the quotient.
+            #[allow(dead_code, reason = "distances are whole steps")]
             pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
                 let quotient = self.step(mechanics).map(|step| self.value() / step)?;
                 Ok(self.exact_quotient(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
             }
 
-            /// The quantity in steps as its decimal makes it; a quotient with pi as it is printed.
-            #[allow(dead_code, reason = "of some quantities nobody asks")]
+            /// The quantity in steps as a fraction; with pi, the decimal of the quotient.
+            #[allow(dead_code, reason = "only tables need it")]
             pub(super) fn exact(&self, mechanics: &Mechanics) -> Result<Exact, NoSuchUnit> {
                 let quotient = self.step(mechanics).map(|step| self.value() / step)?;
                 Ok(self.exact_quotient(mechanics).unwrap_or_else(|| Exact::of(quotient)))
             }
 
-            /// The quantity in steps as its decimal makes it; `None` where it is in steps already, has pi, or is no number
-            /// that a plan would take.
+            /// The quantity in steps as a fraction; `None` if it is in steps, contains pi, or is out of any range.
             fn exact_quotient(&self, mechanics: &Mechanics) -> Option<Exact> {
-                if !mechanics.can_tell(self.value()) {
+                if !mechanics.has_decimals(self.value()) {
                     return None;
                 }
                 match self {
@@ -246,82 +213,57 @@ macro_rules! quantity {
 }
 
 quantity! {
-    /// A way along an axis.
     Distance,
-    /// In steps.
     Steps = "steps" per |_| Some(1.0), by |_, _| None;
-    /// In millimetres.
     Millimetres = "mm" per Mechanics::step_mm, by Mechanics::millimetres;
-    /// In degrees.
     Degrees = "deg" per Mechanics::step_deg, by Mechanics::degrees;
 }
 
 impl Distance {
-    /// The distance in whole steps, halves rounded up (DESIGN B1): 88.35 mm of 0.1 mm a step are 884.
+    /// The distance in whole steps, halves rounded up: 88.35 mm at 0.1 mm per step are 884.
     ///
     /// # Errors
-    /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
+    /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
     pub fn whole_steps(&self, mechanics: &Mechanics) -> Result<i64, NoSuchUnit> {
         let quotient = self.step(mechanics).map(|step| self.value() / step)?;
         Ok(self.exact_quotient(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))
     }
 
-    /// The way from `first`, in the same unit, to this position, in steps: the nearest number to what the decimals make.
-    ///
-    /// # Errors
-    /// [`NoSuchUnit`] where the mechanics have no millimetres or no degrees.
-    pub fn steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-        self.exact_steps_from(first, mechanics).map(|steps| steps.high)
-    }
-
-    /// [`Self::steps_from`] with all its digits.
+    /// The distance from `first`, in the same unit, to this position in steps, in 106 bits.
     pub(super) fn exact_steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
         let quotient = (self.value() - first) / self.step(mechanics)?;
-        if !mechanics.can_tell(self.value() - first) {
+        if !mechanics.has_decimals(self.value() - first) {
             return Ok(quotient.into());
         }
-        let way = Exact::difference(self.value(), first);
+        let travel = Exact::difference(self.value(), first);
         let exact = match self {
-            Self::Steps(_) => Some(way),
-            Self::Millimetres(_) => mechanics.millimetres(way),
-            Self::Degrees(_) => mechanics.degrees(way),
+            Self::Steps(_) => Some(travel),
+            Self::Millimetres(_) => mechanics.millimetres(travel),
+            Self::Degrees(_) => mechanics.degrees(travel),
         };
         Ok(exact.map_or(quotient.into(), |exact| exact.double()))
     }
 }
 
 quantity! {
-    /// A speed along an axis.
     Speed,
-    /// In steps a second (the documents' Hz or pps).
     StepsPerSecond = "steps_s" per |_| Some(1.0), by |_, _| None;
-    /// In millimetres a second.
     MillimetresPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimetres;
-    /// In degrees a second.
     DegreesPerSecond = "deg_s" per Mechanics::step_deg, by Mechanics::degrees;
-    /// In turns a minute.
     TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0),
     by |mechanics, rpm| mechanics.degrees(rpm.times(6.0));
 }
 
 quantity! {
-    /// An acceleration along an axis.
     Acceleration,
-    /// In steps a second squared.
     StepsPerSecond2 = "steps_s2" per |_| Some(1.0), by |_, _| None;
-    /// In millimetres a second squared.
     MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimetres;
-    /// In degrees a second squared.
     DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg, by Mechanics::degrees;
 }
 
 quantity! {
-    /// A jerk along an axis: the change of an acceleration in a second.
     Jerk,
-    /// In steps a second cubed.
     StepsPerSecond3 = "steps_s3" per |_| Some(1.0), by |_, _| None;
-    /// In millimetres a second cubed.
     MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimetres;
-    /// In degrees a second cubed.
     DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg, by Mechanics::degrees;
 }

@@ -1,4 +1,4 @@
-//! The moves of an axis: what each kind is asked, with its defaults (DESIGN Part B).
+//! The moves of an axis, with their defaults (DESIGN Part B).
 //!
 //! ```
 //! use stepscope_motion::{
@@ -17,37 +17,26 @@
 use crate::{
     mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},
     motor::Motor,
-    parameters::parameters,
 };
 use alloc::{vec, vec::Vec};
+use stepscope_peripheral::parameters;
 
-/// One move of an axis (DESIGN Part B).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Move {
-    /// Uniform acceleration by table (B2).
     Trapezoid(Trapezoid),
-    /// Fixed length by a staircase of rates (B3).
     Staircase(Staircase),
-    /// Cosine S-curve with exact distance and exact time (B4).
     Cosine(Cosine),
-    /// Ramps of another shape with exact distance and exact time (B4).
     Ramps(Ramps),
-    /// Sine as segments of fixed rate (B5).
     SineSegments(SineSegments),
-    /// Sine with every step in its place (B6).
     Sine(Sine),
-    /// Seven phases from rest to rest (B6).
     JerkLimited(JerkLimited),
-    /// A curve through points (B6).
     Points(Points),
-    /// One rate from end to end (B6).
     Constant(Constant),
-    /// Standing still (B6).
     Dwell(Dwell),
 }
 
 impl Move {
-    /// The time in s that it names, `None` of a kind whose time follows from other numbers.
+    /// The requested duration in s; `None` if it follows from other numbers.
     #[must_use]
     pub fn requested_s(&self) -> Option<f64> {
         match self {
@@ -71,209 +60,164 @@ impl Default for Move {
     }
 }
 
-parameters! {
-    /// Trapezoid by acceleration table (B2, Sonobe 2011).
+parameters! { (Clone, Debug, PartialEq)
+    /// Trapezoid by acceleration table (Sonobe 2011).
     pub struct Trapezoid {
-        /// How far; negative is left.
+        /// Left negative.
         pub distance: Distance = Distance::Steps(2000.0),
-        /// Speed of the first step.
         pub start_speed: Speed = Speed::StepsPerSecond(250.0),
-        /// Speed of the plateau.
         pub top_speed: Speed = Speed::StepsPerSecond(4000.0),
-        /// Acceleration and deceleration.
         pub acceleration: Acceleration = Acceleration::StepsPerSecond2(9000.0),
-        /// Whose step times.
         pub method: TrapezoidMethod = TrapezoidMethod::Table,
-        /// Clock of the timer whose reload the table holds, in Hz; only the table uses it.
+        /// Clock of the timer that counts the reloads; only for the table.
         pub timer_hz: u32 = 1_000_000,
     }
-}
 
-/// Whose step times a trapezoid has (B2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TrapezoidMethod {
-    /// The paper's: a table of whole pulse rates, one a step, and a timer's whole reload.
-    #[default]
-    Table,
-    /// Every step where the ideal curve crosses its half-integer (B1).
-    Exact,
-}
-
-parameters! {
-    /// Fixed length by a staircase of rates (B3, Zhang 2012).
+    /// Fixed distance by a staircase of rates (Zhang 2012).
     pub struct Staircase {
-        /// How far, the paper's L; negative is left.
+        /// The paper's L; left negative.
         pub distance: Distance = Distance::Steps(10_000.0),
-        /// Speed of the plateau, f_s; at or below the start speed that of the whole move.
+        /// Speed of the plateau, f_s; of the whole move if it is not above the start speed.
         pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
         /// Acceleration level 1 to 5: 1000 to 5000 steps/s^2.
         pub level: u8 = 3,
-        /// What becomes of a move that is too short to reach its top speed.
         pub short_move: ShortMove = ShortMove::Document,
         /// First rate of the table, f_1.
         pub start_speed: Speed = Speed::StepsPerSecond(1000.0),
-        /// The table ends with the first rate above this, f_max; no top speed may be above it.
+        /// The table ends with the first rate above this, f_max, which also limits the top speed.
         pub max_speed: Speed = Speed::StepsPerSecond(20_000.0),
+    }
+
+    /// Cosine S-curve (Song, Han, Lu 2021): a distance in a given time.
+    pub struct Cosine {
+        pub distance: Distance = Distance::Steps(3200.0),
+        pub duration_s: f64 = 0.4,
+        /// Duration of each ramp, at most half of the move.
+        pub ramp_s: f64 = 0.2,
+        pub method: CosineMethod = CosineMethod::Exact,
+        /// Length of a slice, the paper's TS, 0.00001 to 0.1; only for `sliced`.
+        pub slice_s: f64 = 0.001,
+    }
+
+    /// Shaped ramps: a distance in a given time, like the cosine S-curve.
+    pub struct Ramps {
+        pub distance: Distance = Distance::Steps(3200.0),
+        pub duration_s: f64 = 0.4,
+        pub ramp_s: f64 = 0.2,
+        pub shape: RampShape = RampShape::Sigmoid,
+        /// The argument of 1/(1 + e^-x) goes from minus to plus this in a ramp, 0.1 to 20; only for the sigmoid.
+        pub sigmoid_range: f64 = 6.0,
+        /// Time constants per ramp, 0.1 to 20; only for the exponential.
+        pub time_constants: f64 = 4.0,
+    }
+
+    /// Sine as segments of constant rate (SWorldJournal issue 11), from the right extreme to the left one and back.
+    pub struct SineSegments {
+        pub amplitude: Distance = Distance::Steps(1000.0),
+        pub period_s: f64 = 0.5,
+        pub periods: u32 = 4,
+        /// Maximum deviation of a segment from the sine, d1, in units of the amplitude.
+        pub max_deviation: f64 = 0.006,
+    }
+
+    /// Exact sine, from the right extreme to the left one and back.
+    pub struct Sine {
+        pub amplitude: Distance = Distance::Steps(1000.0),
+        pub period_s: f64 = 0.5,
+        pub periods: u32 = 4,
+    }
+
+    /// Jerk-limited move of seven phases: from rest to rest as fast as its limits allow.
+    pub struct JerkLimited {
+        pub distance: Distance = Distance::Steps(3200.0),
+        pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
+        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
+        pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
+    }
+
+    pub struct Constant {
+        pub distance: Distance = Distance::Steps(1000.0),
+        pub speed: Speed = Speed::StepsPerSecond(1000.0),
+    }
+
+    pub struct Dwell {
+        pub duration_s: f64 = 0.1,
+    }
+
+    pub struct Points {
+        pub unit: PointUnit = PointUnit::Steps,
+        pub interpolation: Interpolation = Interpolation::Smooth,
+        /// 2 to 4096 points; their times rise by at least 1 ns.
+        pub points: Vec<Point> =
+            vec![Point { time_s: 0.0, position: 0.0 }, Point { time_s: 0.5, position: 1000.0 }],
+    }
+
+    /// One axis: its mechanics and its moves, one after another.
+    pub struct Axis {
+        pub mechanics: Mechanics = Mechanics::default(),
+        /// Up to 64 moves.
+        pub moves: Vec<Move> = vec![Move::default()],
+        /// Motor, supply and load; `None` skips the torque computations.
+        pub motor: Option<Motor> = None,
     }
 }
 
-/// What becomes of a move that is too short to reach its top speed (B3).
+/// Step times of a trapezoid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TrapezoidMethod {
+    /// The paper's: a table with a whole pulse rate and a timer's whole reload per step.
+    #[default]
+    Table,
+    /// Each step where the ideal curve crosses its half-integer.
+    Exact,
+}
+
+/// What happens to a move too short to reach its top speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortMove {
     /// The paper's: the whole move at the start speed.
     #[default]
     Document,
-    /// Up as many rows of the table as fit, and down again.
+    /// As many rows of the table as fit up, and down again.
     Reverse,
 }
 
-parameters! {
-    /// Cosine S-curve (B4, Song, Han, Lu 2021): so many steps in so much time.
-    pub struct Cosine {
-        /// How far; negative is left.
-        pub distance: Distance = Distance::Steps(3200.0),
-        /// Time of the whole move in s.
-        pub duration_s: f64 = 0.4,
-        /// Time of each ramp in s, at most half of the duration.
-        pub ramp_s: f64 = 0.2,
-        /// Whose step times.
-        pub method: CosineMethod = CosineMethod::Exact,
-        /// Length of a slice in s, the paper's TS, 0.00001 to 0.1; only `sliced` uses it.
-        pub slice_s: f64 = 0.001,
-    }
-}
-
-/// Whose step times a cosine S-curve has (B4).
+/// Step times of a cosine S-curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CosineMethod {
-    /// Every step where the ideal curve crosses its half-integer (B1).
+    /// Each step where the ideal curve crosses its half-integer.
     #[default]
     Exact,
     /// The paper's: slices of whole steps, compensated until their sum is right.
     Sliced,
 }
 
-parameters! {
-    /// Ramps of a shape (B4): so many steps in so much time, as the cosine S-curve has it.
-    pub struct Ramps {
-        /// How far; negative is left.
-        pub distance: Distance = Distance::Steps(3200.0),
-        /// Time of the whole move in s.
-        pub duration_s: f64 = 0.4,
-        /// Time of each ramp in s, at most half of the duration.
-        pub ramp_s: f64 = 0.2,
-        /// What the ramps look like.
-        pub shape: RampShape = RampShape::Sigmoid,
-        /// The x of 1/(1 + e^-x) goes from minus to plus this over a ramp, 0.1 to 20; only the sigmoid uses it.
-        pub sigmoid_range: f64 = 6.0,
-        /// Time constants of the exponential within a ramp, 0.1 to 20; only the exponential uses it.
-        pub time_constants: f64 = 4.0,
-    }
-}
-
-/// What a ramp looks like (B4; Song, Han, Lu 2021, table 1).
+/// Shape of a ramp (Song, Han, Lu 2021, table 1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RampShape {
-    /// The middle of 1/(1 + e^-x), shifted and stretched so that it begins at rest and ends at top speed: one that
-    /// is only cut off never gets there.
+    /// The middle of 1/(1 + e^-x), shifted and stretched from rest to top speed.
     #[default]
     Sigmoid,
     /// 3x^2 - 2x^3: a cubic Bezier curve with the control values 0, 0, 1, 1.
     Bezier,
-    /// Uniform acceleration, a trapezoid.
+    /// Uniform acceleration: a trapezoid.
     Straight,
-    /// The approach of an exponential: steep at first, as a motor's torque falls with its rate.
+    /// Steep at first, as a motor's torque falls with its rate.
     Exponential,
 }
 
-parameters! {
-    /// Sine as segments of fixed rate (B5), from the right extreme to the left one and back.
-    pub struct SineSegments {
-        /// From the middle to an extreme.
-        pub amplitude: Distance = Distance::Steps(1000.0),
-        /// Time of one period in s.
-        pub period_s: f64 = 0.5,
-        /// How many whole periods.
-        pub periods: u32 = 4,
-        /// Largest deviation of a segment from the sine, d1, in parts of the amplitude.
-        pub max_deviation: f64 = 0.006,
-    }
-}
-
-parameters! {
-    /// Exact sine (B6, B1's rule), from the right extreme to the left one and back.
-    pub struct Sine {
-        /// From the middle to an extreme.
-        pub amplitude: Distance = Distance::Steps(1000.0),
-        /// Time of one period in s.
-        pub period_s: f64 = 0.5,
-        /// How many whole periods.
-        pub periods: u32 = 4,
-    }
-}
-
-parameters! {
-    /// Jerk-limited move of seven phases (B6): from rest to rest as fast as its limits let it.
-    pub struct JerkLimited {
-        /// How far; negative is left.
-        pub distance: Distance = Distance::Steps(3200.0),
-        /// Maximum speed.
-        pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
-        /// Maximum acceleration and deceleration.
-        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
-        /// Maximum change of the acceleration in a second.
-        pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
-    }
-}
-
-parameters! {
-    /// One rate from end to end (B6).
-    pub struct Constant {
-        /// How far; negative is left.
-        pub distance: Distance = Distance::Steps(1000.0),
-        /// How fast.
-        pub speed: Speed = Speed::StepsPerSecond(1000.0),
-    }
-}
-
-parameters! {
-    /// Standing still (B6).
-    pub struct Dwell {
-        /// How long, in s.
-        pub duration_s: f64 = 0.1,
-    }
-}
-
-/// Maximum points of a move.
+/// Maximum points per move.
 pub const MAX_POINTS: usize = 4096;
 
-parameters! {
-    /// A curve through points (B6).
-    pub struct Points {
-        /// Unit of the positions.
-        pub unit: PointUnit = PointUnit::Steps,
-        /// How the curve goes from point to point.
-        pub interpolation: Interpolation = Interpolation::Smooth,
-        /// 2 to 4096 points, their times rising by 1 ns at least.
-        pub points: Vec<Point> =
-            vec![Point { time_s: 0.0, position: 0.0 }, Point { time_s: 0.5, position: 1000.0 }],
-    }
-}
-
-/// Unit of the positions of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointUnit {
-    /// Steps.
     #[default]
     Steps,
-    /// Millimetres.
     Millimetres,
-    /// Degrees.
     Degrees,
 }
 
 impl PointUnit {
-    /// A position in this unit.
     #[must_use]
     pub const fn of(self, position: f64) -> Distance {
         match self {
@@ -284,35 +228,22 @@ impl PointUnit {
     }
 }
 
-/// How a curve goes from point to point.
+/// The connection of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
-    /// Straight: the speed jumps at each point.
+    /// The speed jumps at each point.
     Straight,
-    /// By cubics that turn only where the points do, from rest to rest.
+    /// Cubics that turn only where the points do, from rest to rest.
     #[default]
     Smooth,
 }
 
-/// A point of a curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Time in s; the first point's is the start of the move.
+    /// The first point's time is the start of the move.
     pub time_s: f64,
-    /// Position in the unit of the points; the first point's is where the move starts.
+    /// In the unit of the points; the move starts at the first point.
     pub position: f64,
-}
-
-parameters! {
-    /// One axis: its mechanics and the moves that it makes one after another.
-    pub struct Axis {
-        /// What one step is (DESIGN B1).
-        pub mechanics: Mechanics = Mechanics::default(),
-        /// Up to 64 moves.
-        pub moves: Vec<Move> = vec![Move::default()],
-        /// Its motor, driver supply and load; without it nothing is said of torque.
-        pub motor: Option<Motor> = None,
-    }
 }
 
 #[cfg(test)]

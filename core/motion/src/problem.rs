@@ -1,44 +1,22 @@
-//! What can be wrong with a motion: every problem with its path, what was given, what is allowed, and what to change;
-//! and the one collector of problems, which the scenario shares.
-//!
-//! ```
-//! use stepscope_motion::problem::{Validator, ValueError};
-//!
-//! let mut validator: Validator = Validator::default();
-//! validator.range("axis.speed", 12_000.0, 1.0..=10_000.0, "steps/s");
-//! let problems = validator.end(()).unwrap_err();
-//! assert_eq!(problems[0].path, "axis.speed");
-//! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
-//! ```
+//! Problems of a motion, each with the path, the value given, the allowed values, and the remedy (DESIGN B1).
 
 use alloc::string::String;
-use alloc::vec::Vec;
-use core::{
-    fmt::{self, Write as _},
-    ops::RangeInclusive,
-};
+use core::fmt;
 use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 
-/// Maximum problems of one scenario that are listed.
-pub const MAX_PROBLEMS: usize = 100;
-
-/// One problem, at the path of the field that has to change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem<C = Cause> {
-    /// Path of the field, such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the whole.
+    /// Such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the whole.
     pub path: String,
-    /// What is wrong.
     pub cause: C,
 }
 
 impl<C> Problem<C> {
-    /// A problem at `path`.
     #[must_use]
     pub fn new(path: impl Into<String>, cause: impl Into<C>) -> Self {
         Self { path: path.into(), cause: cause.into() }
     }
 
-    /// The same problem among causes of a wider kind.
     #[must_use]
     pub fn widen<D: From<C>>(self) -> Problem<D> {
         Problem { path: self.path, cause: self.cause.into() }
@@ -57,219 +35,23 @@ impl<C: fmt::Display> fmt::Display for Problem<C> {
 
 impl<C: fmt::Debug + fmt::Display> core::error::Error for Problem<C> {}
 
-/// Collects problems, lists [`MAX_PROBLEMS`] of them at most and counts all, and knows the way to the value that is being judged: a path is made
-/// where its problem is found, and never rewritten.
-///
-/// A `step` is what stands one step further in: the name of a field or several with dots between them; empty is the
-/// value itself.
-#[derive(Clone, Debug)]
-pub struct Validator<C = Cause> {
-    path: String,
-    /// The first of them.
-    problems: Vec<Problem<C>>,
-    /// How many there are: what is not listed is wrong all the same.
-    found: usize,
-}
-
-impl<C> Default for Validator<C> {
-    fn default() -> Self {
-        Self::within(String::new())
-    }
-}
-
-impl<C> Validator<C> {
-    /// A collector for a part that stands at `path` in the whole.
-    #[must_use]
-    pub fn within(path: impl Into<String>) -> Self {
-        Self { path: path.into(), problems: Vec::new(), found: 0 }
-    }
-
-    /// Goes a step further in; gives what [`Self::leave`] takes to come back.
-    #[must_use = "leave takes it"]
-    pub fn enter(&mut self, step: &str) -> usize {
-        let outside = self.path.len();
-        if outside > 0 && !step.is_empty() {
-            self.path.push('.');
-        }
-        self.path.push_str(step);
-        outside
-    }
-
-    /// Goes into an entry of a list.
-    #[must_use = "leave takes it"]
-    pub fn enter_entry(&mut self, index: usize) -> usize {
-        let outside = self.path.len();
-        // Writing to a text cannot fail.
-        let _ = write!(self.path, "[{index}]");
-        outside
-    }
-
-    /// Comes back to where an `enter` stood.
-    pub fn leave(&mut self, outside: usize) {
-        self.path.truncate(outside);
-    }
-
-    /// Does something one step further in, and comes back.
-    pub fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.enter(step);
-        let made = what(self);
-        self.leave(outside);
-        made
-    }
-
-    /// Does something in an entry of a list, and comes back.
-    pub fn at_entry<T>(&mut self, index: usize, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.enter_entry(index);
-        let made = what(self);
-        self.leave(outside);
-        made
-    }
-
-    /// The way to the value that is being judged.
-    #[must_use]
-    pub fn path(&self) -> &str {
-        &self.path
-    }
-
-    /// Whether something is wrong a `step` further in already.
-    #[must_use]
-    pub fn has(&mut self, step: &str) -> bool {
-        self.at(step, |here| here.problems.iter().any(|problem| problem.path == here.path))
-    }
-}
-
-impl<C: From<ValueError>> Validator<C> {
-    /// Adds a problem of what stands a `step` further in.
-    pub fn add(&mut self, step: &str, cause: impl Into<C>) {
-        self.found += 1;
-        if self.problems.len() < MAX_PROBLEMS {
-            let outside = self.enter(step);
-            self.problems.push(Problem::new(self.path.as_str(), cause));
-            self.leave(outside);
-        }
-    }
-
-    /// Adds problems whose paths are whole already, such as those of a plan; they may be of a narrower kind.
-    pub fn extend<D: Into<C>>(&mut self, problems: impl IntoIterator<Item = Problem<D>>) {
-        for Problem { path, cause } in problems {
-            self.found += 1;
-            if self.problems.len() < MAX_PROBLEMS {
-                self.problems.push(Problem { path, cause: cause.into() });
-            }
-        }
-    }
-
-    /// What a part gives, or its problems.
-    pub fn take<T, D: Into<C>>(&mut self, result: Result<T, Vec<Problem<D>>>) -> Option<T> {
-        result.map_err(|problems| self.extend(problems)).ok()
-    }
-
-    /// A number, if it lies in its range.
-    pub fn range(
-        &mut self,
-        step: &str,
-        given: f64,
-        range: RangeInclusive<f64>,
-        unit: &'static str,
-    ) -> Option<f64> {
-        if range.contains(&given) {
-            return Some(given);
-        }
-        let (least, most) = range.into_inner();
-        self.add(step, ValueError::Range { given, least, most, unit });
-        None
-    }
-
-    /// Judges a whole number; it is told as f64, which is exact for all that is allowed.
-    pub fn whole(
-        &mut self,
-        step: &str,
-        given: impl Into<u64>,
-        range: RangeInclusive<u64>,
-        unit: &'static str,
-    ) {
-        let given = given.into();
-        if !range.contains(&given) {
-            let (given, least, most) = (given as f64, *range.start() as f64, *range.end() as f64);
-            self.add(step, ValueError::Range { given, least, most, unit });
-        }
-    }
-
-    /// Judges how many `of` something there are.
-    pub fn length(&mut self, step: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
-        if !range.contains(&given) {
-            let (least, most) = range.into_inner();
-            self.add(step, ValueError::Length { given, least, most, of });
-        }
-    }
-
-    /// How many problems there are so far, those that are not listed among them.
-    #[must_use]
-    pub const fn count(&self) -> usize {
-        self.found
-    }
-
-    /// Whether nothing is wrong so far.
-    #[must_use]
-    pub const fn is_ok(&self) -> bool {
-        self.found == 0
-    }
-
-    /// The problems that are listed.
-    #[must_use]
-    pub fn problems(self) -> Vec<Problem<C>> {
-        self.problems
-    }
-
-    /// The value, or the problems that are listed.
-    ///
-    /// # Errors
-    /// If there is a problem.
-    pub fn end<T>(self, value: T) -> Result<T, Vec<Problem<C>>> {
-        if self.is_ok() { Ok(value) } else { Err(self.problems) }
-    }
-}
-
-/// What can be wrong with a value by itself.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ValueError {
-    /// A number out of its range.
-    Range {
-        /// The number.
-        given: f64,
-        /// Minimum allowed.
-        least: f64,
-        /// Maximum allowed.
-        most: f64,
-        /// Unit of all three, empty for a plain count.
-        unit: &'static str,
-    },
-    /// A text, list or byte string of a length that is not allowed.
-    Length {
-        /// Its length.
-        given: usize,
-        /// Minimum allowed.
-        least: usize,
-        /// Maximum allowed.
-        most: usize,
-        /// What is counted: `characters`, `bytes`, `axes`, …
-        of: &'static str,
-    },
-    /// Fields that do not go together.
-    Conflict {
-        /// Which, why, and what to do.
-        detail: &'static str,
-    },
-    /// More work than one run may be.
-    TooMuch {
-        /// How much.
-        given: f64,
-        /// How much is allowed.
-        most: f64,
-        /// Of what: `ticks`, `cycles`, `table rows`, …
-        of: &'static str,
-    },
+    /// A number is out of its range. The unit is empty for a plain count.
+    Range { given: f64, least: f64, most: f64, unit: &'static str },
+    /// A text, list or byte string is too short or too long; `of` is `characters`, `bytes`, `axes`, …
+    Length { given: usize, least: usize, most: usize, of: &'static str },
+    /// Fields do not go together; the detail has which, why, and the remedy.
+    Conflict { detail: &'static str },
+    /// More work than a run may have; `of` is `ticks`, `cycles`, `table rows`, …
+    TooMuch { given: f64, most: f64, of: &'static str },
+}
+
+impl ValueError {
+    pub(crate) fn too_much(given: u64, most: u64, of: &'static str) -> Self {
+        Self::TooMuch { given: given as f64, most: most as f64, of }
+    }
 }
 
 impl fmt::Display for ValueError {
@@ -315,124 +97,85 @@ impl fmt::Display for ValueError {
     }
 }
 
-/// What is wrong with a motion, with the numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// A value by itself.
     Value(ValueError),
-    /// A quantity in a unit that the axis's mechanics do not have.
+    /// The axis' mechanics, of this kind, do not have the unit.
     NoSuchUnit {
-        /// The number.
         given: f64,
-        /// Its unit.
         unit: &'static str,
-        /// The kind of the mechanics.
         mechanics: &'static str,
     },
-    /// Ramps longer than the move (B4).
+    /// Two ramps are longer than the move.
     RampTooLong {
-        /// Ramp in s.
         ramp_s: f64,
-        /// Move in s.
         duration_s: f64,
     },
-    /// A top speed under the start speed (B2).
+    /// The top speed is below the start speed.
     TopBelowStart {
-        /// Top speed in steps/s.
         top: f64,
-        /// Start speed in steps/s.
         start: f64,
     },
-    /// A top speed above the table's greatest (B3).
+    /// The top speed is above the maximum of the table.
     TopAboveTable {
-        /// Top speed in steps/s.
         top: f64,
-        /// Maximum speed of the table in steps/s.
         most: f64,
     },
-    /// A rate that the table's timer cannot give (B2).
+    /// The table's timer is slower than the rate.
     TimerTooSlow {
-        /// Rate in steps/s.
         rate: f64,
-        /// Timer's clock in Hz.
         timer_hz: u32,
     },
-    /// A speed that follows from the numbers and is beyond any driver.
+    /// A speed that follows from other numbers is too high.
     TooFast {
-        /// Rate in steps/s.
         rate: f64,
-        /// Maximum allowed.
         most: f64,
     },
-    /// Slices so short that at top speed none has a step (B4).
+    /// Slices are so short that none has a step, even at top speed.
     SliceTooShort {
-        /// Top speed in steps/s.
         rate: f64,
-        /// A slice in s.
         slice_s: f64,
     },
-    /// Slices that cannot have all steps, however high the rate (B4).
+    /// Slices cannot contain all steps, even at the maximum rate.
     SlicesTooFew {
-        /// How many slices.
         slices: u64,
-        /// A slice in s.
         slice_s: f64,
-        /// Steps of the move.
         steps: u64,
-        /// The highest rate that was tried, in steps/s.
         rate: f64,
     },
-    /// A distance that is less than a step.
     NoSteps {
-        /// The distance in steps, before rounding.
         steps: f64,
     },
-    /// A point whose time does not come after that of the one before (B6).
+    /// The time of a point is not later than that of the point before by at least `least`.
     NotRising {
-        /// Its time in s.
         given: f64,
-        /// That of the point before.
         before: f64,
-        /// The least time between both.
         least: f64,
     },
-    /// A tick that needs more steps than it has slots (B7).
+    /// A tick (from 0) needs more steps than it has slots, and a higher rate than the bus' limit.
     TooManySteps {
-        /// The first such tick, from 0.
         tick: u64,
-        /// Steps it needs.
         steps: u64,
-        /// Slots it has.
         slots: u8,
-        /// The rate it needs in steps/s.
         rate: f64,
-        /// The rate that the bus can give in steps/s.
         limit: f64,
     },
-    /// A segment of no steps (A8).
     NoSegmentSteps,
-    /// An interval that a step of a segment uses is out of its range (A8).
+    /// The interval of a segment's step (from 0), in 1/65536 cycle, is out of its range.
     SegmentInterval {
-        /// The first such step, from 0.
         step: u32,
-        /// Its interval in 1/65536 cycle.
         interval: i128,
-        /// What decides the least.
         pulse: PulseTimes,
     },
-    /// The time of a segment list leaves 64 bits (A8).
+    /// The time after a segment, in 1/65536 cycle, exceeds 64 bits.
     SegmentEnd {
-        /// Time after the segment, in 1/65536 cycle.
         next: i128,
     },
-    /// A step of a motion comes too soon after the one before (A8).
+    /// A step (from 1) of a motion is too soon after the one before, or after the start.
     StepTooSoon {
-        /// The step, from 1.
         step: u64,
-        /// Cycles after the step before, or after the start of the motion.
         interval: u64,
-        /// What decides the least.
         pulse: PulseTimes,
     },
 }
@@ -444,7 +187,7 @@ impl From<ValueError> for Cause {
 }
 
 impl Cause {
-    /// Whether it follows from several fields together, so that it means nothing while one of them cannot be read.
+    /// Whether it follows from several fields, so that it is meaningless if one of them is invalid.
     #[must_use]
     pub const fn joins_fields(&self) -> bool {
         !matches!(self, Self::Value(ValueError::Range { .. }) | Self::NoSteps { .. } | Self::NoSegmentSteps)
@@ -528,7 +271,11 @@ impl fmt::Display for Cause {
                     write!(f, "; give at most {}", u64::MAX)
                 } else {
                     let least = pulse.min_interval().0 << FRACTION_BITS;
-                    write!(f, ", {}; give at least {least}, or shorter times of the pulse", Least(*pulse))
+                    write!(
+                        f,
+                        ", {}; give at least {least}, or shorter times of the pulse",
+                        MinInterval(*pulse)
+                    )
                 }
             }
             Self::SegmentEnd { next } => write!(
@@ -541,15 +288,15 @@ impl fmt::Display for Cause {
                 f,
                 "step {step} comes {interval} cycles after {}, {}; slow the motion, or give shorter times of the pulse",
                 if *step == 1 { "the start" } else { "the one before" },
-                Least(*pulse)
+                MinInterval(*pulse)
             ),
         }
     }
 }
 
-struct Least(PulseTimes);
+struct MinInterval(PulseTimes);
 
-impl fmt::Display for Least {
+impl fmt::Display for MinInterval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PulseTimes { width, setup, hold } = self.0;
         let least = self.0.min_interval().0;
@@ -561,7 +308,6 @@ impl fmt::Display for Least {
     }
 }
 
-/// Prints a number without needless digits.
 struct Short(f64);
 
 impl fmt::Display for Short {
@@ -597,36 +343,5 @@ fn shown(unit: &str) -> &str {
         "mm_s3" => "mm/s^3",
         "deg_s3" => "deg/s^3",
         other => other,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn problems_whose_paths_are_whole_are_listed_after_those_before_them() {
-        let mut validator = Validator::<Cause>::default();
-        validator.add("a", Cause::NoSegmentSteps);
-        validator.extend([Problem::<Cause>::new("b.c", Cause::NoSegmentSteps)]);
-        assert_eq!(validator.count(), 2);
-        let paths: Vec<_> = validator.problems().into_iter().map(|problem| problem.path).collect();
-        assert_eq!(paths, ["a", "b.c"]);
-    }
-
-    #[test]
-    fn what_is_not_listed_any_more_is_wrong_all_the_same() {
-        let mut validator = Validator::<Cause>::default();
-        for _ in 0..MAX_PROBLEMS {
-            validator.add("a", Cause::NoSegmentSteps);
-        }
-        let before = validator.count();
-        validator.add("b", Cause::NoSegmentSteps);
-        assert_eq!(validator.count(), before + 1);
-        validator.extend([Problem::<Cause>::new("c", Cause::NoSegmentSteps)]);
-        assert_eq!((validator.count(), validator.is_ok()), (before + 2, false));
-        let problems = validator.problems();
-        assert_eq!(problems.len(), MAX_PROBLEMS);
-        assert!(problems.iter().all(|problem| problem.path == "a"));
     }
 }

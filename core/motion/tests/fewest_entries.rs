@@ -39,7 +39,7 @@ fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -
 
 /// The fewest entries, turns and waits apart: every interval and add tried from every time that a step can have.
 fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
-    let (least, most) = (2 << format.fraction_bits, format.most_interval() as i64);
+    let (least, most) = (2 << format.fraction_bits, format.max_interval() as i64);
     let mut reached: Vec<BTreeSet<i64>> = vec![BTreeSet::new(); windows.len() + 1];
     reached[0].insert(0);
     for entries in 0.. {
@@ -52,8 +52,8 @@ fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
                 // Intervals that lead through the first window, adds that may lead through the second.
                 for interval in least.max(low - from)..=most.min(high - from) {
                     let adds = windows.get(step + 1).map_or(0..=0, |&(low, high, _)| {
-                        (low - from - 2 * interval).max(format.least_add())
-                            ..=(high - from - 2 * interval).min(format.most_add())
+                        (low - from - 2 * interval).max(format.min_add())
+                            ..=(high - from - 2 * interval).min(format.max_add())
                     });
                     // Where there is none the entry has one step.
                     for add in adds.chain([0]) {

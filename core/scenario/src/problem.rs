@@ -17,7 +17,7 @@ pub use stepscope_motion::problem::ValueError;
 pub type Problem = motion::Problem<Cause>;
 
 /// Collects problems of a scenario.
-pub type Validator = motion::Validator<Cause>;
+pub type Validator = stepscope_motion::Validator<Cause>;
 
 /// Converts the problems of a plan.
 #[must_use]

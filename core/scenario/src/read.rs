@@ -8,7 +8,7 @@ use alloc::{
     string::{String, ToString},
     vec::Vec,
 };
-use stepscope_motion::problem::MAX_PROBLEMS;
+use stepscope_motion::MAX_PROBLEMS;
 
 /// Maximum bytes of a text with every field written; longer ones omit defaults.
 const MAX_WHOLE_BYTES: usize = 4 << 20;

@@ -39,7 +39,7 @@ pub struct Reader {
     old_names: bool,
 }
 
-/// Returns all problems, at most [`stepscope_motion::problem::MAX_PROBLEMS`].
+/// Returns all problems, at most [`stepscope_motion::MAX_PROBLEMS`].
 pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, old_names: bool) -> Vec<Problem> {
     let mut reader = Reader { old_names, ..Reader::default() };
     target.read(value, &mut reader);

@@ -5,7 +5,7 @@ use crate::{
     check::fit_channels,
 };
 use alloc::vec::Vec;
-use stepscope_motion::{self as motion, problem::MAX_PROBLEMS};
+use stepscope_motion::{self as motion, MAX_PROBLEMS};
 use stepscope_peripheral::{
     config::Bus,
     segment::{self, CheckedSegments, PulseTimes, Refusal, Refused, SegmentList},

@@ -1,7 +1,6 @@
 //! Moves of so many steps in so much time (DESIGN B4).
 
 use super::{axis, check, plan_axis};
-use stepscope_core::motion::Curve;
 
 #[test]
 fn a_ramp_shorter_than_any_clocks_cycle_is_none() {

@@ -16,7 +16,7 @@ use stepscope_core::{
     },
     motion::{
         motor::Motor,
-        step_tables::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
+        step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
     },
     peripheral::{segment::PulseTimes, trace::steps, units::Cycles},
     scenario::{Scenario, link::decode},
@@ -304,12 +304,12 @@ fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Resu
     let form = match form {
         "exact" => Form::Exact,
         "document" => Form::Document,
-        _ => Form::Compressed(Tolerance::of(Cycles(error_us * u64::from(config.clock_hz()) / 1_000_000))),
+        _ => Form::Quick(Tolerance::of(Cycles(error_us * u64::from(config.clock_hz()) / 1_000_000))),
     };
     let pulse = PulseTimes::from(config);
     let stored = match known.experiment.plans().first() {
-        Some(plan) => stored_quickly(plan, form, format, pulse, config.clock_hz()),
-        None => stored_steps_quickly(&scheduled(&steps(&known.recording.trace, 0)), form, format, pulse),
+        Some(plan) => stored(plan, form, format, pulse, config.clock_hz()),
+        None => stored_steps(&scheduled(&steps(&known.recording.trace, 0)), form, format, pulse),
     };
     stored.map_err(|cause| anyhow!("{cause}"))
 }

@@ -11,7 +11,7 @@ use stepscope_core::{
         comparison::{Request, Row, compare},
         torque::Moment,
     },
-    motion::{Curve, PlannedMove},
+    motion::PlannedMove,
     scenario::to_json,
 };
 use wasm_bindgen::prelude::*;

@@ -20,7 +20,7 @@ use alloc::{
 use serde::Serialize;
 use stepscope_motion::{
     AxisPlan, ScheduledStep,
-    step_tables::{EntryFormat, Form, Stored, Tolerance, stored_quickly, stored_steps_quickly},
+    step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
 };
 use stepscope_peripheral::{
     config::{Bus, Config},
@@ -94,13 +94,13 @@ impl<'a> StepTables<'a> {
         let form = match form {
             "exact" => Form::Exact,
             "document" => Form::Document,
-            _ => Form::Compressed(Tolerance::of(tolerance_cycles(error_us, clock_hz))),
+            _ => Form::Quick(Tolerance::of(tolerance_cycles(error_us, clock_hz))),
         };
         let format = EntryFormat::ALL.into_iter().find(|format| format.name == widths);
         let format = format.unwrap_or(EntryFormat::Q16);
         let stored = match &self.steps {
-            Steps::Planned(plan) => stored_quickly(plan, form, format, self.pulse, clock_hz),
-            Steps::Made(steps) => stored_steps_quickly(steps, form, format, self.pulse),
+            Steps::Planned(plan) => stored(plan, form, format, self.pulse, clock_hz),
+            Steps::Made(steps) => stored_steps(steps, form, format, self.pulse),
         };
         stored.map_err(|cause| cause.to_string())
     }

@@ -6,7 +6,7 @@
 
 use crate::motion::actual_motion::Pulses;
 use alloc::vec::Vec;
-use stepscope_motion::{AxisPlan, Curve, PlannedMove, step_tables::TickClock};
+use stepscope_motion::{AxisPlan, PlannedMove, step_tables::TickClock};
 use stepscope_peripheral::trace::Step;
 
 const MAX_POINTS: usize = 1 << 20;

@@ -26,7 +26,7 @@
 use crate::motion::torque::{Demand, Machine, Moment};
 use alloc::{vec, vec::Vec};
 use stepscope_motion::{
-    AxisPlan, Curve, Peaks, Problem,
+    AxisPlan, Peaks, Problem,
     mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},
     motor::Motor,
     moves::{

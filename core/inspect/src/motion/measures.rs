@@ -42,7 +42,7 @@ use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{due_steps, placed};
 use serde::Serialize;
 use stepscope_motion::ValueError;
-use stepscope_motion::{AxisPlan, Breakpoints, Curve, Profile, curves::SineSegments, moves::Axis};
+use stepscope_motion::{AxisPlan, Breakpoints, Profile, curves::SineSegments, moves::Axis};
 use stepscope_peripheral::trace::Step;
 
 /// Maximum steps of a measured run; each takes about 82 bytes.

@@ -53,7 +53,7 @@ pub use report::{MoveRamps, TorqueCurve, TorqueReport};
 
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, Breakpoints, Curve, Interval, bisection::border, grouped};
+use stepscope_motion::{AxisPlan, Breakpoints, Interval, bisection::border, grouped};
 
 const MAX_SHORTAGES: usize = 1024;
 const SAMPLES_PER_MOVE: u32 = 2048;

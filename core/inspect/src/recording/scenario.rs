@@ -25,7 +25,7 @@ use alloc::{format, string::String, vec::Vec};
 use core::fmt;
 use stepscope_motion::{
     Cause, ScheduledStep,
-    step_tables::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps_quickly},
+    step_tables::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps},
 };
 use stepscope_peripheral::{
     config::{Bus, Protocol, SerialLine, limits::PULSE_WIDTH_CYCLES},
@@ -110,7 +110,7 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
     let later_cycles = (START + least).saturating_sub(first);
     let form = match request.within_cycles {
         0 => Form::Exact,
-        within => Form::Compressed(Tolerance::of(Cycles(within.min(MAX_TOLERANCE.0)))),
+        within => Form::Quick(Tolerance::of(Cycles(within.min(MAX_TOLERANCE.0)))),
     };
     let (mut channels, mut greatest, mut entries) = (Vec::new(), 0, 0);
     for (channel, steps) in (0..).zip(all) {
@@ -124,7 +124,7 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
                     right: Step::direction(steps, index) > 0,
                 })
                 .collect();
-            let stored = stored_steps_quickly(&scheduled, form, EntryFormat::Q16, pulse)
+            let stored = stored_steps(&scheduled, form, EntryFormat::Q16, pulse)
                 .map_err(|cause| Refused::Channel(channel, cause))?;
             greatest = greatest.max(stored.error.greatest);
             list = channel_list(&stored.list);

@@ -1,5 +1,4 @@
-//! The acceleration table itself (DESIGN B2, Sonobe 2011): one pulse rate a step, in whole pps, and
-//! the whole reload of a timer for each.
+//! The acceleration table (DESIGN B2, Sonobe 2011): one pulse rate per step in whole pps, and a timer's reload for each.
 //!
 //! ```text
 //! rate[k]   = round_half_up(sqrt(v0^2 + 2*a*k))     k = 0 .. top - 1
@@ -7,24 +6,21 @@
 //! reload[k] = floor(timer_hz/rate[k])
 //! ```
 //!
-//! The document goes over to constant speed as soon as v >= v_max; so the first row that reaches
-//! the top speed has the top speed itself, and is the last.
+//! As in the paper, the first row that reaches the top speed has the top speed itself and is the last.
 
 use crate::{curves::climb::Climb, timing::Exact};
 
-/// The rows of an acceleration table, each computed when it is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccelerationTable {
     climb: Climb,
-    /// Rate of the last row.
     top_rate: u64,
     timer_hz: u32,
     top: u64,
 }
 
 impl AccelerationTable {
-    /// From `start_speed` >= 1/2 to `top_speed` >= `start_speed` with `acceleration` > 0, in steps,
-    /// s; `timer_hz` counts the reloads. Each number means the decimal that is printed for it.
+    /// From `start_speed` >= 1/2 to `top_speed` >= `start_speed` steps/s with `acceleration` > 0 steps/s^2; a timer of
+    /// `timer_hz` counts the reloads. Each number means its shortest decimal.
     #[must_use]
     pub fn new(start_speed: f64, top_speed: f64, acceleration: f64, timer_hz: u32) -> Self {
         let [start_speed, top_speed, acceleration] = [start_speed, top_speed, acceleration].map(Exact::of);
@@ -36,25 +32,24 @@ impl AccelerationTable {
         Self { top: climb.steps_to(top), climb, top_rate: top.rounded().unsigned_abs(), timer_hz }
     }
 
-    /// Clock of the timer in Hz.
     #[must_use]
     pub fn timer_hz(&self) -> u32 {
         self.timer_hz
     }
 
-    /// The last row, that of the top speed; there is one more row than this.
+    /// Index of the last row, which has the top speed.
     #[must_use]
     pub fn top(&self) -> u64 {
         self.top
     }
 
-    /// Pulse rate of a row in whole pps, not falling from row to row; rows after the last are as the last.
+    /// Pulse rate of a row in whole pps, not decreasing; rows after the last are like the last.
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
         if row < self.top { self.climb.rate(row) } else { self.top_rate }
     }
 
-    /// The timer's reload of a row; 0 where the timer is slower than the rate.
+    /// Timer reload of a row; 0 if the timer is slower than the rate.
     #[must_use]
     pub fn reload(&self, row: u64) -> u64 {
         u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)

@@ -1,17 +1,17 @@
-//! Where the formula of a motion changes. Between two breakpoints position, speed and acceleration are smooth and monotonic:
-//! the values at both ends are the extremes, and three points of Gauss and Legendre integrate them and their squares.
+//! Times at which the formula of a motion changes (DESIGN Part B). Between them position, speed and acceleration are smooth
+//! and monotonic: the extremes are at the ends, and three-point Gauss quadrature integrates them and their squares.
 
-use crate::{AxisPlan, Curve};
+use crate::{
+    AxisPlan,
+    curves::curve::{greater, lesser},
+};
 use alloc::vec::Vec;
 
-/// An interval of time in which a motion is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Its start in s on the axis' time.
     pub from_s: f64,
-    /// Its end in s.
     pub to_s: f64,
-    /// How many such stretches, one whole period of a sine apart, it stands for.
+    /// Number of such intervals that it represents, each a sine period later.
     pub times: f64,
 }
 
@@ -19,20 +19,17 @@ pub struct Interval {
 struct MoveBreakpoints {
     start_s: f64,
     end_s: f64,
-    /// Breakpoints of the first period, from the move's start, rising.
+    /// Breakpoints of the first period, relative to the start of the move, rising.
     breakpoints: Vec<f64>,
-    /// The time after which the move repeats itself, where it does.
     period_s: Option<f64>,
 }
 
-/// The breakpoints of an axis' whole motion.
 #[derive(Clone, Debug)]
 pub struct Breakpoints {
     moves: Vec<MoveBreakpoints>,
 }
 
 impl Breakpoints {
-    /// Of a plan.
     #[must_use]
     pub fn of(plan: &AxisPlan) -> Self {
         let moves = plan.moves().iter().map(|planned| {
@@ -45,8 +42,8 @@ impl Breakpoints {
         Self { moves: moves.collect() }
     }
 
-    /// The first period of the move that the stretch lies in, as (start, end) in s, where it has one and
-    /// the stretch is no shorter: then a curve's extremes in both are the same.
+    /// The first period as (start, end) in s of the periodic move that contains the window, if the window is at least as
+    /// long: then a curve has the same extremes in both.
     #[must_use]
     pub fn period_within(&self, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
         let planned_move = self.moves.get(self.moves.partition_point(|each| each.end_s <= from_s))?;
@@ -55,8 +52,7 @@ impl Breakpoints {
         inside.then_some((planned_move.start_s, planned_move.start_s + period_s))
     }
 
-    /// The smooth intervals of a stretch of time, in order but for a sine's whole periods, of which only
-    /// the first is cut and stands for all.
+    /// The smooth intervals of a time window. Of whole periods only the first is reported, with their number.
     pub fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let once = |from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)| {
             if to_s > from_s {
@@ -65,29 +61,28 @@ impl Breakpoints {
         };
         let begin = self.moves.first().map_or(f64::INFINITY, |first| first.start_s);
         let end = self.moves.last().map_or(f64::INFINITY, |last| last.end_s);
-        once(from_s, least(begin, to_s), each);
+        once(from_s, lesser(begin, to_s), each);
         let first = self.moves.partition_point(|each| each.end_s <= from_s);
         for planned_move in
             self.moves.iter().skip(first).take_while(|planned_move| planned_move.start_s < to_s)
         {
             planned_move.intervals(
-                greatest(from_s, planned_move.start_s),
-                least(to_s, planned_move.end_s),
+                greater(from_s, planned_move.start_s),
+                lesser(to_s, planned_move.end_s),
                 each,
             );
         }
-        once(greatest(from_s, end), to_s, each);
+        once(greater(from_s, end), to_s, each);
     }
 }
 
 impl MoveBreakpoints {
     fn intervals(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Interval)) {
         let Some(period_s) = self.period_s else { return self.cut(from_s, to_s, 0.0, 1.0, each) };
-        // Whole periods from the end of the one that is begun to the start of the one not ended.
         let (first, last) =
             (libm::ceil((from_s - self.start_s) / period_s), libm::floor((to_s - self.start_s) / period_s));
         if last - first < 1.0 {
-            let middle = least(to_s, greatest(from_s, self.start_s + first * period_s));
+            let middle = lesser(to_s, greater(from_s, self.start_s + first * period_s));
             self.cut(from_s, middle, (first - 1.0) * period_s, 1.0, each);
             return self.cut(middle, to_s, first * period_s, 1.0, each);
         }
@@ -97,7 +92,7 @@ impl MoveBreakpoints {
         self.cut(self.start_s + end, to_s, end, 1.0, each);
     }
 
-    /// Cuts at the breakpoints, which begin anew `shift_s` after the start of the move.
+    /// Cuts at the breakpoints, shifted by `shift_s`.
     fn cut(&self, from_s: f64, to_s: f64, shift_s: f64, times: f64, each: &mut dyn FnMut(Interval)) {
         let zero_s = self.start_s + shift_s;
         let mut from = from_s;
@@ -115,12 +110,4 @@ impl MoveBreakpoints {
             each(Interval { from_s: from, to_s, times });
         }
     }
-}
-
-fn least(a: f64, b: f64) -> f64 {
-    if b < a { b } else { a }
-}
-
-fn greatest(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
 }

@@ -1,4 +1,4 @@
-//! Rates after a climb at a uniform acceleration, in whole steps/s (DESIGN B2, B3).
+//! Rates in whole steps/s during uniform acceleration (DESIGN B2, B3).
 //!
 //! ```text
 //! rate(k) = round_half_up(sqrt(v0^2 + 2*a*k))      k steps from the start
@@ -6,27 +6,27 @@
 //! v0 = 6.1, a = 9.52:   6.1^2 + 2*9.52*1 = 56.25 = 7.5^2, so rate(1) is 8; in f64 the root is 7.499999999999999
 //! ```
 //!
-//! An f64 decides unless its root is next to a half. There the squares are compared as whole numbers, so a tie of the
-//! decimals that a scenario gives is a tie.
+//! An f64 decides unless its root is next to a half. There the squares are compared as integers, so a tie of the given
+//! decimals is a tie.
 
-use crate::{bisection::least_near, round_half_up, square_root, timing::Exact};
+use crate::{bisection::first_near, round_half_up, square_root, timing::Exact};
 use num_bigint::BigUint;
 
-/// How far a speed in f64 may be off, relative to it: 64 roundings.
-const MAX_OFF: f64 = 32.0 * f64::EPSILON;
+/// Maximum relative error of a speed in f64: 64 roundings.
+const MAX_ERROR: f64 = 32.0 * f64::EPSILON;
 
-/// Steps up to which a search for a speed ends exactly; no move has as many.
+/// Maximum steps of an exact search; no move has as many.
 const MAX_STEPS: u64 = 1 << 52;
-/// Speeds from here on have no half that an f64 holds.
+/// From this speed on an f64 has no halves.
 const MAX_SPEED: f64 = (1_u64 << 51) as f64;
 
-/// The speed after so many steps from `start` at `acceleration`, in whole steps/s.
+/// The speed after `steps` from `start` at `acceleration`, in whole steps/s.
 ///
 /// # Errors
-/// The whole number below, where the speed is so near to a half that only [`Climb::rate`] decides.
+/// The whole part, if the speed is so near to a half that only [`Climb::rate`] decides.
 pub(crate) fn quick_rate(start: f64, acceleration: f64, steps: u64) -> Result<u64, u64> {
     let speed = square_root(start * start + 2.0 * acceleration * steps as f64);
-    let is_near = speed < MAX_SPEED && libm::fabs(speed - libm::floor(speed) - 0.5) <= MAX_OFF * speed;
+    let is_near = speed < MAX_SPEED && libm::fabs(speed - libm::floor(speed) - 0.5) <= MAX_ERROR * speed;
     if is_near { Err(speed as u64) } else { Ok(round_half_up(speed).unsigned_abs()) }
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn quick_rate(start: f64, acceleration: f64, steps: u64) -> Result<u6
 pub(crate) struct Climb {
     start: f64,
     acceleration: f64,
-    /// The square of the speed after k steps is (base + slope*k)/unit.
+    /// The squared speed after k steps is (base + slope*k)/unit.
     base: BigUint,
     slope: BigUint,
     unit: BigUint,
@@ -58,7 +58,7 @@ impl Climb {
         })
     }
 
-    /// The first step after which the speed is `top` or more, in steps/s; near it where there are more than any move has.
+    /// The first step after which the speed is at least `top` steps/s; an estimate beyond 2^52 steps.
     pub(crate) fn steps_to(&self, top: &Exact) -> u64 {
         let speed = top.nearest();
         let climb = (speed - self.start) * (speed + self.start);
@@ -67,7 +67,7 @@ impl Climb {
             return near;
         }
         let (over, under) = top.magnitude();
-        least_near(near, 2 * MAX_STEPS, |steps| self.reaches(steps, over, under))
+        first_near(near, 2 * MAX_STEPS, |steps| self.reaches(steps, over, under))
     }
 
     fn reaches(&self, steps: u64, over: &BigUint, under: &BigUint) -> bool {

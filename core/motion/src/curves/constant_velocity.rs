@@ -1,50 +1,36 @@
-//! The steady moves: constant rate and dwell (DESIGN B6).
+//! Constant rate and dwell (DESIGN B6).
 //!
 //! ```text
-//! speed  |-------|            constant: from the first instant to the last
-//!        |       |_________   dwell: none
+//! speed  |-------|            constant: from start to end
+//!        |       |_________   dwell: 0
 //! ```
 
 use crate::{
-    Curve, Peaks, moves,
-    planners::quantities::Quantities,
+    Curve, Peaks,
+    curves::curve::signed,
     timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run},
 };
 use alloc::{boxed::Box, string::String, vec::Vec};
 
-/// One rate from end to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     steps: i64,
-    /// Magnitude in steps/s, above 0.
     speed: f64,
-    /// The same with all its digits: of a quotient by mechanics more than are printed.
+    /// The same in 106 bits.
     exact_speed: Double,
     duration_s: f64,
 }
 
 impl Constant {
-    /// `steps` (left negative) at `speed` steps/s, which is above 0.
+    /// `steps` (left negative) at `speed` > 0 steps/s.
     #[must_use]
     pub fn new(steps: i64, speed: f64) -> Self {
         Self::within(steps, Double::decimal(speed))
     }
 
-    /// [`Self::new`], of a number with all its digits.
-    fn within(steps: i64, exact_speed: Double) -> Self {
+    pub(crate) fn within(steps: i64, exact_speed: Double) -> Self {
         let speed = exact_speed.high;
         Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
-    }
-
-    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Self> {
-        let steps = quantities.distance("distance", &given.distance);
-        let speed = quantities.speed("speed", &given.speed);
-        let (steps, _) = (steps?, speed?);
-        Some(Self::within(steps, given.speed.exact_in_steps(quantities.mechanics()).ok()?))
-    }
-
-    fn signed_speed(&self) -> f64 {
-        if self.steps < 0 { -self.speed } else { self.speed }
     }
 }
 
@@ -77,14 +63,14 @@ impl Curve for Constant {
         if t >= self.duration_s {
             self.steps as f64
         } else if t > 0.0 {
-            self.signed_speed() * t
+            self.speed(t) * t
         } else {
             0.0
         }
     }
 
     fn speed(&self, _: f64) -> f64 {
-        self.signed_speed()
+        signed(self.steps, self.speed)
     }
 
     fn acceleration(&self, _: f64) -> f64 {
@@ -104,22 +90,15 @@ impl Curve for Constant {
     }
 }
 
-/// Standing still for a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dwell {
     duration_s: f64,
 }
 
 impl Dwell {
-    /// `duration_s` from 0 on.
     #[must_use]
     pub fn new(duration_s: f64) -> Self {
         Self { duration_s }
-    }
-
-    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::Dwell) -> Option<Self> {
-        let duration_s = quantities.pause("duration_s", given.duration_s);
-        Some(Self::new(duration_s?))
     }
 }
 

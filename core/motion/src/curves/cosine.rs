@@ -8,12 +8,12 @@
 //!         t_s           T-t_s  T         = n - s(T - t)                        from T/2 on
 //! ```
 //!
-//! n steps, time T of the move and t_s of each ramp, 0 <= t_s <= T/2. The mirror makes s(T) exactly n.
+//! n steps, T the duration and t_s the time of each ramp, 0 <= t_s <= T/2. By symmetry s(T) is exactly n.
 
 use crate::{
-    Curve, Peaks,
+    Peaks,
     curves::{
-        mirrored::{Mirrored, RAMP_PARTS, parts_s},
+        mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s},
         ramp::longest_ramp_s,
     },
     format::ramp_up_to,
@@ -25,17 +25,15 @@ use crate::{
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::f64::consts::PI;
 
-/// A cosine S-curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cosine {
     halves: Mirrored,
     pub(crate) ramp_s: f64,
-    /// f_max in steps/s.
     top_speed: f64,
 }
 
 impl Cosine {
-    /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half of it.
+    /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, from 0 to half of it.
     #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
@@ -43,27 +41,31 @@ impl Cosine {
         Self { halves: Mirrored { steps, duration_s }, ramp_s, top_speed }
     }
 
-    /// f_max in steps/s, the speed of the plateau.
+    /// f_max in steps/s, the plateau speed.
     #[must_use]
     pub fn top_speed(&self) -> f64 {
         self.top_speed
     }
 
-    /// The longest ramp in s with which this move keeps its top speed at or under `speed`:
-    /// T - n/speed (B4), of which it can use up to T/2; `None` where even no ramp is too fast.
+    /// The longest ramp in s with a top speed of at most `speed` steps/s, T - n/speed, of which up to T/2 can be used;
+    /// `None` if even no ramp is too fast.
     #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
     }
 
-    /// Phase of the ramp at `t` after the start or before the end, 0 to pi; `None` in the plateau.
+    /// Phase of the ramp at `t` from the nearer end, 0 to pi; `None` in the plateau.
     fn phase(&self, t: f64) -> Option<f64> {
         (t < self.ramp_s).then(|| PI * t / self.ramp_s)
     }
 
     pub(crate) fn part(&self, t: f64) -> f64 {
-        // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
-        self.phase(self.halves.nearer_end(t)).map_or(1.0, |phase| {
+        self.near_part(self.halves.nearer_end(t))
+    }
+
+    fn near_part(&self, t: f64) -> f64 {
+        // (1 - cos x)/2 = sin^2(x/2), which is exact near 0.
+        self.phase(t).map_or(1.0, |phase| {
             let sine = libm::sin(phase / 2.0);
             sine * sine
         })
@@ -73,22 +75,11 @@ impl Cosine {
         self.top_speed * self.ramp_s / 2.0
     }
 
-    pub(crate) fn joints(&self) -> Vec<f64> {
-        self.halves.joints(&[self.ramp_steps()])
-    }
-
-    /// When the first half is at a position: the phase solves x - sin(x) = pi*position/(steps of the ramp).
-    fn climb_s(&self, position: f64) -> f64 {
-        let ramp_steps = self.ramp_steps();
-        if position >= ramp_steps {
-            self.ramp_s / 2.0 + position / self.top_speed
-        } else {
-            self.ramp_s * phase_at(PI * position / ramp_steps) / PI
-        }
+    pub(crate) fn changes(&self) -> Vec<f64> {
+        self.halves.changes(&[self.ramp_steps()])
     }
 }
 
-/// s(t) of the first half, in steps without sign.
 fn first_half<N: Number>(t: N, top_speed: N, ramp: N) -> N {
     if t < ramp {
         top_speed * ramp / (N::PI * 2.0) * (N::PI * t / ramp).minus_its_sine()
@@ -97,16 +88,15 @@ fn first_half<N: Number>(t: N, top_speed: N, ramp: N) -> N {
     }
 }
 
-/// Of a time in f64 the level has 10 u, three of them of T - t_s, which the phase passes on, and its two formulas for
-/// x - sin(x) another 4; Newton's method leaves 2. With the products by the ramp's time and the clock, and the
-/// difference from the end, it is off by less than 32 u.
+/// Error of a time in f64: 10 u of the level (three of them from T - t_s), 4 u of the two formulas for x - sin(x), and 2 u
+/// of Newton's method. With the products by ramp time and clock, and the difference from the end, it is below 32 u.
 impl Schedule for Cosine {
     fn length(&self, clock_hz: u32) -> CycleTime {
         CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
-        one_searched_run(self, clock_hz, self.joints())
+        one_searched_run(self, clock_hz, self.changes())
     }
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
@@ -122,36 +112,44 @@ impl Schedule for Cosine {
     }
 }
 
-impl Curve for Cosine {
-    fn duration_s(&self) -> f64 {
-        self.halves.duration_s
+impl MirroredCurve for Cosine {
+    fn halves(&self) -> &Mirrored {
+        &self.halves
     }
 
-    fn steps(&self) -> i64 {
-        self.halves.steps
+    fn half_position(&self, t: f64) -> f64 {
+        first_half(t, self.top_speed, self.ramp_s)
     }
 
-    fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| first_half(t, self.top_speed, self.ramp_s))
-    }
-
-    fn speed(&self, t: f64) -> f64 {
-        self.halves.signed(match self.phase(self.halves.nearer_end(t)) {
+    fn half_speed(&self, t: f64) -> f64 {
+        match self.phase(t) {
             Some(phase) => {
-                // (1 - cos x)/2 = sin^2(x/2), which keeps its digits near 0.
                 let sine = libm::sin(phase / 2.0);
                 self.top_speed * sine * sine
             }
             None => self.top_speed,
-        })
+        }
     }
 
-    fn acceleration(&self, t: f64) -> f64 {
-        let Some(phase) = self.phase(self.halves.nearer_end(t)) else { return 0.0 };
-        self.halves.acceleration(t, self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(phase))
+    fn half_acceleration(&self, t: f64) -> Option<f64> {
+        Some(self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(self.phase(t)?))
     }
 
-    fn peaks(&self) -> Peaks {
+    /// Time of a position in the first half: the phase solves x - sin(x) = pi*position/(steps of the ramp).
+    fn half_time_s(&self, position: f64) -> f64 {
+        let ramp_steps = self.ramp_steps();
+        if position >= ramp_steps {
+            self.ramp_s / 2.0 + position / self.top_speed
+        } else {
+            self.ramp_s * phase_at(PI * position / ramp_steps) / PI
+        }
+    }
+
+    fn half_breakpoints_s(&self) -> Vec<f64> {
+        parts_s(self.ramp_s, RAMP_PARTS).collect()
+    }
+
+    fn all_peaks(&self) -> Peaks {
         let speed = self.top_speed;
         if self.ramp_s > 0.0 {
             let acceleration = speed * PI / (2.0 * self.ramp_s);
@@ -162,27 +160,19 @@ impl Curve for Cosine {
         }
     }
 
-    fn breakpoints_s(&self) -> Vec<f64> {
-        self.halves.breakpoints_s(parts_s(self.ramp_s, RAMP_PARTS))
-    }
-
-    fn time_s(&self, place: f64) -> f64 {
-        self.halves.time_s(place, |place| self.climb_s(place))
-    }
-
-    fn detail(&self, limit_steps_s: f64) -> String {
+    fn text(&self, limit_steps_s: f64) -> String {
         let longest_s = self.longest_ramp_s(limit_steps_s);
-        self.peaks().to_text() + &ramp_up_to(longest_s, self.duration_s())
+        self.all_peaks().to_text() + &ramp_up_to(longest_s, self.halves.duration_s)
     }
 }
 
-/// Newton's steps after which a phase has all its digits; two or three do.
+/// Maximum steps of Newton's method; two or three are enough.
 const MAX_NEWTON_STEPS: u32 = 10;
 
 /// The x of 0..=pi with x - sin(x) = `level`.
 fn phase_at(level: f64) -> f64 {
-    // The series of the inverse is a little low; x - sin(x) rises and is convex, so from Newton's
-    // first step on all are above the root and fall towards it.
+    // The series of the inverse is slightly low. x - sin(x) rises and is convex, so after the first step of Newton's method
+    // the phase is above the root and falls toward it.
     let root = libm::cbrt(6.0 * level);
     let square = root * root;
     let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
@@ -200,6 +190,7 @@ fn phase_at(level: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Curve;
 
     #[test]
     fn the_documents_top_speed_and_longest_ramp_come_out() {

@@ -1,4 +1,4 @@
-//! A monotone cubic between two points (DESIGN B6): where it is at a time, and when at a position.
+//! A monotone cubic between two points (DESIGN B6): position at a time, and time at a position.
 //!
 //! ```text
 //!  y1 |        .-'    from its start   (m0 + (c2 + c3*x)*x)*x   c2 = (2*(d - m0) + (d - m1))/h
@@ -7,51 +7,45 @@
 //!     0         h     length h, mean slope d, slopes m0 and m1 at the ends, from 0 to 2*d
 //! ```
 //!
-//! Position and time are formed from the nearer end, where both are small, so a step beside a turn keeps its digits.
+//! Both are computed from the nearer end, where they are small, so steps next to a turn keep their digits.
 
 use crate::{bisection::Bracket, curves::curve::greater, square_root, timing::Number};
 
-/// Newton's steps after which a root has all its digits; at most eight do.
+/// Maximum steps of Newton's method; eight are enough.
 const MAX_NEWTON_STEPS: u32 = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cubic<N = f64> {
-    /// Time of its start in s.
     pub(crate) from_s: N,
-    /// Time of its end, later.
     pub(crate) to_s: N,
-    /// Position at its start in steps.
     pub(crate) from: N,
-    /// Position at its end.
     pub(crate) to: N,
-    /// Speed at its start in steps/s.
     pub(crate) from_speed: N,
-    /// Speed at its end.
     pub(crate) to_speed: N,
 }
 
-/// The cubic as seen from one of its ends: x from there on, the travel without sign.
+/// The cubic from one of its ends: x is the time from it, the travel has no sign.
 #[derive(Clone, Copy)]
-pub(crate) struct Seen<N = f64> {
+pub(crate) struct FromEnd<N = f64> {
     near_speed: N,
     square: N,
     cube: N,
 }
 
-impl<N: Number> Seen<N> {
+impl<N: Number> FromEnd<N> {
     pub(crate) fn travel(self, x: N) -> N {
         (self.near_speed + (self.square + self.cube * x) * x) * x
     }
 }
 
-impl Seen {
+impl FromEnd {
     fn speed(self, x: f64) -> f64 {
         self.near_speed + (2.0 * self.square + 3.0 * self.cube * x) * x
     }
 
-    /// The x of 0..=`length` at which the travel is `travel`, from 0 to half of all.
+    /// The x of 0..=`length` at a travel of at most half the total.
     fn time(self, travel: f64, length: f64) -> f64 {
-        // Without the cube; exact for a straight line, and near enough for Newton in the nearer half.
+        // The root without the cubic term: exact for a straight line, and close enough for Newton's method.
         let square = self.near_speed * self.near_speed + 4.0 * self.square * travel;
         let slope = self.near_speed + square_root(greater(0.0, square));
         let mut x = if slope > 0.0 { 2.0 * travel / slope } else { length };
@@ -63,7 +57,7 @@ impl Seen {
             let missing = travel - self.travel(x);
             bracket.narrow(x, missing >= 0.0);
             let next = x + missing / self.speed(x);
-            // Also where there is no slope to divide by.
+            // The comparison also rejects NaN, for a slope of 0.
             let next = if next >= bracket.low && next <= bracket.high { next } else { bracket.middle() };
             let done = libm::fabs(next - x) <= x * f64::EPSILON;
             x = next;
@@ -84,21 +78,21 @@ impl<N: Number> Cubic<N> {
         (self.to - self.from) / self.length_s()
     }
 
-    fn seen(&self, near_speed: N, far_speed: N) -> Seen<N> {
+    fn seen_from_end_with(&self, near_speed: N, far_speed: N) -> FromEnd<N> {
         let (mean, length) = (self.mean_speed(), self.length_s());
-        Seen {
+        FromEnd {
             near_speed,
             square: ((mean - near_speed) * 2.0 + (mean - far_speed)) / length,
             cube: ((near_speed - mean) + (far_speed - mean)) / (length * length),
         }
     }
 
-    pub(crate) fn seen_from_start(&self) -> Seen<N> {
-        self.seen(self.from_speed, self.to_speed)
+    pub(crate) fn seen_from_start(&self) -> FromEnd<N> {
+        self.seen_from_end_with(self.from_speed, self.to_speed)
     }
 
-    pub(crate) fn seen_from_end(&self) -> Seen<N> {
-        self.seen(self.to_speed, self.from_speed)
+    pub(crate) fn seen_from_end(&self) -> FromEnd<N> {
+        self.seen_from_end_with(self.to_speed, self.from_speed)
     }
 }
 
@@ -108,8 +102,8 @@ pub(crate) fn slope_between<N: Number>((h0, d0): (N, N), (h1, d1): (N, N)) -> N 
         return none;
     }
     let parabola = (d0 * h1 + d1 * h0) / (h0 + h1);
-    let least = |a: N, b: N| if b.magnitude() < a.magnitude() { b } else { a };
-    least(least(d0 * 2.0, d1 * 2.0), parabola)
+    let smaller = |a: N, b: N| if b.magnitude() < a.magnitude() { b } else { a };
+    smaller(smaller(d0 * 2.0, d1 * 2.0), parabola)
 }
 
 impl Cubic {
@@ -132,29 +126,28 @@ impl Cubic {
     }
 
     pub(crate) fn acceleration(&self, t: f64) -> f64 {
-        let seen = self.seen_from_start();
-        2.0 * seen.square + 6.0 * seen.cube * (t - self.from_s)
+        let polynomial = self.seen_from_start();
+        2.0 * polynomial.square + 6.0 * polynomial.cube * (t - self.from_s)
     }
 
-    /// Acceleration's rate, the same everywhere in it.
     pub(crate) fn jerk(&self) -> f64 {
         6.0 * self.seen_from_start().cube
     }
 
     pub(crate) fn turn_s(&self) -> Option<f64> {
-        let seen = self.seen_from_start();
-        let turn_s = self.from_s - seen.square / (3.0 * seen.cube);
+        let polynomial = self.seen_from_start();
+        let turn_s = self.from_s - polynomial.square / (3.0 * polynomial.cube);
         (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
     }
 
-    /// When it is at `place`, which lies within it.
-    pub(crate) fn crossing(&self, place: f64) -> Crossing {
+    /// When it is at `position`, which lies within it.
+    pub(crate) fn crossing(&self, position: f64) -> Crossing {
         let travel = self.to - self.from;
-        let (behind, ahead) = (place - self.from, self.to - place);
+        let (behind, ahead) = (position - self.from, self.to - position);
         // Mirrored so that the travel is to the right.
-        let right = |seen: Seen| {
+        let right = |end: FromEnd| {
             let sign = if travel < 0.0 { -1.0 } else { 1.0 };
-            Seen { near_speed: sign * seen.near_speed, square: sign * seen.square, cube: sign * seen.cube }
+            FromEnd { near_speed: sign * end.near_speed, square: sign * end.square, cube: sign * end.cube }
         };
         if libm::fabs(behind) <= libm::fabs(ahead) {
             let travel = libm::fabs(behind);
@@ -170,9 +163,8 @@ impl Cubic {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
-    /// In s.
     pub(crate) time_s: f64,
-    /// Time since the nearer end or until it, in parts of the travel; no number at the end itself.
+    /// Time from the nearer end divided by the travel; NaN at the end.
     pub(crate) s_per_step: f64,
 }
 

@@ -1,67 +1,69 @@
-//! What all motions share: a curve over time, in steps (DESIGN B1).
+//! The curve of a move: position, speed and acceleration over time, in steps (DESIGN B1).
 
 use crate::{bisection::border, format::grouped};
 use alloc::{format, string::String, vec::Vec};
 
 /// The curve of one move: position, speed and acceleration over time since the move's start.
 ///
-/// Times are in s, positions in steps from the move's own start, left negative. Before the start a
-/// curve stands at 0, after its end at [`Curve::steps`].
+/// Times are in s, positions in steps from the start of the move, left negative. Before the start the position is 0,
+/// after the end [`Curve::steps`].
 pub trait Curve {
-    /// How long the move lasts, in s.
     fn duration_s(&self) -> f64;
 
-    /// Where it ends, in steps from its start.
     fn steps(&self) -> i64;
 
-    /// Position at `t`: B1's rounding of it gives the steps due by `t`, and at the end it is exactly [`Curve::steps`].
+    /// Position at `t`. Rounded half up it gives the steps due by `t`; at the end it is exactly [`Curve::steps`].
     fn position(&self, t: f64) -> f64;
 
-    /// Speed at `t` in steps/s: at the start the first that the move has, at the end the last.
+    /// Speed at `t` in steps/s: at the start the first of the move, at the end the last.
     fn speed(&self, t: f64) -> f64;
 
-    /// Acceleration at `t` in steps/s^2; where the speed jumps it has no value, and none is given.
+    /// Acceleration at `t` in steps/s^2, without the jumps of the speed.
     fn acceleration(&self, t: f64) -> f64;
 
-    /// Maximum values within the move, without the jumps at its start and its end.
+    /// Maxima within the move, without the jumps at its start and end.
     fn peaks(&self) -> Peaks;
 
-    /// Times in s at which its formula changes, rising: between two of them position, speed and acceleration are smooth
-    /// and monotonic. Only the first period of a move that repeats itself is given.
+    /// Times in s at which the formula changes, rising: between them position, speed and acceleration are smooth and
+    /// monotonic. Of a periodic move only those of the first period.
     fn breakpoints_s(&self) -> Vec<f64>;
 
-    /// When a curve that goes one way is at `place`, in s; `place` in steps without sign, above 0 and below all.
-    /// Step k is due at k - 1/2 (B1).
+    /// When a curve without reversal is at `position`, in s; `position` in steps without sign, between start and end.
+    /// Step k is due at k - 1/2.
     ///
-    /// By default a search of sixty positions; a formula that can be solved for the time is quicker.
-    fn time_s(&self, place: f64) -> f64 {
-        border(0.0, self.duration_s(), |t| libm::fabs(self.position(t)) < place).1
+    /// The default bisects; a formula that can be solved for the time is faster.
+    fn time_s(&self, position: f64) -> f64 {
+        border(0.0, self.duration_s(), |t| libm::fabs(self.position(t)) < position).1
     }
 
-    /// A few words for the user about the move, on a bus with a maximum rate of `limit_steps_s`; may be empty.
+    /// A short text about the move, on a bus with a maximum rate of `limit_steps_s`; may be empty.
     fn detail(&self, _limit_steps_s: f64) -> String {
         self.peaks().to_text()
     }
 }
 
-/// The maximum magnitudes of a move or an axis.
+/// Maximum magnitudes of a move or an axis, in steps and s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks {
-    /// Speed in steps/s.
     pub speed: f64,
-    /// Acceleration in steps/s^2 where the speed has no jump.
+    /// Without the jumps of the speed.
     pub acceleration: f64,
-    /// Jump of speed in steps/s: what a motor has to follow at once (its start-stop rate).
+    /// Jump of the speed; a motor must start or stop at this rate.
     pub jump: f64,
-    /// Jerk in steps/s^3 where the acceleration has no jump; 0 where the acceleration only jumps.
     pub jerk: f64,
-    /// Jump of acceleration in steps/s^2; there the jerk has no bound. At a jump of speed it is that from
-    /// the acceleration before to the one after.
+    /// Jump of the acceleration, which makes the jerk infinite.
     pub acceleration_jump: f64,
 }
 
 impl Peaks {
-    /// The greater of both, each by itself.
+    /// Of constant rates one after another, the first of them after `before`.
+    pub(crate) fn of_rates(mut before: Option<f64>, rates: impl Iterator<Item = f64>) -> Self {
+        rates.fold(Self::default(), |peaks, speed| {
+            let jump = before.replace(speed).map_or(0.0, |before| libm::fabs(speed - before));
+            peaks.or(Self { speed, jump, ..Self::default() })
+        })
+    }
+
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -73,16 +75,23 @@ impl Peaks {
         }
     }
 
-    /// The maximum speed and acceleration, as people read them.
     #[must_use]
     pub fn to_text(self) -> String {
         format!("peak {} steps/s, {} steps/s\u{b2}", grouped(self.speed), grouped(self.acceleration))
     }
 }
 
-/// The greater of two magnitudes.
+pub(crate) fn signed(steps: i64, magnitude: f64) -> f64 {
+    if steps < 0 { -magnitude } else { magnitude }
+}
+
+/// The greater of two numbers, in plain comparisons: the bits of `libm`'s maximum differ for NaN and -0.
 pub(crate) fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
+}
+
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
 }
 
 #[cfg(test)]

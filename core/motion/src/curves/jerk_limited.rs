@@ -1,5 +1,5 @@
-//! Jerk-limited move from rest to rest in seven phases (DESIGN B6): the fastest that keeps under a speed V, an
-//! acceleration A and a jerk J.
+//! Jerk-limited move from rest to rest in seven phases (DESIGN B6): the fastest within a maximum speed V, acceleration A
+//! and jerk J.
 //!
 //! ```text
 //!  jerk    |--.   .--.        .--.  .--   +J  0  -J  0  -J  0  +J
@@ -11,21 +11,19 @@
 //!            t_j t_a t_j t_v t_j t_a t_j  s_r = v*t_r/2                     steps of a ramp
 //! ```
 //!
-//! | what the distance n allows | v | t_j |
+//! | limited by | v | t_j |
 //! | --- | --- | --- |
-//! | the speed, and on the way to it the acceleration | V | A/J |
-//! | the speed, below A: no constant acceleration | V | sqrt(V/J) |
-//! | the acceleration, below V: no plateau | from v*(v/A + A/J) = n | A/J |
-//! | neither: jerk phases alone | J*t_j^2 | cbrt(n/(2*J)) |
+//! | speed and acceleration | V | A/J |
+//! | speed, below A: no constant acceleration | V | sqrt(V/J) |
+//! | acceleration, below V: no plateau | from v*(v/A + A/J) = n | A/J |
+//! | distance: jerk phases only | J*t_j^2 | cbrt(n/(2*J)) |
 //!
-//! A step's time is the root of its phase's own polynomial, from the end at which it is small, so no digits cancel.
+//! The time of a step is the root of its phase's polynomial, from the end where it is small, so no digits cancel.
 
 use crate::{
-    Curve, Peaks,
-    curves::mirrored::Mirrored,
+    Peaks,
+    curves::mirrored::{Mirrored, MirroredCurve},
     format::grouped,
-    moves,
-    planners::quantities::Quantities,
     square_root,
     timing::{
         CycleTime, Double, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
@@ -33,52 +31,43 @@ use crate::{
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-/// Newton's steps after which a root has all its digits; at most six do.
+/// Maximum steps of Newton's method; six are enough.
 const MAX_NEWTON_STEPS: u32 = 12;
-/// Parts that a phase of constant jerk is cut into: the speed bends in it.
+/// Number of intervals of a phase of constant jerk, in which the speed is curved.
 const JERK_PARTS: u32 = 16;
 
-/// Limits of a move, each above 0.
+/// Maximum speed, acceleration and jerk of a move in steps and s, each above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<N = f64> {
-    /// In steps/s.
     pub speed: N,
-    /// In steps/s^2.
     pub acceleration: N,
-    /// In steps/s^3.
     pub jerk: N,
 }
 
-/// A jerk-limited move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JerkLimited {
     halves: Mirrored,
     phases: Phases<f64>,
-    /// With all their digits: in f64 neither a decimal nor a quotient by mechanics has them.
     limits: Limits<Double>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Phases<N> {
     jerk: N,
-    /// t_j.
     jerk_s: N,
-    /// t_a.
     steady_s: N,
-    /// v, the highest speed that is reached.
+    /// v, the maximum speed reached.
     peak_speed: N,
-    /// t_r.
     ramp_s: N,
-    /// s_r, at most half of all steps.
+    /// s_r, at most half of the steps.
     ramp_steps: N,
-    /// Of the whole move.
     duration_s: N,
 }
 
 impl<N: Number> Phases<N> {
     fn new(steps: i64, Limits { speed, acceleration, jerk }: Limits<N>) -> Self {
         let all = N::from(steps.unsigned_abs() as f64);
-        // To the top speed: with a phase of constant acceleration, where that is reached before.
+        // To the top speed, with constant acceleration if the maximum acceleration is reached first.
         let full_jerk_s = acceleration / jerk;
         let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
             (full_jerk_s, (speed / acceleration - full_jerk_s).or_zero())
@@ -91,9 +80,8 @@ impl<N: Number> Phases<N> {
             let duration_s = all / speed + ramp_s;
             return Self { jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, duration_s };
         }
-        // No plateau: the two ramps are the whole travel.
         let (jerk_s, steady_s, peak_speed) = if all > acceleration * 2.0 * full_jerk_s * full_jerk_s {
-            // v*(v/A + t_j) = n, solved without a difference.
+            // v*(v/A + t_j) = n, solved without cancellation.
             let root = (full_jerk_s * full_jerk_s + all * 4.0 / acceleration).square_root();
             let peak_speed = all * 2.0 / (full_jerk_s + root);
             (full_jerk_s, (peak_speed / acceleration - full_jerk_s).or_zero(), peak_speed)
@@ -105,12 +93,12 @@ impl<N: Number> Phases<N> {
         Self { jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all * 0.5, duration_s: ramp_s * 2.0 }
     }
 
-    /// J*t_j, the greatest acceleration that is reached.
+    /// J*t_j, the maximum acceleration reached.
     fn peak_acceleration(&self) -> N {
         self.jerk * self.jerk_s
     }
 
-    fn joints_s(&self) -> [N; 3] {
+    fn phase_ends_s(&self) -> [N; 3] {
         [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
     }
 
@@ -122,9 +110,8 @@ impl<N: Number> Phases<N> {
         self.jerk * self.jerk_s * self.jerk_s * 0.5
     }
 
-    /// s(t) in steps without sign.
     fn position(&self, t: N) -> N {
-        let [rising, steady, ramp] = self.joints_s();
+        let [rising, steady, ramp] = self.phase_ends_s();
         if t < rising {
             self.jerk * t * t * t / 6.0
         } else if t < steady {
@@ -151,88 +138,43 @@ impl JerkLimited {
         Self::within(steps, Limits { speed, acceleration, jerk })
     }
 
-    /// [`Self::new`], of numbers with all their digits.
-    fn within(steps: i64, limits: Limits<Double>) -> Self {
+    pub(crate) fn within(steps: i64, limits: Limits<Double>) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
         let phases = Phases::new(steps, Limits { speed, acceleration, jerk });
         Self { halves: Mirrored { steps, duration_s: phases.duration_s }, phases, limits }
     }
 
-    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) -> Option<Self> {
-        let steps = quantities.distance("distance", &given.distance);
-        let speed = quantities.speed("max_speed", &given.max_speed);
-        let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
-        let jerk = quantities.jerk("max_jerk", &given.max_jerk);
-        let (steps, _, _, _) = (steps?, speed?, acceleration?, jerk?);
-        let mechanics = quantities.mechanics();
-        let limits = Limits {
-            speed: given.max_speed.exact_in_steps(mechanics).ok()?,
-            acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
-            jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,
-        };
-        Some(Self::within(steps, limits))
-    }
-
-    /// Highest speed that is reached, in steps/s.
+    /// Maximum speed reached, in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.phases.peak_speed
     }
 
-    /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other
-    /// three are the first three backwards.
+    /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other three mirror the first
+    /// three.
     #[must_use]
     pub fn phases_s(&self) -> [f64; 4] {
         let Phases { jerk_s, steady_s, ramp_s, duration_s, .. } = self.phases;
         [jerk_s, steady_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]
     }
 
-    pub(crate) fn joints(&self) -> Vec<f64> {
+    pub(crate) fn changes(&self) -> Vec<f64> {
         let last = self.phases.ramp_steps - self.phases.travel_left(self.phases.jerk_s);
-        self.halves.joints(&[self.phases.first_steps(), last, self.phases.ramp_steps])
-    }
-
-    fn climb_s(&self, position: f64) -> f64 {
-        let Phases { jerk, jerk_s, peak_speed, ramp_s, ramp_steps, .. } = self.phases;
-        let past_first = position - self.phases.first_steps();
-        if past_first <= 0.0 {
-            return libm::cbrt(6.0 * position / jerk);
-        }
-        let left = ramp_steps - position;
-        if left <= 0.0 {
-            return ramp_s - left / peak_speed;
-        }
-        if left > self.phases.travel_left(jerk_s) {
-            let (speed, acceleration) = (self.phases.first_speed(), self.phases.peak_acceleration());
-            let root = square_root(speed * speed + 2.0 * acceleration * past_first);
-            return jerk_s + 2.0 * past_first / (speed + root);
-        }
-        // v*u - J*u^3/6 rises and is concave up to t_j, and its slope stays above v/2: from below,
-        // each of Newton's steps comes nearer and none passes the root.
-        let mut u = left / peak_speed;
-        for _ in 0..MAX_NEWTON_STEPS {
-            let slope = peak_speed - jerk * u * u / 2.0;
-            let correction = (left - self.phases.travel_left(u)) / slope;
-            u += correction;
-            if correction <= u * f64::EPSILON {
-                break;
-            }
-        }
-        ramp_s - u
+        self.halves.changes(&[self.phases.first_steps(), last, self.phases.ramp_steps])
     }
 }
 
-/// Of a time in f64 the phases before it have at most 6 u each, and what is left of the way at a joint 14 u of its steps,
-/// which the speed there makes a third as much of the time. With the root's end, the difference from the end and the
-/// product with the clock it is off by less than 48 u.
+/// Error of a time in f64: 6 u of each earlier phase, and 14 u of the remaining steps at the end of a phase, of which the
+/// speed there makes a third of the time. With the root, the difference from the end and the product with the clock it is
+/// below 48 u.
 impl Schedule for JerkLimited {
     fn length(&self, clock_hz: u32) -> CycleTime {
         CycleTime::of(Phases::new(self.halves.steps, self.limits).duration_s * f64::from(clock_hz))
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
-        one_searched_run(self, clock_hz, self.joints())
+        one_searched_run(self, clock_hz, self.changes())
     }
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
@@ -248,23 +190,18 @@ impl Schedule for JerkLimited {
     }
 }
 
-impl Curve for JerkLimited {
-    fn duration_s(&self) -> f64 {
-        self.halves.duration_s
+impl MirroredCurve for JerkLimited {
+    fn halves(&self) -> &Mirrored {
+        &self.halves
     }
 
-    fn steps(&self) -> i64 {
-        self.halves.steps
+    fn half_position(&self, t: f64) -> f64 {
+        self.phases.position(t)
     }
 
-    fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| self.phases.position(t))
-    }
-
-    fn speed(&self, t: f64) -> f64 {
-        let t = self.halves.nearer_end(t);
-        let [rising, steady, ramp] = self.phases.joints_s();
-        self.halves.signed(if t < rising {
+    fn half_speed(&self, t: f64) -> f64 {
+        let [rising, steady, ramp] = self.phases.phase_ends_s();
+        if t < rising {
             self.phases.jerk * t * t / 2.0
         } else if t < steady {
             self.phases.first_speed() + self.phases.peak_acceleration() * (t - rising)
@@ -272,53 +209,74 @@ impl Curve for JerkLimited {
             self.phases.peak_speed - self.phases.jerk * (ramp - t) * (ramp - t) / 2.0
         } else {
             self.phases.peak_speed
-        })
-    }
-
-    fn acceleration(&self, t: f64) -> f64 {
-        let near = self.halves.nearer_end(t);
-        let [rising, steady, ramp] = self.phases.joints_s();
-        let magnitude = if near < rising {
-            self.phases.jerk * near
-        } else if near < steady {
-            self.phases.peak_acceleration()
-        } else if near < ramp {
-            self.phases.jerk * (ramp - near)
-        } else {
-            0.0
-        };
-        self.halves.acceleration(t, magnitude)
-    }
-
-    fn peaks(&self) -> Peaks {
-        let acceleration = self.phases.peak_acceleration();
-        Peaks {
-            speed: self.phases.peak_speed,
-            acceleration,
-            jump: 0.0,
-            jerk: self.phases.jerk,
-            acceleration_jump: 0.0,
         }
     }
 
-    fn breakpoints_s(&self) -> Vec<f64> {
-        let [rising_s, steady_s, ramp_s] = self.phases.joints_s();
+    fn half_acceleration(&self, t: f64) -> Option<f64> {
+        let [rising, steady, ramp] = self.phases.phase_ends_s();
+        Some(if t < rising {
+            self.phases.jerk * t
+        } else if t < steady {
+            self.phases.peak_acceleration()
+        } else if t < ramp {
+            self.phases.jerk * (ramp - t)
+        } else {
+            0.0
+        })
+    }
+
+    fn half_time_s(&self, position: f64) -> f64 {
+        let Phases { jerk, jerk_s, peak_speed, ramp_s, ramp_steps, .. } = self.phases;
+        let past_first = position - self.phases.first_steps();
+        if past_first <= 0.0 {
+            return libm::cbrt(6.0 * position / jerk);
+        }
+        let left = ramp_steps - position;
+        if left <= 0.0 {
+            return ramp_s - left / peak_speed;
+        }
+        if left > self.phases.travel_left(jerk_s) {
+            let (speed, acceleration) = (self.phases.first_speed(), self.phases.peak_acceleration());
+            let root = square_root(speed * speed + 2.0 * acceleration * past_first);
+            return jerk_s + 2.0 * past_first / (speed + root);
+        }
+        // v*u - J*u^3/6 rises and is concave up to t_j, with a slope above v/2: Newton's method approaches the root from
+        // below and never passes it.
+        let mut u = left / peak_speed;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let slope = peak_speed - jerk * u * u / 2.0;
+            let correction = (left - self.phases.travel_left(u)) / slope;
+            u += correction;
+            if correction <= u * f64::EPSILON {
+                break;
+            }
+        }
+        ramp_s - u
+    }
+
+    fn all_peaks(&self) -> Peaks {
+        Peaks {
+            speed: self.phases.peak_speed,
+            acceleration: self.phases.peak_acceleration(),
+            jerk: self.phases.jerk,
+            ..Peaks::default()
+        }
+    }
+
+    fn half_breakpoints_s(&self) -> Vec<f64> {
+        let [rising_s, steady_s, ramp_s] = self.phases.phase_ends_s();
         let parts = |from_s: f64, to_s: f64| {
             (1..=JERK_PARTS)
                 .map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
         };
-        self.halves.breakpoints_s(parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)))
+        parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)).collect()
     }
 
-    fn time_s(&self, place: f64) -> f64 {
-        self.halves.time_s(place, |place| self.climb_s(place))
-    }
-
-    fn detail(&self, _: f64) -> String {
+    fn text(&self, _: f64) -> String {
         let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
         format!(
             "{}, {} steps/s\u{b3}; phases of {} s and back",
-            self.peaks().to_text(),
+            self.all_peaks().to_text(),
             grouped(self.phases.jerk),
             phases.join(", ")
         )
@@ -328,6 +286,7 @@ impl Curve for JerkLimited {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Curve, moves};
 
     fn curve(steps: i64, speed: f64, acceleration: f64, jerk: f64) -> JerkLimited {
         JerkLimited::new(steps, Limits { speed, acceleration, jerk })
@@ -397,7 +356,7 @@ mod tests {
             assert!(peaks.speed <= speed * most && peaks.acceleration <= acceleration * most, "{steps}");
             assert_eq!(peaks.jerk, jerk);
             // In no phase is there room under all three limits.
-            let [rising, steady, _] = made.phases.joints_s();
+            let [rising, steady, _] = made.phases.phase_ends_s();
             assert!(steady <= rising || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12, "{steps}");
             assert!(made.phases_s()[3] <= 0.0 || peaks.speed == speed, "{steps}");
         }

@@ -1,10 +1,10 @@
-//! Curves: where an axis is over time, and when its steps are due (DESIGN Part B). One file per kind of move:
+//! Curves: the position of an axis over time, and when its steps are due (DESIGN Part B). One file per kind of move:
 //!
 //! ```text
-//! trapezoid, trapezoid_table     B2    / uniform acceleration, exact or by a table of a timer's reloads \
+//! trapezoid, trapezoid_table     B2    / uniform acceleration, exact or by a table of timer reloads \
 //! staircase                      B3    _-_     rates that are each held for some steps
-//! cosine, sliced, ramps          B4    ( S )   a distance in a given time, with ramps of some shape
-//! sine_segments, sine            B5 B6 \/\/    about a middle position
+//! cosine, sliced, ramps          B4    ( S )   a distance in a given time, with shaped ramps
+//! sine_segments, sine            B5 B6 \/\/    around a middle position
 //! jerk_limited, points           B6    within limits, or through points
 //! constant_velocity              B6    ---     one rate, or a dwell
 //! ```
@@ -12,7 +12,7 @@
 //! ```
 //! use stepscope_motion::{Curve, curves::{Cosine, JerkLimited, JerkLimits}};
 //!
-//! // One turn of 3200 steps in 0.4 s, half of it speeding up.
+//! // One turn of 3200 steps in 0.4 s, of which half accelerates.
 //! let turn = Cosine::new(3200, 0.4, 0.2);
 //! assert_eq!((turn.top_speed(), turn.position(0.2)), (16_000.0, 1600.0));
 //! let limits = JerkLimits { speed: 10_000.0, acceleration: 100_000.0, jerk: 2_000_000.0 };

@@ -1,9 +1,9 @@
-//! What motions to and fro about a middle share (DESIGN B5, B6): whole periods, from one extreme to the other and back.
+//! Shared parts of oscillations around a middle position (DESIGN B5, B6): whole periods from one extreme and back.
 //!
 //! ```text
-//!  0   |\        /\        /   position from the start: the right extreme, or with a negative
-//!      |  \    /    \    /     amplitude the left one
-//! -2*A |    \/        \/       4*A steps a period, 0 at the end of each
+//!  0   |\        /\        /   position from the start: the right extreme or, with a negative
+//!      |  \    /    \    /     amplitude, the left one
+//! -2*A |    \/        \/       4*A steps per period, 0 at the end of each
 //! ```
 
 use crate::{
@@ -13,16 +13,15 @@ use crate::{
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oscillation {
-    /// Distance from the middle to an extreme in whole steps.
+    /// Steps from the middle to an extreme.
     pub(crate) amplitude: u64,
-    /// The motion starts at the right extreme; with a negative amplitude at the left one.
+    /// False with a negative amplitude.
     pub(crate) starts_right: bool,
     pub(crate) period_s: f64,
     pub(crate) periods: u32,
 }
 
 impl Oscillation {
-    /// `periods` of `period_s` > 0 between `amplitude` steps on either side of the middle.
     pub(crate) fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
         Self { amplitude: amplitude.unsigned_abs(), starts_right: amplitude >= 0, period_s, periods }
     }
@@ -31,13 +30,13 @@ impl Oscillation {
         self.period_s * f64::from(self.periods)
     }
 
-    /// All periods in cycles, with all digits.
+    /// Duration in cycles.
     pub(crate) fn length(&self, clock_hz: u32) -> CycleTime {
         let duration = Exact::of(self.period_s).times(self.periods.into());
         CycleTime::exact(&duration.times(clock_hz.into()))
     }
 
-    /// A period in cycles, in 106 bits.
+    /// A period in cycles.
     pub(crate) fn period(&self, clock_hz: u32) -> Double {
         Exact::of(self.period_s).times(clock_hz.into()).double()
     }
@@ -46,12 +45,12 @@ impl Oscillation {
         4 * self.amplitude * u64::from(self.periods)
     }
 
-    /// Whether half period `half` (from 0) goes to the right.
+    /// Direction of half period `half` (from 0).
     pub(crate) fn goes_right(&self, half: u64) -> bool {
         self.starts_right == (half % 2 == 1)
     }
 
-    /// Part of a period that has passed at `t`, 0 to 1.
+    /// Elapsed part of the period at `t`, 0 to 1.
     pub(crate) fn part(&self, t: f64) -> f64 {
         let turns = t / self.period_s;
         greater(0.0, turns - libm::floor(turns))

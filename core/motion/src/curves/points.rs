@@ -1,17 +1,17 @@
-//! A profile given as points (DESIGN B6): positions at times, straight between them or smooth.
+//! A curve through given points (DESIGN B6): positions at times, connected by lines or smoothly.
 //!
 //! ```text
-//!  straight  |   /\        the given polyline: its speed jumps at each point
+//!  straight  |   /\        lines: the speed jumps at each point
 //!            |  /  \____
-//!  smooth    |   .-.       a cubic from point to point (Steffen 1990): it turns where the points
-//!            | .'   '-._   turn and nowhere else, and starts and ends at rest
+//!  smooth    |   .-.       a cubic per pair of points (Steffen 1990): it turns only where the points turn, and starts and
+//!            | .'   '-._   ends at rest
 //! ```
 //!
-//! A turn that only touches a half-integer from below, for an instant or by standing there, does not cross it: no step is
-//! due, though R of the position there is one more. From its end on the axis stands at R of the last position.
+//! A turn that only touches a half-integer from below does not cross it, so no step is due, although the rounded position
+//! is one more there. After the end the position is the last one rounded.
 
-mod exactly;
-mod off;
+mod exact;
+mod max_error;
 
 use crate::{
     Curve, Peaks,
@@ -21,45 +21,43 @@ use crate::{
     },
     format::grouped,
     round_half_up,
-    timing::{CycleTime, Double, Exact, Interpolated, IsDueBefore, MAX_OFF, Run, Runs, Schedule},
+    timing::{CycleTime, Double, Exact, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
-use off::{Off, off};
+use max_error::{MaxError, max_errors};
 
 const CURVE_PARTS: u32 = 256;
 
-/// A point: its time in s and its position in steps, both from the first.
+/// Time in s and position in steps of a point, relative to the first.
 pub(crate) type Point = (Double, Double);
 
-/// How a curve goes from point to point.
+/// The connection of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Between {
-    /// Straight.
+    /// Lines.
     Straight,
-    /// By monotone cubics, from rest to rest.
+    /// Monotone cubics, from rest to rest.
     Smooth,
 }
 
-/// A curve through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
-    /// The points with all their digits.
-    ///
-    /// Invariant: one more than there are pieces, the first at 0.
+    /// The points in 106 bits.
+    /// Invariant: one more than pieces, the first at 0.
     exact: Vec<Point>,
-    /// How far the times of each piece may be off.
-    off: Vec<Off>,
-    /// Invariant: at least one; each starts when and where the one before ends, the first at 0.
+    /// Maximum errors of the times in f64, one per piece.
+    max_errors: Vec<MaxError>,
+    /// Invariant: at least one; each starts at the end of the one before, the first at 0.
     pieces: Vec<Cubic>,
-    /// Steps that are made by the end of each piece, right positive.
-    made: Vec<i64>,
+    /// Position in whole steps at the end of each piece.
+    positions: Vec<i64>,
     /// Steps, in either direction, up to the end of each piece.
     ends: Vec<u64>,
     between: Between,
 }
 
 impl Points {
-    /// Through (time in s, position in steps), at least two, their times rising; `None` else.
+    /// Through at least two (time in s, position in steps) with rising times, else `None`.
     #[must_use]
     pub fn new(points: &[(f64, f64)], between: Between) -> Option<Self> {
         let &(zero_s, zero) = points.first()?;
@@ -90,21 +88,22 @@ impl Points {
         if between == Between::Smooth {
             smoothen(&mut pieces);
         }
-        let made = made(&pieces, &exact);
-        debug_assert!(made.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0));
+        let positions = positions(&pieces, &exact);
+        debug_assert!(
+            positions.len() == pieces.len() && pieces.first().is_some_and(|first| first.from_s == 0.0)
+        );
         debug_assert!(pieces.is_sorted_by(|piece, next| piece.to_s == next.from_s && piece.to == next.from));
-        let off = off(&pieces, between == Between::Smooth);
+        let max_errors = max_errors(&pieces, between == Between::Smooth);
         let (mut from, mut steps) = (0_i64, 0_u64);
-        let ends = made.iter().map(|to| {
+        let ends = positions.iter().map(|to| {
             steps = steps.saturating_add(from.abs_diff(*to));
             from = *to;
             steps
         });
         let ends = ends.collect();
-        Some(Self { exact, off, pieces, made, ends, between })
+        Some(Self { exact, max_errors, pieces, positions, ends, between })
     }
 
-    /// Steps of all pieces, whichever way they go.
     #[must_use]
     pub fn step_count(&self) -> u64 {
         self.counted().map(|(_, from, to)| from.abs_diff(to)).sum()
@@ -113,37 +112,37 @@ impl Points {
     /// The maximum distance from the start, in steps.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        self.pieces.iter().fold(0.0, |most, piece| greater(most, libm::fabs(piece.to)))
+        self.pieces.iter().fold(0.0, |max, piece| greater(max, libm::fabs(piece.to)))
     }
 
-    /// How often the error of a time or of a position counts at most in a piece (`off`).
-    pub(crate) fn most_times(&self) -> f64 {
-        let most_s = self.off.iter().fold(0.0, |most, off| greater(most, off.time_s));
-        most_s / (MAX_OFF * self.duration_s())
+    /// Maximum factor by which a piece multiplies the error of a time or position.
+    pub(crate) fn max_error_factor(&self) -> f64 {
+        let max_s = self.max_errors.iter().fold(0.0, |max, error| greater(max, error.time_s));
+        max_s / (MAX_ERROR * self.duration_s())
     }
 
-    /// The piece (from 0) in which the speed is greatest, and that speed in steps/s.
+    /// The piece (from 0) with the maximum speed, and that speed in steps/s.
     #[must_use]
     pub fn quickest(&self) -> (usize, f64) {
         let speeds = self.pieces.iter().map(peak_speed).enumerate();
-        speeds.fold((0, 0.0), |most, each| if each.1 > most.1 { each } else { most })
+        speeds.fold((0, 0.0), |max, each| if each.1 > max.1 { each } else { max })
     }
 
     fn counted(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + '_ {
-        let before = core::iter::once(&0).chain(&self.made);
-        self.pieces.iter().zip(before.zip(&self.made)).map(|(piece, (from, to))| (piece, *from, *to))
+        let before = core::iter::once(&0).chain(&self.positions);
+        self.pieces.iter().zip(before.zip(&self.positions)).map(|(piece, (from, to))| (piece, *from, *to))
     }
 
-    /// The piece of step `k` (from 1) of all, and its place.
+    /// The piece of step `k` (from 1), and the position at which it is due.
     fn step(&self, k: u64) -> Option<(usize, f64)> {
         let past = k.checked_sub(1)?;
         let index = self.ends.partition_point(|end| *end <= past);
-        let to = *self.made.get(index)?;
+        let to = *self.positions.get(index)?;
         let (from, before) = match index.checked_sub(1) {
-            Some(last) => (*self.made.get(last)?, *self.ends.get(last)?),
+            Some(last) => (*self.positions.get(last)?, *self.ends.get(last)?),
             None => (0, 0),
         };
-        Some((index, place(from, to, (past - before) as f64)))
+        Some((index, due_position(from, to, (past - before) as f64)))
     }
 
     fn piece(&self, t: f64) -> Option<&Cubic> {
@@ -159,14 +158,14 @@ impl Schedule for Points {
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let clock = f64::from(clock_hz);
-        let pieces = self.counted().zip(&self.off).filter(|((_, from, to), _)| from != to);
-        Box::new(pieces.map(move |((piece, from, to), off)| {
+        let pieces = self.counted().zip(&self.max_errors).filter(|((_, from, to), _)| from != to);
+        Box::new(pieces.map(move |((piece, from, to), error)| {
             let count = from.abs_diff(to);
             let times = Interpolated::new(count, Vec::new(), move |step| {
-                let Crossing { time_s, s_per_step } = piece.crossing(place(from, to, step));
-                // At the end of a piece there is no mean speed, so the time is uncertain.
+                let Crossing { time_s, s_per_step } = piece.crossing(due_position(from, to, step));
+                // NaN at the end of a piece: no bound.
                 let s_per_step = if s_per_step >= 0.0 { s_per_step } else { f64::INFINITY };
-                (time_s * clock, (off.time_s + off.way * s_per_step) * clock)
+                (time_s * clock, (error.time_s + error.travel * s_per_step) * clock)
             });
             Run { count, right: to > from, times: Box::new(times) }
         }))
@@ -174,18 +173,19 @@ impl Schedule for Points {
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         Box::new(move |k, since| {
-            self.step(k).is_some_and(|(index, place)| self.is_past(index, place, since / f64::from(clock_hz)))
+            let since = since / f64::from(clock_hz);
+            self.step(k).is_some_and(|(index, position)| self.is_past(index, position, since))
         })
     }
 }
 
-/// Where step `index` (from 0) of those between two counts of steps is due.
-fn place(from: i64, to: i64, index: f64) -> f64 {
+/// Position at which step `index` (from 0) between two whole positions is due.
+fn due_position(from: i64, to: i64, index: f64) -> f64 {
     from as f64 + if to > from { index + 0.5 } else { -0.5 - index }
 }
 
-fn made(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
-    // Whether the curve goes left from the end of each piece, at once or after it has stood there.
+fn positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
+    // Whether the curve goes left after the end of each piece, at once or after a standstill.
     let mut falls_next = false;
     let mut falls: Vec<bool> = Vec::with_capacity(pieces.len());
     for piece in pieces.iter().rev() {
@@ -194,14 +194,14 @@ fn made(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     }
     let mut rose = false;
     let ends = pieces.iter().zip(exact.iter().skip(1)).zip(falls.into_iter().rev());
-    let made = ends.map(|((piece, (_, to)), falls)| {
+    let positions = ends.map(|((piece, (_, to)), falls)| {
         rose = piece.to > piece.from || (piece.to == piece.from && rose);
         let due = round_half_up(to.high);
         let half = Double::from(due as f64 - 0.5);
-        // The nearest f64 may be the half where the point is less. A half that is touched from below alone is not crossed.
+        // The f64 may be the half while the point is less. A half that is only touched from below is not crossed.
         if half > *to || (rose && falls && *to <= half) { due - 1 } else { due }
     });
-    made.collect()
+    positions.collect()
 }
 
 fn smoothen(pieces: &mut [Cubic]) {
@@ -230,7 +230,7 @@ impl Curve for Points {
     }
 
     fn steps(&self) -> i64 {
-        self.made.last().copied().unwrap_or(0)
+        self.positions.last().copied().unwrap_or(0)
     }
 
     fn position(&self, t: f64) -> f64 {
@@ -309,11 +309,10 @@ impl Curve for Points {
 
 #[cfg(test)]
 impl Points {
-    /// The piece and the place of every step, and whether it goes to the right.
     fn all_due(&self) -> impl Iterator<Item = (usize, f64, bool)> + '_ {
         (1..=self.step_count()).filter_map(|k| {
-            let (index, place) = self.step(k)?;
-            Some((index, place, self.pieces[index].to > self.pieces[index].from))
+            let (index, position) = self.step(k)?;
+            Some((index, position, self.pieces[index].to > self.pieces[index].from))
         })
     }
 }

@@ -1,46 +1,44 @@
-//! The polyline that stands for a cosine (DESIGN B5, SWorldJournal issue 11): its breakpoints, and
-//! the symmetry that makes a period of a quarter.
+//! The polyline that approximates a cosine (DESIGN B5, SWorldJournal issue 11): its breakpoints in a quarter, from which
+//! the period follows by symmetry.
 //!
 //! ```text
-//!  1 |-._                 y = cos(pi*i/1024), i = 0..=512, 2048 points a period
-//!    |   '-._             a chord goes from its breakpoint as far as its greatest deviation
-//!    |       '-._         from the cosine stays within d1
+//!  1 |-._                 y = cos(pi*i/1024), i = 0..=512, 2048 points per period
+//!    |   '-._             a chord extends from its breakpoint as far as its maximum deviation
+//!    |       '-._         from the cosine is at most d1
 //!  0 +-----------'- 512
 //! ```
 //!
 //! ```
 //! use stepscope_motion::curves::polyline::{breakpoints, next_deviation};
 //!
-//! // The paper's six segments a quarter.
+//! // The paper's six segments per quarter.
 //! let six = breakpoints(0.0054);
 //! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
 //! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
 //! ```
 
-use crate::{bisection::least_near, curves::curve::greater, round_half_up};
+use crate::{bisection::first_near, curves::curve::greater, round_half_up};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-/// Points of the angle in a period; breakpoints lie on them.
+/// Points of the angle per period; breakpoints lie on them.
 pub const POINTS: u16 = 2048;
-/// Points of the angle in a quarter.
+/// Points of the angle per quarter.
 pub const QUARTER: u16 = POINTS / 4;
 const CHORD_PARTS: u16 = 100;
-// Four quarters are a period, to the point.
 const _: () = assert!(4 * QUARTER == POINTS);
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
 pub fn cosine_at(point: u16) -> f64 {
-    // The end of the quarter is exactly 0; cos(pi/2) of the rounded pi is not.
+    // cos(pi/2) of the rounded pi is not 0.
     if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
 }
 
-/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the largest deviation `d1` in parts of the amplitude (B5).
+/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the maximum deviation `d1` in units of the amplitude.
 ///
-/// From a breakpoint the next point is tried as long as the chord's greatest deviation from the
-/// cosine, over the 101 points that cut it in 100, is at most `d1`; the last that holds is the next
-/// breakpoint, and at least the very next point is. A longer chord deviates more, so not each point is
-/// tried: the search begins at a chord as long as the one before, which is seldom far off.
+/// A chord extends to the last point at which its maximum deviation from the cosine, over 101 equidistant points, is at
+/// most `d1`, and at least to the next point. A longer chord deviates more, so the search begins at the length of the
+/// previous chord, which is seldom far off.
 pub fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
     let (mut from, mut longer) = (0, 0);
@@ -48,33 +46,33 @@ pub fn breakpoints(d1: f64) -> Vec<u16> {
         let next = from + 1;
         let y_from = cosine_at(from);
         let holds = |to: u16| deviation((from, y_from), to) <= d1;
-        longer = least_near(longer, (QUARTER - next).into(), |longer| !holds(next + longer as u16 + 1));
+        longer = first_near(longer, (QUARTER - next).into(), |longer| !holds(next + longer as u16 + 1));
         from = next + longer as u16;
         points.push(from);
     }
     points
 }
 
-/// The least `d1` above the one of these breakpoints that gives others; None where none does.
+/// The next larger `d1` that gives other breakpoints, if there is one.
 pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
     let chords = breakpoints.iter().zip(breakpoints.iter().skip(1));
     chords
         .filter(|(_, to)| **to < QUARTER)
         .map(|(from, to)| deviation((*from, cosine_at(*from)), to + 1))
-        .reduce(|least, deviation| if deviation < least { deviation } else { least })
+        .reduce(|min, deviation| if deviation < min { deviation } else { min })
 }
 
-/// Greatest |chord - cosine| between two points of the angle, over the 101 that cut the chord.
+/// Maximum |chord - cosine| between two points of the angle, over 101 equidistant points.
 ///
-/// In a quarter the difference rises to one summit, where the cosine runs along the chord, and
-/// falls; so of the 101 only those next to the summit are looked at.
+/// In a quarter the difference has one maximum, where the cosine is parallel to the chord, so only the points next to it
+/// are computed.
 fn deviation((from, y_from): (u16, f64), to: u16) -> f64 {
     let y_to = cosine_at(to);
     let length = f64::from(to - from);
     let summit = libm::asin((y_from - y_to) * 1024.0 / (PI * length)) * 1024.0 / PI;
     let nearest = round_half_up((summit - f64::from(from)) / length * f64::from(CHORD_PARTS)) as u16;
     (nearest.saturating_sub(1)..=CHORD_PARTS.min(nearest + 1))
-        .fold(0.0, |greatest, k| greater(greatest, deviation_at(k, from, to, y_from, y_to)))
+        .fold(0.0, |max, k| greater(max, deviation_at(k, from, to, y_from, y_to)))
 }
 
 fn deviation_at(k: u16, from: u16, to: u16, y_from: f64, y_to: f64) -> f64 {
@@ -85,11 +83,8 @@ fn deviation_at(k: u16, from: u16, to: u16, y_from: f64, y_to: f64) -> f64 {
 }
 
 pub(crate) struct Folded {
-    /// 0..=512.
     pub(crate) point: f64,
-    /// Right of the middle.
     pub(crate) right: bool,
-    /// On the way to the left.
     pub(crate) leftwards: bool,
 }
 

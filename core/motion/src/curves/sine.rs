@@ -1,22 +1,19 @@
-//! Exact sine (DESIGN B6): every step where the cosine crosses its half-integer (B1).
+//! Exact sine (DESIGN B6): each step is due where the cosine crosses its half-integer.
 //!
 //! It starts at the right extreme; A is the amplitude in whole steps, T the period, d the travel from the last extreme.
 //!
 //! ```text
-//!  0   |'-.          .-'    s(t) = -2*A*sin^2(pi*t/T)       keeps its digits where 1 - cos loses them
-//!      |   \        /       d    = 2*A*sin^2(pi*t/T)        of the half period from its extreme on
+//!  0   |'-.          .-'    s(t) = -2*A*sin^2(pi*t/T)       exact where 1 - cos cancels
+//!      |   \        /       d    = 2*A*sin^2(pi*t/T)        travel in a half period from its extreme on
 //! -2*A |    '-.__.-'        t    = T/pi*asin(sqrt(d/(2*A))) of step k at d = k - 1/2, k = 1..=A
-//!      0     T/2     T           and T/2 less that of the travel that is left, k = A+1..=2*A
+//!      0     T/2     T           and T/2 minus that of the remaining travel, k = A+1..=2*A
 //! ```
 //!
-//! The arc sine is taken up to 45 degrees only, so no time is a small difference of large numbers.
+//! The arcsine is only used up to 45 degrees, so no time is a small difference of large numbers.
 
 use crate::{
     Curve, Peaks,
     curves::oscillation::Oscillation,
-    limits, moves,
-    planners::budget::hold_speed,
-    planners::quantities::Quantities,
     square_root,
     timing::{CycleTime, Double, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before},
 };
@@ -26,79 +23,50 @@ use core::f64::consts::{PI, TAU};
 const PERIOD_PARTS: u32 = 128;
 const MAX_SAVED: u64 = 65_536;
 
-/// A sine, each step in its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
     pub(crate) oscillation: Oscillation,
 }
 
 impl Sine {
-    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps (not 0) on either side of
-    /// the middle; a negative amplitude starts at the left extreme.
+    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps (not 0) on both sides of the middle; a negative
+    /// amplitude starts at the left extreme.
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
         Self { oscillation: Oscillation::new(amplitude, period_s, periods) }
-    }
-
-    pub(crate) fn plan(quantities: &mut Quantities<'_>, given: &moves::Sine) -> Option<Self> {
-        let amplitude = quantities.distance("amplitude", &given.amplitude);
-        let period_s = quantities.duration("period_s", given.period_s);
-        quantities.range("periods", given.periods.into(), limits::PERIODS, "")?;
-        let curve = Self::new(amplitude?, period_s?, given.periods);
-        hold_speed(quantities, "period_s", curve.peaks().speed)?;
-        Some(curve)
-    }
-
-    /// Time of a period in s.
-    #[must_use]
-    pub fn period_s(&self) -> f64 {
-        self.oscillation.period_s
-    }
-
-    /// How many periods.
-    #[must_use]
-    pub fn periods(&self) -> u32 {
-        self.oscillation.periods
-    }
-
-    /// Steps of all periods, there and back: 4*A a period.
-    #[must_use]
-    pub fn step_count(&self) -> u64 {
-        self.oscillation.step_count()
     }
 
     fn amplitude(&self) -> f64 {
         self.oscillation.amplitude as f64
     }
 
-    /// 2*pi/T.
     fn angular_speed(&self) -> f64 {
         TAU / self.oscillation.period_s
     }
 }
 
-/// Of a time in f64 the quotient has one rounding u, its root one and a half, which the arc sine up to 45 degrees makes at
-/// most 4/pi times as much; with its own two, the product with 2/pi, the sum of the half periods and the product with
-/// their cycles, which are three, it is off by at most 10 u.
+/// Error of a time in f64: one rounding u of the quotient and 1.5 u of its root, which the arcsine up to 45 degrees
+/// multiplies by up to 4/pi. With its own two, the product with 2/pi, the sum of half periods and the product with their
+/// cycles it is at most 10 u.
 impl Schedule for Sine {
     fn length(&self, clock_hz: u32) -> CycleTime {
         self.oscillation.length(clock_hz)
     }
 
-    /// All half periods have the same times from their starts; saved, they take a twentieth of an arc sine each.
+    /// All half periods have the same times from their starts, which are saved: an arcsine takes 20 times as long.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let Oscillation { amplitude, period_s, periods, .. } = self.oscillation;
         let (travel, half_cycles) = (2 * amplitude, period_s / 2.0 * f64::from(clock_hz));
-        let off = self.off_s() * f64::from(clock_hz);
+        let max_error = self.max_error_s() * f64::from(clock_hz);
         let saved = if travel <= MAX_SAVED { travel } else { 0 };
         let saved: Rc<[f64]> = (1..=saved).map(|k| part_of_half(k, amplitude)).collect();
         Box::new((0..2 * u64::from(periods)).map(move |half| {
             let (parts, halves, right) = (Rc::clone(&saved), half as f64, self.oscillation.goes_right(half));
             if parts.is_empty() {
                 let part = move |step: f64| part_of_half(step as u64 + 1, amplitude);
-                return Run::new(travel, right, off, move |step| (halves + part(step)) * half_cycles);
+                return Run::new(travel, right, max_error, move |step| (halves + part(step)) * half_cycles);
             }
-            Run { count: travel, right, times: Box::new(Saved { parts, halves, half_cycles, off }) }
+            Run { count: travel, right, times: Box::new(Saved { parts, halves, half_cycles, max_error }) }
         }))
     }
 
@@ -120,10 +88,9 @@ impl Schedule for Sine {
 
 struct Saved {
     parts: Rc<[f64]>,
-    /// Half periods before it.
     halves: f64,
     half_cycles: f64,
-    off: f64,
+    max_error: f64,
 }
 
 impl Times for Saved {
@@ -131,14 +98,14 @@ impl Times for Saved {
         for (time, part) in times.iter_mut().zip(self.parts.iter().skip(first as usize)) {
             *time = (self.halves + part) * self.half_cycles;
         }
-        self.off
+        self.max_error
     }
 }
 
-/// Part of a half period, 0 to 1, after which step `k` of its 2*`amplitude` is due.
+/// Time of step `k` of the 2*`amplitude` steps of a half period, in half periods.
 fn part_of_half(k: u64, amplitude: u64) -> f64 {
     let travel = 2 * amplitude;
-    // Twice the distance of the step's place from the nearer extreme is a whole number.
+    // Twice the distance of the step from the nearer extreme is an integer.
     let from_extreme = |twice: u64| 2.0 / PI * libm::asin(square_root(twice as f64 / (2 * travel) as f64));
     if k <= amplitude { from_extreme(2 * k - 1) } else { 1.0 - from_extreme(2 * (travel - k) + 1) }
 }
@@ -223,7 +190,7 @@ mod tests {
         for amplitude in [1, 2, 3, 1000, -777] {
             let (sine, travel) = (Sine::new(amplitude, 0.5, 3), 2 * amplitude.unsigned_abs());
             let runs: Vec<Run> = sine.runs(1000).collect();
-            assert_eq!(runs.iter().map(|run| run.count).sum::<u64>(), sine.step_count());
+            assert_eq!(runs.iter().map(|run| run.count).sum::<u64>(), sine.oscillation.step_count());
             for (half, run) in runs.iter().enumerate() {
                 assert_eq!((run.count, run.right), (travel, (half % 2 == 1) == (amplitude > 0)));
             }

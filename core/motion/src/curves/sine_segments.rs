@@ -1,12 +1,11 @@
-//! Sine as segments of fixed rate (DESIGN B5, SWorldJournal issue 11).
-//!
-//! The breakpoints (`polyline`) are as far apart as the largest deviation d1 allows; other quarters follow by symmetry.
+//! Sine as segments of constant rate (DESIGN B5, SWorldJournal issue 11): the breakpoints (`polyline`) are as far apart as
+//! the maximum deviation d1 allows; the other quarters follow by symmetry.
 //!
 //! ```text
 //!   +A |\_                _/      vertex    round_half_up(A*y), whole steps
 //!      |  \              /        time      i*T/2048
 //!    0 |---\------------/---      segment   (difference of vertices)/(difference of times),
-//!      |    \_        _/                    one rate, so one interval a segment
+//!      |    \_        _/                    one rate, so one interval per segment
 //!   -A |      \______/            position  from the start: 0, down to -2*A, up to 0
 //!      0     512 1024 1536 2048 i
 //! ```
@@ -14,79 +13,62 @@
 use crate::{
     Curve, Peaks,
     curves::{
-        curve::greater,
         oscillation::Oscillation,
         polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
     },
     format::grouped,
-    limits, moves,
-    planners::budget::{Budget, MAX_SEGMENTS, hold_speed},
-    planners::quantities::Quantities,
-    problem::ValueError,
     round_half_up,
     timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-const MAX_TOLD: usize = 12;
+const MAX_LISTED: usize = 12;
 
-/// One segment of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// Point of the angle where it begins, of 2048 a period.
+    /// First and last point of the angle, of 2048 per period.
     pub from: u16,
-    /// Point where it ends.
     pub to: u16,
-    /// Angle of the beginning in degrees.
     pub from_deg: f64,
-    /// Angle of the end in degrees.
     pub to_deg: f64,
-    /// Steps.
     pub steps: u64,
-    /// Steps a second.
     pub rate: f64,
-    /// How long, in s.
     pub duration_s: f64,
-    /// Distance of its beginning from the middle, in steps.
+    /// Distance of its start from the middle, in steps.
     from_steps: u64,
 }
 
-/// A segment in its place in the motion; its steps stand in the middles of as many equal parts.
+/// A segment within the motion; its steps are in the middles of as many equal parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
-    /// Its beginning in points of the angle from the start.
+    /// In points of the angle from the start.
     pub(crate) from: f64,
-    /// Its end.
     pub(crate) to: f64,
-    /// Steps.
     pub(crate) steps: u64,
-    /// Which way they go.
     pub(crate) right: bool,
 }
 
-/// Memory that a controller needs for a quarter.
+/// Memory of a controller for a quarter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
-    /// Bytes of the segments: a 4-byte interval and a count of steps each, which takes 2 bytes, or
-    /// 4 where a segment has more than 65535 steps.
+    /// Bytes of the segments: a 4-byte interval and a step count each, which takes 2 bytes, or 4 if a segment has more
+    /// than 65535 steps.
     pub segments: u64,
-    /// Bytes of one 4-byte interval for each step.
+    /// Bytes of a 4-byte interval per step.
     pub intervals: u64,
 }
 
-/// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
     pub(crate) oscillation: Oscillation,
     /// The first quarter.
-    ///
-    /// Invariant: begins at point 0, ends at [`QUARTER`], without gaps.
+    /// Invariant: from point 0 to [`QUARTER`] without gaps.
     segments: Vec<Segment>,
 }
 
 impl SineSegments {
-    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps on either side of the middle; a negative
-    /// amplitude starts at the left extreme. `d1` is the largest deviation in parts of the amplitude.
+    /// `periods` whole periods of `period_s` > 0 between `amplitude` steps on both sides of the middle; a negative
+    /// amplitude starts at the left extreme. `d1` is the maximum deviation in units of the amplitude.
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32, d1: f64) -> Self {
         let steps = amplitude.unsigned_abs();
@@ -119,54 +101,17 @@ impl SineSegments {
         Self { oscillation: Oscillation::new(amplitude, period_s, periods), segments }
     }
 
-    pub(crate) fn plan(
-        quantities: &mut Quantities<'_>,
-        given: &moves::SineSegments,
-        budget: &mut Budget,
-    ) -> Option<Self> {
-        let amplitude = quantities.distance("amplitude", &given.amplitude);
-        let period_s = quantities.duration("period_s", given.period_s);
-        let periods = quantities.range("periods", given.periods.into(), limits::PERIODS, "");
-        let deviation = quantities.range("max_deviation", given.max_deviation, limits::MAX_DEVIATION, "");
-        let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
-        periods?;
-        let curve = Self::new(amplitude, period_s, given.periods, deviation);
-        let segments = curve.segments.len();
-        let Some(still_left) = budget.segments.checked_sub(segments) else {
-            let (given, most) = (MAX_SEGMENTS - budget.segments + segments, MAX_SEGMENTS);
-            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "sine segments" };
-            quantities.refuse("", cause);
-            return None;
-        };
-        budget.segments = still_left;
-        hold_speed(quantities, "period_s", curve.peaks().speed)?;
-        Some(curve)
-    }
-
     /// The segments of the first quarter, from the extreme to the middle.
     #[must_use]
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
 
-    /// Memory for a quarter, by segments and by intervals.
     #[must_use]
     pub fn memory(&self) -> Memory {
         let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
         let each = if long { 8 } else { 6 };
         Memory { segments: self.segments.len() as u64 * each, intervals: self.oscillation.amplitude * 4 }
-    }
-
-    /// Time of a period in s.
-    #[must_use]
-    pub fn period_s(&self) -> f64 {
-        self.oscillation.period_s
-    }
-
-    /// How many periods.
-    #[must_use]
-    pub fn periods(&self) -> u32 {
-        self.oscillation.periods
     }
 
     pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
@@ -176,35 +121,29 @@ impl SineSegments {
             let origin = f64::from(period) * f64::from(POINTS);
             let right = self.oscillation.starts_right == (quarter >= 2);
             (0..self.segments.len()).map(move |index| {
-                // Every other quarter goes through the segments from the middle to the extreme.
+                // Odd quarters have the segments in reverse order.
                 let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
                 let segment = self.segments.get(if mirrored { last - index } else { index });
                 let (near, far, steps) = segment.map_or((0, 0, 0), |s| (s.from, s.to, s.steps));
-                let (base, from, to) = match quarter {
-                    0 => (0, near, far),
-                    1 => (0, 2 * QUARTER - far, 2 * QUARTER - near),
-                    2 => (2 * QUARTER, near, far),
-                    _ => (2 * QUARTER, 2 * QUARTER - far, 2 * QUARTER - near),
-                };
+                let base = if quarter >= 2 { 2 * QUARTER } else { 0 };
+                let (from, to) = if mirrored { (2 * QUARTER - far, 2 * QUARTER - near) } else { (near, far) };
                 let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
                 Interval { from, to, steps, right }
             })
         })
     }
 
-    /// Time of a point of the angle in s.
+    fn first_period(&self) -> impl Iterator<Item = Interval> + '_ {
+        self.pieces().take(4 * self.segments.len())
+    }
+
+    /// Time per point of the angle in s.
     #[must_use]
     pub fn point_s(&self) -> f64 {
         self.oscillation.period_s / f64::from(POINTS)
     }
 
-    /// Steps of all periods, there and back.
-    #[must_use]
-    pub fn step_count(&self) -> u64 {
-        self.oscillation.step_count()
-    }
-
-    fn place(&self, t: f64) -> (Folded, Option<&Segment>) {
+    fn locate(&self, t: f64) -> (Folded, Option<&Segment>) {
         let folded = fold(self.oscillation.part(t) * f64::from(POINTS));
         let found = self.segments.partition_point(|segment| {
             // A boundary belongs to the segment after it in time.
@@ -215,9 +154,9 @@ impl SineSegments {
         (folded, segment)
     }
 
-    /// Speed in the segment at `t`, right positive where the start is the right extreme.
+    /// Speed in the segment at `t`, right positive if the start is the right extreme.
     fn rate_at(&self, t: f64) -> f64 {
-        let (folded, segment) = self.place(t);
+        let (folded, segment) = self.locate(t);
         let rate = segment.map_or(0.0, |segment| segment.rate);
         if folded.leftwards { -rate } else { rate }
     }
@@ -229,23 +168,22 @@ impl Schedule for SineSegments {
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
-        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
         let per_point = self.point_s() * clock;
         let intervals = self.pieces().filter(|interval| interval.steps > 0);
         Box::new(intervals.map(move |Interval { from, to, steps, right }| {
             let each = (to - from) / steps as f64;
-            Run::new(steps, right, off, move |step| (from + (step + 0.5) * each) * per_point)
+            Run::new(steps, right, max_error, move |step| (from + (step + 0.5) * each) * per_point)
         }))
     }
 
-    /// A step's time is a quotient of the period's decimal. In f64 it is off by at most 6 u.
+    /// A step's time is a quotient of the period's decimal; in f64 its error is at most 6 u.
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let period = self.oscillation.period(clock_hz);
         let of_period = 4 * self.oscillation.amplitude;
         let mut before = 0;
         let intervals: Vec<(u64, Interval)> = self
-            .pieces()
-            .take(4 * self.segments.len())
+            .first_period()
             .map(|interval| {
                 before += interval.steps;
                 (before, interval)
@@ -278,12 +216,12 @@ impl Curve for SineSegments {
         if t <= 0.0 || t >= self.duration_s() {
             return 0.0;
         }
-        let (folded, segment) = self.place(t);
+        let (folded, segment) = self.locate(t);
         let Some(segment) = segment else { return 0.0 };
         let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
         let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
-        let place = if folded.right { from_middle } else { -from_middle };
-        self.oscillation.signed(place - self.oscillation.amplitude as f64)
+        let position = if folded.right { from_middle } else { -from_middle };
+        self.oscillation.signed(position - self.oscillation.amplitude as f64)
     }
 
     fn speed(&self, t: f64) -> f64 {
@@ -295,50 +233,30 @@ impl Curve for SineSegments {
         0.0
     }
 
-    /// Between two segments the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    /// The speed jumps between segments; acceleration and jerk are 0.
     fn peaks(&self) -> Peaks {
-        let mut peaks = Peaks::default();
-        let mut before = None;
-        for &Segment { rate, .. } in &self.segments {
-            // At the extreme the first segment runs into its mirror image, the other way.
-            let jump = before.map_or(2.0 * rate, |before: f64| libm::fabs(rate - before));
-            peaks.speed = greater(peaks.speed, rate);
-            peaks.jump = greater(peaks.jump, jump);
-            before = Some(rate);
-        }
-        peaks
+        // At the extreme the first segment follows its mirror image.
+        let before = self.segments.first().map(|first| -first.rate);
+        Peaks::of_rates(before, self.segments.iter().map(|segment| segment.rate))
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
-        let count = self.segments.len();
-        (0..4_u16)
-            .flat_map(|index| {
-                (0..count).filter_map(move |place| {
-                    // Every other quarter goes from the middle to the extreme.
-                    let point = if index % 2 == 0 {
-                        self.segments.get(place)?.to
-                    } else {
-                        QUARTER - self.segments.get(count - 1 - place)?.from
-                    };
-                    Some(f64::from(index * QUARTER + point) * self.point_s())
-                })
-            })
-            .collect()
+        self.first_period().map(|interval| interval.to * self.point_s()).collect()
     }
 
     fn detail(&self, _: f64) -> String {
         let points: Vec<String> = self
             .segments
             .iter()
-            .take(MAX_TOLD)
+            .take(MAX_LISTED)
             .map(|segment| format!("{:.2}\u{b0} {}/s", segment.from_deg, grouped(segment.rate)))
             .collect();
         let memory = self.memory();
         format!(
-            "{} segments a quarter: {}{}; {} bytes, against {} with an interval a step",
+            "{} segments per quarter: {}{}; {} bytes, compared with {} for an interval per step",
             self.segments.len(),
             points.join(", "),
-            if self.segments.len() > MAX_TOLD { ", \u{2026}" } else { "" },
+            if self.segments.len() > MAX_LISTED { ", \u{2026}" } else { "" },
             grouped(memory.segments as f64),
             grouped(memory.intervals as f64)
         )
@@ -388,7 +306,7 @@ mod tests {
                 );
                 made += run.count;
             }
-            assert_eq!(made, sine.step_count(), "{amplitude}");
+            assert_eq!(made, sine.oscillation.step_count(), "{amplitude}");
         }
     }
 
@@ -411,7 +329,7 @@ mod tests {
     fn the_speed_is_the_slope_of_the_position() {
         let sine = SineSegments::new(-1000, 0.5, 2, 0.006);
         for i in 0..2048 {
-            let t = (f64::from(i) + 0.5) / 2048.0 * sine.period_s();
+            let t = (f64::from(i) + 0.5) / 2048.0 * sine.oscillation.period_s;
             let slope = (sine.position(t + 1e-7) - sine.position(t - 1e-7)) / 2e-7;
             assert!((slope - sine.speed(t)).abs() < 1e-2, "{i}: {slope} {}", sine.speed(t));
         }

@@ -1,41 +1,37 @@
-//! Cosine S-curve as the paper runs it: in slices of whole steps (DESIGN B4, `sliced`; Song, Han, Lu 2021, 2.2).
+//! Cosine S-curve in slices of whole steps, as in the paper (DESIGN B4, `sliced`; Song, Han, Lu 2021, 2.2).
 //!
-//! Slice i of a length TS has floor(f(i*TS)*TS) steps, f being the cosine S-curve of n' steps ([`Cosine`]). Rounded down,
+//! Slice i of length TS has floor(f(i*TS)*TS) steps, where f is the cosine S-curve of n' steps ([`Cosine`]). Rounded down
 //! they are too few, so the paper compensates in two stages:
 //!
 //! ```text
 //! coarse n' grows by n - N, which raises f_max = n'/(T - t_s), until N, the sum of all slices, reaches n
-//! fine   the steps above n are taken out of the plateau, from its end: it is shortened, which is the time error;
-//!        without a plateau the tail's last steps are left out, so its last slices stand still
+//! fine   the excess steps are removed from the end of the plateau, which shortens it: the time error;
+//!        without a plateau the last steps of the tail are removed, so its last slices stand still
 //! ```
 //!
-//! Within a slice the steps are even, so the curve is straight from slice to slice and crosses its half-integers there.
+//! The steps within a slice are equidistant, so the curve is a polyline that crosses its half-integers at the steps.
 
 mod compensation;
 
 use crate::{
     Curve, Peaks,
-    curves::cosine::Cosine,
+    curves::{cosine::Cosine, curve::signed},
     format::{grouped, ramp_up_to},
-    timing::{CycleTime, Double, IsDueBefore, MAX_OFF, ROUNDING, Run, Runs, Schedule},
+    timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use compensation::{NEARLY, Slices, slices_in};
 
-/// A cosine S-curve in slices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sliced {
     exact: Cosine,
     compensated: u64,
     /// Start of each slice in s, and the end of the last; rising.
-    ///
-    /// Invariant: one entry more than there are slices, of which there is at least one.
+    /// Invariant: at least two entries.
     starts_s: Vec<f64>,
-    /// The same with all their digits.
     exact_starts: Vec<Double>,
-    /// Steps before each slice, without sign, and all of them.
-    ///
-    /// Invariant: as long as `starts_s`, from 0 to the move's steps, not falling.
+    /// Steps before each slice without sign, and all steps.
+    /// Invariant: as long as `starts_s`, from 0 to the move's steps, not decreasing.
     sums: Vec<u32>,
     top_rate: f64,
 }
@@ -44,50 +40,41 @@ pub struct Sliced {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NotSliced {
-    /// It has more slices than allowed.
-    Slices {
-        /// Slices that it needs.
-        needed: u64,
-    },
-    /// At its top speed a slice has less than one step.
-    TooShort {
-        /// Top speed in steps/s.
-        rate: f64,
-    },
-    /// The slices cannot have all steps, however high the top speed.
-    TooFew {
-        /// Slices that there are.
-        slices: u64,
-    },
+    /// It needs more slices than allowed.
+    Slices { needed: u64 },
+    /// At its top speed in steps/s a slice has less than one step.
+    TooShort { rate: f64 },
+    /// The slices cannot contain all steps, however high the top speed.
+    TooFew { slices: u64 },
 }
 
-/// The time error of a sliced move, against the exact one, which has none; negative is early.
+/// Time error of a sliced move; negative is early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeError {
-    /// End of the move less that requested, in s.
+    /// End of the move minus the requested end.
     pub end_s: f64,
-    /// The same in parts of the requested time: the paper's time error.
+    /// The same in units of the requested duration: the paper's time error.
     pub relative: f64,
-    /// Time of the last step less that of the exact curve's last, in s.
+    /// Time of the last step minus that of the exact curve.
     pub last_step_s: f64,
 }
 
 impl Sliced {
-    /// `steps` (left negative, not 0, at most 1e9) in `duration_s` > 0 with ramps of `ramp_s`, 0 to half
-    /// of it, in slices of `slice_s` > 0, of which the last may be shorter.
+    /// `steps` (left negative, not 0, at most 1e9) in `duration_s` > 0 with ramps of `ramp_s`, from 0 to half of it, in
+    /// slices of `slice_s` > 0, of which the last may be shorter.
     ///
     /// # Errors
-    /// [`NotSliced`] where there would be more than `most_slices`, or where they cannot have the steps.
+    /// [`NotSliced`] if there would be more than `max_slices`, or if they cannot contain the steps.
     pub fn new(
         steps: i64,
         duration_s: f64,
         ramp_s: f64,
         slice_s: f64,
-        most_slices: u64,
+        max_slices: u64,
     ) -> Result<Self, NotSliced> {
         let exact = Cosine::new(steps, duration_s, ramp_s);
         let needed = slices_in(duration_s / slice_s);
-        if needed > most_slices {
+        if needed > max_slices {
             return Err(NotSliced::Slices { needed });
         }
         let rate = exact.top_speed();
@@ -102,44 +89,42 @@ impl Sliced {
         debug_assert!(sums.len() == starts_s.len() && sums.first() == Some(&0) && sums.is_sorted());
         debug_assert!(
             sums.last().copied().map(u64::from) == Some(steps.unsigned_abs()),
-            "the slices do not have all steps"
+            "the slices do not contain all steps"
         );
         Ok(Self { exact, compensated, starts_s, exact_starts, sums, top_rate })
     }
 
-    /// The exact curve of the same steps in the same time.
     #[must_use]
     pub fn exact(&self) -> &Cosine {
         &self.exact
     }
 
-    /// n', the steps of the curve whose slices, rounded down, have at least those that were requested.
+    /// n', the steps of the compensated curve.
     #[must_use]
     pub fn compensated_steps(&self) -> u64 {
         self.compensated
     }
 
-    /// The highest rate of a slice in steps/s, floor(f*TS)/TS: from its steps and its length, neither of which has
-    /// the digits that the difference of two late times has lost.
+    /// Maximum rate of a slice in steps/s, floor(f*TS)/TS, from its steps and length: the difference of two late times
+    /// has lost digits.
     #[must_use]
     pub fn top_rate(&self) -> f64 {
         self.top_rate
     }
 
-    /// How many slices the move has; those that the plateau lost do not count.
+    /// Number of slices without those that the plateau lost.
     #[must_use]
     pub fn slice_count(&self) -> u64 {
         self.starts_s.len().saturating_sub(1) as u64
     }
 
-    /// Start and end of each slice in s, and its steps without sign.
+    /// Start and end in s and steps without sign of each slice.
     pub fn slices(&self) -> impl Iterator<Item = (f64, f64, u32)> + '_ {
         let ends = self.starts_s.iter().skip(1).zip(self.sums.iter().skip(1));
         let starts = self.starts_s.iter().zip(&self.sums);
         starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
     }
 
-    /// How much earlier it is than requested, and than the exact curve.
     #[must_use]
     pub fn time_error(&self) -> TimeError {
         let requested_s = self.exact.duration_s();
@@ -149,8 +134,8 @@ impl Sliced {
         TimeError { end_s, relative: end_s / requested_s, last_step_s }
     }
 
-    fn slice_of(&self, place: f64) -> usize {
-        self.sums.partition_point(|sum| f64::from(*sum) <= place).saturating_sub(1)
+    fn slice_of(&self, position: f64) -> usize {
+        self.sums.partition_point(|sum| f64::from(*sum) <= position).saturating_sub(1)
     }
 
     fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
@@ -164,10 +149,6 @@ impl Sliced {
         let last = self.starts_s.len().saturating_sub(2);
         self.slice(after.saturating_sub(1).min(last))
     }
-
-    fn signed(&self, magnitude: f64) -> f64 {
-        if self.steps() < 0 { -magnitude } else { magnitude }
-    }
 }
 
 impl Schedule for Sliced {
@@ -177,10 +158,12 @@ impl Schedule for Sliced {
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
-        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
         Box::new(self.slices().map(move |(from, to, count)| {
             let each = (to - from) / f64::from(count.max(1));
-            Run::new(count.into(), self.steps() >= 0, off, move |step| (from + (step + 0.5) * each) * clock)
+            Run::new(count.into(), self.steps() >= 0, max_error, move |step| {
+                (from + (step + 0.5) * each) * clock
+            })
         }))
     }
 
@@ -198,9 +181,9 @@ impl Schedule for Sliced {
         })
     }
 
-    /// Each slice that is cut adds its own roundings to those before.
-    fn off_s(&self) -> f64 {
-        (MAX_OFF + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
+    /// Each shortened slice adds its roundings to those before.
+    fn max_error_s(&self) -> f64 {
+        (MAX_ERROR + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
     }
 }
 
@@ -218,28 +201,20 @@ impl Curve for Sliced {
             return self.steps() as f64;
         }
         let Some((from, to, before, count)) = self.at(t).filter(|_| t > 0.0) else { return 0.0 };
-        self.signed(f64::from(before) + f64::from(count) * ((t - from) / (to - from)))
+        signed(self.steps(), f64::from(before) + f64::from(count) * ((t - from) / (to - from)))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        self.signed(self.at(t).map_or(0.0, |(from, to, _, count)| f64::from(count) / (to - from)))
+        signed(self.steps(), self.at(t).map_or(0.0, |(from, to, _, count)| f64::from(count) / (to - from)))
     }
 
     fn acceleration(&self, _: f64) -> f64 {
         0.0
     }
 
-    /// Between two slices the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    /// The speed jumps between slices; acceleration and jerk are 0.
     fn peaks(&self) -> Peaks {
-        let (mut peaks, mut before) = (Peaks::default(), None);
-        for index in 0..self.starts_s.len() {
-            let Some((from, to, _, count)) = self.slice(index) else { break };
-            let rate = f64::from(count) / (to - from);
-            let jump = before.map_or(0.0, |before: f64| libm::fabs(rate - before));
-            peaks = peaks.or(Peaks { speed: rate, jump, ..Peaks::default() });
-            before = Some(rate);
-        }
-        peaks
+        Peaks::of_rates(None, self.slices().map(|(from, to, count)| f64::from(count) / (to - from)))
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
@@ -247,9 +222,9 @@ impl Curve for Sliced {
         self.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
     }
 
-    fn time_s(&self, place: f64) -> f64 {
-        let (from, to, before, count) = self.slice(self.slice_of(place)).unwrap_or_default();
-        from + (place - f64::from(before)) * (to - from) / f64::from(count.max(1))
+    fn time_s(&self, position: f64) -> f64 {
+        let (from, to, before, count) = self.slice(self.slice_of(position)).unwrap_or_default();
+        from + (position - f64::from(before)) * (to - from) / f64::from(count.max(1))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {

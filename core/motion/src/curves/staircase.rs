@@ -1,7 +1,5 @@
-//! Fixed length by a staircase of rates (DESIGN B3, Zhang 2012).
-//!
-//! The rows of the [`StaircaseTable`] up, the plateau, and the same rows down; each step comes a period of its rate after
-//! the one before.
+//! Fixed distance by a staircase of rates (DESIGN B3, Zhang 2012): the rows of the [`StaircaseTable`] up, the plateau, and
+//! the same rows down. Each step comes one period of its rate after the step before.
 //!
 //! ```text
 //! rate |       ________          L steps, S in the rows up to f_s
@@ -9,51 +7,48 @@
 //!      |   _|            |_      L > 2S       as drawn
 //!      | _|                |_    L = 2S       without the plateau
 //!      ||S               S| |    L < 2S       all at f_1 (the paper), or as many rows as fit
-//!      +---------------------    twice, and what is left of the way at the rate after them
+//!      +---------------------    twice, and the rest at the next rate
 //! ```
 
 use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
-    bisection::least,
+    bisection::first,
     curves::{
-        curve::greater,
+        curve::{greater, signed},
         mirrored::Mirrored,
         staircase_table::StaircaseTable,
         stepped::{self, Counts},
     },
     format::{count, grouped},
-    timing::{CycleTime, Double, IsDueBefore, MAX_OFF, ROUNDING, Run, Runs, Schedule},
+    timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-/// A move by a staircase of rates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Staircase {
     steps: i64,
     table: StaircaseTable,
-    /// Steps of the rows up, and of those down.
     ramp_steps: u64,
-    /// Rate between the rows up and down; where there is no plateau no step has it.
+    /// Rate between the ramps, even if no step has it.
     plateau_rate: u64,
     /// Start of each row of the ramp, and its end, in s.
-    ///
     /// Invariant: at least one entry, the first 0, rising.
     starts_s: Vec<f64>,
     duration_s: f64,
 }
 
 impl Staircase {
-    /// `steps` (left negative, not 0, at most 1e9) to `top_rate` whole steps/s, from 1 on.
+    /// `steps` (left negative, not 0, at most 1e9) to `top_rate` >= 1 whole steps/s.
     ///
     /// # Errors
-    /// The rows that the move has to keep, where they are more than `most_rows`.
+    /// The number of rows needed, if it exceeds `max_rows`.
     pub fn new(
         steps: i64,
         table: StaircaseTable,
         top_rate: u64,
         short_move: ShortMove,
-        most_rows: u64,
+        max_rows: u64,
     ) -> Result<Self, u64> {
         let count = steps.unsigned_abs();
         let (to_top, fit) = (table.rows_to(top_rate), StaircaseTable::rows_that_fit(count));
@@ -65,7 +60,7 @@ impl Staircase {
                 ShortMove::Reverse => (fit, table.rate(fit + 1)),
             }
         };
-        if rows >= most_rows {
+        if rows >= max_rows {
             return Err(rows + 1);
         }
         let mut starts_s = Vec::with_capacity(rows as usize + 1);
@@ -81,13 +76,13 @@ impl Staircase {
         Ok(Self { steps, table, ramp_steps, plateau_rate, starts_s, duration_s })
     }
 
-    /// The whole table, also the rows that the move does not use.
+    /// The whole table, including unused rows.
     #[must_use]
     pub fn table(&self) -> &StaircaseTable {
         &self.table
     }
 
-    /// Rows of each ramp; 0 where the move has one rate.
+    /// Rows of each ramp; 0 for a constant rate.
     #[must_use]
     pub fn ramp_rows(&self) -> u64 {
         self.starts_s.len().saturating_sub(1) as u64
@@ -99,32 +94,28 @@ impl Staircase {
         self.ramp_steps
     }
 
-    /// Time of each ramp in s.
     #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.starts_s.last().copied().unwrap_or(0.0)
     }
 
-    /// Steps between the ramps.
     #[must_use]
     pub fn plateau_steps(&self) -> u64 {
         self.count() - 2 * self.ramp_steps
     }
 
-    /// Rate between the ramps in whole steps/s; `None` where there is no step between them.
+    /// Rate between the ramps in whole steps/s; `None` without a step there.
     #[must_use]
     pub fn plateau_rate(&self) -> Option<u64> {
         (self.plateau_steps() > 0).then_some(self.plateau_rate)
     }
 
-    /// Steps of the move, without sign.
     fn count(&self) -> u64 {
         self.steps.unsigned_abs()
     }
 
-    /// Row of step `k` of the ramp, from 1.
     fn row(&self, k: u64) -> u64 {
-        least(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
+        first(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
     }
 
     fn ramp_time(&self, k: u64) -> f64 {
@@ -136,7 +127,7 @@ impl Staircase {
         start_s + (k - StaircaseTable::steps_after(before)) as f64 / self.table.rate(before + 1) as f64
     }
 
-    /// Time of step `k` (from 1; 0 is the start, from the last step on the end) in s.
+    /// Time in s of step `k` (from 1; 0 is the start, from the last step on the end).
     #[must_use]
     pub fn step_s(&self, k: u64) -> f64 {
         let left = self.count().saturating_sub(k);
@@ -149,13 +140,11 @@ impl Staircase {
         }
     }
 
-    /// How long it lasts in s.
     fn exact_duration(&self) -> Double {
         let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
         self.exact_starts().last().copied().unwrap_or_default() * 2.0 + plateau
     }
 
-    /// Start of each row of the ramp, and its end, in s.
     fn exact_starts(&self) -> Vec<Double> {
         let row_s = |n| Double::from(StaircaseTable::steps_in(n)) / Double::from(self.table.rate(n));
         let ends = (1..=self.ramp_rows()).scan(Double::default(), |end, n| {
@@ -184,15 +173,10 @@ impl Staircase {
         stepped::fallen(t, guess, self.count(), Counts::Then, |k| self.step_s(k))
     }
 
-    /// Rate of interval `i`, from 0.
     fn rate(&self, i: u64) -> u64 {
         let from_end = self.count().saturating_sub(i).max(1);
         let nearer = from_end.min(i + 1);
         if nearer <= self.ramp_steps { self.table.rate(self.row(nearer)) } else { self.plateau_rate }
-    }
-
-    fn signed(&self, magnitude: f64) -> f64 {
-        if self.steps < 0 { -magnitude } else { magnitude }
     }
 }
 
@@ -201,9 +185,9 @@ impl Schedule for Staircase {
         CycleTime::of(self.exact_duration() * f64::from(clock_hz))
     }
 
-    /// Each row, which saves the search for a step's row.
+    /// One run per row, which saves the search for the row of each step.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
-        let (clock, off) = (f64::from(clock_hz), self.off_s() * f64::from(clock_hz));
+        let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
         let (right, rows) = (self.steps >= 0, self.ramp_rows());
         let row = move |n: u64| {
             let start_s = self.starts_s.get(n as usize - 1).copied().unwrap_or(0.0);
@@ -211,17 +195,20 @@ impl Schedule for Staircase {
         };
         let up = (1..=rows).map(move |n| {
             let (rate, start_s, steps) = row(n);
-            Run::new(steps, right, off, move |step| (start_s + (step + 1.0) / rate) * clock)
+            Run::new(steps, right, max_error, move |step| (start_s + (step + 1.0) / rate) * clock)
         });
         let (rate, start_s) = (self.plateau_rate as f64, self.ramp_s());
-        let plateau =
-            Run::new(self.plateau_steps(), right, off, move |step| (start_s + (step + 1.0) / rate) * clock);
+        let plateau = Run::new(self.plateau_steps(), right, max_error, move |step| {
+            (start_s + (step + 1.0) / rate) * clock
+        });
         let down = (1..=rows).rev().map(move |n| {
             let (rate, start_s, steps) = row(n);
-            // The last step of the ramp up is the first of the ramp down, and the last step is at the end.
+            // The last step up is the first step down, and the last step is at the end.
             let steps = steps - u64::from(n == rows) + u64::from(n == 1);
             let (first, duration_s) = (steps as f64 - if n == 1 { 1.0 } else { 0.0 }, self.duration_s);
-            Run::new(steps, right, off, move |step| (duration_s - (start_s + (first - step) / rate)) * clock)
+            Run::new(steps, right, max_error, move |step| {
+                (duration_s - (start_s + (first - step) / rate)) * clock
+            })
         });
         Box::new(up.chain([plateau]).chain(down))
     }
@@ -248,9 +235,9 @@ impl Schedule for Staircase {
         })
     }
 
-    /// Each row adds its own roundings to those before.
-    fn off_s(&self) -> f64 {
-        (MAX_OFF + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
+    /// Each row adds its roundings to those before.
+    fn max_error_s(&self) -> f64 {
+        (MAX_ERROR + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
     }
 }
 
@@ -268,32 +255,25 @@ impl Curve for Staircase {
             return self.steps as f64;
         }
         let fallen = self.fallen(t);
-        self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
+        signed(self.steps, stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
         let interval = self.fallen(t).min(self.count().saturating_sub(1));
-        self.signed(self.rate(interval) as f64)
+        signed(self.steps, self.rate(interval) as f64)
     }
 
     fn acceleration(&self, _: f64) -> f64 {
         0.0
     }
 
-    /// Between two rows the speed jumps; the acceleration is 0 throughout, and so is the jerk.
+    /// The speed jumps between rows; acceleration and jerk are 0.
     fn peaks(&self) -> Peaks {
         let rates = (1..=self.ramp_rows()).map(|n| self.table.rate(n)).chain(self.plateau_rate());
-        let mut peaks = Peaks::default();
-        let mut before = None;
-        for rate in rates {
-            let jump = before.map_or(0.0, |before| rate.abs_diff(before) as f64);
-            peaks = peaks.or(Peaks { speed: rate as f64, jump, ..Peaks::default() });
-            before = Some(rate);
-        }
-        peaks
+        Peaks::of_rates(None, rates.map(|rate| rate as f64))
     }
 
-    /// The first interval climbs half a step only.
+    /// The first interval rises half a step only.
     fn breakpoints_s(&self) -> Vec<f64> {
         let rows = self.starts_s.iter().skip(1).copied();
         let halves = Mirrored { steps: self.steps, duration_s: self.duration_s };

@@ -1,4 +1,4 @@
-//! The staircase table itself (DESIGN B3, Zhang 2012): rates that are each held for some steps.
+//! The staircase table (DESIGN B3, Zhang 2012): rates that are each held for some steps.
 //!
 //! ```text
 //! row n (from 1)   dS_n = 30*(1 + floor((n - 1)/5))      steps
@@ -6,11 +6,11 @@
 //!                  f_n  = round_half_up(sqrt(f_1^2 + 2*a*S_(n-1)))
 //! ```
 //!
-//! The document lists S_n with the rate that follows it, f_(n+1); its table ends with the first
-//! such rate above f_max. All of it has a closed form, so no row is kept.
+//! The paper lists S_n with the next rate f_(n+1), up to the first rate above f_max. Every row has a closed form, so none
+//! is stored.
 
 use crate::{
-    bisection::climbed,
+    bisection::first_from_zero,
     curves::climb::{Climb, quick_rate},
     timing::Exact,
 };
@@ -18,7 +18,6 @@ use crate::{
 const FIRST_STEPS: u64 = 30;
 const EQUAL_ROWS: u64 = 5;
 
-/// A staircase of rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaircaseTable {
     start_speed: f64,
@@ -27,14 +26,14 @@ pub struct StaircaseTable {
 }
 
 impl StaircaseTable {
-    /// From `start_speed` >= 1/2 up to the first rate above `max_speed` >= `start_speed`, with
-    /// `acceleration` > 0, in steps, s.
+    /// From `start_speed` >= 1/2 up to the first rate above `max_speed` >= `start_speed`, with `acceleration` > 0, in steps
+    /// and s.
     #[must_use]
     pub fn new(start_speed: f64, max_speed: f64, acceleration: f64) -> Self {
         Self { start_speed, max_speed, acceleration }
     }
 
-    /// Rate of row `n` (from 1) in whole steps/s, not falling from row to row.
+    /// Rate of row `n` (from 1) in whole steps/s, not decreasing.
     #[must_use]
     pub fn rate(&self, n: u64) -> u64 {
         let steps = Self::steps_after(n.saturating_sub(1));
@@ -43,35 +42,33 @@ impl StaircaseTable {
         })
     }
 
-    /// Steps of row `n` (from 1).
     #[must_use]
     pub fn steps_in(n: u64) -> u64 {
         FIRST_STEPS * (1 + n.saturating_sub(1) / EQUAL_ROWS)
     }
 
-    /// Steps of the rows 1 to `n` together; 0 after none.
+    /// Total steps of the rows 1 to `n`.
     #[must_use]
     pub fn steps_after(n: u64) -> u64 {
         let (blocks, rest) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
         FIRST_STEPS * (EQUAL_ROWS * blocks * (blocks + 1) / 2 + rest * (blocks + 1))
     }
 
-    /// Rows whose steps are made before the rate is `rate` or more: the rows of a ramp to it.
+    /// Number of rows before the rate is at least `rate`: the rows of a ramp to it.
     #[must_use]
     pub fn rows_to(&self, rate: u64) -> u64 {
-        climbed(|rows| self.rate(rows + 1) >= rate)
+        first_from_zero(|rows| self.rate(rows + 1) >= rate)
     }
 
-    /// The most rows of which a move of `steps` has room for as many up and down again.
+    /// Maximum number of rows that fit into `steps` up and down.
     #[must_use]
     pub fn rows_that_fit(steps: u64) -> u64 {
-        climbed(|rows| 2 * Self::steps_after(rows + 1) > steps)
+        first_from_zero(|rows| 2 * Self::steps_after(rows + 1) > steps)
     }
 
-    /// Rows of the whole table.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        climbed(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
+        first_from_zero(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
     }
 }
 

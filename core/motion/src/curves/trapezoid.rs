@@ -1,7 +1,7 @@
-//! Trapezoid with every step in its ideal place (DESIGN B2's ideal curve, B1's rule).
+//! Trapezoid with each step where the ideal curve crosses its half-integer (DESIGN B1, B2).
 //!
-//! Uniform acceleration a from the start speed v0 to the top speed v1 and back, v^2 = v0^2 + 2*a*s;
-//! a short move has no plateau, a triangle:
+//! Uniform acceleration a from the start speed v0 to the top speed v1 and back, v^2 = v0^2 + 2*a*s; a short move is a
+//! triangle:
 //!
 //! ```text
 //!  v1 |     ________               t_r = (v1 - v0)/a         time of a ramp
@@ -14,14 +14,13 @@
 
 use crate::{
     Curve, Peaks,
-    curves::mirrored::Mirrored,
+    curves::mirrored::{Mirrored, MirroredCurve},
     timing::{
         CycleTime, Double, IsDueBefore, MoveSteps, Number, Runs, Schedule, is_mirrored_due_before, one_run,
     },
 };
 use alloc::{boxed::Box, vec::Vec};
 
-/// A trapezoid or triangle of uniform acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
     halves: Mirrored,
@@ -29,7 +28,6 @@ pub struct Trapezoid {
     limits: Limits<Double>,
 }
 
-/// Start speed, top speed and acceleration. In f64 neither a decimal nor a quotient by mechanics has all its digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits<N> {
     pub(crate) start_speed: N,
@@ -41,9 +39,9 @@ pub(crate) struct Limits<N> {
 struct Half<N> {
     start_speed: N,
     acceleration: N,
-    /// Highest speed that is reached: the top speed, or that of the triangle's tip.
+    /// Maximum speed reached: the top speed, or that of a triangle.
     peak_speed: N,
-    /// Steps of a ramp, at most half of all.
+    /// At most half of the steps.
     ramp_steps: N,
     ramp_s: N,
     duration_s: N,
@@ -53,20 +51,19 @@ impl<N: Number> Half<N> {
     fn new(steps: i64, limits: Limits<N>) -> Self {
         let Limits { start_speed: v0, top_speed: v1, acceleration } = limits;
         let all = N::from(steps.unsigned_abs() as f64);
-        // (v1 - v0)*(v1 + v0) keeps the digits that v1^2 - v0^2 would lose.
+        // (v1 - v0)*(v1 + v0) does not cancel like v1^2 - v0^2.
         let whole_ramp = (v1 - v0) * (v1 + v0) / (acceleration * 2.0);
         let (peak_speed, ramp_steps) = if whole_ramp * 2.0 <= all {
             (v1, whole_ramp)
         } else {
             ((v0 * v0 + acceleration * all).square_root(), all * 0.5)
         };
-        // s = (v0 + v)/2 * t, which has no difference of nearly equal numbers in it.
+        // s = (v0 + v)/2 * t, without cancellation.
         let ramp_s = ramp_steps * 2.0 / (v0 + peak_speed);
         let duration_s = ramp_s * 2.0 + (all - ramp_steps * 2.0) / peak_speed;
         Self { start_speed: v0, acceleration, peak_speed, ramp_steps, ramp_s, duration_s }
     }
 
-    /// s(t) in steps without sign.
     fn position(&self, t: N) -> N {
         if t < self.ramp_s {
             (self.start_speed + self.acceleration * t * 0.5) * t
@@ -77,8 +74,8 @@ impl<N: Number> Half<N> {
 }
 
 impl Trapezoid {
-    /// `steps` (left negative) from `start_speed` >= 0 to `top_speed` >= `start_speed` and back
-    /// with `acceleration` > 0, in steps, s. The top speed is above 0.
+    /// `steps` (left negative) from `start_speed` >= 0 to `top_speed` >= `start_speed` and back with `acceleration` > 0,
+    /// in steps and s. The top speed is above 0.
     #[must_use]
     pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
         let [start_speed, top_speed, acceleration] =
@@ -86,7 +83,6 @@ impl Trapezoid {
         Self::within(steps, Limits { start_speed, top_speed, acceleration })
     }
 
-    /// [`Self::new`], of numbers with all their digits.
     pub(crate) fn within(steps: i64, limits: Limits<Double>) -> Self {
         let Limits { start_speed, top_speed, acceleration } = limits;
         let [start_speed, top_speed, acceleration] =
@@ -95,13 +91,12 @@ impl Trapezoid {
         Self { halves: Mirrored { steps, duration_s: half.duration_s }, half, limits }
     }
 
-    /// Highest speed that is reached, in steps/s.
+    /// Maximum speed reached, in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.half.peak_speed
     }
 
-    /// Time of each ramp in s.
     #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.half.ramp_s
@@ -113,41 +108,28 @@ impl Trapezoid {
         self.half.ramp_steps
     }
 
-    /// The cycle of each step, of a clock of `clock_hz`, from the start of the move.
+    /// The cycle of each step at `clock_hz`, from the start of the move.
     pub fn step_times(&self, clock_hz: u32) -> impl Iterator<Item = u64> + '_ {
         MoveSteps::new(self, CycleTime::default(), clock_hz).map(|(_, step)| step.cycle)
     }
 
-    fn exactly(&self) -> Half<Double> {
+    fn exact(&self) -> Half<Double> {
         Half::new(self.halves.steps, self.limits)
-    }
-
-    /// When the first half is at a position: t = 2*s/(v0 + v), which keeps the digits that (v - v0)/a would lose.
-    fn climb_s(&self, position: f64) -> f64 {
-        let Half { start_speed, acceleration, peak_speed, ramp_steps, ramp_s, .. } = self.half;
-        if position < ramp_steps {
-            let speed = (start_speed * start_speed + 2.0 * acceleration * position).square_root();
-            2.0 * position / (start_speed + speed)
-        } else {
-            ramp_s + (position - ramp_steps) / peak_speed
-        }
     }
 }
 
 impl Schedule for Trapezoid {
     fn length(&self, clock_hz: u32) -> CycleTime {
-        CycleTime::of(self.exactly().duration_s * f64::from(clock_hz))
+        CycleTime::of(self.exact().duration_s * f64::from(clock_hz))
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let clock = f64::from(clock_hz);
-        one_run(self, clock_hz, move |step| {
-            self.halves.time_s(step + 0.5, |position| self.climb_s(position)) * clock
-        })
+        one_run(self, clock_hz, move |step| self.time_s(step + 0.5) * clock)
     }
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
-        let (half, count) = (self.exactly(), self.halves.steps.unsigned_abs());
+        let (half, count) = (self.exact(), self.halves.steps.unsigned_abs());
         Box::new(move |k, since| {
             is_mirrored_due_before((k, count), since / f64::from(clock_hz), half.duration_s, |t, position| {
                 half.position(t) > position.into()
@@ -156,43 +138,45 @@ impl Schedule for Trapezoid {
     }
 }
 
-impl Curve for Trapezoid {
-    fn duration_s(&self) -> f64 {
-        self.halves.duration_s
+impl MirroredCurve for Trapezoid {
+    fn halves(&self) -> &Mirrored {
+        &self.halves
     }
 
-    fn steps(&self) -> i64 {
-        self.halves.steps
+    fn half_position(&self, t: f64) -> f64 {
+        self.half.position(t)
     }
 
-    fn position(&self, t: f64) -> f64 {
-        self.halves.position(t, |t| self.half.position(t))
-    }
-
-    fn speed(&self, t: f64) -> f64 {
-        let t = self.halves.nearer_end(t);
+    fn half_speed(&self, t: f64) -> f64 {
         let climbed = self.half.start_speed + self.half.acceleration * t;
-        self.halves.signed(if t < self.half.ramp_s { climbed } else { self.half.peak_speed })
+        if t < self.half.ramp_s { climbed } else { self.half.peak_speed }
     }
 
-    fn acceleration(&self, t: f64) -> f64 {
-        if self.halves.nearer_end(t) >= self.half.ramp_s {
-            0.0
+    fn half_acceleration(&self, t: f64) -> Option<f64> {
+        (t < self.half.ramp_s).then_some(self.half.acceleration)
+    }
+
+    /// Time of a position in the first half: t = 2*s/(v0 + v), which does not cancel like (v - v0)/a.
+    fn half_time_s(&self, position: f64) -> f64 {
+        let Half { start_speed, acceleration, peak_speed, ramp_steps, ramp_s, .. } = self.half;
+        if position < ramp_steps {
+            let speed = (start_speed * start_speed + 2.0 * acceleration * position).square_root();
+            2.0 * position / (start_speed + speed)
         } else {
-            self.halves.acceleration(t, self.half.acceleration)
+            ramp_s + (position - ramp_steps) / peak_speed
         }
     }
 
-    fn peaks(&self) -> Peaks {
+    fn all_peaks(&self) -> Peaks {
         let acceleration = if self.half.ramp_s > 0.0 { self.half.acceleration } else { 0.0 };
-        // At the tip of a triangle the acceleration is reversed; else it ends where the plateau begins.
+        // The acceleration is reversed at the tip of a triangle, else it ends where the plateau begins.
         let turns = 2.0 * self.half.ramp_s >= self.halves.duration_s;
         let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
         Peaks { speed: self.half.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
     }
 
-    fn breakpoints_s(&self) -> Vec<f64> {
-        self.halves.breakpoints_s([self.half.ramp_s].into_iter())
+    fn half_breakpoints_s(&self) -> Vec<f64> {
+        Vec::from([self.half.ramp_s])
     }
 }
 

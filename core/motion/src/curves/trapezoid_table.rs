@@ -1,8 +1,8 @@
 //! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
 //!
-//! The timer's interrupt makes one step and loads the reload of the next interval from the [`AccelerationTable`]. Of a
-//! move of n steps, interval i (from 0) has row min(i, n - 1 - i, top), so a short move is a triangle; step k is due at
-//! the sum of the first k reloads, and the move ends with its last step:
+//! A timer interrupt makes one step and loads the reload of the next interval from the [`AccelerationTable`]. Interval i
+//! (from 0) of n has row min(i, n - 1 - i, top), so a short move is a triangle; step k is due at the sum of the first k
+//! reloads, and the move ends with its last step:
 //!
 //! ```text
 //! rate |    _|```|_
@@ -10,15 +10,15 @@
 //!      +-------------- steps
 //! ```
 //!
-//! The paper leaves open how many steps are needed to stop. Here the last interval is row 0, as the first is; of a
-//! triangle with an even count the two middle intervals share the highest row.
+//! The paper does not define the steps needed to stop. Here the last interval is row 0 like the first; the two middle
+//! intervals of a triangle with an even count share the highest row.
 
 use crate::{
     Curve, Peaks,
-    bisection::least_near,
+    bisection::first_near,
     curves::{
         acceleration_table::AccelerationTable,
-        curve::greater,
+        curve::{greater, signed},
         stepped::{self, Counts},
     },
     format::grouped,
@@ -26,49 +26,40 @@ use crate::{
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
-/// A trapezoid by acceleration table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrapezoidTable {
     steps: i64,
     table: AccelerationTable,
-    /// Intervals of the ramp, which is also the highest row that the move uses; the deceleration
-    /// has as many, and at least one interval is between them.
+    /// Intervals of each ramp, and the highest row used; at least one interval is between the ramps.
     ramp: u64,
     /// Timer ticks from the start to step k, k = 0 ..= ramp + 1.
-    ///
-    /// Invariant: at least two entries, rising: no reload is 0.
+    /// Invariant: at least two entries, rising.
     sums: Vec<u64>,
 }
 
-/// Why a table cannot be made.
+/// Why a move cannot have a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoTable {
-    /// The move needs more rows than allowed.
-    Rows {
-        /// Rows that it needs.
-        needed: u64,
-    },
-    /// The timer cannot make the rate of a row.
-    Timer {
-        /// The maximum rate of the move in steps/s.
-        rate: f64,
-    },
+    /// It needs more rows than allowed.
+    Rows { needed: u64 },
+    /// The timer is slower than the maximum rate in steps/s.
+    Timer { rate: f64 },
 }
 
 impl TrapezoidTable {
     /// `steps` (left negative, not 0, at most 1e9) by the table.
     ///
     /// # Errors
-    /// [`NoTable`] where the move needs more than `most_rows` rows or a rate above the timer's.
-    pub fn new(steps: i64, table: AccelerationTable, most_rows: u64) -> Result<Self, NoTable> {
+    /// [`NoTable`] if the move needs more than `max_rows` rows or a rate above the timer's.
+    pub fn new(steps: i64, table: AccelerationTable, max_rows: u64) -> Result<Self, NoTable> {
         let ramp = table.top().min(steps.unsigned_abs().saturating_sub(1) / 2);
-        if ramp >= most_rows {
+        if ramp >= max_rows {
             return Err(NoTable::Rows { needed: ramp.saturating_add(1) });
         }
-        let greatest = table.rate(ramp);
-        if greatest > table.timer_hz().into() {
-            return Err(NoTable::Timer { rate: greatest as f64 });
+        let max_rate = table.rate(ramp);
+        if max_rate > table.timer_hz().into() {
+            return Err(NoTable::Timer { rate: max_rate as f64 });
         }
         let mut sums = Vec::with_capacity(ramp as usize + 2);
         let mut sum = 0;
@@ -82,25 +73,23 @@ impl TrapezoidTable {
         Ok(Self { steps, table, ramp, sums })
     }
 
-    /// The whole table, also the rows that a short move does not reach.
+    /// The whole table, including unused rows.
     #[must_use]
     pub fn table(&self) -> &AccelerationTable {
         &self.table
     }
 
-    /// Rows of the whole table.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.table.top().saturating_add(1)
     }
 
-    /// Rows that this move keeps in memory.
+    /// Rows of the table that this move uses.
     #[must_use]
-    pub fn kept_rows(&self) -> u64 {
+    pub fn used_rows(&self) -> u64 {
         self.ramp + 1
     }
 
-    /// Steps of the move, without sign.
     fn count(&self) -> u64 {
         self.steps.unsigned_abs()
     }
@@ -116,7 +105,7 @@ impl TrapezoidTable {
         self.sums.get(steps as usize).copied().unwrap_or(0)
     }
 
-    /// Timer ticks from the start to step `k` (from 1; 0 is the start, from the last step on the end).
+    /// Timer ticks to step `k` (from 1; 0 is the start, from the last step on the end).
     #[must_use]
     pub fn step_ticks(&self, k: u64) -> u64 {
         let count = self.count();
@@ -143,14 +132,13 @@ impl TrapezoidTable {
     }
 
     fn first_sum(&self, ticks: u64, near: u64) -> u64 {
-        least_near(near, self.sums.len() as u64, |steps| self.sum(steps) >= ticks)
+        first_near(near, self.sums.len() as u64, |steps| self.sum(steps) >= ticks)
     }
 
-    /// Steps that have fallen by `t`; looked for from `near` on, which changes the time that it
-    /// takes and not what is found.
+    /// Number of steps by `t`; `near` is where the search begins and only affects its duration.
     fn fallen(&self, t: f64, near: u64, counts: Counts) -> u64 {
         let count = self.count();
-        // From the timer's ticks comes a guess that can be off by one; the times themselves decide.
+        // The timer ticks give a guess that may be wrong by one; the times decide.
         let ticks = (t * f64::from(self.table.timer_hz())) as u64;
         let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
         let guess = if ticks < up {
@@ -164,40 +152,32 @@ impl TrapezoidTable {
         stepped::fallen(t, guess, count, counts, |k| self.step_s(k))
     }
 
-    /// Steps due by `t`, as B1's rounding of the position gives them, looked for from those that
-    /// were due some time before on.
+    /// Steps due by `t`; `before` is an earlier result, where the search begins.
     pub(crate) fn steps_due(&self, t: f64, before: i64) -> i64 {
         let fallen = self.fallen(t, before.unsigned_abs(), Counts::of(self.steps)) as i64;
         if self.steps < 0 { -fallen } else { fallen }
     }
 
-    /// Row of interval `i` (from 0).
     fn row(&self, i: u64) -> u64 {
         let from_end = self.count().saturating_sub(1).saturating_sub(i);
         i.min(from_end).min(self.ramp)
     }
 
-    /// Speed in interval `i` as the timer makes it, without sign.
     fn interval_speed(&self, i: u64) -> f64 {
         let row = self.row(i);
         let reload = self.sum(row + 1) - self.sum(row);
         if reload == 0 { 0.0 } else { f64::from(self.table.timer_hz()) / reload as f64 }
     }
 
-    /// Difference of speeds of interval `i` and the one before, over the time from middle to middle.
+    /// Difference of the speeds of interval `i` and the one before, divided by the time between their middles.
     fn acceleration_into(&self, i: u64) -> f64 {
         let (before, after) = (self.interval_speed(i.saturating_sub(1)), self.interval_speed(i));
         let between = (1.0 / before + 1.0 / after) / 2.0;
         if after == before { 0.0 } else { (after - before) / between }
     }
 
-    /// Interval at `t`, from 0.
     fn interval(&self, t: f64) -> u64 {
         self.fallen(t, 0, Counts::Then).min(self.count().saturating_sub(1))
-    }
-
-    fn signed(&self, magnitude: f64) -> f64 {
-        if self.steps < 0 { -magnitude } else { magnitude }
     }
 }
 
@@ -208,16 +188,16 @@ impl Schedule for TrapezoidTable {
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let per_tick = f64::from(clock_hz) / f64::from(self.table.timer_hz());
-        let (off, right) = (self.off_s() * f64::from(clock_hz), self.steps >= 0);
+        let (max_error, right) = (self.max_error_s() * f64::from(clock_hz), self.steps >= 0);
         let by_sums =
             move |past: u64| move |step: f64| self.step_ticks(past + step as u64 + 1) as f64 * per_tick;
         let (start, each) = (self.sum(self.ramp) as f64, self.plateau_reload() as f64);
         let plateau = self.count() - 2 * self.ramp;
         Box::new(
             [
-                Run::new(self.ramp, right, off, by_sums(0)),
-                Run::new(plateau, right, off, move |step| (start + (step + 1.0) * each) * per_tick),
-                Run::new(self.ramp, right, off, by_sums(self.ramp + plateau)),
+                Run::new(self.ramp, right, max_error, by_sums(0)),
+                Run::new(plateau, right, max_error, move |step| (start + (step + 1.0) * each) * per_tick),
+                Run::new(self.ramp, right, max_error, by_sums(self.ramp + plateau)),
             ]
             .into_iter(),
         )
@@ -242,25 +222,23 @@ impl Curve for TrapezoidTable {
             return self.steps as f64;
         }
         let fallen = self.fallen(t, 0, Counts::Then);
-        self.signed(stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
+        signed(self.steps, stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        self.signed(self.interval_speed(self.interval(t)))
+        signed(self.steps, self.interval_speed(self.interval(t)))
     }
 
-    /// The rates are a staircase; given is the slope from the middle of this interval to the
-    /// middle of the next, so that what the table's whole numbers do to the acceleration shows.
+    /// The slope from the middle of this interval to that of the next, which shows the effect of the table's integers.
     fn acceleration(&self, t: f64) -> f64 {
         let i = self.interval(t);
-        self.signed(if i + 1 < self.count() { self.acceleration_into(i + 1) } else { 0.0 })
+        signed(self.steps, if i + 1 < self.count() { self.acceleration_into(i + 1) } else { 0.0 })
     }
 
-    /// The slope that stands for the acceleration is held for an interval and then jumps; between its
-    /// jumps there is no jerk.
+    /// The acceleration is constant in an interval and then jumps; the jerk is 0.
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
-        // The second half of the table is the first, mirrored; the slope after the ramp is where they meet.
+        // The table's second half mirrors the first; after the ramp they meet.
         for i in 0..=self.ramp {
             let (slope, next) = (self.acceleration_into(i), self.acceleration_into(i + 1));
             peaks.speed = greater(peaks.speed, self.interval_speed(i));
@@ -275,10 +253,10 @@ impl Curve for TrapezoidTable {
         peaks
     }
 
-    /// One interval more than the ramp: its slope to the next shows the ramp's end.
+    /// Includes one interval after the ramp, whose slope shows the end of the ramp.
     fn breakpoints_s(&self) -> Vec<f64> {
-        let near = self.kept_rows().min(self.count());
-        let far = self.count().saturating_sub(self.kept_rows()).max(near + 1);
+        let near = self.used_rows().min(self.count());
+        let far = self.count().saturating_sub(self.used_rows()).max(near + 1);
         (1..=near).chain(far..self.count()).map(|k| self.step_s(k)).collect()
     }
 
@@ -405,7 +383,7 @@ mod tests {
         assert_eq!(new(2, 600.0, 250), None);
         let two = TrapezoidTable::new(2, AccelerationTable::new(250.0, 600.0, 9000.0, 250), 100).unwrap();
         assert!(two.sums.is_sorted_by(|a, b| a < b), "{two:?}");
-        assert_eq!((two.step_ticks(1), two.step_ticks(2), two.kept_rows()), (1, 2, 1));
+        assert_eq!((two.step_ticks(1), two.step_ticks(2), two.used_rows()), (1, 2, 1));
     }
 
     #[test]

@@ -1,33 +1,28 @@
 //! The motion of one axis: its moves one after another.
 //!
 //! ```text
-//! position  |        _____ _        each move begins where and when the one before has ended;
-//!           |      /       \        before the first an axis stands at 0, after the last at the
-//!           |____/          \___    sum of all
+//! position  |        _____ _        each move begins at the end of the one before; the position is
+//!           |      /       \        0 before the first move, and constant after the last
+//!           |____/          \___
 //!            dwell cosine  constant
 //! ```
 
 use crate::{
-    Curve, Peaks, Profile, round_half_up,
-    timing::{CycleTime, MoveSteps, Schedule, ScheduledStep},
+    Peaks, Profile, round_half_up,
+    timing::{CycleTime, MoveSteps, ScheduledStep},
 };
 use alloc::vec::Vec;
 
-/// A move in its place on the axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedMove {
-    /// When it starts, in s.
     pub start_s: f64,
-    /// Where it starts, in steps.
     pub start_steps: i64,
-    /// Its curve, from 0.
     pub profile: Profile,
 }
 
-/// The whole motion of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisPlan {
-    /// Invariant: at least one; each starts when and where the one before ends.
+    /// Invariant: at least one; each starts at the end of the one before.
     moves: Vec<PlannedMove>,
     duration_s: f64,
     steps: i64,
@@ -48,42 +43,38 @@ impl AxisPlan {
         Self { moves, duration_s: start_s, steps: start_steps }
     }
 
-    /// The moves, in order.
     #[must_use]
     pub fn moves(&self) -> &[PlannedMove] {
         debug_assert!(!self.moves.is_empty(), "an axis without a move was not refused");
         &self.moves
     }
 
-    /// How long all moves last, in s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
-    /// Where the axis ends, in steps from where it began.
     #[must_use]
     pub fn steps(&self) -> i64 {
         self.steps
     }
 
-    /// Steps of all moves, whichever way they go.
     #[must_use]
     pub fn step_count(&self) -> u64 {
         self.moves.iter().fold(0, |sum: u64, planned| sum.saturating_add(planned.profile.step_count()))
     }
 
-    /// All steps in the order of their times, in cycles of a clock of `clock_hz`.
+    /// All steps in the order of their times, in cycles at `clock_hz`.
     pub fn due_steps(&self, clock_hz: u32) -> impl Iterator<Item = ScheduledStep> + '_ {
         self.due_instants(clock_hz).map(|(_, due)| due)
     }
 
-    /// All steps, each with its instant before B1 rounds it, in cycles of a clock of `clock_hz`.
+    /// All steps, each with its unrounded time, in cycles at `clock_hz`.
     pub fn due_instants(&self, clock_hz: u32) -> impl Iterator<Item = (f64, ScheduledStep)> + '_ {
         let mut start = CycleTime::default();
         self.moves.iter().flat_map(move |PlannedMove { profile, .. }| {
-            let steps = MoveSteps::new(profile, start, clock_hz);
-            start = start.plus(profile.length(clock_hz));
+            let steps = MoveSteps::new(profile.schedule(), start, clock_hz);
+            start = start.plus(profile.schedule().length(clock_hz));
             steps
         })
     }
@@ -94,7 +85,6 @@ impl AxisPlan {
         Some((planned, t - planned.start_s))
     }
 
-    /// Position at `t` s in steps, not rounded.
     #[must_use]
     pub fn position(&self, t: f64) -> f64 {
         if t >= self.duration_s {
@@ -103,13 +93,13 @@ impl AxisPlan {
         self.at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
     }
 
-    /// Steps due by `t` s: B1's rounding of the position, and of a table's steps those to the right at `t` itself, those to
-    /// the left before it (B7). As the digits of a time in f64 have it; by a cycle [`Self::due_by`] tells for certain.
+    /// Steps due by `t` s, in the digits of an f64; [`Self::due_by`] is exact for a cycle. At the very time of a table's
+    /// step it counts if it goes to the right, and not yet if it goes to the left.
     ///
     /// A move starts at a whole step, so only its own part is rounded.
     #[must_use]
     pub fn steps_due(&self, t: f64) -> i64 {
-        // In the instant in which a move ends its last step may still wait.
+        // At the end of a move its last step may still be pending.
         let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);
         if let Some(PlannedMove { profile, start_s, start_steps }) = self.moves.get(ended)
             && profile.last_step_waits()
@@ -127,16 +117,16 @@ impl AxisPlan {
         })
     }
 
-    /// Speed at `t` s in steps/s; 0 before the start and from the end on.
+    /// Speed at `t` s in steps/s; 0 outside the motion.
     #[must_use]
     pub fn speed(&self, t: f64) -> f64 {
-        self.while_moving(t, Profile::speed)
+        self.while_moving(t, |profile, t| profile.speed(t))
     }
 
-    /// Acceleration at `t` s in steps/s^2; 0 before the start, from the end on, and where the speed jumps.
+    /// Acceleration at `t` s in steps/s^2; 0 outside the motion and where the speed jumps.
     #[must_use]
     pub fn acceleration(&self, t: f64) -> f64 {
-        self.while_moving(t, Profile::acceleration)
+        self.while_moving(t, |profile, t| profile.acceleration(t))
     }
 
     fn while_moving(&self, t: f64, of: fn(&Profile, f64) -> f64) -> f64 {
@@ -146,10 +136,10 @@ impl AxisPlan {
         self.at(t).map_or(0.0, |(planned, t)| of(&planned.profile, t))
     }
 
-    /// The maximum magnitudes of the whole axis, with the jumps at and between the moves' ends.
+    /// Maximum magnitudes of the axis, with the jumps at and between the ends of moves.
     #[must_use]
     pub fn peaks(&self) -> Peaks {
-        // Speed and acceleration with which the move before has ended.
+        // Speed and acceleration at the end of the previous move.
         let (mut peaks, mut before) = (Peaks::default(), (0.0, 0.0));
         let jumps = |(speed, acceleration): (f64, f64), from: (f64, f64)| Peaks {
             jump: libm::fabs(speed - from.0),

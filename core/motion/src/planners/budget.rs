@@ -1,13 +1,18 @@
-//! What the axes of a scenario may ask of memory, work and speed together.
+//! Limits of memory, work and speed that the axes of a scenario share.
 
-use crate::{MAX_SPEED, planners::quantities::Quantities, problem::Cause};
+use crate::{
+    MAX_SPEED,
+    planners::quantities::Quantities,
+    problem::{Cause, ValueError},
+};
 
 pub(crate) const MAX_TABLE_ROWS: u64 = 1_000_000;
-pub(crate) const MAX_SEGMENTS: usize = 65_536;
+pub(crate) const MAX_SEGMENTS: u64 = 65_536;
 pub(crate) const MAX_SLICES: u64 = 100_000;
+
 pub(crate) struct Budget {
     pub(crate) table_rows: u64,
-    pub(crate) segments: usize,
+    pub(crate) segments: u64,
     pub(crate) slices: u64,
 }
 
@@ -17,7 +22,12 @@ impl Default for Budget {
     }
 }
 
-/// Refuses a speed that no one gave but that follows from the numbers.
+/// The problem of a motion that needs `needed` of something of which only `left` of `max` are left.
+pub(crate) fn exceeded(max: u64, left: u64, needed: u64, of: &'static str) -> ValueError {
+    ValueError::too_much((max - left).saturating_add(needed), max, of)
+}
+
+/// Refuses a speed that follows from other numbers and is too high.
 pub(crate) fn hold_speed(quantities: &mut Quantities<'_>, step: &str, rate: f64) -> Option<()> {
     if rate <= MAX_SPEED {
         return Some(());

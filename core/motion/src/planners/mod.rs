@@ -1,4 +1,4 @@
-//! From the moves of a scenario to the plan of an axis, and to its steps.
+//! From the moves of a scenario to the plan of an axis and its steps (DESIGN Part B).
 
 pub(crate) mod axis;
 pub(crate) mod budget;

@@ -1,7 +1,7 @@
-//! From a scenario's axis to its plan, or to every problem that it has.
+//! From a scenario's axis to its plan, or to all its problems.
 //!
-//! A number is checked with the path of its field; what only follows from several
-//! (a top speed, a table's length) is checked when the curve is made.
+//! A number is checked with the path of its field; what follows from several numbers (a top speed, a table's length) is
+//! checked when the curve is made.
 
 mod motor;
 
@@ -16,12 +16,11 @@ use crate::{
 use alloc::{format, string::String, vec::Vec};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// Longest time of an axis in s.
+/// Maximum duration of an axis in s.
 const MAX_DURATION_S: f64 = 1e6;
 
-/// Plans several lists of axes, one for each controller, each with its path.
-///
-/// Each axis is as [`plan_axis`] says; the tables and the sines of all together have to stay under its bounds.
+/// Plans several lists of axes with their paths, one list per controller. All of them together share the limits of tables
+/// and sines of [`plan_axis`].
 ///
 /// # Errors
 /// Every problem of every axis, each with its path.
@@ -31,7 +30,7 @@ pub fn plan_lists<'a>(
     let (mut plans, mut problems, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     for (path, axes) in lists {
         let mut list = Vec::new();
-        // More axes than that are refused by their number.
+        // The number of axes is checked elsewhere.
         for (index, axis) in axes.iter().take(MAX_CHANNELS).enumerate() {
             match plan_within(axis, &format!("{path}[{index}]"), &mut budget) {
                 Ok(plan) => list.push(plan),
@@ -43,7 +42,7 @@ pub fn plan_lists<'a>(
     if problems.is_empty() { Ok(plans) } else { Err(problems) }
 }
 
-/// Plans one move by itself, of an axis with the default mechanics; `path` is where it stands in the scenario.
+/// Plans a single move with the default mechanics; `path` is its location in the scenario.
 ///
 /// # Errors
 /// Every problem of the move, each with its path.
@@ -55,10 +54,10 @@ pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
     quantities.validator.end(plan)
 }
 
-/// Plans an axis; `path` is where it stands in the scenario, such as `source.motion.axes[0]`.
+/// Plans an axis; `path` is its location in the scenario, such as `source.motion.axes[0]`.
 ///
-/// Distances are rounded half up to whole steps; an axis has at most 64 moves and 1e6 s, its
-/// acceleration tables 1e6 rows and the quarters of its sines 65536 segments.
+/// Distances are rounded half up to whole steps. An axis has at most 64 moves, 1e6 s, 1e6 rows of acceleration tables, and
+/// 65536 segments of sine quarters.
 ///
 /// # Errors
 /// Every problem of the axis, each with its path.
@@ -70,7 +69,7 @@ fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan,
     let mut quantities = Quantities::new(&axis.mechanics, path);
     motor::check(&mut quantities, axis);
     quantities.validator.length("moves", axis.moves.len(), limits::MOVES, "moves");
-    // Past the most moves none is planned: the list's length is refused already.
+    // The length of the list is already refused.
     let moves = axis.moves.iter().take(*limits::MOVES.end()).enumerate();
     let profiles = quantities.at("moves", |quantities| {
         let plan = |(index, each)| quantities.at_entry(index, |here| Profile::plan(here, each, budget));

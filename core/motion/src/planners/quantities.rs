@@ -1,23 +1,22 @@
-//! What a scenario asks of a motion, turned into steps: every number in its range, every quantity
-//! in a unit that the axis has, and every problem kept with its path.
+//! Converts the numbers of a scenario to steps, and checks that each is in its range and in a unit of the axis (DESIGN B1).
 
 use crate::{
     limits,
     mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed},
-    problem::{Cause, Validator},
+    problem::Cause,
     timing::Double,
+    validator::Validator,
 };
 use core::ops::RangeInclusive;
 
 pub(crate) struct Quantities<'s> {
     mechanics: &'s Mechanics,
-    /// Without good mechanics only quantities in steps can be judged.
+    /// With invalid mechanics only quantities in steps can be checked.
     mechanics_hold: bool,
     pub(crate) validator: Validator,
 }
 
 impl<'s> Quantities<'s> {
-    /// For the axis at `path`; checks its mechanics, which its quantities need.
     pub(crate) fn new(mechanics: &'s Mechanics, path: &str) -> Self {
         let mut quantities = Self { mechanics, mechanics_hold: true, validator: Validator::within(path) };
         quantities.at("mechanics", Self::check_mechanics);
@@ -26,18 +25,14 @@ impl<'s> Quantities<'s> {
     }
 
     fn check_mechanics(&mut self) {
-        let (kind, shaft, length) = match self.mechanics {
-            Mechanics::Rotary(m) => ("rotary", Some((m.full_step_deg, m.microsteps)), None),
-            Mechanics::Wheel(m) => {
-                ("wheel", Some((m.full_step_deg, m.microsteps)), Some(("radius_mm", m.radius_mm)))
-            }
-            Mechanics::Screw(m) => {
-                ("screw", Some((m.full_step_deg, m.microsteps)), Some(("lead_mm", m.lead_mm)))
-            }
-            Mechanics::Direct(m) => ("direct", None, Some(("step_mm", m.step_mm))),
+        let length = match self.mechanics {
+            Mechanics::Rotary(_) => None,
+            Mechanics::Wheel(m) => Some(("radius_mm", m.radius_mm)),
+            Mechanics::Screw(m) => Some(("lead_mm", m.lead_mm)),
+            Mechanics::Direct(m) => Some(("step_mm", m.step_mm)),
         };
-        self.at(kind, |quantities| {
-            if let Some((full_step_deg, microsteps)) = shaft {
+        self.at(self.mechanics.name(), |quantities| {
+            if let Some((full_step_deg, microsteps)) = quantities.mechanics.shaft() {
                 quantities.range("full_step_deg", full_step_deg, limits::FULL_STEP_DEG, "deg");
                 quantities.range("microsteps", microsteps.into(), limits::MICROSTEPS, "");
             }
@@ -69,7 +64,7 @@ impl<'s> Quantities<'s> {
         self.validator.add(step, cause);
     }
 
-    /// A number in its range; nothing else is one, in particular not not-a-number.
+    /// A number in its range, which NaN never is.
     pub(crate) fn range(
         &mut self,
         step: &str,
@@ -84,12 +79,11 @@ impl<'s> Quantities<'s> {
         self.range(step, given_s, limits::DURATION_S, "s")
     }
 
-    /// A time from 0 on.
     pub(crate) fn pause(&mut self, step: &str, given_s: f64) -> Option<f64> {
         self.range(step, given_s, limits::PAUSE_S, "s")
     }
 
-    /// A way in whole steps, rounded half up, not 0; left negative.
+    /// A distance in whole steps, rounded half up, not 0; left negative.
     pub(crate) fn distance(&mut self, step: &str, given: &Distance) -> Option<i64> {
         let sizes = given.step(self.mechanics);
         self.check(step, given.value(), given.unit(), sizes, limits::STEPS)?;
@@ -102,12 +96,11 @@ impl<'s> Quantities<'s> {
         Some(whole)
     }
 
-    /// A speed in steps/s above 0.
     pub(crate) fn speed(&mut self, step: &str, given: &Speed) -> Option<f64> {
         self.speed_within(step, given, limits::SPEED_STEPS_S)
     }
 
-    /// A speed in steps/s, within limits in the same unit.
+    /// A speed within limits, in steps/s.
     pub(crate) fn speed_within(
         &mut self,
         step: &str,
@@ -118,26 +111,24 @@ impl<'s> Quantities<'s> {
         given.in_steps(self.mechanics).ok()
     }
 
-    /// An acceleration in steps/s^2 above 0.
     pub(crate) fn acceleration(&mut self, step: &str, given: &Acceleration) -> Option<f64> {
         let sizes = given.step(self.mechanics);
         self.check(step, given.value(), given.unit(), sizes, limits::ACCELERATION_STEPS_S2)?;
         given.in_steps(self.mechanics).ok()
     }
 
-    /// A jerk in steps/s^3 above 0.
     pub(crate) fn jerk(&mut self, step: &str, given: &Jerk) -> Option<f64> {
         self.check(step, given.value(), given.unit(), given.step(self.mechanics), limits::JERK_STEPS_S3)?;
         given.in_steps(self.mechanics).ok()
     }
 
-    /// One step in the unit of a distance, where the axis has that unit.
+    /// One step in the unit of a distance, if the axis has that unit.
     pub(crate) fn step_of(&mut self, step: &str, given: &Distance) -> Option<f64> {
         self.size(step, given.value(), given.unit(), given.step(self.mechanics))
     }
 
-    /// The way from a first position to another in the same unit, in steps, not rounded; `size` is one step in that unit.
-    pub(crate) fn way(&mut self, first: f64, given: &Distance, size: f64) -> Option<Double> {
+    /// The distance in steps between two positions in the same unit, in which one step is `size`.
+    pub(crate) fn travel(&mut self, first: f64, given: &Distance, size: f64) -> Option<Double> {
         self.in_own_unit("", given.value(), size, limits::STEPS, given.unit())?;
         given.exact_steps_from(first, self.mechanics).ok()
     }
@@ -158,7 +149,6 @@ impl<'s> Quantities<'s> {
         }
     }
 
-    /// Checks a quantity against limits in steps.
     fn check(
         &mut self,
         step: &str,
@@ -166,12 +156,12 @@ impl<'s> Quantities<'s> {
         unit: &'static str,
         size: Result<f64, NoSuchUnit>,
         range: RangeInclusive<f64>,
-    ) -> Option<()> {
+    ) -> Option<f64> {
         let size = self.size(step, given, unit, size)?;
-        self.in_own_unit(step, given, size, range, unit).map(|_| ())
+        self.in_own_unit(step, given, size, range, unit)
     }
 
-    /// Checks a quantity against limits in steps and tells them in its own unit.
+    /// Checks a quantity against limits in steps, which a problem reports in the quantity's unit.
     fn in_own_unit(
         &mut self,
         step: &str,

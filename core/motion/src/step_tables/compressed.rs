@@ -1,4 +1,4 @@
-//! A step table with few entries (DESIGN B8): no step is off by more than a given number of cycles.
+//! A step table with few entries (DESIGN B8): every step is within a given number of cycles of its due cycle.
 //!
 //! ```text
 //! due      |    |   |  |  | | | |         a window around each due cycle
@@ -6,14 +6,13 @@
 //! entry    \___ interval, add, count      one parabola through the windows of its steps
 //! ```
 //!
-//! The list is replayed in the integers of its format, as the segment engine replays it: the number of steps is exact,
-//! no step leaves its window, and the only error that one entry passes on to the next is that of its last step.
+//! The list is replayed in the integers of its format, like in the segment engine: the number of steps is exact, no step
+//! leaves its window, and an entry passes on only the error of its last step.
 //!
-//! The fewest entries are searched for ([`super::fewest`]) where the windows are narrow enough. Otherwise, and for the
-//! quick search, each entry is the longest from the end of the one before whose last step comes within an eighth of its
-//! window, and a cycle, of the middle. (Where windows are the due cycles alone it is the longest of all, less an eighth.)
-//! An entry of greatest length ends at the edge of a window, the worst position to begin the next one: lists of such
-//! entries have about an eighth more of them.
+//! If the windows are narrow enough, the fewest entries are searched for ([`super::fewest`]). Else, and for the quick
+//! search, each entry is the longest whose last step is within an eighth of its window, and a cycle, of the middle. (If
+//! windows are single cycles, it is the longest of all, less an eighth.) The very longest entry ends at the edge of a
+//! window, a bad position to begin the next one: such lists have about an eighth more entries.
 
 use super::{
     entry_format::EntryFormat,
@@ -29,22 +28,20 @@ use crate::{
 use alloc::{collections::VecDeque, vec::Vec};
 use core::num::NonZeroU32;
 use stepscope_peripheral::{
-    segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
+    segment::{LAST_CYCLE, PulseTimes, Segment, SegmentList},
     units::Cycles,
 };
 
-/// Maximum tolerance in cycles.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Maximum entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
-/// Work of the search for the fewest entries, in steps of an interval and an add: about two seconds, and ten
-/// microseconds more for each step of the list.
+/// Maximum work of the search for the fewest entries, in pairs of interval and add: about two seconds, and ten
+/// microseconds per step of the list.
 const WORK: u64 = 1 << 28;
 const WORK_PER_STEP: u64 = 1 << 10;
 const LAST: u64 = LAST_CYCLE.0 - START.0;
 const READ: usize = 256;
 
-/// On which side of its due cycle a step may be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Early or late.
@@ -54,20 +51,17 @@ pub enum Side {
     Early,
 }
 
-/// How far a step may be from its due cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
-    /// In cycles, at most [`MAX_TOLERANCE`].
+    /// At most [`MAX_TOLERANCE`].
     pub cycles: Cycles,
-    /// At most this part of the shorter of the intervals before and after it (of [`Side::Early`] the one before): 2 for
-    /// a half.
+    /// At most this part of the shorter interval next to it (of [`Side::Early`] the one before): 2 for a half.
     pub interval_part: Option<NonZeroU32>,
-    /// Which way.
     pub side: Side,
 }
 
 impl Tolerance {
-    /// So many cycles either way, whatever the intervals are.
+    /// A number of cycles to both sides, independent of the intervals.
     #[must_use]
     pub const fn of(cycles: Cycles) -> Self {
         Self { cycles, interval_part: None, side: Side::Both }
@@ -79,30 +73,26 @@ impl Tolerance {
             (Side::Early, _) | (Side::Both, None) => before,
         };
         let part = self.interval_part.map_or(u64::MAX, |part| shorter / u64::from(part.get()));
-        let off = part.min(self.cycles.0);
-        let late = if self.side == Side::Both { off } else { 0 };
-        (due.saturating_sub(off), due.saturating_add(late))
+        let distance = part.min(self.cycles.0);
+        let late = if self.side == Side::Both { distance } else { 0 };
+        (due.saturating_sub(distance), due.saturating_add(late))
     }
 }
 
-/// A compressed list and how good it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compressed {
-    /// What the segment engine runs.
     pub list: SegmentList,
-    /// How far its steps are from their due cycles.
     pub error: TimingError,
-    /// By how many entries it may exceed the fewest: 0 if it is proven to have the fewest, more if it was cut into
-    /// sections, None if the fewest were not searched for, or not to the end.
+    /// Maximum number of entries above the minimum: 0 if it is proven minimal, more if it was cut into sections, `None`
+    /// if the search was not run or not completed.
     pub surplus: Option<u64>,
 }
 
-/// Compresses the steps of one axis, whose cycles count from the motion's start, into the fewest entries of `format`, or,
-/// where its windows are too wide for that search, as [`compressed_quickly`] does.
+/// Compresses the steps of one axis, whose cycles count from the start of the motion, into the fewest entries of `format`.
+/// If the windows are too wide for that search, it works like [`compressed_quickly`].
 ///
 /// # Errors
-/// A tolerance that is too great; a step that comes too soon for `pulse`, or too late for 48.16 fixed point; too many
-/// entries.
+/// A tolerance that is too large; a step too soon for `pulse`, or too late for 48.16 fixed point; too many entries.
 pub fn compressed(
     steps: impl IntoIterator<Item = ScheduledStep>,
     tolerance: Tolerance,
@@ -115,7 +105,7 @@ pub fn compressed(
     Ok(Compressed { surplus, ..compression.end() })
 }
 
-/// The same in few entries, each the longest that ends near the middle of a window: in a part of the time.
+/// Compresses into few entries, each the longest that ends near the middle of a window, in a fraction of the time.
 ///
 /// # Errors
 /// As [`compressed`].
@@ -138,8 +128,8 @@ struct Compression<I> {
 impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
     fn new(steps: I, tolerance: Tolerance, format: EntryFormat, pulse: PulseTimes) -> Result<Self, Cause> {
         if tolerance.cycles > MAX_TOLERANCE {
-            let (given, most) = (tolerance.cycles.0 as f64, MAX_TOLERANCE.0 as f64);
-            return Err(ValueError::TooMuch { given, most, of: "cycles of tolerance" }.into());
+            let (given, max) = (tolerance.cycles.0, MAX_TOLERANCE.0);
+            return Err(ValueError::too_much(given, max, "cycles of tolerance").into());
         }
         let mut windows = Windows {
             steps,
@@ -155,8 +145,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Ok(Self { windows, writer: Writer::new(format) })
     }
 
-    /// Section after section in the fewest entries; how many more than the fewest there may be, or None where steps are
-    /// left.
+    /// Compresses section after section into the fewest entries; returns the surplus, or `None` if steps are left.
     fn fewest(&mut self) -> Result<Option<u64>, Cause> {
         let mut ready = VecDeque::new();
         let (last, surplus) = self.sections(&mut ready)?;
@@ -164,11 +153,11 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Ok(surplus)
     }
 
-    /// The same: the cycle of the last step that is in an entry, and the number; `ready` gets the steps that were read
-    /// but are in none.
+    /// The same; returns the cycle of the last step in an entry, and the surplus. `ready` gets the steps that were read but
+    /// are in no entry.
     fn sections(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
         let (format, pulse) = (self.windows.format, self.windows.pulse);
-        let least = pulse.min_interval().0 << format.fraction_bits;
+        let min = pulse.min_interval().0 << format.fraction_bits;
         let (mut last, mut cuts, mut work) = (0, 0, WORK);
         loop {
             while let Some(step) = self.windows.next.filter(|_| ready.len() < fewest::MAX_STEPS) {
@@ -181,21 +170,20 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 return Ok((last, None));
             }
             let near =
-                |before: u64, window: &Window| window.high.saturating_sub(before) <= format.most_interval();
+                |before: u64, window: &Window| window.high.saturating_sub(before) <= format.max_interval();
             if !near(self.writer.time, first) {
-                self.writer.wait(first.first(self.writer.time, least, format).wait);
+                self.writer.wait(first.first(self.writer.time, min, format).wait);
             }
-            // Up to a rest that no interval holds.
+            // Up to a rest longer than any interval.
             let pairs = steps.iter().zip(steps.iter().skip(1));
             let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
             let is_cut = more && there == steps.len();
-            // Where some times are near enough the wait may be one that another list does without.
+            // If some times are near enough, another list may do without the wait.
             let waits =
                 steps.get(there - 1).zip(steps.get(there)).is_some_and(|((before, _), (window, _))| {
-                    window.low.saturating_sub(before.high) <= format.most_interval()
+                    window.low.saturating_sub(before.high) <= format.max_interval()
                 });
-            let section =
-                Section::new(format, least, self.writer.time, steps.get(..there).unwrap_or_default());
+            let section = Section::new(format, min, self.writer.time, steps.get(..there).unwrap_or_default());
             let Some(left) = work.checked_sub(there as u64) else { return Ok((last, None)) };
             work = left;
             let Some(pieces) = section.pieces(is_cut, &mut work) else { return Ok((last, None)) };
@@ -207,7 +195,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 self.writer.steps(count, windows, (interval as u64, add, right));
                 (done, last) = (done + count, of_piece.last().map_or(last, |(window, _)| window.due));
             }
-            // Only for steps in entries, so that many short pieces of a section do not get it again and again.
+            // Only for steps in entries, so that many short pieces of a section do not count repeatedly.
             work += WORK_PER_STEP * done as u64;
             cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
             ready.drain(..done);
@@ -243,16 +231,14 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
 
 struct Windows<I> {
     steps: I,
-    /// The next step without a window.
     next: Option<ScheduledStep>,
-    /// Steps after it that were read before, the last first.
+    /// Later steps that were read before, the last first.
     returned: Vec<ScheduledStep>,
     tolerance: Tolerance,
     format: EntryFormat,
     pulse: PulseTimes,
-    /// Cycle of the step before the next.
     before: u64,
-    /// Steps that have their windows.
+    /// Number of steps with windows.
     count: u64,
 }
 
@@ -269,7 +255,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         self.read();
     }
 
-    /// Reads some windows of steps that go one way; false where that ends.
+    /// Reads some windows of steps in one direction; returns false at its end.
     fn fill(&mut self, right: bool, ahead: &mut Ahead) -> Result<bool, Cause> {
         for _ in 0..READ {
             if self.next.is_none_or(|step| step.right != right) {
@@ -293,7 +279,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         self.before = step.cycle;
         let (earliest, latest) = self.tolerance.window(step.cycle, before, after);
         if latest > LAST {
-            return Err(ValueError::TooMuch { given: latest as f64, most: LAST as f64, of: "cycles" }.into());
+            return Err(ValueError::too_much(latest, LAST, "cycles").into());
         }
         Ok(Window::of(step.cycle, (earliest, latest), self.format))
     }
@@ -303,7 +289,6 @@ struct Writer {
     format: EntryFormat,
     segments: Vec<Segment>,
     error: TimingError,
-    /// Time of the last step from the start, in units.
     time: u64,
 }
 
@@ -312,21 +297,18 @@ impl Writer {
         Self { format, segments: Vec::new(), error: TimingError::default(), time: 0 }
     }
 
-    fn shift(&self) -> u32 {
-        FRACTION_BITS - self.format.fraction_bits
-    }
-
     fn wait(&mut self, wait: u64) {
         if wait > 0 {
             self.time += wait;
-            self.segments.push(Segment::Dwell(wait << self.shift()));
+            self.segments.push(Segment::Dwell(wait << self.format.shift()));
         }
     }
 
     fn check_length(&self) -> Result<(), Cause> {
         if self.segments.len() > MAX_ENTRIES {
-            let (given, most) = (self.segments.len() as f64, MAX_ENTRIES as f64);
-            return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
+            return Err(
+                ValueError::too_much(self.segments.len() as u64, MAX_ENTRIES as u64, "entries").into()
+            );
         }
         Ok(())
     }
@@ -348,23 +330,23 @@ impl Writer {
             );
             self.error.step((self.time >> self.format.fraction_bits).abs_diff(window.due));
         }
-        let (count, shift) = (count as u32, self.shift());
+        let (count, shift) = (count as u32, self.format.shift());
         let (interval, add) = (interval << shift, add << shift);
-        if !self.goes_on(count, interval, add, right) {
+        if !self.extends_last(count, interval, add, right) {
             self.segments.push(Segment::Steps { count, interval, add, right });
         }
     }
 
-    /// Adds the steps to the last segment where they are its next ones.
-    fn goes_on(&mut self, more: u32, interval: u64, add: i64, right: bool) -> bool {
-        let most = self.format.most_count();
+    /// Appends the steps to the last segment if they continue it.
+    fn extends_last(&mut self, more: u32, interval: u64, add: i64, right: bool) -> bool {
+        let max = self.format.max_count();
         let Some(Segment::Steps { count, interval: first, add: grows, right: same }) =
             self.segments.last_mut()
         else {
             return false;
         };
         let next = first.wrapping_add_signed(grows.wrapping_mul(i64::from(*count)));
-        let all = count.checked_add(more).filter(|all| *all <= most);
+        let all = count.checked_add(more).filter(|all| *all <= max);
         match all {
             Some(all) if next == interval && *grows == add && *same == right => {
                 *count = all;

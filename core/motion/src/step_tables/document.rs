@@ -1,7 +1,7 @@
-//! A motion's own table as segments (DESIGN B8): the rates that its paper lists, each held for its steps.
+//! The table of a motion's paper as segments (DESIGN B8): its rates, each held for some steps.
 //!
-//! An interval is rounded once, to the unit of the format. So the rounding of a rate adds up over its steps, as in a
-//! controller that counts such intervals: that is the table's timing error.
+//! An interval is rounded once, to the unit of the format. The rounding of a rate adds up over its steps, as in a controller
+//! that counts such intervals: that is the table's timing error.
 
 use crate::step_tables::{compressed::MAX_ENTRIES, entry_format::EntryFormat, segments::START};
 use crate::{
@@ -15,30 +15,28 @@ use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
 #[derive(Clone, Copy, Debug)]
 struct Rate {
-    /// From the step before, or the start of the list, to the first step.
+    /// From the end of the rate before to the first step.
     first: f64,
-    /// From step to step.
     each: f64,
     count: u64,
     right: bool,
-    /// From the end of the rate before to its own.
+    /// Duration, from the end of the rate before.
     lasts: f64,
 }
 
-/// The plan's own table, with times in units of `format`.
+/// The table of the plan, with times in units of `format`.
 ///
 /// # Errors
-/// A move that has no table of its own, or too many rows.
+/// A move without a table, or too many rows.
 pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> Result<SegmentList, Cause> {
     let clock = f64::from(clock_hz);
     let mut table = Table { format, segments: Vec::new() };
-    // Time of the last step, in cycles.
     let mut last = 0.0;
     for planned in plan.moves() {
         let start = planned.start_s * clock;
         let mut now = start;
         for rate in rates(&planned.profile, clock_hz)? {
-            // A rate's own first step counts from where the rate before it ends.
+            // Relative to the last step instead of the end of the rate before.
             let first = now + rate.first - last;
             if rate.count > 0 {
                 table.rate(Rate { first, ..rate })?;
@@ -50,16 +48,15 @@ pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> R
     Ok(SegmentList { start: START, segments: table.segments })
 }
 
-/// Bytes of the plan's tables as the documents keep them; None where a move has none.
+/// Bytes of the plan's tables as in their papers; `None` if a move has none.
 ///
-/// A row of an acceleration table is a reload of 2 bytes, or of 4 where one needs them; one of a staircase a rate and its
-/// steps, 4 bytes together; sine segments are those of a quarter ([`SineSegments::memory`]). A constant rate is a row of a
-/// 4-byte interval and a 4-byte count, a dwell a 4-byte time. A sliced move has its steps and their rate, 2 bytes each, for each
-/// slice.
+/// A row of an acceleration table is a reload of 2 bytes, or 4 if one needs them; of a staircase a rate and its steps, 4
+/// bytes together; sine segments are those of a quarter ([`SineSegments::memory`]). A constant rate is a 4-byte interval
+/// and a 4-byte count, a dwell a 4-byte time. A sliced move has steps and rate, 2 bytes each, per slice.
 pub(super) fn document_bytes(plan: &AxisPlan) -> Option<u64> {
     plan.moves().iter().try_fold(0, |sum: u64, planned| {
         let bytes = match &planned.profile {
-            Profile::TrapezoidTable(table) => table.kept_rows() * reload_bytes(table),
+            Profile::TrapezoidTable(table) => table.used_rows() * reload_bytes(table),
             Profile::Staircase(staircase) => 4 * (staircase.ramp_rows() + 1),
             Profile::SineSegments(sine) => sine.memory().segments,
             Profile::Sliced(sliced) => 4 * sliced.slice_count(),
@@ -75,7 +72,7 @@ fn reload_bytes(table: &TrapezoidTable) -> u64 {
     if table.table().reload(0) > u16::MAX.into() { 4 } else { 2 }
 }
 
-/// The rates of a move one after another; a first step counts from where the rate before ends.
+/// The rates of a move, one after another.
 fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rate> + '_>, Cause> {
     let clock = f64::from(clock_hz);
     let right = profile.steps() >= 0;
@@ -83,7 +80,7 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
         move |each: f64, count: u64| Rate { first: each, each, count, right, lasts: count as f64 * each };
     Ok(match profile {
         Profile::TrapezoidTable(table) => {
-            let rows = table.kept_rows() - 1;
+            let rows = table.used_rows() - 1;
             let cycles =
                 move |row| table.table().reload(row) as f64 * clock / f64::from(table.table().timer_hz());
             let plateau = table.steps().unsigned_abs() - 2 * rows;
@@ -146,13 +143,14 @@ impl Table {
             self.steps(rate.count - 1, each, rate.right);
         }
         if self.segments.len() > MAX_ENTRIES {
-            let (given, most) = (self.segments.len() as f64, MAX_ENTRIES as f64);
-            return Err(ValueError::TooMuch { given, most, of: "entries" }.into());
+            return Err(
+                ValueError::too_much(self.segments.len() as u64, MAX_ENTRIES as u64, "entries").into()
+            );
         }
         Ok(())
     }
 
-    /// In 1/65536 cycle, a whole number of the format's units.
+    /// In 1/65536 cycle, rounded to the format's unit.
     fn rounded(&self, cycles: f64) -> u64 {
         let units = round_half_up(cycles * f64::from(1_u32 << self.format.fraction_bits));
         units.max(0).unsigned_abs() << (FRACTION_BITS - self.format.fraction_bits)

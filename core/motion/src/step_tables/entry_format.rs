@@ -1,87 +1,78 @@
-//! How a firmware keeps the entries of a step table (DESIGN B8): the widths of an entry's numbers.
+//! The entries of a step table in a controller (DESIGN B8): the widths of their numbers.
 //!
 //! ```text
 //! entry               interval, count, add
-//! count > 0           count steps; each comes `interval` after the one before, then interval += add
+//! count > 0           count steps, each `interval` after the one before; then interval += add
 //! count = 0           no step: waits `interval`, then DIR = add (0 left, 1 right)
 //! ```
 //!
-//! DIR is left at first, as A8 has it. Interval and add are in units of 1/2^fraction_bits cycle.
+//! DIR is initially left. Interval and add are in units of 1/2^fraction_bits cycle.
 
 use crate::problem::{Cause, ValueError};
 use alloc::vec::Vec;
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
-/// Widths of an entry's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EntryFormat {
-    /// Name, fit for a command line.
     pub name: &'static str,
-    /// Bits of a cycle's fraction in interval and add, at most 16.
+    /// Bits of the fraction of a cycle in interval and add, at most 16.
     pub fraction_bits: u32,
-    /// Bits of the unsigned interval: 32 or 64.
+    /// 32 or 64, unsigned.
     pub interval_bits: u32,
-    /// Bits of the unsigned count: 16 or 32.
+    /// 16 or 32, unsigned.
     pub count_bits: u32,
-    /// Bits of the signed add: 16 or 64.
+    /// 16 or 64, signed.
     pub add_bits: u32,
 }
 
 impl EntryFormat {
-    /// All that the segment engine holds (A8): 48.16 fixed point.
+    /// The numbers of the segment engine: 48.16 fixed point.
     pub const Q16: Self =
         Self { name: "q16", fraction_bits: FRACTION_BITS, interval_bits: 64, count_bits: 32, add_bits: 64 };
     /// 24.8 fixed point in 8 bytes.
     pub const Q8: Self =
         Self { name: "q8", fraction_bits: 8, interval_bits: 32, count_bits: 16, add_bits: 16 };
-    /// Whole cycles in 8 bytes, the numbers that Klipper's queue_step takes.
+    /// Whole cycles in 8 bytes, like Klipper's queue_step.
     pub const TICKS: Self =
         Self { name: "ticks", fraction_bits: 0, interval_bits: 32, count_bits: 16, add_bits: 16 };
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
 
-    /// Bytes of an entry.
     #[must_use]
     pub const fn bytes(self) -> u64 {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
 
-    /// Maximum interval in units.
     #[must_use]
-    pub const fn most_interval(self) -> u64 {
+    pub const fn max_interval(self) -> u64 {
         u64::MAX >> (64 - self.interval_bits)
     }
 
-    /// Maximum count.
     #[must_use]
-    pub const fn most_count(self) -> u32 {
+    pub const fn max_count(self) -> u32 {
         u32::MAX >> (32 - self.count_bits)
     }
 
-    /// Minimum add in units.
     #[must_use]
-    pub const fn least_add(self) -> i64 {
+    pub const fn min_add(self) -> i64 {
         i64::MIN >> (64 - self.add_bits)
     }
 
-    /// Maximum add in units.
     #[must_use]
-    pub const fn most_add(self) -> i64 {
+    pub const fn max_add(self) -> i64 {
         i64::MAX >> (64 - self.add_bits)
     }
 
-    /// From 1/65536 cycle to this format's unit.
-    const fn shift(self) -> u32 {
+    pub(super) const fn shift(self) -> u32 {
         FRACTION_BITS - self.fraction_bits
     }
 
     /// The list's segments as entries of this format.
     ///
-    /// A segment that is more than an entry holds becomes several: a long interval a wait before the
-    /// step, a great add an entry for each step, a great count two or more.
+    /// A segment too large for an entry becomes several: a wait before a long interval, an entry per step for a large add,
+    /// several entries for a large count.
     ///
     /// # Errors
-    /// The first time that is not a whole number of this format's units.
+    /// The first time that is no multiple of this format's unit.
     pub fn pack(self, list: &SegmentList) -> Result<Vec<Entry>, Cause> {
         let mut packer = Packer { format: self, entries: Vec::new(), right: false };
         for segment in &list.segments {
@@ -98,7 +89,7 @@ impl EntryFormat {
         Ok(packer.entries)
     }
 
-    /// Entries that [`Self::pack`] makes.
+    /// Number of entries from [`Self::pack`].
     ///
     /// # Errors
     /// As [`Self::pack`].
@@ -117,7 +108,7 @@ impl EntryFormat {
     }
 }
 
-// Every format's numbers fit into an [`Entry`], in whole bytes.
+// Numbers of all formats fit into an [`Entry`], in whole bytes.
 const _: () = {
     let mut index = 0;
     while index < EntryFormat::ALL.len() {
@@ -130,21 +121,19 @@ const _: () = {
     }
 };
 
-/// An entry of a step table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Time before the first step in units, or of the wait.
+    /// Time before the first step, or of the wait, in units.
     pub interval: u64,
     /// Steps; 0 for a wait.
     pub count: u32,
-    /// What each next interval is longer in units; of a wait the level of DIR after it.
+    /// Increment of the interval in units; of a wait the level of DIR after it.
     pub add: i64,
 }
 
 struct Packer {
     format: EntryFormat,
     entries: Vec<Entry>,
-    /// Level of DIR so far.
     right: bool,
 }
 
@@ -158,7 +147,7 @@ impl Packer {
 
     fn wait(&mut self, mut time: u64) {
         while time > 0 {
-            let interval = time.min(self.format.most_interval());
+            let interval = time.min(self.format.max_interval());
             self.entries.push(Entry { interval, count: 0, add: self.right.into() });
             time -= interval;
         }
@@ -167,15 +156,15 @@ impl Packer {
     fn steps(&mut self, mut count: u32, mut interval: u64, add: i64) {
         let format = self.format;
         let last = i128::from(interval) + i128::from(add) * i128::from(count.saturating_sub(1));
-        let fits = (format.least_add()..=format.most_add()).contains(&add)
-            && interval <= format.most_interval()
-            && last <= i128::from(format.most_interval());
-        let most = if fits { format.most_count() } else { 1 };
+        let fits = (format.min_add()..=format.max_add()).contains(&add)
+            && interval <= format.max_interval()
+            && last <= i128::from(format.max_interval());
+        let max = if fits { format.max_count() } else { 1 };
         while count > 0 {
-            let part = count.min(most);
-            self.wait(interval.saturating_sub(format.most_interval()));
-            let kept = interval.min(format.most_interval());
-            self.entries.push(Entry { interval: kept, count: part, add: if part == 1 { 0 } else { add } });
+            let part = count.min(max);
+            self.wait(interval.saturating_sub(format.max_interval()));
+            let first = interval.min(format.max_interval());
+            self.entries.push(Entry { interval: first, count: part, add: if part == 1 { 0 } else { add } });
             interval = interval.wrapping_add_signed(add.wrapping_mul(part.into()));
             count -= part;
         }
@@ -225,7 +214,7 @@ mod tests {
     fn an_entry_has_the_bytes_of_its_numbers() {
         assert_eq!(EntryFormat::ALL.map(EntryFormat::bytes), [20, 8, 8]);
         let ticks = EntryFormat::TICKS;
-        assert_eq!((ticks.most_interval(), ticks.most_count()), (0xffff_ffff, 0xffff));
-        assert_eq!((ticks.least_add(), ticks.most_add()), (-32_768, 32_767));
+        assert_eq!((ticks.max_interval(), ticks.max_count()), (0xffff_ffff, 0xffff));
+        assert_eq!((ticks.min_add(), ticks.max_add()), (-32_768, 32_767));
     }
 }

@@ -1,59 +1,55 @@
 //! One entry of a step table through the windows of some of its steps (DESIGN B8).
 //!
-//! Step n of an entry comes n*interval + n*(n-1)/2*add after the entry's start. Over n this is a straight line of
-//! x = (n - 1)/2, and each step's window a gate in its way:
+//! Step n of an entry is n*interval + n*(n-1)/2*add after the entry's start. Divided by n this is a straight line over
+//! x = (n - 1)/2, and each step's window is a gate for it:
 //!
 //! ```text
 //! low_n/n <= interval + add*(n-1)/2 <= high_n/n          all numbers integers
 //! ```
 //!
-//! For a given add the intervals that pass all gates are a range, `room` long; over add the room is concave, so where
-//! there is none the two gates that leave none also say on which side of this add there may be some, and from where on.
-//! That bound is exact, whichever gates have been looked at: fewer gates never refuse what all gates would let pass.
+//! For a given add the intervals that pass all gates are a range of length `room`, which is concave in add. So the two
+//! tightest gates of an add without room also tell the direction and the minimum distance of an add with room. That bound
+//! is exact for any subset of the gates: fewer gates never refuse what all gates allow.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Gate {
-    /// The step, from 1.
     pub(super) n: i64,
-    /// Earliest time in units.
+    /// Earliest and latest time in units.
     pub(super) low: i64,
-    /// Latest time in units.
     pub(super) high: i64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Fit {
-    /// Minimum interval in units.
+    /// Minimum and maximum interval in units.
     pub(super) least: i64,
-    /// Maximum interval in units.
     pub(super) most: i64,
-    /// What each next interval is longer, in units.
     pub(super) add: i64,
 }
 
-/// Looks at different adds, at most. It is never reached but where the gates leave less than one unit.
-const MAX_LOOKS: u32 = 64;
-/// Maximum time of a gate in units, and greatest part of an add in one: so all sums stay in 64 bits.
+/// Maximum number of adds tried; only gates with less than one unit of room need as many.
+const MAX_PROBES: u32 = 64;
+/// Maximum time of a gate in units, and maximum part of an add in it, so that all sums fit in 64 bits.
 pub(super) const MAX_TIME: u64 = 1 << 60;
 
-struct Look {
+struct Probe {
     add: i64,
     least: i64,
     most: i64,
     /// Twice the slope of the room over add.
     slope: i64,
-    /// How far the next add with any room is at least, on the side to which the room grows.
+    /// Minimum distance of the next add with room, in the direction of growing room.
     ahead: i64,
 }
 
-impl Look {
-    /// Looks at all gates; None if there are none.
+impl Probe {
+    /// Evaluates all gates; `None` if there are none.
     fn at(gates: &[Gate], add: i64) -> Option<Self> {
         let (low, high) = tightest(gates, add)?;
         let least = ceiling(low.low, low.n);
         let most = high.high.div_euclid(high.n);
         let slope = low.n - high.n;
-        // low.low/low.n - high.high/high.n over a common denominator, which is what an add changes by the slope.
+        // low.low/low.n - high.high/high.n over a common denominator: the add changes it by the slope.
         let [low_n, high_n] = [low.n, high.n].map(i128::from);
         let missing = i128::from(low.low) * high_n - i128::from(high.high) * low_n;
         let mut ahead = 1;
@@ -73,7 +69,7 @@ impl Look {
     }
 }
 
-/// The gates that leave the least and the greatest interval at an add, both shifted by it; None if there are none.
+/// The gates with the maximum lower and the minimum upper interval at an add, shifted by it; `None` without gates.
 fn tightest(gates: &[Gate], add: i64) -> Option<(Gate, Gate)> {
     let wide = |time: i64, n: i64| i128::from(time) * i128::from(n);
     let first = gates.first()?.shifted(add);
@@ -90,57 +86,57 @@ fn tightest(gates: &[Gate], add: i64) -> Option<(Gate, Gate)> {
     Some((low, high))
 }
 
-const fn ceiling(over: i64, under: i64) -> i64 {
+pub(super) const fn ceiling(over: i64, under: i64) -> i64 {
     over.div_euclid(under) + (over.rem_euclid(under) > 0) as i64
 }
 
 impl Gate {
-    /// The gate of interval alone, with add*(n-1)/2 taken off.
+    /// The gate for the interval alone, without add*(n-1)/2.
     fn shifted(self, add: i64) -> Self {
         let part = self.n * (self.n - 1) / 2 * add;
         debug_assert!(
             [self.low, self.high, part].iter().all(|time| time.unsigned_abs() <= MAX_TIME),
-            "{self:?} with add {add} leaves what 64 bits can sum"
+            "{self:?} with add {add} does not fit in 64 bits"
         );
         Self { n: self.n, low: self.low - part, high: self.high - part }
     }
 }
 
-/// An interval and an add of `adds` (least, greatest) that pass all gates; None if there are none.
+/// An interval and an add of `adds` (minimum, maximum) that pass all gates, if there are any.
 ///
-/// `guess` is where it begins to look. With `centre` it goes on until the room is three quarters of the greatest or
-/// more, without it the first that passes does.
+/// The search begins at `guess`. With `centre` it continues until the room is at least three quarters of the maximum,
+/// without it until a first add passes.
 ///
-/// Its sums stay in 64 bits where every gate's times and add*n*(n-1)/2 for `adds` are within [`MAX_TIME`].
+/// Every gate's times and add*n*(n-1)/2 for `adds` must be within [`MAX_TIME`].
 pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) -> Option<Fit> {
     let (mut left, mut right) = adds;
-    let (mut below, mut above): (Option<Look>, Option<Look>) = (None, None);
+    let (mut below, mut above): (Option<Probe>, Option<Probe>) = (None, None);
     let mut best: Option<Fit> = None;
     let mut add = guess;
-    for _ in 0..MAX_LOOKS {
+    for _ in 0..MAX_PROBES {
         if left > right {
             break;
         }
         add = add.clamp(left, right);
-        let look = Look::at(gates, add)?;
-        if let Some(fit) = look.fit()
-            && best.is_none_or(|best| look.room() > best.most - best.least)
+        let probe = Probe::at(gates, add)?;
+        if let Some(fit) = probe.fit()
+            && best.is_none_or(|best| probe.room() > best.most - best.least)
         {
             best = Some(fit);
             if !centre {
                 break;
             }
         }
-        // Where nothing passed yet it goes beyond the bound by half, to come to the other side.
-        let far = if best.is_none() { look.ahead.saturating_add(look.ahead / 2) } else { look.step() };
-        if look.slope > 0 {
-            left = add.saturating_add(look.ahead);
+        // Without room so far it goes beyond the bound by half, to reach the other side.
+        let far = if best.is_none() { probe.ahead.saturating_add(probe.ahead / 2) } else { probe.step() };
+        if probe.slope > 0 {
+            left = add.saturating_add(probe.ahead);
             add = add.saturating_add(far);
-            below = Some(look);
-        } else if look.slope < 0 {
-            right = add.saturating_sub(look.ahead);
+            below = Some(probe);
+        } else if probe.slope < 0 {
+            right = add.saturating_sub(probe.ahead);
             add = add.saturating_sub(far);
-            above = Some(look);
+            above = Some(probe);
         } else {
             break;
         }
@@ -155,14 +151,14 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
     best
 }
 
-impl Look {
-    /// How far to go on where there is room, towards more.
+impl Probe {
+    /// Distance of the next add, if there is room here.
     fn step(&self) -> i64 {
         (2 * self.room()).checked_div(self.slope.abs()).unwrap_or(1).max(1)
     }
 }
 
-fn summit(below: &Look, above: &Look) -> (i64, i64) {
+fn summit(below: &Probe, above: &Probe) -> (i64, i64) {
     let apart = i128::from(above.add) - i128::from(below.add);
     let (up, down) = (i128::from(below.slope), i128::from(-above.slope));
     let drop = 2 * (i128::from(above.room()) - i128::from(below.room()));
@@ -206,7 +202,7 @@ mod tests {
         for _ in 0..20_000 {
             let gate = |n, low| Gate { n, low, high: low + 3 };
             let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
-            let look = Look::at(&[first, second], 0).expect("there are gates");
+            let probe = Probe::at(&[first, second], 0).expect("there are gates");
             // The interval that one asks for at least, less what the other has at most.
             let gap = |low: Gate, high: Gate, add: i64| {
                 let (low, high) = (low.shifted(add), high.shifted(add));
@@ -219,16 +215,16 @@ mod tests {
             if low.n == high.n {
                 continue;
             }
-            let further = |adds: i64| if look.slope > 0 { adds } else { -adds };
+            let further = |adds: i64| if probe.slope > 0 { adds } else { -adds };
             assert!(
-                gap(low, high, further(look.ahead)) <= 0,
+                gap(low, high, further(probe.ahead)) <= 0,
                 "{first:?} {second:?}: {} is too few",
-                look.ahead
+                probe.ahead
             );
             assert!(
-                gap(low, high, further(look.ahead - 1)) > 0,
+                gap(low, high, further(probe.ahead - 1)) > 0,
                 "{first:?} {second:?}: {} is too many",
-                look.ahead
+                probe.ahead
             );
             seen += 1;
         }

@@ -1,9 +1,9 @@
-//! The longest entry from a given time on (DESIGN B8): one parabola through as many windows as it goes.
+//! The longest entry from a given time on (DESIGN B8): one parabola through as many windows as possible.
 //!
-//! Whether an entry of n steps exists is tried with some of its steps first ([`super::feasible_window`]): those that stand at
-//! every eighth of it, and those that an earlier try has missed. If even these leave no interval and add, there is none
-//! for all; if they do, it is replayed through all of them, and the steps that it misses most are tried too. So a length
-//! is refused only with proof and taken only after replay, and few lengths are replayed.
+//! Whether an entry of n steps exists is tested with some of its steps first ([`super::feasible_window`]): every eighth, and
+//! those that an earlier try has missed. If these allow no interval and add, neither do all; if they do, the entry is
+//! replayed through all of them, and the steps that it misses most are added. So a length is refused only with proof and
+//! accepted only after a replay, and few lengths are replayed.
 
 use crate::problem::Cause;
 use crate::step_tables::{
@@ -12,12 +12,12 @@ use crate::step_tables::{
 };
 use alloc::vec::Vec;
 
-/// Steps that are looked ahead, at most: 24 bytes each.
+/// Maximum number of steps read ahead: 24 bytes each.
 const MAX_AHEAD: usize = 1 << 20;
 const SAMPLES: usize = 8;
-/// Longest time of an entry in units, so that all sums of [`feasible_window`] stay in 64 bits.
+/// Maximum time of an entry in units, so that all sums of [`feasible_window`] fit in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
-// Gates reach to the double of it, and the steepest add a unit further.
+// Gates reach to twice of it, and the steepest add a unit farther.
 const _: () = assert!(2 * MAX_SPAN + MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
 
 #[derive(Clone, Copy, Debug)]
@@ -33,14 +33,14 @@ impl Window {
         Self { due, low, high: last | ((1 << format.fraction_bits) - 1) }
     }
 
-    /// An entry of this step alone from a time on, in the middle of its window or as near as the least interval lets it be.
-    pub(super) fn first(&self, from: u64, least: u64, format: EntryFormat) -> Longest {
+    /// An entry with this step only from a time on, as near to the middle of its window as the minimum interval allows.
+    pub(super) fn first(&self, from: u64, min_interval: u64, format: EntryFormat) -> Longest {
         let middle = self.low + (self.high - self.low) / 2;
-        let time = middle.max(from + least);
+        let time = middle.max(from + min_interval);
         let interval = time - from;
-        let most = format.most_interval();
-        // A longer wait than an entry holds stands before it.
-        let wait = if self.high - from > most { interval.saturating_sub(most / 2) } else { 0 };
+        let max = format.max_interval();
+        // A wait that is too long for an entry comes before it.
+        let wait = if self.high - from > max { interval.saturating_sub(max / 2) } else { 0 };
         Longest { wait, interval: interval - wait, add: 0, count: 1 }
     }
 }
@@ -58,15 +58,13 @@ pub(super) struct Ahead {
     /// Minimum interval of two steps in units.
     least: u64,
     windows: Vec<Window>,
-    /// Windows that are used up.
+    /// Number of used windows.
     front: usize,
-    /// Whether the run of steps ends with the last window.
+    /// Whether the last window ends the run of steps.
     ended: bool,
-    /// Steps, from 1, that tries have missed.
+    /// Steps, from 1, missed by earlier tries.
     missed: Vec<usize>,
-    /// Gates of the length that is tried.
     gates: Vec<Gate>,
-    /// Time before the entry's first step.
     from: u64,
 }
 
@@ -106,13 +104,12 @@ impl Ahead {
         self.windows.get(self.front..).unwrap_or_default()
     }
 
-    /// Window of step `n`, from 1.
     fn window(&self, n: usize) -> Option<&Window> {
         self.windows.get(self.front + n - 1)
     }
 
-    /// The longest entry that begins at `from`; None where the run has no step left. `guess` is about how long it may
-    /// be, `fill` reads windows on and says whether there may be more.
+    /// The longest entry that begins at `from`; `None` if no step is left. `guess` is an estimate of its length; `fill`
+    /// reads more windows and returns whether there may be more.
     pub(super) fn longest(
         &mut self,
         from: u64,
@@ -121,7 +118,7 @@ impl Ahead {
     ) -> Result<Option<Longest>, Cause> {
         self.from = from;
         self.missed.clear();
-        let most = MAX_AHEAD.min(self.format.most_count() as usize);
+        let most = MAX_AHEAD.min(self.format.max_count() as usize);
         let mut read = |ahead: &mut Self, n: usize| -> Result<(), Cause> {
             while ahead.left().len() < n && !ahead.ended {
                 ahead.ended = !fill(ahead)?;
@@ -133,7 +130,7 @@ impl Ahead {
         if first.wait > 0 {
             return Ok(Some(first));
         }
-        // Taken after replay, taken by the samples, refused by the samples.
+        // Accepted after replay, accepted by the samples, refused by the samples.
         let (mut taken, mut sampled, mut refused) = (first, 1, most + 1);
         let mut add = None;
         let mut n = guess + guess / 8;
@@ -154,7 +151,7 @@ impl Ahead {
                     }
                     None => {
                         refused = n;
-                        // Twice as far back as before, until something passes.
+                        // Twice as far back as before, until a length passes.
                         n = if sampled > taken.count {
                             sampled + (refused - sampled) / 2
                         } else {
@@ -165,7 +162,7 @@ impl Ahead {
                 continue;
             }
             if sampled == taken.count {
-                // Of whole cycles without a tolerance every entry begins in a due cycle itself.
+                // In whole cycles without a tolerance every entry begins in a due cycle.
                 let limited = sampled == most || self.ends_with(sampled) || self.format.fraction_bits == 0;
                 let count = if limited || !self.is_tight(sampled) { sampled } else { sampled - sampled / 8 };
                 return Ok(Some(Longest { count, ..taken }));
@@ -186,7 +183,7 @@ impl Ahead {
         Some(self.window(1)?.first(self.from, self.least, self.format))
     }
 
-    /// An entry of `n` steps that misses none; None with proof that there is none.
+    /// An entry of `n` steps that misses none; `None` with proof that there is none.
     fn replay(&mut self, n: usize, mut add: Option<i64>) -> Option<Longest> {
         loop {
             let fit = self.fit(n, add, true)?;
@@ -200,7 +197,7 @@ impl Ahead {
         }
     }
 
-    /// The steps, from 1, that are earliest before and latest after their windows.
+    /// The steps, from 1, that miss their windows most, before and after.
     fn missed(&self, n: usize, interval: i64, add: i64) -> [Option<usize>; 2] {
         let (mut early, mut late) = ((0, None), (0, None));
         let (mut time, mut next) = (self.from, interval);
@@ -219,7 +216,7 @@ impl Ahead {
         [early.1, late.1]
     }
 
-    /// An interval and an add for `n` steps, at least 2, as far as the samples and the missed steps tell.
+    /// An interval and an add for `n` >= 2 steps that pass the samples and the missed steps.
     fn fit(&mut self, n: usize, add: Option<i64>, centre: bool) -> Option<Fit> {
         let last = *self.window(n)?;
         let span = last.high.wrapping_sub(self.from);
@@ -228,9 +225,9 @@ impl Ahead {
         }
         self.gather(n, span as i64);
         let count = n as i64;
-        // No interval is negative, so add*n*(n - 1)/2 is at most the whole time.
+        // Intervals are not negative, so add*n*(n - 1)/2 is at most the whole time.
         let steepest = span as i64 / (count * (count - 1) / 2) + 1;
-        let adds = (self.format.least_add().max(-steepest), self.format.most_add().min(steepest));
+        let adds = (self.format.min_add().max(-steepest), self.format.max_add().min(steepest));
         let guess = add.unwrap_or_else(|| self.bend(n));
         feasible_window::fit(&self.gates, adds, guess, centre)
     }
@@ -247,16 +244,16 @@ impl Ahead {
         i64::try_from(add).unwrap_or(0)
     }
 
-    /// Gates of an entry of `n` steps, at least 2, that lasts no longer than `span`: of samples and missed steps, and of its
-    /// shortest and longest interval.
+    /// Collects the gates of an entry of `n` >= 2 steps with a maximum duration `span`: of samples, missed steps, and the
+    /// minimum and maximum interval.
     fn gather(&mut self, n: usize, span: i64) {
         self.gates.clear();
         let count = n as i64;
-        let (least, most) = (self.least as i64, self.format.most_interval().min(MAX_SPAN) as i64);
-        // Twice what the last gate leaves to an interval at the steepest add: a longer one needs no gate, and this one is short.
+        let (least, most) = (self.least as i64, self.format.max_interval().min(MAX_SPAN) as i64);
+        // Twice the interval that the last gate allows at the steepest add: a longer one needs no gate.
         let most = most.min(4 * (span / count + 1) + 2 * count);
         let most = |n: i64| most.saturating_mul(n).min(2 * MAX_SPAN as i64);
-        // The last interval, interval + (n - 1)*add, is where the line is at step 2*n - 1.
+        // The last interval, interval + (n - 1)*add, is the line's value at step 2*n - 1.
         let end = 2 * count - 1;
         self.gates.push(Gate { n: 1, low: least, high: most(1) });
         self.gates.push(Gate { n: end, low: least * end, high: most(end) });
@@ -274,7 +271,7 @@ impl Ahead {
         self.gate(n);
         let free = self.ends_with(n) || self.is_tight(n);
         if let Some(gate) = self.gates.last_mut().filter(|_| !free) {
-            // Due cycles are rounded, so the curve itself may be anywhere within a cycle.
+            // Due cycles are rounded, so the curve may be anywhere within a cycle.
             let wide = gate.high - gate.low;
             let narrow = (wide / 8 + (1 << self.format.fraction_bits)).max(count).min(wide);
             gate.low += (wide - narrow) / 2;
@@ -282,13 +279,13 @@ impl Ahead {
         }
     }
 
-    /// Whether the run ends with step `n`: then it may end anywhere in its last window.
+    /// Whether the run ends with step `n`, so that it may end anywhere in its last window.
     fn ends_with(&self, n: usize) -> bool {
         self.ended && n == self.left().len()
     }
 
-    /// Whether the window of step `n` is the due cycle alone. Its middle is then as far from the curve as rounding has
-    /// it, so an entry that goes on beyond its end tells better where the curve is.
+    /// Whether the window of step `n` is a single cycle. Its middle is then off the curve by the rounding, and an entry that
+    /// goes beyond its end follows the curve better.
     fn is_tight(&self, n: usize) -> bool {
         self.window(n).is_some_and(|window| window.high - window.low < 1 << self.format.fraction_bits)
     }

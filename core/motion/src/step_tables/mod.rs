@@ -1,4 +1,4 @@
-//! From the steps of a motion to what the peripheral runs: ticks, segments and step tables (DESIGN B7, B8).
+//! From the steps of a motion to ticks, segments and step tables (DESIGN B7, B8).
 //!
 //! ```
 //! use stepscope_motion::{
@@ -29,21 +29,20 @@ mod wire_bytes;
 pub use compressed::{Compressed, MAX_TOLERANCE, Side, Tolerance, compressed, compressed_quickly};
 pub use entry_format::{Entry, EntryFormat};
 pub use segments::exact_segments;
-pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_quickly, stored_steps, stored_steps_quickly};
+pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_steps};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
 
-/// Where a list of axes stands: the paths under which its problems are told.
+/// The paths of the problems of a list of axes.
 #[derive(Clone, Copy, Debug)]
 pub struct AxesPath<'a> {
     /// Path of the list; axis i is at `[i]`.
     pub axes: &'a str,
-    /// Path of what the axes are together.
+    /// Path of problems of all axes together.
     pub whole: &'a str,
 }
 
 impl AxesPath<'static> {
-    /// The axes of a scenario's motion.
     pub const MOTION: Self = Self { axes: "source.motion.axes", whole: "source.motion" };
 }
 

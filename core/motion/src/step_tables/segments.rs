@@ -1,13 +1,12 @@
-//! Quantising into segments (DESIGN B8): the exact list.
+//! The exact segments of a motion (DESIGN B8).
 //!
 //! ```text
 //! step k of an axis   cycle START + floor(t*clock_hz + 1/2)     START = 1, the motion's time 0
 //! interval            from step to step, the first from START
 //! ```
 //!
-//! Each step has its own cycle, so all channels keep their places to each other. Steps whose
-//! intervals differ by a constant share a segment, and the engine gives back exactly these cycles:
-//! nothing is rounded but the times themselves.
+//! Each step has its own cycle, so the channels stay synchronous. Steps whose intervals differ by a constant share a
+//! segment, and the engine reproduces exactly these cycles: only the times are rounded.
 
 use super::AxesPath;
 use crate::{
@@ -20,16 +19,16 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Maximum steps of all axes together: a list has up to a segment of 32 bytes for two of them.
+/// Maximum steps of all axes: a list has up to one segment of 32 bytes per two steps.
 pub(super) const MAX_STEPS: u64 = 4_000_000;
-/// Where the motion's time 0 is: nothing starts before (A3).
+/// Time 0 of the motion: nothing starts before cycle 1 (A3).
 pub(super) const START: Instant = Instant(1);
 
-/// The exact segments of the plans, plan i for channel i, for pulses of `pulse`.
+/// The exact segments of the plans, one per channel, for pulses of `pulse`.
 ///
 /// # Errors
-/// Too many steps, or, for each axis in which a step comes too soon for a pulse or too late for
-/// 48.16 fixed point, the first such step. The first step counts from the motion's start.
+/// Too many steps; or the first step of each axis that is too soon for a pulse or too late for 48.16 fixed point. The first
+/// interval counts from the motion's start.
 pub fn exact_segments(
     plans: &[AxisPlan],
     at: AxesPath<'_>,
@@ -43,8 +42,7 @@ pub fn exact_segments(
     }
     let steps = plans.iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
     if steps > MAX_STEPS {
-        let cause = ValueError::TooMuch { given: steps as f64, most: MAX_STEPS as f64, of: "steps" };
-        return Err(vec![Problem::new(at.whole, cause)]);
+        return Err(vec![Problem::new(at.whole, ValueError::too_much(steps, MAX_STEPS, "steps"))]);
     }
     let (mut lists, mut problems) = (Vec::new(), Vec::new());
     for (axis, plan) in plans.iter().enumerate() {
@@ -64,24 +62,22 @@ pub fn exact_segments(
 /// The exact list of one axis' steps.
 ///
 /// # Errors
-/// The first step that comes too soon for a pulse, or too late for 48.16 fixed point.
+/// The first step that is too soon for a pulse, or too late for 48.16 fixed point.
 pub(super) fn exact(
     steps: impl Iterator<Item = ScheduledStep>,
     pulse: PulseTimes,
 ) -> Result<SegmentList, Cause> {
-    let least = pulse.min_interval().0;
+    let min = pulse.min_interval().0;
     let last = LAST_CYCLE.0 - START.0;
     let mut merge = Merge::default();
     let mut before = 0;
     for (step, due) in (1..).zip(steps) {
         let interval = due.cycle.saturating_sub(before);
-        if interval < least {
+        if interval < min {
             return Err(Cause::StepTooSoon { step, interval, pulse });
         }
         if due.cycle > last {
-            return Err(
-                ValueError::TooMuch { given: due.cycle as f64, most: last as f64, of: "cycles" }.into()
-            );
+            return Err(ValueError::too_much(due.cycle, last, "cycles").into());
         }
         merge.step(interval << FRACTION_BITS, due.right);
         before = due.cycle;
@@ -89,8 +85,7 @@ pub(super) fn exact(
     Ok(SegmentList { start: START, segments: merge.end() })
 }
 
-/// Puts steps into as few segments as whole intervals allow: a segment takes each next step whose
-/// interval it foretells.
+/// Merges steps into the fewest segments: a segment takes each next step whose interval it predicts.
 #[derive(Default)]
 struct Merge {
     segments: Vec<Segment>,

@@ -1,13 +1,13 @@
-//! How a controller can keep a motion's step times, and what each form costs (DESIGN B8).
+//! Forms in which a controller can store a motion's step times, and their size (DESIGN B8).
 //!
 //! ```text
 //! exact        every step in its cycle, in few entries
-//! document     the motion's own table, where it has one
-//! compressed   the fewest entries, no step further from its due cycle than allowed
+//! document     the table of the motion's paper
+//! compressed   the fewest entries with a given tolerance
 //! ```
 
 use crate::step_tables::{
-    compressed::{Tolerance, compressed, compressed_quickly},
+    compressed::{Compressed, Tolerance, compressed, compressed_quickly},
     document::{document, document_bytes},
     entry_format::{Entry, EntryFormat},
     segments::{MAX_STEPS, exact},
@@ -24,74 +24,68 @@ use stepscope_peripheral::{
     units::Cycles,
 };
 
-/// Maximum steps of one axis' compressed list or of its document's table: each step is looked at.
+/// Maximum steps of one axis' compressed list or document table.
 pub const MAX_TABLE_STEPS: u64 = 100_000_000;
 
-/// How step times are kept.
+/// Form of stored step times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// Every step in its cycle.
     Exact,
-    /// The motion's own table.
+    /// The table of the motion's paper.
     Document,
-    /// With the fewest entries, or few.
+    /// The fewest entries ([`compressed`]).
     Compressed(Tolerance),
+    /// Few entries, found in a fraction of the time ([`compressed_quickly`]).
+    Quick(Tolerance),
 }
 
 impl Form {
-    const fn most_steps(self) -> u64 {
+    const fn max_steps(self) -> u64 {
         match self {
             Self::Exact => MAX_STEPS,
-            Self::Document | Self::Compressed(_) => MAX_TABLE_STEPS,
+            Self::Document | Self::Compressed(_) | Self::Quick(_) => MAX_TABLE_STEPS,
         }
     }
 }
 
-/// The step times of one axis in one form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
-    /// What the segment engine runs.
     pub list: SegmentList,
-    /// Widths of the entries.
     pub format: EntryFormat,
-    /// The list in these widths.
     pub entries: Vec<Entry>,
-    /// Bytes of the tables as their documents keep them, which are run up and down again; None where a move has no
-    /// table.
+    /// Bytes of the tables as in their papers, which are run up and down again; `None` if a move has no table.
     pub document_bytes: Option<u64>,
-    /// How far the steps are from their due cycles.
     pub error: TimingError,
-    /// Of a compressed list: the maximum number of entries beyond the minimum.
+    /// Of a compressed list: the maximum number of entries above the minimum.
     pub surplus: Option<u64>,
 }
 
 impl Stored {
-    /// Bytes of the entries.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
     }
 
-    /// Entries without steps: turns and waits. Klipper counts its `queue_step` without them.
+    /// Entries without steps: turns and waits, which Klipper's count of `queue_step` does not include.
     #[must_use]
     pub fn turns(&self) -> usize {
         self.entries.iter().filter(|entry| entry.count == 0).count()
     }
 
-    /// Bytes on the line to a controller that speaks Klipper's protocol: commands as it packs them, in blocks of up to 64
-    /// bytes. None of a format whose numbers its `queue_step` does not take: it takes those of [`EntryFormat::TICKS`].
+    /// Bytes on the line with Klipper's protocol, in blocks of up to 64 bytes; `None` for a format whose numbers its
+    /// `queue_step` does not accept.
     #[must_use]
     pub fn wire_bytes(&self) -> Option<u64> {
         wire_bytes(self.format, &self.entries)
     }
 }
 
-/// Keeps the step times of `plan` in a form.
+/// Stores the step times of `plan` in a form.
 ///
 /// # Errors
-/// What [`compressed`] refuses; more than 4 000 000 steps for the exact list, or [`MAX_TABLE_STEPS`] for another; a
-/// move without a table of its own for the paper's, or a rate of it that is too high for `pulse`. A number of steps
-/// is refused before one of them is looked at.
+/// As [`compressed`]; more than 4 000 000 steps for the exact list, or [`MAX_TABLE_STEPS`] for another; a move without a
+/// table in its paper, or a rate of it too high for `pulse`. The number of steps is checked first.
 pub fn stored(
     plan: &AxisPlan,
     form: Form,
@@ -99,24 +93,15 @@ pub fn stored(
     pulse: PulseTimes,
     clock_hz: u32,
 ) -> Result<Stored, Cause> {
-    of_plan(plan, form, Target { format, pulse, search: Search::Fewest }, clock_hz)
+    check_count(plan.step_count(), form)?;
+    let own_table = || document(plan, format, clock_hz);
+    Ok(Stored {
+        document_bytes: document_bytes(plan),
+        ..table(|| plan.due_steps(clock_hz), own_table, form, format, pulse)?
+    })
 }
 
-/// The same, with a compressed list by [`compressed_quickly`].
-///
-/// # Errors
-/// As [`stored`].
-pub fn stored_quickly(
-    plan: &AxisPlan,
-    form: Form,
-    format: EntryFormat,
-    pulse: PulseTimes,
-    clock_hz: u32,
-) -> Result<Stored, Cause> {
-    of_plan(plan, form, Target { format, pulse, search: Search::Quick }, clock_hz)
-}
-
-/// Keeps step times of any origin in a form; they count from the start on and do not fall.
+/// Stores step times of any origin in a form; they count from the start and do not fall.
 ///
 /// ```
 /// use stepscope_motion::{ScheduledStep, step_tables::{EntryFormat, Form, stored_steps}};
@@ -130,84 +115,42 @@ pub fn stored_quickly(
 /// ```
 ///
 /// # Errors
-/// As [`stored`]; [`Form::Document`], because a list has no document.
+/// As [`stored`]; [`Form::Document`], because a list has no paper.
 pub fn stored_steps(
     steps: &[ScheduledStep],
     form: Form,
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
-    of_list(steps, form, Target { format, pulse, search: Search::Fewest })
-}
-
-/// The same, with a compressed list by [`compressed_quickly`].
-///
-/// # Errors
-/// As [`stored_steps`].
-pub fn stored_steps_quickly(
-    steps: &[ScheduledStep],
-    form: Form,
-    format: EntryFormat,
-    pulse: PulseTimes,
-) -> Result<Stored, Cause> {
-    of_list(steps, form, Target { format, pulse, search: Search::Quick })
-}
-
-#[derive(Clone, Copy)]
-enum Search {
-    Fewest,
-    Quick,
-}
-
-#[derive(Clone, Copy)]
-struct Target {
-    format: EntryFormat,
-    pulse: PulseTimes,
-    search: Search,
-}
-
-fn of_plan(plan: &AxisPlan, form: Form, target: Target, clock_hz: u32) -> Result<Stored, Cause> {
-    check_count(plan.step_count(), form)?;
-    let own_table = || document(plan, target.format, clock_hz);
-    Ok(Stored {
-        document_bytes: document_bytes(plan),
-        ..table(|| plan.due_steps(clock_hz), own_table, form, target)?
-    })
-}
-
-fn of_list(steps: &[ScheduledStep], form: Form, target: Target) -> Result<Stored, Cause> {
     check_count(steps.len() as u64, form)?;
     let own_table = || {
         let detail = "a list of steps has no table of its own; give the form exact or compressed";
         Err(ValueError::Conflict { detail }.into())
     };
-    table(|| steps.iter().copied(), own_table, form, target)
+    table(|| steps.iter().copied(), own_table, form, format, pulse)
 }
 
 fn check_count(steps: u64, form: Form) -> Result<(), Cause> {
-    let most = form.most_steps();
-    if steps <= most {
+    let max = form.max_steps();
+    if steps <= max {
         return Ok(());
     }
-    Err(ValueError::TooMuch { given: steps as f64, most: most as f64, of: "steps of a table" }.into())
+    Err(ValueError::too_much(steps, max, "steps of a table").into())
 }
 
 fn table<I: Iterator<Item = ScheduledStep>>(
     due: impl Fn() -> I,
     own_table: impl Fn() -> Result<SegmentList, Cause>,
     form: Form,
-    Target { format, pulse, search }: Target,
+    format: EntryFormat,
+    pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
+    let found = |Compressed { list, error, surplus }| (list, Some(error), surplus);
     let (list, error, surplus) = match form {
         Form::Exact => (smallest_exact(&due, format, pulse)?, None, None),
         Form::Document => (own_table()?, None, None),
-        Form::Compressed(tolerance) => {
-            let found = match search {
-                Search::Fewest => compressed(due(), tolerance, format, pulse),
-                Search::Quick => compressed_quickly(due(), tolerance, format, pulse),
-            }?;
-            (found.list, Some(found.error), found.surplus)
-        }
+        Form::Compressed(tolerance) => found(compressed(due(), tolerance, format, pulse)?),
+        Form::Quick(tolerance) => found(compressed_quickly(due(), tolerance, format, pulse)?),
     };
     let list = checked(list, pulse)?;
     let error = match error {
@@ -218,12 +161,11 @@ fn table<I: Iterator<Item = ScheduledStep>>(
     Ok(Stored { list, format, entries, document_bytes: None, error, surplus })
 }
 
-/// Every step in its cycle, in as few entries as whole intervals allow, or, where these are fewer, in those that a search
-/// finds with fractions of a cycle.
+/// Each step in its cycle, in the fewest entries with whole intervals or, if these are fewer, in those that a search finds
+/// with fractions of a cycle.
 ///
-/// Of whole cycles no list is shorter: a step stands in its cycle or not, so whichever entry comes before, each that
-/// begins there may have the same length, and the longest leaves the fewest steps for those after it. (That is so as long as
-/// each interval fits into an entry's field.)
+/// With whole cycles no list is shorter: the length of an entry depends only on its first step, and the longest entry
+/// leaves the fewest steps. (That is so as long as each interval fits into an entry's field.)
 fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     due: impl Fn() -> I,
     format: EntryFormat,
@@ -236,7 +178,7 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     let parts = compressed_quickly(due(), Tolerance::of(Cycles(0)), format, pulse).map(|made| made.list);
     match parts {
         Ok(parts) if format.entries(&parts)? < format.entries(&whole)? => Ok(parts),
-        // Also where there would be too many of them.
+        // Also if there are too many of them.
         _ => Ok(whole),
     }
 }

@@ -1,13 +1,12 @@
-//! Quantising into ticks (DESIGN B7).
+//! Ticks of a motion (DESIGN B7).
 //!
 //! ```text
 //! due[j]   = R(s(j*T)), R(x) = floor(x + 1/2)
 //! steps[j] = due[j + 1] - due[j]
 //! ```
 //!
-//! What has been ordered by the end of tick j is the rounded position there, so the error never
-//! adds up, is never above half a step, and the end is exact. That end is a whole cycle, (j + 1)*tick_cycles,
-//! and which steps are due by a cycle is decided for certain (`due_by`).
+//! The steps up to the end of tick j are the rounded position there, so the error never adds up, is at most half a step, and
+//! the end is exact. The end of a tick is a whole cycle, for which the steps due are exact (`due_by`).
 
 use super::AxesPath;
 use crate::{
@@ -17,12 +16,12 @@ use crate::{
 use alloc::{vec, vec::Vec};
 
 const MAX_TICKS: u64 = 2_000_000;
-/// Maximum ticks of all its channels together, which is what they take in bytes.
+/// Maximum ticks of all channels together, each a byte.
 const MAX_BYTES: u64 = 4_000_000;
 const RIGHT: u8 = 1 << 7;
 const MAX_STEPS: u8 = !RIGHT;
 
-/// Ticks for the whole peripheral: one byte a channel and tick, bit 7 = right, bits 6..=0 = steps.
+/// Ticks for the peripheral: one byte per channel and tick, bit 7 = right, bits 6..=0 = steps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ticks {
     channels: u8,
@@ -31,38 +30,37 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// Channels, which is also the bytes of a tick.
+    /// Number of channels, which is also the bytes per tick.
     #[must_use]
     pub fn channels(&self) -> u8 {
         self.channels
     }
 
-    /// How many ticks.
+    /// Number of ticks.
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "there is always a tick")]
     pub fn len(&self) -> usize {
         self.bytes.len() / usize::from(self.channels.max(1))
     }
 
-    /// All bytes, tick after tick.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The ticks in order, each as its bytes.
+    /// The bytes of each tick.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         self.bytes.chunks_exact(usize::from(self.channels.max(1)))
     }
 }
 
-/// Quantises the plans, plan i for channel i, into ticks of `tick_cycles` with up to `slots` steps.
+/// Divides the plans, one per channel, into ticks of `tick_cycles` with up to `slots` steps.
 ///
-/// There are as many ticks as it takes until every axis has ended, at least one. A byte without
-/// steps keeps the direction of the one before, at first left.
+/// There are at least one tick and enough to end every axis. A byte without steps repeats the direction before it,
+/// initially left.
 ///
 /// # Errors
-/// Too many ticks, or, for each axis that needs more steps in a tick than it has slots, the first such tick.
+/// Too many ticks; or the first tick of each axis that needs more steps than it has slots.
 pub fn ticks(
     plans: &[AxisPlan],
     at: AxesPath<'_>,
@@ -78,10 +76,9 @@ pub fn ticks(
     }
     let needed = plans.iter().map(|plan| plan.spans(tick_cycles, clock_hz)).max().unwrap_or(1);
     let all = needed.saturating_mul(channels.into());
-    for (given, most, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
-        if given > most {
-            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of };
-            return Err(vec![Problem::new(at.whole, cause)]);
+    for (given, max, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
+        if given > max {
+            return Err(vec![Problem::new(at.whole, ValueError::too_much(given, max, of))]);
         }
     }
     let width = usize::from(channels);
@@ -126,7 +123,7 @@ fn fill<'b>(
     Ok(())
 }
 
-/// The ticks' time, from integers: tick j is [j*T, (j + 1)*T) of the motion's time, in s.
+/// Times of the ticks, from integers: tick j is [j*T, (j + 1)*T) in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickClock {
     tick_cycles: u64,
@@ -134,19 +131,18 @@ pub struct TickClock {
 }
 
 impl TickClock {
-    /// Ticks of `tick_cycles` of a clock of `clock_hz`; 0 of either is taken as 1.
+    /// Ticks of `tick_cycles` at `clock_hz`; 0 of either counts as 1.
     #[must_use]
     pub fn new(tick_cycles: u64, clock_hz: u32) -> Self {
         Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
     }
 
-    /// Cycles of a tick.
     #[must_use]
     pub fn tick_cycles(&self) -> u64 {
         self.tick_cycles
     }
 
-    /// A cycle, counted from the motion's start, in s.
+    /// A cycle from the motion's start in s.
     #[must_use]
     pub fn seconds(&self, cycle: u64) -> f64 {
         cycle as f64 / f64::from(self.clock_hz)
@@ -169,12 +165,12 @@ impl TickClock {
         plan.due_by(self.clock_hz).steps(self.end(tick))
     }
 
-    /// The fewest ticks, at least one, whose end is not before `duration_s`.
+    /// Minimum number of ticks, at least one, whose end is not before `duration_s`.
     #[must_use]
     pub fn ticks_until(&self, duration_s: f64) -> u64 {
         let tick_s = self.end_s(0);
         let mut ticks = libm::ceil(duration_s / tick_s) as u64;
-        // The division can be off by a rounding; the tick's own end decides.
+        // The division may be wrong by a rounding; the end of the tick decides.
         if ticks > 0 && self.end_s(ticks - 1) < duration_s {
             ticks += 1;
         } else if ticks > 1 && self.end_s(ticks - 2) >= duration_s {

@@ -1,34 +1,33 @@
-//! How far the steps of a list are from where they are due (DESIGN B8).
+//! Distances of the steps of a list from their due cycles (DESIGN B8).
 
 use crate::ScheduledStep;
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
-/// How far steps are from their due cycles.
+/// Distances of steps from their due cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimingError {
-    /// Steps.
     pub steps: u64,
-    /// Maximum error of a step in cycles, early or late.
+    /// Maximum in cycles, early or late.
     pub greatest: u64,
-    /// Sum of all errors' squares in cycles^2.
+    /// Sum of squares in cycles^2.
     squares: u128,
 }
 
 impl TimingError {
-    pub(super) fn step(&mut self, off: u64) {
+    pub(super) fn step(&mut self, distance: u64) {
         self.steps += 1;
-        self.greatest = self.greatest.max(off);
-        self.squares = self.squares.saturating_add(u128::from(off) * u128::from(off));
+        self.greatest = self.greatest.max(distance);
+        self.squares = self.squares.saturating_add(u128::from(distance) * u128::from(distance));
     }
 
-    /// Root of the mean square in cycles; 0 of no steps.
+    /// Root mean square in cycles; 0 without steps.
     #[must_use]
     pub fn rms(&self) -> f64 {
         if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
     }
 
-    /// The error of a list whose steps are due at `due`, in cycles from the list's start; None if it has another number
-    /// of steps, or one goes the other way.
+    /// Of a list whose steps are due at `due`, in cycles from the list's start; `None` if the number of steps or a direction
+    /// differs.
     #[must_use]
     pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
         let (mut error, mut time, mut due) = (Self::default(), 0_u64, due.into_iter());

@@ -1,20 +1,20 @@
-//! What the entries of a table take on the line to a controller that speaks Klipper's protocol (DESIGN B8).
+//! Size of a table's entries on the line with Klipper's protocol (DESIGN B8).
 //!
 //! ```text
 //! block      length, sequence, commands, checksum (2), end: at most 64 bytes
 //! command    its number, the number of the object (a byte each), then its arguments
-//! argument   seven bits a byte, the first of them with the sign: 1 byte for -32 to 95, 2 for -4096 to 12 287, ...
+//! argument   seven bits per byte, the first with the sign: 1 byte for -32 to 95, 2 for -4096 to 12 287, ...
 //! ```
 //!
-//! An entry of steps is a `queue_step` (interval, count, add), a turn a `set_next_step_dir` (dir), and a wait a
-//! `reset_step_clock` (clock, 5 bytes). No command is parted between blocks.
+//! An entry with steps is a `queue_step` (interval, count, add), a turn a `set_next_step_dir` (dir), and a wait a
+//! `reset_step_clock` (clock, 5 bytes). No command is split between blocks.
 
 use crate::step_tables::entry_format::{Entry, EntryFormat};
 
 const FRAME: u64 = 5;
 const MAX_BLOCK: u64 = 64 - FRAME;
 
-/// Bytes of the entries in blocks; None of a format whose numbers `queue_step` does not take.
+/// Bytes of the entries in blocks; `None` for a format whose numbers `queue_step` does not accept.
 pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> {
     let EntryFormat { fraction_bits, interval_bits, count_bits, add_bits, .. } = format;
     if (fraction_bits, interval_bits, count_bits, add_bits) != (0, 32, 16, 16) {
@@ -38,7 +38,7 @@ pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> 
 }
 
 fn argument(value: i64) -> u64 {
-    // A byte more holds 128 times as many: a quarter of them are negative.
+    // Each byte holds 128 times as many values, of which a quarter is negative.
     (1..5).find(|bytes| (-(1 << (7 * bytes - 2))..3 << (7 * bytes - 2)).contains(&value)).unwrap_or(5)
 }
 

@@ -1,13 +1,11 @@
-//! Times in cycles, with the digits that decide a rounding however late they are (DESIGN B1): whole cycles, and a part of
-//! one in 106 bits.
-//!
-//! A number alone loses a bit of the part each time the whole doubles; at 10^12 cycles the part has 14 bits left.
+//! Times in cycles with enough digits for their rounding, however late they are (DESIGN B1): whole cycles, and the part of
+//! one in 106 bits. In an f64 the part has only 14 bits left at 10^12 cycles.
 use crate::{timing::decimal::Exact, timing::double::Double};
 
 /// Relative distance from a tie that 106 bits do not resolve: 2^-94.
 const TIE: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
-/// Distance from a tie, in cycles, that 106 bits do not resolve at this cycle.
+/// Distance in cycles from a tie that 106 bits do not resolve at this cycle.
 pub(crate) fn tie(cycle: u64) -> Double {
     ((cycle as f64 + 1.0) * TIE).into()
 }
@@ -20,9 +18,9 @@ pub(crate) struct CycleTime {
 }
 
 impl CycleTime {
-    /// A time from 0 on.
+    /// A time >= 0.
     pub(crate) fn of(cycles: Double) -> Self {
-        // Two numbers whose sum it is, each with its own whole cycles; the second may be negative.
+        // Both numbers of the sum have whole cycles; the second may be negative.
         let mut whole = cycles.high as u64;
         let mut part = Double::sum(cycles.high - whole as f64, cycles.low);
         if part.high < 0.0 && whole > 0 {
@@ -31,7 +29,7 @@ impl CycleTime {
         Self { whole, part }
     }
 
-    /// A quotient, from 0 on, in cycles.
+    /// A fraction >= 0 in cycles.
     pub(crate) fn exact(cycles: &Exact) -> Self {
         let (whole, part) = cycles.whole_and_part();
         Self::default().plus(Self { whole, part })
@@ -57,7 +55,7 @@ impl CycleTime {
         self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && short <= tie(cycle)))
     }
 
-    /// All of it in 106 bits.
+    /// The sum in 106 bits.
     pub(crate) fn double(self) -> Double {
         Double::from(self.whole) + self.part
     }

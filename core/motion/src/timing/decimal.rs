@@ -1,5 +1,5 @@
-//! Numbers as they are printed (DESIGN B1): a number of a scenario means its printed decimal, and what mechanics make
-//! of it is a quotient of whole numbers, without rounding in between.
+//! Decimal numbers (DESIGN B1): a number of a scenario means its shortest decimal, and conversions by mechanics are
+//! fractions of integers, without intermediate rounding.
 //!
 //! ```text
 //! 88.35 mm at 0.1 mm per step    8835/100 : 1/10 = 883.5, and 884 steps; in f64 the quotient is 883.4999…
@@ -10,7 +10,7 @@ use alloc::format;
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
 
-/// Bits of a quotient from which the nearest f64 is rounded: more than an f64 has, so the rest only matters if it is 0.
+/// Bits of a quotient that is rounded to an f64: more than it has, so the rest only matters if it is 0.
 const QUOTIENT_BITS: u32 = 64;
 const DOUBLE_BITS: u32 = 2 * HALF_BITS as u32;
 const HALF_BITS: i32 = 53;
@@ -23,7 +23,7 @@ pub(crate) struct Exact {
 }
 
 impl Exact {
-    /// The shortest decimal that reads back as `number`, which is finite.
+    /// The shortest decimal of a finite number.
     pub(crate) fn of(number: f64) -> Self {
         Self::difference(number, 0.0)
     }
@@ -48,7 +48,6 @@ impl Exact {
         self.scaled(-exponent)
     }
 
-    /// Times 10 to this power.
     fn scaled(mut self, exponent: i32) -> Self {
         let power = power_of_ten(exponent.unsigned_abs());
         if exponent < 0 {
@@ -59,7 +58,7 @@ impl Exact {
         self
     }
 
-    /// B1's R: floor(x + 1/2), or the end of the range of i64.
+    /// floor(x + 1/2), saturating.
     pub(crate) fn rounded(&self) -> i64 {
         let (two, under) = (BigInt::from(2), BigInt::from(self.under.clone()));
         let floor = (&self.over * &two + &under).div_floor(&(under * &two));
@@ -68,11 +67,11 @@ impl Exact {
 
     pub(crate) fn nearest(&self) -> f64 {
         let (quotient, scale, is_more) = self.digits(QUOTIENT_BITS);
-        // What is left counts as a little more than the last bit.
+        // The rest counts as slightly more than the last bit.
         self.signed(libm::scalbn((quotient as u64 | u64::from(is_more)) as f64, scale))
     }
 
-    /// The quotient in 106 bits.
+    /// The fraction in 106 bits.
     pub(crate) fn double(&self) -> Double {
         let (quotient, scale, _) = self.digits(DOUBLE_BITS);
         let half = |digits: u128, scale: i32| self.signed(libm::scalbn(digits as u64 as f64, scale));
@@ -86,8 +85,7 @@ impl Exact {
         if self.over < BigInt::ZERO { -magnitude } else { magnitude }
     }
 
-    /// The first `bits` bits of the magnitude, or one fewer, as a whole number; the power of two to multiply it by; and
-    /// whether there is more.
+    /// The first `bits` bits of the magnitude, or one fewer, as an integer; its power of two; and whether there is a rest.
     fn digits(&self, bits: u32) -> (u128, i32, bool) {
         let over = self.over.magnitude();
         let scale = over.bits() as i32 - self.under.bits() as i32 - (bits as i32 - 1);
@@ -100,7 +98,7 @@ impl Exact {
         (u128::try_from(quotient).unwrap_or(u128::MAX), scale, rest != BigUint::ZERO)
     }
 
-    /// The whole part and the rest in 106 bits, of a quotient from 0 to below 2^64.
+    /// The whole part and the rest in 106 bits, of a fraction from 0 to below 2^64.
     pub(crate) fn whole_and_part(&self) -> (u64, Double) {
         let (whole, rest) = self.over.magnitude().div_rem(&self.under);
         let part = Self { over: rest.into(), under: self.under.clone() };
@@ -113,7 +111,7 @@ impl Exact {
 }
 
 impl Double {
-    /// The printed decimal of a number, which is finite.
+    /// The shortest decimal of a finite number.
     pub(crate) fn decimal(number: f64) -> Self {
         Exact::of(number).double()
     }
@@ -123,7 +121,7 @@ fn power_of_ten(exponent: u32) -> BigInt {
     BigInt::from(10).pow(exponent)
 }
 
-/// The shortest decimal that reads back as a number: its digits as a whole number, and the power of 10.
+/// The shortest decimal of a number: its digits as an integer, and the power of 10.
 fn decimal(number: f64) -> (i64, i32) {
     debug_assert!(number.is_finite(), "{number} has no decimal");
     let text = format!("{number:e}");

@@ -1,30 +1,30 @@
-//! Numbers of 106 bits, as the sum of two f64 (Dekker 1971): for the few steps whose time in f64 is too near the middle
-//! of two cycles to decide between them (DESIGN B1, `rounding`).
+//! Numbers of 106 bits as the sum of two f64 (Dekker 1971), for the few steps whose time in f64 is too near to the middle
+//! between two cycles (DESIGN B1, `rounding`).
 //!
 //! ```text
-//! high  |53 bits|                     high is the f64 nearest to the sum
+//! high  |53 bits|                     the f64 nearest to the sum
 //! low            |53 bits|            at most half of high's last digit
 //! ```
 //!
-//! Each operation is off by at most a few 2^-104 of its result, each series by at most 2^-100. Only + - * / and the
-//! square root are used, so every target gets the same bits; a cube root starts from `libm`'s.
+//! Each operation has an error of a few 2^-104, each series at most 2^-100. Only + - * / and the square root are used, so
+//! every target gets the same bits; a cube root starts from `libm`'s.
 
 use crate::{square_root, timing::number::Number};
 use core::ops::{Add, Div, Mul, Sub};
 
 /// A number of 106 bits.
-// Invariant: `high` is the f64 nearest to the sum, so comparing `high` and then `low` compares the sums.
+// Invariant: `high` is the f64 nearest to the sum, so the derived comparison is right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(crate) struct Double {
     pub(crate) high: f64,
     pub(crate) low: f64,
 }
 
-/// 2^27 + 1: multiplying by it splits a number into two halves of 26 bits.
+/// 2^27 + 1: a multiplication by it splits a number into two halves of 26 bits.
 const SPLITTER: f64 = 134_217_729.0;
 
 const MIN_TERM: f64 = 1e-33;
-/// Maximum number of terms; e^41 has all its digits after 200.
+/// e^41 has all its digits after 200 terms.
 const MAX_TERMS: u32 = 400;
 
 impl From<f64> for Double {
@@ -41,14 +41,14 @@ impl From<u64> for Double {
 }
 
 impl Double {
-    /// a + b, exactly.
+    /// Exactly a + b.
     pub(crate) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let from_b = high - a;
         Self { high, low: (a - (high - from_b)) + (b - from_b) }
     }
 
-    /// a*b, exactly.
+    /// Exactly a*b.
     fn product(a: f64, b: f64) -> Self {
         let halves = |x: f64| {
             let scaled = SPLITTER * x;
@@ -65,10 +65,10 @@ impl Double {
         Self { high: -self.high, low: -self.low }
     }
 
-    /// The sum of `power`/from! and the terms after it: each is `ratio` times the one before, over a factorial of
-    /// `more` more.
+    /// The sum of `power`/from! and the following terms, each `ratio` times the one before, divided by the next `more`
+    /// factors of the factorial.
     fn series(power: Self, from: u32, ratio: Self, more: u32) -> Self {
-        // 2! or 3!, of which one factor is 1.
+        // 2! or 3!, as one factor is 1.
         let mut term = power / f64::from(from * (from - 1));
         let (mut sum, mut factor) = (term, from);
         for _ in 0..MAX_TERMS {
@@ -92,7 +92,7 @@ impl Number for Double {
         if root <= 0.0 {
             return Self::default();
         }
-        // One of Newton's steps doubles the digits.
+        // One step of Newton's method doubles the digits.
         let rest = self - Self::product(root, root);
         Self::sum(root, rest.high / (2.0 * root))
     }
@@ -103,7 +103,8 @@ impl Number for Double {
         Self::sum(root, rest.high / (3.0 * root * root))
     }
 
-    /// x^3/3! - x^5/5! + …, for x from 0 to a little over pi: its terms are together at most three times their sum.
+    /// x^3/3! - x^5/5! + …, for x from 0 to slightly above pi: the magnitudes of its terms add up to at most three times
+    /// their sum.
     fn minus_its_sine(self) -> Self {
         let square = self * self;
         Self::series(square * self, 3, square.negated(), 2)
@@ -111,7 +112,7 @@ impl Number for Double {
 }
 
 impl Double {
-    /// e^x - 1 - x, for x from -20 to a little over 40, with all digits also where it is small.
+    /// e^x - 1 - x without cancellation, for x from -20 to slightly above 40.
     pub(crate) fn exponential_rest(self) -> Self {
         if self.high < -1.0 {
             // By e^-x, whose terms do not cancel.
@@ -154,7 +155,7 @@ impl Div for Double {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        // Three digits of 53 bits, as by hand.
+        // Three digits of 53 bits, as in long division.
         let first = self.high / other.high;
         let rest = self - other * first;
         let second = rest.high / other.high;

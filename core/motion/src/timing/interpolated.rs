@@ -1,17 +1,17 @@
-//! Times of steps on a curve whose equation takes long to solve: it is solved for a few steps of a block, and a
+//! Times of steps on a curve whose equation is slow to solve (DESIGN B1): it is solved for a few steps of a block, and a
 //! polynomial through them gives the others.
 //!
 //! ```text
 //!  time |            .-'     x = (step - middle)/half, -1 to 1
 //!       |        .-'         t = c0 + c1*T1(x) + … + c7*T7(x)       T: Chebyshev's polynomials
 //!       |   o-'--o--o-o
-//!       +---------------     c: from the times at T8's roots; of an analytic curve they fall geometrically,
-//!           a block's steps     so a block is narrow enough when the last two are small
+//!       +---------------     c: from the times at the roots of T8; for an analytic curve they fall geometrically,
+//!           a block's steps     so a block is narrow enough if the last two are small
 //! ```
 //!
-//! Solving for every step instead would take 40 to 80 times as long as the square root that a step of a trapezoid
-//! takes; with blocks it is one to two times. A block ends where the curve's formula changes. Near a point of rest
-//! time is a root of the distance: blocks would have few steps, so each step's equation is solved.
+//! Solving for every step would take 40 to 80 times as long as a square root; with blocks a step takes one to two times as
+//! long. A block ends where the curve's formula changes. Near a point of rest the time is a root of the distance, blocks
+//! would have few steps, and each step is solved.
 
 use crate::{
     curves::curve::greater,
@@ -20,43 +20,46 @@ use crate::{
 use alloc::{boxed::Box, vec::Vec};
 use core::f64::consts::PI;
 
-/// Steps of a block whose equations are solved.
+/// Number of steps of a block that are solved.
 const NODES: usize = 8;
-/// Minimum steps of a block; with fewer each is solved for itself.
+/// Minimum steps of a block; with fewer each is solved.
 const MIN_STEPS: f64 = 4.0 * NODES as f64;
 const MAX_STEPS: f64 = 4096.0;
-/// Estimated maximum error by the polynomial in cycles, from its last coefficients.
+/// Maximum error in cycles of the polynomial itself.
 const MAX_REST: f64 = 1.0 / 131_072.0;
-/// How much the errors of the nodes' times grow in between: Lebesgue's constant is 2.3, the rest is that of the sums.
+/// The last two coefficients of a block are at most its error divided by this. The missing coefficients change a time by at
+/// most twice their sum, which is less than 16 times the last two if each pair is at most 8/9 of the pair before. On an
+/// analytic curve they fall geometrically, much faster in a block that passes.
+const SAFETY: f64 = 16.0;
+/// Growth of the nodes' errors between the nodes: Lebesgue's constant is 2.3, the rest is for the sums.
 const GROWTH: f64 = 4.0;
 
 pub(crate) struct Interpolated<F> {
-    /// The time of a step in cycles, and its greatest error.
+    /// The time of a step in cycles, and its maximum error.
     time: F,
-    /// Steps of the run.
     count: u64,
     /// Positions at which the formula changes, rising.
-    joints: Vec<f64>,
+    changes: Vec<f64>,
     /// cos(pi*k*(2i + 1)/(2*NODES)): Chebyshev's polynomial k at node i.
     at_nodes: [[f64; NODES]; NODES],
-    /// Steps of the next block.
+    /// Width of the next block in steps.
     width: f64,
     block: Option<Block>,
-    /// The block's end.
+    /// First step after the block.
     until: f64,
 }
 
 impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
-    pub(crate) fn new(count: u64, joints: Vec<f64>, time: F) -> Self {
+    pub(crate) fn new(count: u64, changes: Vec<f64>, time: F) -> Self {
         let cosine = |k: usize, i: usize| libm::cos(PI * (k * (2 * i + 1)) as f64 / (2 * NODES) as f64);
         let at_nodes = core::array::from_fn(|k| core::array::from_fn(|i| cosine(k, i)));
-        Self { time, count, joints, at_nodes, width: MIN_STEPS, block: None, until: 0.0 }
+        Self { time, count, changes, at_nodes, width: MIN_STEPS, block: None, until: 0.0 }
     }
 
     /// Begins a block at step `first`, as wide as its error allows.
     fn begin(&mut self, first: f64) {
-        // Step `first` is at the position half a step further.
-        let ends = self.joints.iter().map(|joint| joint - 0.5);
+        // Step `first` is at position `first` + 1/2.
+        let ends = self.changes.iter().map(|change| change - 0.5);
         let end = ends.into_iter().find(|end| *end > first).unwrap_or(f64::INFINITY);
         let end = libm::fmin(end, self.count as f64 - 1.0);
         loop {
@@ -68,26 +71,26 @@ impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
                 return;
             }
             let (block, rest) = self.through(first, last);
-            let most = (MAX_REST + block.off) / 4.0;
-            if rest <= most {
-                if rest < most / 1000.0 {
+            let max = (MAX_REST + block.max_error) / SAFETY;
+            if rest <= max {
+                if rest < max / 1000.0 {
                     self.width = libm::fmin(2.0 * self.width, MAX_STEPS);
                 }
-                self.block = Some(Block { off: GROWTH * block.off + MAX_REST, ..block });
+                self.block = Some(Block { max_error: GROWTH * block.max_error + MAX_REST, ..block });
                 return;
             }
             self.width = (last - first) / 1.5;
         }
     }
 
-    /// The polynomial through the steps from `first` to `last`, and about how much those left out are: no more than its
-    /// two last coefficients, of which one may vanish by symmetry.
+    /// The polynomial through the steps from `first` to `last`, and the sum of its last two coefficients, of which one may
+    /// vanish by symmetry.
     fn through(&self, first: f64, last: f64) -> (Block, f64) {
         let (middle, half) = ((first + last) / 2.0, (last - first) / 2.0);
-        let (at_middle, mut off) = (self.time)(middle);
+        let (at_middle, mut max_error) = (self.time)(middle);
         let times = self.at_nodes[1].map(|x| {
-            let (time, own_off) = (self.time)(middle + half * x);
-            off = greater(off, own_off);
+            let (time, own_error) = (self.time)(middle + half * x);
+            max_error = greater(max_error, own_error);
             time - at_middle
         });
         let terms = self.at_nodes.map(|at_nodes| {
@@ -109,7 +112,7 @@ impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
         }
         powers[0] += at_middle;
         let rest = libm::fabs(terms[NODES - 2]) + libm::fabs(terms[NODES - 1]);
-        (Block { middle, per_step: 1.0 / half, powers, off }, rest)
+        (Block { middle, per_step: 1.0 / half, powers, max_error }, rest)
     }
 }
 
@@ -119,8 +122,8 @@ struct Block {
     per_step: f64,
     /// Coefficients of the powers of x, in cycles.
     powers: [f64; NODES],
-    /// Maximum error in cycles.
-    off: f64,
+    /// In cycles.
+    max_error: f64,
 }
 
 impl Block {
@@ -132,7 +135,7 @@ impl Block {
 
 impl<F: Fn(f64) -> (f64, f64)> Times for Interpolated<F> {
     fn fill(&mut self, first: f64, times: &mut [f64]) -> f64 {
-        let (mut step, mut times, mut most_off) = (first, times, 0.0);
+        let (mut step, mut times, mut max_error) = (first, times, 0.0);
         while !times.is_empty() {
             if step >= self.until {
                 self.begin(step);
@@ -141,26 +144,26 @@ impl<F: Fn(f64) -> (f64, f64)> Times for Interpolated<F> {
             let len = here.len();
             if let Some(block) = self.block {
                 put(step, here, |step| block.time(step));
-                most_off = greater(most_off, block.off);
+                max_error = greater(max_error, block.max_error);
             } else {
                 for (index, put) in (0_i32..).zip(here) {
-                    let (time, off) = (self.time)(step + f64::from(index));
-                    (*put, most_off) = (time, greater(most_off, off));
+                    let (time, own_error) = (self.time)(step + f64::from(index));
+                    (*put, max_error) = (time, greater(max_error, own_error));
                 }
             }
             (step, times) = (step + len as f64, rest);
         }
-        most_off
+        max_error
     }
 }
 
-/// The one run of a curve whose equation for the time takes long to solve; its formula changes at the positions `joints`,
+/// The single run of a curve whose equation for the time is slow to solve; its formula changes at the positions `changes`,
 /// in steps without sign.
-pub(crate) fn one_searched_run(curve: &impl Schedule, clock_hz: u32, joints: Vec<f64>) -> Runs<'_> {
+pub(crate) fn one_searched_run(curve: &impl Schedule, clock_hz: u32, changes: Vec<f64>) -> Runs<'_> {
     let clock = f64::from(clock_hz);
     let count = curve.steps().unsigned_abs();
-    let off = curve.off_s() * clock;
-    let times = Interpolated::new(count, joints, move |step| (curve.time_s(step + 0.5) * clock, off));
+    let max_error = curve.max_error_s() * clock;
+    let times = Interpolated::new(count, changes, move |step| (curve.time_s(step + 0.5) * clock, max_error));
     Box::new(core::iter::once(Run { count, right: curve.steps() >= 0, times: Box::new(times) }))
 }
 
@@ -177,20 +180,20 @@ mod tests {
     use core::cell::Cell;
 
     /// Compares a curve's times with solved ones, and returns how many were solved for each step.
-    fn check(curve: &impl Schedule, joints: Vec<f64>, what: &str) -> f64 {
+    fn check(curve: &impl Schedule, changes: Vec<f64>, what: &str) -> f64 {
         let (count, clock, solved) = (curve.steps().unsigned_abs(), 16e6, Cell::new(0));
         let time = |step: f64| {
             solved.set(solved.get() + 1);
-            (curve.time_s(step + 0.5) * clock, curve.off_s() * clock)
+            (curve.time_s(step + 0.5) * clock, curve.max_error_s() * clock)
         };
-        let mut times = Interpolated::new(count, joints, time);
+        let mut times = Interpolated::new(count, changes, time);
         let mut found = vec![0.0; count as usize];
         for (block, found) in found.chunks_mut(177).enumerate() {
-            let off = times.fill(177.0 * block as f64, found);
+            let max_error = times.fill(177.0 * block as f64, found);
             for (index, found) in found.iter().enumerate() {
                 let step = 177 * block + index;
                 let expected = curve.time_s(step as f64 + 0.5) * clock;
-                assert!((found - expected).abs() <= off, "step {step} of {what}: {found} {expected}");
+                assert!((found - expected).abs() <= max_error, "step {step} of {what}: {found} {expected}");
             }
         }
         f64::from(solved.get()) / count as f64
@@ -202,16 +205,16 @@ mod tests {
             let mut solved = Vec::new();
             for part in [0.0, 0.002, 0.01, 0.25, 0.5] {
                 let cosine = Cosine::new(steps, 2.0, 2.0 * part);
-                solved.push(check(&cosine, cosine.joints(), &format!("a cosine, {steps} {part}")));
+                solved.push(check(&cosine, cosine.changes(), &format!("a cosine, {steps} {part}")));
                 let shapes = [Ramp::Straight, Ramp::Bezier, Ramp::sigmoid(6.0), Ramp::exponential(4.0)];
                 for shape in shapes {
                     let curve = Ramps::new(steps, 2.0, 2.0 * part, shape);
-                    solved.push(check(&curve, curve.joints(), &format!("{shape:?}, {steps} {part}")));
+                    solved.push(check(&curve, curve.changes(), &format!("{shape:?}, {steps} {part}")));
                 }
             }
             for (acceleration, jerk) in [(1e6, 1e9), (1e5, 1e6), (1e4, 1e4)] {
                 let curve = JerkLimited::new(steps, Limits { speed: 20_000.0, acceleration, jerk });
-                solved.push(check(&curve, curve.joints(), &format!("{steps} with a jerk of {jerk}")));
+                solved.push(check(&curve, curve.changes(), &format!("{steps} with a jerk of {jerk}")));
             }
             let is_few = solved.iter().all(|solved| *solved < 0.1);
             assert!(is_few || steps.abs() < 100_000, "{steps}: {solved:?}");

@@ -1,5 +1,5 @@
-//! What a curve's formula needs of a number (DESIGN B1): in f64 it draws the curve and finds the times of its steps, in
-//! 106 bits (`double`) the same formula decides where f64 cannot.
+//! The numbers of a curve's formula (DESIGN B1): in f64 it gives the curve and the times of its steps, in 106 bits
+//! (`double`) the same formula decides near ties.
 
 use crate::square_root;
 use core::ops::{Add, Div, Mul, Sub};
@@ -19,19 +19,17 @@ pub(crate) trait Number:
 {
     const PI: Self;
 
-    /// The square root, of a number from 0 on.
     fn square_root(self) -> Self;
 
     fn cube_root(self) -> Self;
 
-    /// x - sin(x), of a number from 0 to pi, with all digits also where both nearly cancel.
+    /// x - sin(x) without cancellation, for x from 0 to pi.
     fn minus_its_sine(self) -> Self;
 
     fn magnitude(self) -> Self {
         if self < 0.0.into() { Self::from(0.0) - self } else { self }
     }
 
-    /// Itself, or 0 where it is negative.
     fn or_zero(self) -> Self {
         if self > 0.0.into() { self } else { 0.0.into() }
     }
@@ -52,7 +50,7 @@ impl Number for f64 {
         if self > 1.0 {
             return self - libm::sin(self);
         }
-        // x^3/3! - x^5/5! + …, eight terms; the ninth is under 2^-53 of the sum.
+        // x^3/3! - x^5/5! + …, eight terms; the ninth is below 2^-53 of the sum.
         let square = self * self;
         let mut sum = 1.0;
         for k in (1..8).rev() {

@@ -1,48 +1,47 @@
-//! The cycle of a step (DESIGN B1): floor(t*clock_hz + 1/2), t being where the curve crosses the step's position.
+//! The cycle of a step (DESIGN B1): floor(t*clock_hz + 1/2), where the curve crosses the step's position at t.
 //!
 //! ```text
 //!        cycle c - 1          cycle c
 //! ---------+----------|----------+----------|----     | edges: whole + 1/2
-//!                   [-x-]                             a time in f64, and its greatest error
+//!                   [-x-]                             a time in f64 and its maximum error
 //! ```
 //!
-//! A time in f64 decides unless an edge is within its error. There the curve itself decides, in 106 bits ([`Double`]):
-//! the step is due before an edge E if the curve is past the step's position at E. That needs the curve's formula but
-//! none of its roots, and it is a proof whatever the first time was.
+//! A time in f64 decides unless an edge is within its error. Else the curve itself decides in 106 bits ([`Double`]): the
+//! step is due before an edge E if the curve has passed the step's position at E. That needs the curve's formula but no
+//! root, and it is a proof whatever the first time was.
 //!
-//! The error of a time in f64 is counted in the roundings of its formula, u = 2^-53 each; `libm`'s functions count as
-//! two. A curve from rest has s <= v*t, so a relative error of a position or a parameter makes no greater one of the
-//! time. Every planner stays below 64 u of its move's duration ([`MAX_OFF`]) or gives its own bound.
+//! The error of a time in f64 is counted in roundings of its formula, u = 2^-53 each; `libm`'s functions count as two. A
+//! curve from rest has s <= v*t, so the relative error of a position or parameter is at least that of the time. Every
+//! planner stays below 64 u of its move's duration ([`MAX_ERROR`]) or gives its own bound.
 //!
-//! 106 bits have an end, too. E counts as earlier by a [`tie`], 2^10 times what they lose, so a step that is due exactly
-//! at E is in the next cycle, as B1 has it. A step due less than that before E moves to the next cycle, too; with evenly spread times
-//! that is one step in 2^62 of a motion of 2^32 cycles.
+//! 106 bits are limited, too. E counts as earlier by a [`tie`], 2^10 times their error, so a step due exactly at E is in
+//! the next cycle. So is a step due less than a tie before E: one step in 2^62 of a motion of 2^32 cycles.
 
 use crate::{
-    bisection::least_near,
+    bisection::first_near,
     timing::cycle_time::{CycleTime, tie},
     timing::double::Double,
 };
 
-/// Maximum error of a time in f64, as a part of its move's duration: 64 roundings.
-pub(crate) const MAX_OFF: f64 = 64.0 * ROUNDING;
+/// Maximum error of a time in f64, relative to the duration of its move: 64 roundings.
+pub(crate) const MAX_ERROR: f64 = 64.0 * ROUNDING;
 /// Maximum relative error of one rounding, u.
 pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
 pub(crate) type IsDueBefore<'p> = alloc::boxed::Box<dyn Fn(u64, Double) -> bool + 'p>;
 
-/// The cycle of a step of a move that begins at `start`; where the search begins changes only how long it takes.
+/// The cycle of a step of a move that begins at `start`; `guess` only affects the duration of the search.
 pub(crate) fn decided(start: CycleTime, guess: u64, is_due_before: impl Fn(Double) -> bool) -> u64 {
-    least_near(guess, u64::MAX, |cycle| {
-        // The edge that ends the cycle, half a cycle after it.
+    first_near(guess, u64::MAX, |cycle| {
+        // The edge at the end of the cycle, half a cycle after it.
         let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5;
         is_due_before(since - tie(cycle))
     })
 }
 
-/// Whether step `k` (from 1) of `count` is due before a time, of a move that takes `duration` and whose second half
-/// mirrors its first; `is_past` tells whether the first half is past a position at a time.
+/// Whether step `k` (from 1) of `count` is due before a time, in a move of `duration` whose second half mirrors its first;
+/// `is_past` returns whether the first half has passed a position at a time.
 pub(crate) fn is_mirrored_due_before(
     (k, count): (u64, u64),
     time: Double,
@@ -51,7 +50,7 @@ pub(crate) fn is_mirrored_due_before(
 ) -> bool {
     let position = k as f64 - 0.5;
     let left = count as f64 - position;
-    // Either half's own formula ends with it.
+    // The formula of either half ends with it.
     let is_second_half = time > duration * 0.5;
     if position <= left {
         is_second_half || (time > 0.0.into() && is_past(time, position))

@@ -1,11 +1,11 @@
-//! When the steps of an axis are due, one after another (DESIGN B1): the one loop that all planners share.
+//! The loop that all planners share (DESIGN B1): when the steps of an axis are due, one after another.
 //!
 //! ```text
-//! cycle = floor(t*clock_hz + 1/2)     t where s(t) = k - 1/2, or the time that a table gives
+//! cycle = floor(t*clock_hz + 1/2)     t where s(t) = k - 1/2, or a time from a table
 //! ```
 //!
-//! A move's own times count from its start; that start is added with all its digits, and the sum is rounded once. Where
-//! the digits of an f64 do not decide that, `rounding` does.
+//! The times of a move count from its start, which is added with all its digits; the sum is rounded once. If an f64 does
+//! not decide the rounding, `rounding` does.
 
 use crate::{
     timing::cycle_time::CycleTime,
@@ -14,15 +14,14 @@ use crate::{
 };
 
 const BLOCK: usize = 256;
-/// Maximum error in cycles of the part of a cycle in which a move starts.
-const MAX_START_OFF: f64 = 4.0 * f64::EPSILON;
+/// Maximum error in cycles of the fractional start of a move.
+const MAX_START_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// A step that is due.
+/// A step and when it is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScheduledStep {
-    /// Its cycle, from the motion's start on.
+    /// From the motion's start on.
     pub cycle: u64,
-    /// Whether it goes to the right.
     pub right: bool,
 }
 
@@ -30,29 +29,28 @@ pub(crate) struct MoveSteps<'p> {
     start: CycleTime,
     is_due_before: IsDueBefore<'p>,
     runs: Runs<'p>,
-    /// The present run; `None` before the first.
     run: Option<Run<'p>>,
-    /// Steps of the run whose times were formed.
-    formed: u64,
+    /// Steps of the run whose times are computed.
+    computed: u64,
     times: [f64; BLOCK],
-    /// Of these times the next one, and their number.
+    /// Index of the next of these times, and their number.
     at: usize,
     len: usize,
     /// Steps of the move before the next one.
     past: u64,
-    /// Maximum distance from the middle between two edges at which a time in f64 decides.
+    /// Maximum distance from the middle between two edges at which an f64 decides.
     room: f64,
     right: bool,
 }
 
 impl<'p> MoveSteps<'p> {
-    pub(crate) fn new(schedule: &'p impl Schedule, start: CycleTime, clock_hz: u32) -> Self {
+    pub(crate) fn new(schedule: &'p dyn Schedule, start: CycleTime, clock_hz: u32) -> Self {
         Self {
             start,
             is_due_before: schedule.is_due_before(clock_hz),
             runs: schedule.runs(clock_hz),
             run: None,
-            formed: 0,
+            computed: 0,
             times: [0.0; BLOCK],
             at: 0,
             len: 0,
@@ -67,7 +65,7 @@ impl<'p> MoveSteps<'p> {
         loop {
             let run = self.next_run()?;
             if left < run.count {
-                (self.formed, self.past) = (left, past);
+                (self.computed, self.past) = (left, past);
                 return self.next().map(|(_, step)| step);
             }
             left -= run.count;
@@ -76,19 +74,19 @@ impl<'p> MoveSteps<'p> {
 
     fn next_run(&mut self) -> Option<&mut Run<'p>> {
         let run = self.run.insert(self.runs.next()?);
-        (self.formed, self.right) = (0, run.right);
+        (self.computed, self.right) = (0, run.right);
         Some(run)
     }
 
     fn fill(&mut self) -> Option<()> {
-        while self.run.as_ref().is_none_or(|run| self.formed >= run.count) {
+        while self.run.as_ref().is_none_or(|run| self.computed >= run.count) {
             self.next_run()?;
         }
         let run = self.run.as_mut()?;
-        self.len = usize::try_from(run.count - self.formed).map_or(BLOCK, |left| left.min(BLOCK));
-        let off = run.times.fill(self.formed as f64, self.times.get_mut(..self.len)?);
-        self.room = 0.5 - MAX_START_OFF - off;
-        self.formed += self.len as u64;
+        self.len = usize::try_from(run.count - self.computed).map_or(BLOCK, |left| left.min(BLOCK));
+        let max_error = run.times.fill(self.computed as f64, self.times.get_mut(..self.len)?);
+        self.room = 0.5 - MAX_START_ERROR - max_error;
+        self.computed += self.len as u64;
         self.at = 0;
         Some(())
     }

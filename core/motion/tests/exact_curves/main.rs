@@ -13,9 +13,9 @@
 //! ```
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
 
+mod decided;
 mod fixed;
 mod ideal;
-mod judged;
 mod whole_numbers;
 
 use fixed::{decimal, whole};
@@ -27,7 +27,7 @@ use rand_xoshiro::{
 use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
-    AxisPlan, Curve, Profile,
+    AxisPlan, Profile,
     curves::StaircaseTable,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{

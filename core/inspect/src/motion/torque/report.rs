@@ -3,7 +3,7 @@
 use super::{Demand, Machine, Moment, Ramps, Shortage, needed_over_rate, steps_needed_over_rate};
 use alloc::vec::Vec;
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, Curve, moves::Axis};
+use stepscope_motion::{AxisPlan, moves::Axis};
 use stepscope_peripheral::trace::Step;
 
 const POINTS: u32 = 241;

@@ -157,8 +157,8 @@ fn each_goes_from_exactly_nothing_to_all_and_is_its_slopes_integral() {
             sharpest = sharpest.max(bend);
             before = Some(slope);
         }
-        assert!((steepest - ramp.greatest_slope()).abs() <= 1e-3 * steepest, "{ramp:?}: {steepest}");
-        let bend = ramp.greatest_bend();
+        assert!((steepest - ramp.max_slope()).abs() <= 1e-3 * steepest, "{ramp:?}: {steepest}");
+        let bend = ramp.max_curvature();
         assert!((sharpest - bend).abs() <= 2e-3 * bend.max(1e-6), "{ramp:?}: {sharpest} {bend}");
     }
 }

@@ -1,6 +1,9 @@
 //! The move with ramps of a shape, held against differences, whole numbers and sixty digits.
 
-use crate::curves::{cosine::Cosine, ramps::*};
+use crate::{
+    Curve,
+    curves::{cosine::Cosine, ramps::*},
+};
 use alloc::vec::Vec;
 
 fn shapes() -> [Ramp; 7] {

@@ -1,10 +1,12 @@
-//! The two compensations of a sliced move (DESIGN B4, `sliced`), drawn in [`super`]. Rounded down, the slices of a curve
-//! have too few steps: so its top speed is raised until they have enough (coarse), and then what is too much is taken
-//! from the plateau, the last slice first, and from the tail (fine).
+//! The two compensations of a sliced move (DESIGN B4), described in [`super`]: the top speed is raised until the rounded
+//! slices have enough steps (coarse), then the excess is removed from the end of the plateau and from the tail (fine).
 
 use crate::{
     Curve, MAX_SPEED,
-    curves::{cosine::Cosine, curve::greater},
+    curves::{
+        cosine::Cosine,
+        curve::{greater, lesser},
+    },
     round_half_up,
     timing::Double,
 };
@@ -12,20 +14,18 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 pub(super) const NEARLY: f64 = 1e-9;
-/// Rounds of the coarse compensation after which its growth is doubled, and again after as many more. The
-/// document's moves need two or three.
+/// Rounds of the coarse compensation after which its growth is doubled, repeatedly. The paper's moves need two or three.
 const PATIENCE: u32 = 1000;
 
-/// Length of each slice and what part of the top speed its start has, as one product in s.
 pub(super) struct Slices {
-    /// Part of the top speed times length, in s; one a slice.
+    /// Relative speed at the start of each slice times its length in s.
     weights: Vec<f64>,
-    /// Those that lie in the plateau; empty, at the start of the second half, where none does.
+    /// Slices of the plateau; empty, at the start of the second half, if there are none.
     plateau: Range<usize>,
     slice_s: f64,
 }
 
-/// How many slices a time of so many has; one that is whole but for its last digits has no rest.
+/// Number of slices for a duration of `ratio` slices; a rest in the last digits does not count.
 pub(super) fn slices_in(ratio: f64) -> u64 {
     let whole = round_half_up(ratio);
     let rest = ratio - whole as f64;
@@ -33,7 +33,7 @@ pub(super) fn slices_in(ratio: f64) -> u64 {
     whole.unsigned_abs() + u64::from(more || whole == 0)
 }
 
-/// floor, of a number from 0 on.
+/// floor for nonnegative numbers, tolerant of the last digits.
 fn whole_steps(steps: f64) -> u64 {
     (steps + NEARLY) as u64
 }
@@ -44,7 +44,7 @@ impl Slices {
         let start_s = |index: usize| index as f64 * slice_s;
         let length_s = |index: usize| {
             let left_s = duration_s - start_s(index);
-            if left_s < slice_s { left_s } else { slice_s }
+            lesser(slice_s, left_s)
         };
         let count = count as usize;
         let weights = (0..count).map(|index| exact.part(start_s(index)) * length_s(index)).collect();
@@ -68,7 +68,7 @@ impl Slices {
         held + ramps.map(|index| self.steps(index, top_speed)).sum::<u64>()
     }
 
-    /// The coarse compensation: n' and its top speed; `None` where no speed that is allowed is enough.
+    /// Coarse compensation: n' and its top speed; `None` if no allowed speed is enough.
     pub(super) fn coarse(&self, exact: &Cosine, ramp_s: f64) -> Option<(u64, f64)> {
         let count = exact.steps().unsigned_abs();
         let (mut compensated, mut round) = (count, 0);
@@ -86,8 +86,8 @@ impl Slices {
         }
     }
 
-    /// The fine compensation: the starts of the slices that are left, with all their digits and as numbers, the steps
-    /// before each, and the highest rate.
+    /// Fine compensation: the starts of the remaining slices in 106 bits and in f64, the steps before each, and the maximum
+    /// rate.
     pub(super) fn fine(&self, top_speed: f64, exact: &Cosine) -> (Vec<Double>, Vec<f64>, Vec<u32>, f64) {
         let all = self.weights.len();
         let mut counts: Vec<u64> = (0..all).map(|index| self.steps(index, top_speed)).collect();
@@ -116,7 +116,7 @@ impl Slices {
                 lost += held - count;
             }
             if *count > 0 {
-                // Rounded down, no slice has more than the top speed; a shortened one has the plateau's rate.
+                // Rounded down, no slice exceeds the top speed; a shortened one has the plateau's rate.
                 let left_s = exact.duration_s() - index as f64 * self.slice_s;
                 let length_s = libm::fmin(left_s, self.slice_s);
                 let steps = if shortened { held } else { *count };

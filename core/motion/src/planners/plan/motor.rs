@@ -1,4 +1,4 @@
-//! Checks the numbers of an axis' motor. They decide nothing in a plan; `inspect` asks them how much torque there is.
+//! Checks the numbers of an axis' motor, which `inspect` uses for torque computations.
 
 use crate::{limits, motor::Motor, moves::Axis, planners::quantities::Quantities, problem::ValueError};
 
@@ -19,8 +19,8 @@ fn check_numbers(here: &mut Quantities<'_>, motor: &Motor) {
     here.range("rotor_inertia_g_cm2", motor.rotor_inertia_g_cm2, limits::INERTIA_G_CM2, "g*cm^2");
     here.range("supply_v", motor.supply_v, limits::SUPPLY_V, "V");
     if let (Some(given), Some(rated)) = (motor.peak_current_a, rated) {
-        let (least, most) = limits::PEAK_CURRENT.into_inner();
-        here.range("peak_current_a", given, least * rated..=most * rated, "A");
+        let (min, max) = limits::PEAK_CURRENT.into_inner();
+        here.range("peak_current_a", given, min * rated..=max * rated, "A");
     }
     here.range("load_inertia_g_cm2", motor.load_inertia_g_cm2, limits::INERTIA_G_CM2, "g*cm^2");
     here.range("load_torque_mn_m", motor.load_torque_mn_m, limits::LOAD_TORQUE_MN_M, "mN*m");

@@ -11,10 +11,10 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Minimum time from point to point in s: a cycle of the fastest clock.
+/// Minimum time between points in s: a cycle of the fastest clock.
 const MIN_TIME_S: f64 = 1e-9;
-/// Problems of single points that are reported; in a table of another kind every row would be one.
-const MAX_TOLD: usize = 16;
+/// Maximum number of problems of single points: in a table of another kind every row has one.
+const MAX_LISTED: usize = 16;
 
 pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Points> {
     let count = given.points.len();
@@ -24,7 +24,7 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     }
     let size = quantities.step_of("unit", &given.unit.of(0.0))?;
     let points = quantities.at("points", |here| check(here, given, size))?;
-    // Before the curve is made: times that differ by less than the digits of so long a one would be no curve.
+    // Before the curve is made, which needs times that f64 can tell apart.
     quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| since_s.high))?;
     let between = match given.interpolation {
         Interpolation::Straight => Between::Straight,
@@ -35,13 +35,13 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
         quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
         return None;
     }
-    // The point that the curve is on its way to when it is too fast.
+    // If the curve is too fast, the problem is at the point that it moves to.
     let (piece, speed) = curve.quickest();
     quantities.at("points", |here| here.at_entry(piece + 1, |here| hold_speed(here, "", speed)))?;
     Some(curve)
 }
 
-/// Times and positions in steps of points that hold, both counted from the first as their decimals have it (DESIGN B1).
+/// Times and positions in steps of valid points, relative to the first, in 106 bits.
 fn check(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<Point>> {
     let earlier = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
@@ -59,11 +59,11 @@ fn check(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> O
             if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
                 here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
             }
-            let way = here.way(first, &given.unit.of(point.position), size);
-            points.extend(way.map(|way| (since(point.time_s), way)));
+            let travel = here.travel(first, &given.unit.of(point.position), size);
+            points.extend(travel.map(|travel| (since(point.time_s), travel)));
         });
         before = Some(point.time_s);
-        if quantities.validator.count() >= earlier + MAX_TOLD {
+        if quantities.validator.count() >= earlier + MAX_LISTED {
             break;
         }
     }

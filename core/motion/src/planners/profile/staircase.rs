@@ -3,9 +3,9 @@
 use crate::{
     curves::{staircase::Staircase, staircase_table::StaircaseTable},
     limits, moves,
-    planners::budget::{Budget, MAX_TABLE_ROWS},
+    planners::budget::{Budget, MAX_TABLE_ROWS, exceeded},
     planners::quantities::Quantities,
-    problem::{Cause, ValueError},
+    problem::Cause,
 };
 
 /// Acceleration of level 1, in steps/s^2.
@@ -20,20 +20,20 @@ pub(super) fn plan(
     let top = quantities.speed_within("top_speed", &given.top_speed, limits::TABLE_RATE_STEPS_S);
     let level = quantities.range("level", given.level.into(), limits::LEVEL, "");
     let start = quantities.speed_within("start_speed", &given.start_speed, limits::TABLE_RATE_STEPS_S);
-    let most = quantities.speed_within("max_speed", &given.max_speed, limits::TABLE_RATE_STEPS_S);
-    if let (Some(start), Some(most)) = (start, most)
-        && most < start
+    let max = quantities.speed_within("max_speed", &given.max_speed, limits::TABLE_RATE_STEPS_S);
+    if let (Some(start), Some(max)) = (start, max)
+        && max < start
     {
-        quantities.refuse("max_speed", Cause::TopBelowStart { top: most, start });
+        quantities.refuse("max_speed", Cause::TopBelowStart { top: max, start });
         return None;
     }
-    if let (Some(top), Some(most)) = (top, most)
-        && top > most
+    if let (Some(top), Some(max)) = (top, max)
+        && top > max
     {
-        quantities.refuse("top_speed", Cause::TopAboveTable { top, most });
+        quantities.refuse("top_speed", Cause::TopAboveTable { top, most: max });
         return None;
     }
-    let table = StaircaseTable::new(start?, most?, level? * LEVEL_ACCELERATION);
+    let table = StaircaseTable::new(start?, max?, level? * LEVEL_ACCELERATION);
     top?;
     let top_rate = given.top_speed.exact(quantities.mechanics()).ok()?.rounded().unsigned_abs();
     match Staircase::new(steps?, table, top_rate, given.short_move, budget.table_rows) {
@@ -42,9 +42,7 @@ pub(super) fn plan(
             Some(staircase)
         }
         Err(needed) => {
-            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
-            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
-            quantities.refuse("", cause);
+            quantities.refuse("", exceeded(MAX_TABLE_ROWS, budget.table_rows, needed, "table rows"));
             None
         }
     }

@@ -1,4 +1,4 @@
-//! Plans the moves of so many steps in so much time: the cosine S-curve and ramps of other shapes (DESIGN B4).
+//! Plans moves over a distance in a given time: the cosine S-curve and shaped ramps (DESIGN B4).
 
 use crate::{
     MAX_SPEED,
@@ -11,47 +11,44 @@ use crate::{
     limits,
     mechanics::Distance,
     moves::{self, RampShape},
-    planners::budget::{Budget, MAX_SLICES, hold_speed},
+    planners::budget::{Budget, MAX_SLICES, exceeded, hold_speed},
     planners::quantities::Quantities,
-    problem::{Cause, ValueError},
+    problem::Cause,
 };
 
-/// A slice's length is a decimal number and seldom whole in binary digits, so a rate that is exactly the highest may
-/// come out higher by its last digits, in parts of it.
-const DIGITS: f64 = 1e-12;
-/// Ramps in s under this are none: it is the shortest cycle that a clock may have.
+/// Relative tolerance of a slice's rate: the decimal length of a slice is seldom exact in binary, so a rate at the maximum
+/// may come out higher by its last digits.
+const TOLERANCE: f64 = 1e-12;
+/// Shorter ramps in s count as none: the shortest cycle of a clock.
 const MIN_RAMP_S: f64 = 1e-9;
 
 pub(super) fn cosine(quantities: &mut Quantities<'_>, given: &moves::Cosine) -> Option<Cosine> {
-    let (steps, duration_s, ramp_s) = front(quantities, &given.distance, given.duration_s, given.ramp_s)?;
+    let (steps, duration_s, ramp_s) = common(quantities, &given.distance, given.duration_s, given.ramp_s)?;
     let curve = Cosine::new(steps, duration_s, ramp_s);
     hold_speed(quantities, "duration_s", curve.top_speed())?;
     Some(curve)
 }
 
-/// The curve in slices; the exact one has to hold, too.
+/// The curve in slices; the exact one must be valid, too.
 pub(super) fn sliced(
     quantities: &mut Quantities<'_>,
     given: &moves::Cosine,
     budget: &mut Budget,
 ) -> Option<Sliced> {
-    let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
+    let common = common(quantities, &given.distance, given.duration_s, given.ramp_s);
     let slice_s = quantities.range("slice_s", given.slice_s, limits::SLICE_S, "s");
-    let (steps, duration_s, ramp_s) = front?;
+    let (steps, duration_s, ramp_s) = common?;
     let slice_s = slice_s?;
     hold_speed(quantities, "duration_s", Cosine::new(steps, duration_s, ramp_s).top_speed())?;
     let cause = match Sliced::new(steps, duration_s, ramp_s, slice_s, budget.slices) {
         Ok(curve) => {
             budget.slices -= curve.slice_count();
             let rate = curve.top_rate();
-            let rate = if rate <= MAX_SPEED * (1.0 + DIGITS) { libm::fmin(rate, MAX_SPEED) } else { rate };
+            let rate = if rate <= MAX_SPEED * (1.0 + TOLERANCE) { libm::fmin(rate, MAX_SPEED) } else { rate };
             hold_speed(quantities, "duration_s", rate)?;
             return Some(curve);
         }
-        Err(NotSliced::Slices { needed }) => {
-            let given = (MAX_SLICES - budget.slices).saturating_add(needed);
-            ValueError::TooMuch { given: given as f64, most: MAX_SLICES as f64, of: "slices" }.into()
-        }
+        Err(NotSliced::Slices { needed }) => exceeded(MAX_SLICES, budget.slices, needed, "slices").into(),
         Err(NotSliced::TooShort { rate }) => Cause::SliceTooShort { rate, slice_s },
         Err(NotSliced::TooFew { slices }) => {
             Cause::SlicesTooFew { slices, slice_s, steps: steps.unsigned_abs(), rate: MAX_SPEED }
@@ -62,7 +59,7 @@ pub(super) fn sliced(
 }
 
 pub(super) fn ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) -> Option<Ramps> {
-    let front = front(quantities, &given.distance, given.duration_s, given.ramp_s);
+    let common = common(quantities, &given.distance, given.duration_s, given.ramp_s);
     let mut parameter = |key: &str, value: f64| quantities.range(key, value, limits::RAMP_PARAMETER, "");
     let ramp = match given.shape {
         RampShape::Sigmoid => Ramp::sigmoid(parameter("sigmoid_range", given.sigmoid_range)?),
@@ -70,14 +67,13 @@ pub(super) fn ramps(quantities: &mut Quantities<'_>, given: &moves::Ramps) -> Op
         RampShape::Straight => Ramp::Straight,
         RampShape::Exponential => Ramp::exponential(parameter("time_constants", given.time_constants)?),
     };
-    let (steps, duration_s, ramp_s) = front?;
+    let (steps, duration_s, ramp_s) = common?;
     let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
     hold_speed(quantities, "duration_s", curve.top_speed())?;
     Some(curve)
 }
 
-/// B4's front: so many steps in so much time with two ramps, none where they are too short for any clock.
-fn front(
+fn common(
     quantities: &mut Quantities<'_>,
     distance: &Distance,
     duration_s: f64,

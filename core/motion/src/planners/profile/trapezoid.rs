@@ -9,17 +9,12 @@ use crate::{
     },
     limits,
     moves::{self, TrapezoidMethod},
-    planners::budget::{Budget, MAX_TABLE_ROWS},
+    planners::budget::{Budget, MAX_TABLE_ROWS, exceeded},
     planners::quantities::Quantities,
-    problem::{Cause, ValueError},
+    problem::Cause,
 };
-
-/// Steps, start speed, top speed and acceleration, in steps and s.
-type Front = (i64, f64, f64, f64);
-
-/// Every step where the curve has it.
 pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Trapezoid> {
-    let (steps, ..) = front(quantities, given)?;
+    let steps = check(quantities, given)?;
     let mechanics = quantities.mechanics();
     let limits = Limits {
         start_speed: given.start_speed.exact_in_steps(mechanics).ok()?,
@@ -34,20 +29,18 @@ pub(super) fn table(
     given: &moves::Trapezoid,
     budget: &mut Budget,
 ) -> Option<TrapezoidTable> {
-    let (steps, ..) = front(quantities, given)?;
+    let steps = check(quantities, given)?;
     let mechanics = quantities.mechanics();
     let (start, top) = (given.start_speed.exact(mechanics).ok()?, given.top_speed.exact(mechanics).ok()?);
     let table =
         AccelerationTable::exact([&start, &top], &given.acceleration.exact(mechanics).ok()?, given.timer_hz);
     match TrapezoidTable::new(steps, table, budget.table_rows) {
         Ok(table) => {
-            budget.table_rows -= table.kept_rows();
+            budget.table_rows -= table.used_rows();
             Some(table)
         }
         Err(NoTable::Rows { needed }) => {
-            let (given, most) = ((MAX_TABLE_ROWS - budget.table_rows).saturating_add(needed), MAX_TABLE_ROWS);
-            let cause = ValueError::TooMuch { given: given as f64, most: most as f64, of: "table rows" };
-            quantities.refuse("", cause);
+            quantities.refuse("", exceeded(MAX_TABLE_ROWS, budget.table_rows, needed, "table rows"));
             None
         }
         Err(NoTable::Timer { rate }) => {
@@ -58,9 +51,9 @@ pub(super) fn table(
     }
 }
 
-/// Judges the numbers, those of the table only where it is asked for.
-fn front(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Front> {
-    // The table's first rate has to round to a pulse a second; the exact curve may start from rest.
+/// Checks the numbers, those of the table only if it is requested. Returns the steps.
+fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<i64> {
+    // The table's first rate must round to one pulse per second; the exact curve may start from rest.
     let starts = match given.method {
         TrapezoidMethod::Table => limits::TABLE_RATE_STEPS_S,
         TrapezoidMethod::Exact => 0.0..=MAX_SPEED,
@@ -80,5 +73,6 @@ fn front(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Fr
         return None;
     }
     timer_hz?;
-    Some((steps?, start?, top?, acceleration?))
+    let (steps, _, _, _) = (steps?, start?, top?, acceleration?);
+    Some(steps)
 }

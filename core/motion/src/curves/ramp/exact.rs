@@ -1,6 +1,6 @@
-//! The shapes of a ramp in 106 bits (DESIGN B1, B4): whether their travel at a time is more than a given one.
+//! The shapes of a ramp in 106 bits (DESIGN B1, B4): whether their travel at a time exceeds a given one.
 //!
-//! With R(z) = e^z - 1 - z, of which no terms cancel, z = k*x of an exponential and z = 2*r*x of a sigmoid:
+//! With R(z) = e^z - 1 - z without cancellation, z = k*x of an exponential and z = 2*r*x of a sigmoid:
 //!
 //! ```text
 //! exponential   G = R(-z)/(k*(k - R(-k)))          A = G(1)
@@ -8,14 +8,13 @@
 //!               p = 1/(2 + r + R(r)),  c = 2*r*(r + R(r))/(2 + r + R(r))
 //! ```
 //!
-//! The sigmoid's is ln(1 + p*(e^z - 1)) - p*z > c*g (`ramp`) without its logarithm.
+//! The sigmoid's formula is ln(1 + p*(e^z - 1)) - p*z > c*g (`ramp`) without the logarithm.
 
 use super::Ramp;
 use crate::timing::Double;
 
-/// A shape with its parameter as it is printed.
 #[derive(Clone, Copy)]
-pub(crate) enum Exactly {
+pub(crate) enum ExactRamp {
     Sigmoid { twice_range: Double, low: Double, scale: Double },
     Bezier,
     Straight,
@@ -23,28 +22,27 @@ pub(crate) enum Exactly {
 }
 
 impl Ramp {
-    pub(crate) fn exactly(&self) -> Exactly {
+    pub(crate) fn exact(&self) -> ExactRamp {
         match self {
             Self::Sigmoid(curve) => {
                 let range = Double::decimal(curve.range);
                 let past_one = range + range.exponential_rest();
                 let (twice_range, under) = (range * 2.0, past_one + 2.0);
                 let low = Double::from(1.0) / under;
-                Exactly::Sigmoid { twice_range, low, scale: twice_range * past_one / under }
+                ExactRamp::Sigmoid { twice_range, low, scale: twice_range * past_one / under }
             }
-            Self::Bezier => Exactly::Bezier,
-            Self::Straight => Exactly::Straight,
+            Self::Bezier => ExactRamp::Bezier,
+            Self::Straight => ExactRamp::Straight,
             Self::Exponential(curve) => {
                 let constants = Double::decimal(curve.constants);
                 let part = constants - (Double::default() - constants).exponential_rest();
-                Exactly::Exponential { constants, scale: constants * part }
+                ExactRamp::Exponential { constants, scale: constants * part }
             }
         }
     }
 }
 
-impl Exactly {
-    /// A = G(1).
+impl ExactRamp {
     pub(crate) fn area(self) -> Double {
         match self {
             Self::Exponential { constants, scale } => {

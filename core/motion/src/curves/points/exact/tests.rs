@@ -1,4 +1,4 @@
-//! The judge of a curve through points, asked directly: a motion asks it for the few steps that f64 does not tell.
+//! The judge of a curve through points, times directly: a motion asks it for the few steps that f64 does not tell.
 
 use super::*;
 use crate::{
@@ -23,25 +23,25 @@ fn a_step_is_due_after_its_time_and_not_before() {
         for between in [Between::Straight, Between::Smooth] {
             let curve = Points::new(points, between).unwrap();
             assert!(curve.step_count() > 15, "{points:?}");
-            for (index, place, right) in curve.all_due() {
-                let (piece, off) = (curve.pieces[index], curve.off[index]);
-                let crossing = piece.crossing(place);
-                let off_s = off.time_s + off.way * crossing.s_per_step;
-                assert!(off_s < 1e-11 * piece.to_s, "{off_s} of {piece:?}");
+            for (index, position, right) in curve.all_due() {
+                let (piece, max_error) = (curve.pieces[index], curve.max_errors[index]);
+                let crossing = piece.crossing(position);
+                let error_s = max_error.time_s + max_error.travel * crossing.s_per_step;
+                assert!(error_s < 1e-11 * piece.to_s, "{error_s} of {piece:?}");
                 let t = Double::from(crossing.time_s);
-                let asked = [
+                let times = [
                     (piece.from_s - 1.0, false),
                     (piece.from_s, false),
                     (piece.to_s, true),
                     (piece.to_s + 1.0, true),
                 ];
-                let asked = asked.map(|(t, expected)| (Double::from(t), expected));
-                let beside = [(t - off_s, false), (t + off_s, true)];
-                for (t, expected) in asked.into_iter().chain(beside) {
-                    let found = curve.is_past(index, place, t);
-                    assert_eq!(found, expected, "{place} {right} at {t:?} {between:?} {points:?}");
-                    let found = curve.is_at(index, place, t);
-                    assert_eq!(found, expected, "{place} {right} by {t:?} {between:?} {points:?}");
+                let times = times.map(|(t, expected)| (Double::from(t), expected));
+                let near = [(t - error_s, false), (t + error_s, true)];
+                for (t, expected) in times.into_iter().chain(near) {
+                    let found = curve.is_past(index, position, t);
+                    assert_eq!(found, expected, "{position} {right} at {t:?} {between:?} {points:?}");
+                    let found = curve.is_at(index, position, t);
+                    assert_eq!(found, expected, "{position} {right} by {t:?} {between:?} {points:?}");
                 }
             }
         }
@@ -49,10 +49,10 @@ fn a_step_is_due_after_its_time_and_not_before() {
 }
 
 #[test]
-fn a_curve_that_is_at_a_place_is_not_past_it() {
+fn a_curve_that_is_at_a_position_is_not_past_it() {
     let straight = [(0.0, 0.0), (1.0, 4.0), (3.0, -4.0)];
     let smooth = [(0.0, 0.0), (2.0, 2.0), (4.0, 0.0)];
-    // Points, the piece, the place and when it is there: in a piece's first half and in its second, up and down.
+    // Points, the piece, the position and when it is there: in a piece's first half and in its second, up and down.
     let rows = [
         (&straight, Between::Straight, 0, 0.5, 0.125),
         (&straight, Between::Straight, 0, 3.5, 0.875),
@@ -64,19 +64,19 @@ fn a_curve_that_is_at_a_place_is_not_past_it() {
         (&smooth, Between::Smooth, 1, 1.6875, 2.5),
         (&smooth, Between::Smooth, 1, 0.3125, 3.5),
     ];
-    for (points, between, index, place, t) in rows {
+    for (points, between, index, position, t) in rows {
         let curve = Points::new(points, between).unwrap();
         for (later, is_past, is_at) in [(-1e-27, false, false), (0.0, false, true), (1e-27, true, true)] {
             let since = Double::from(t) + later;
-            let found = (curve.is_past(index, place, since), curve.is_at(index, place, since));
-            assert_eq!(found, (is_past, is_at), "{place} at {t} + {later} of {between:?} {points:?}");
+            let found = (curve.is_past(index, position, since), curve.is_at(index, position, since));
+            assert_eq!(found, (is_past, is_at), "{position} at {t} + {later} of {between:?} {points:?}");
         }
     }
     let curve = Points::new(&straight, Between::Straight).unwrap();
     assert!(!curve.is_past(2, 0.0, 9.0.into()), "there is no third piece");
 }
 
-/// Of decimals that have no end in binary digits: 106 bits put the time a little beside its edge.
+/// Of decimals that have no end in binary digits: 106 bits put the time a little near its edge.
 #[test]
 fn a_half_of_a_cycle_far_from_the_first_point_is_the_next_ones() {
     let rows = [
@@ -92,7 +92,7 @@ fn a_half_of_a_cycle_far_from_the_first_point_is_the_next_ones() {
 }
 
 #[test]
-fn what_is_due_by_a_time_is_judged_as_f64_rounds_it() {
+fn what_is_due_by_a_time_is_decided_as_f64_rounds_it() {
     for points in CURVES {
         for between in [Between::Straight, Between::Smooth] {
             let curve = Points::new(points, between).unwrap();
@@ -112,7 +112,7 @@ fn what_is_due_by_a_time_is_judged_as_f64_rounds_it() {
                     let found = curve.due_by(t * elsewhere, 1e9, |_| t.into());
                     assert_eq!(found, round_half_up(position), "{position} at {t}, {between:?} {points:?}");
                 }
-                // Where its digits are told to be enough, no one is asked.
+                // Where its digits are told to be enough, no one is times.
                 let found = curve.due_by(t, 0.0, |_| panic!("{position} is no half"));
                 assert_eq!(found, round_half_up(position));
             }

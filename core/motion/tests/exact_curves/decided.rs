@@ -9,7 +9,7 @@ use crate::{
 };
 use std::cmp::Ordering;
 use stepscope_motion::{
-    Curve, Profile,
+    Profile,
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
         Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points, RampShape, Ramps,

@@ -1,4 +1,4 @@
-//! Whether a curve through points is past a position at a time, in 106 bits (DESIGN B1, B6).
+//! Whether a curve through points has passed a position at a time, in 106 bits (DESIGN B1, B6).
 
 use super::{Between, Points};
 use crate::{
@@ -6,40 +6,38 @@ use crate::{
     timing::{Double, Number},
 };
 
-/// What 106 bits lose of a position, and what is formed of it, in parts of it: 2^-98.
-const UNTOLD: f64 = f64::EPSILON * f64::EPSILON * 64.0;
+/// Relative error of a position in 106 bits and of what follows from it: 2^-98.
+const MAX_EXACT_ERROR: f64 = f64::EPSILON * f64::EPSILON * 64.0;
 
 impl Points {
-    /// Whether piece `index` is past `place`, which lies in it, before `t` in s.
-    pub(super) fn is_past(&self, index: usize, place: f64, t: Double) -> bool {
-        self.is_beyond(index, place, t, UNTOLD)
+    /// Whether piece `index` has passed `position`, which lies in it, before `t` in s.
+    pub(super) fn is_past(&self, index: usize, position: f64, t: Double) -> bool {
+        self.is_beyond(index, position, t, MAX_EXACT_ERROR)
     }
 
-    /// Whether piece `index` is past `place` or at it, by `t` in s.
-    fn is_at(&self, index: usize, place: f64, t: Double) -> bool {
-        self.is_beyond(index, place, t, -UNTOLD)
+    /// Whether piece `index` is at or past `position` by `t` in s.
+    fn is_at(&self, index: usize, position: f64, t: Double) -> bool {
+        self.is_beyond(index, position, t, -MAX_EXACT_ERROR)
     }
 
-    fn is_beyond(&self, index: usize, place: f64, t: Double, untold: f64) -> bool {
+    fn is_beyond(&self, index: usize, position: f64, t: Double, error: f64) -> bool {
         let Some(piece) = self.exact_piece(index) else { return false };
         let (behind, ahead) =
-            ((Double::from(place) - piece.from).magnitude(), (piece.to - place).magnitude());
-        // The digits of a position end with those of the way from the first point, however short a step's own way is.
-        let untold = Double::from((libm::fabs(piece.from.high) + libm::fabs(piece.to.high)) * untold);
+            ((Double::from(position) - piece.from).magnitude(), (piece.to - position).magnitude());
+        // The error depends on the distance from the first point, however short the piece is.
+        let error = Double::from((libm::fabs(piece.from.high) + libm::fabs(piece.to.high)) * error);
         if behind < ahead {
             let x = t - piece.from_s;
-            let has_made =
-                x >= piece.length_s() || piece.seen_from_start().travel(x).magnitude() > behind + untold;
-            x > 0.0.into() && has_made
+            let has_passed =
+                x >= piece.length_s() || piece.seen_from_start().travel(x).magnitude() > behind + error;
+            x > 0.0.into() && has_passed
         } else {
             let x = piece.to_s - t;
-            let is_left =
-                x >= piece.length_s() || piece.seen_from_end().travel(x).magnitude() > ahead - untold;
+            let is_left = x >= piece.length_s() || piece.seen_from_end().travel(x).magnitude() > ahead - error;
             !(x > 0.0.into() && is_left)
         }
     }
 
-    /// Piece `index` with all its digits.
     fn exact_piece(&self, index: usize) -> Option<Cubic<Double>> {
         let &[(from_s, from), (to_s, to)] = self.exact.get(index..index + 2)? else { return None };
         let [from_speed, to_speed] = match self.between {
@@ -49,19 +47,19 @@ impl Points {
         Some(Cubic { from_s, to_s, from, to, from_speed, to_speed })
     }
 
-    /// B1's rounding of the position at a time, near `t`, no nearer to its place in f64 than `off`; `since` is the time in s,
-    /// a tie later or earlier: a half that is met in it is reached from below, and not yet left from above.
-    pub(crate) fn due_by(&self, t: f64, off: f64, since: impl Fn(bool) -> Double) -> i64 {
+    /// The steps due by a time, near `t`, whose position in f64 has an error of at most `max_error`. `since` is the time in
+    /// s, a tie later or earlier: a half that is met there is reached from below, and not yet left from above.
+    pub(crate) fn due_by(&self, t: f64, max_error: f64, since: impl Fn(bool) -> Double) -> i64 {
         let past = self.piece(t).map_or(0.0, |piece| piece.position(t)) + 0.5;
         let near = libm::floor(past + 0.5);
-        if libm::fabs(past - near) > off {
+        if libm::fabs(past - near) > max_error {
             return libm::floor(past) as i64;
         }
         let (later, earlier) = (since(true), since(false));
         let index = self.exact.partition_point(|(from_s, _)| *from_s <= later).saturating_sub(1);
         let Some(index) = index.checked_sub(usize::from(index + 1 == self.exact.len())) else { return 0 };
         let Some(&[(_, from), (_, to)]) = self.exact.get(index..index + 2) else { return 0 };
-        // Whether the position is no less than the half below a whole one.
+        // Whether the position is at least half a step below `whole`.
         let has = |whole: i64| {
             let half = whole as f64 - 0.5;
             let is_under = |end: Double| Double::from(half) <= end;
