@@ -33,7 +33,8 @@ impl Points {
             x > 0.0.into() && has_passed
         } else {
             let x = piece.to_s - t;
-            let is_left = x >= piece.length_s() || piece.seen_from_end().travel(x).magnitude() > ahead - error;
+            let is_left =
+                x >= piece.length_s() || piece.seen_from_end().travel(x).magnitude() > ahead - error;
             !(x > 0.0.into() && is_left)
         }
     }
