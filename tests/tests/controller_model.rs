@@ -73,7 +73,7 @@ fn same(seed: u64, expected: &Outcome, trace: &[Record], run: &Run, json: &str) 
         assert_eq!(machine.memory(index), theirs.memory, "seed {seed}: memory {index}\n{json}");
         assert_eq!(machine.writes(index), theirs.writes, "seed {seed}: writes {index}\n{json}");
         assert_eq!(machine.position(index), Some(theirs.position), "seed {seed}: position {index}\n{json}");
-        assert_eq!(machine.axis_place(index), Some(theirs.place), "seed {seed}: place {index}\n{json}");
+        assert_eq!(machine.axis_position(index), Some(theirs.place), "seed {seed}: place {index}\n{json}");
         assert_eq!(machine.axis_error(index), Some(theirs.error), "seed {seed}: error {index}\n{json}");
     }
     assert_eq!(machine.panel_digest(), expected.panel_digest, "seed {seed}");

@@ -136,7 +136,7 @@ impl StandAlone {
     }
 
     #[must_use]
-    pub fn axis_place(&self, i: usize) -> Option<i64> {
+    pub fn axis_position(&self, i: usize) -> Option<i64> {
         Some(self.controllers.get(i)?.axis.position())
     }
 

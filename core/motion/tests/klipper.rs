@@ -3,7 +3,7 @@
 //!
 //! The way is written here from its description alone: a step comes up to 25 us early, though not by more than half the interval
 //! before it, and never late; an entry is interval (32 bits), count (16) and add (16, signed) in whole cycles. Its own
-//! program looks at some of the adds only; where its counts are known they stand beside.
+//! program examines only some of the adds; its known counts are listed.
 
 use std::num::NonZeroU32;
 use stepscope_motion::{
@@ -124,7 +124,7 @@ fn no_move_takes_more_entries_than_klippers_way() {
     }
 }
 
-/// 312 turns: the list is cut into stretches, each cut of which may cost an entry.
+/// 312 turns: the list is cut into sections, each cut of which may cost an entry.
 #[test]
 #[ignore = "it takes half a minute"]
 fn two_million_steps_take_no_more_either() {

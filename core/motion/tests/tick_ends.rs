@@ -15,9 +15,9 @@ use stepscope_motion::{
 /// Steps of each tick of 1 ms, left negative.
 fn steps_of_ticks(moves: Vec<Move>) -> Vec<i64> {
     let plan = plan_axis(&Axis { moves, ..Axis::default() }, "x").expect("it can be planned");
-    let orders = ticks(&[plan], AxesPath::MOTION, 1, 100, 16_000, 16_000_000).expect("no tick is too full");
+    let commands = ticks(&[plan], AxesPath::MOTION, 1, 100, 16_000, 16_000_000).expect("no tick is too full");
     let steps = |order: &u8| if order & 0x80 == 0 { -i64::from(*order) } else { i64::from(order & 0x7f) };
-    orders.bytes().iter().map(steps).collect()
+    commands.bytes().iter().map(steps).collect()
 }
 
 /// Three steps a millisecond apart, the first at 1 ms.

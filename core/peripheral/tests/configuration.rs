@@ -148,7 +148,7 @@ fn a_bus_that_segments_drive_has_no_slots_and_hears_nothing() {
 }
 
 #[test]
-fn a_checked_configuration_tells_what_follows_from_it() {
+fn a_checked_configuration_derives_its_values() {
     // Protocol, address given; of the controller and of packets, bytes of a packet.
     let rows = [
         (Protocol::Raw, None, None, None, 3),

@@ -28,7 +28,7 @@ const APART: u64 = 30 * 10 * 16;
 /// Longer than any row lasts.
 const LONG: u32 = 100_000;
 
-/// A tick has four slots and the queue two places; what is queued goes on for longer than a row lasts.
+/// A tick has four slots and the queue two entries; what is queued goes on for longer than a row lasts.
 const BUS: Bus = Bus {
     channels: 1,
     slots: 4,
@@ -67,7 +67,7 @@ impl Sink for Log {
 
 /// A frame's kind and its body.
 type Sent<'a> = (Kind, &'a [u8]);
-/// The bus, what came before, the body of TICKS (sequence number, count, orders), what becomes of it, and the faults.
+/// The bus, what came before, the body of TICKS (sequence number, count, commands), what becomes of it, and the faults.
 type Case<'a> = (&'a Bus, &'a [Sent<'a>], &'a [u8], FrameOutcome, Faults);
 
 /// Sends the frames of `before` to all, which is never answered, and then TICKS with this body to the controller.
@@ -130,7 +130,7 @@ fn of_two_reasons_that_hold_at_once_the_earlier_is_reported() {
             (&BOOTING, &[], &[0, 1, 5], refused(Reason::Busy), none),
             (&BUS, &[], &[0, 1, 5], refused(Reason::TooManySteps), Faults::TOO_MANY_STEPS),
         ],
-        // Three ticks for two places, the last of them with too many steps.
+        // Three ticks for two free entries, the last of them with too many steps.
         [
             (&BUS, &[], &[0, 3, 4, 4, 5], refused(Reason::TooManySteps), Faults::TOO_MANY_STEPS),
             (&BUS, &[], &[0, 3, 4, 4, 4], refused(Reason::QueueFull), Faults::QUEUE_OVERFLOW),
@@ -149,7 +149,7 @@ fn of_two_reasons_that_hold_at_once_the_earlier_is_reported() {
 
 #[test]
 fn a_frame_for_which_every_later_reason_holds_is_refused_for_its_sequence_number() {
-    // Stopped, in the self-test, five steps in four slots, three ticks for two places.
+    // Stopped, in the self-test, five steps in four slots, three ticks for two entries.
     let body = Ticks::emit(1, 1, &[5, 5, 5]);
     let (outcome, faults) = send_ticks(&BOOTING, &[(Kind::Stop, &[])], &body);
     assert_eq!((outcome, faults), (FrameOutcome::Refused(Reason::BadSeq), Faults::BAD_SEQ));

@@ -21,24 +21,24 @@ fn rings(setup: &Setup, off: f64, cycles: u64) -> Vec<f64> {
     let mut plant = Plant::new(setup).expect("it holds");
     let state = *plant.state(0).expect("a motor");
     plant.set_state(0, State { x: state.x + off, ..state });
-    let mut places = vec![];
-    plant.advance(cycles, &mut Each(|plant: &Plant| places.push(plant.state(0).expect("a motor").x)));
-    places
+    let mut positions = vec![];
+    plant.advance(cycles, &mut Each(|plant: &Plant| positions.push(plant.state(0).expect("a motor").x)));
+    positions
 }
 
 /// Times of the rises through 0, in samples, and the greatest value between them.
-fn periods(places: &[f64]) -> (Vec<f64>, Vec<f64>) {
+fn periods(positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut rises = vec![];
-    for (index, pair) in places.windows(2).enumerate() {
+    for (index, pair) in positions.windows(2).enumerate() {
         if pair[0] < 0.0 && pair[1] >= 0.0 {
             rises.push(index as f64 - pair[0] / (pair[1] - pair[0]));
         }
     }
     let between = |pair: &[f64]| {
         let (from, to) = (pair[0].ceil() as usize, pair[1].floor() as usize);
-        let top = (from..=to).max_by(|&a, &b| places[a].total_cmp(&places[b])).expect("a period");
+        let top = (from..=to).max_by(|&a, &b| positions[a].total_cmp(&positions[b])).expect("a period");
         // The top of the parabola through three samples.
-        let (l, m, r) = (places[top - 1], places[top], places[top + 1]);
+        let (l, m, r) = (positions[top - 1], positions[top], positions[top + 1]);
         m - (l - r) * (l - r) / (8.0 * (l - 2.0 * m + r))
     };
     let peaks = rises.windows(2).map(between).collect();
@@ -55,14 +55,14 @@ fn a_small_swing_has_its_frequency_and_decrement() {
     near_part(decrement, 0.1182, 0.01);
 }
 
-/// Where the spectrum of `places` has its greatest value within a fiftieth of `guess`, in Hz.
-fn frequency(places: &[f64], guess: f64) -> f64 {
-    let mean = places.iter().sum::<f64>() / places.len() as f64;
+/// Where the spectrum of `positions` has its greatest value within a fiftieth of `guess`, in Hz.
+fn frequency(positions: &[f64], guess: f64) -> f64 {
+    let mean = positions.iter().sum::<f64>() / positions.len() as f64;
     let power = |hz: f64| {
         let (mut re, mut im) = (0.0, 0.0);
-        for (index, x) in places.iter().enumerate().step_by(20) {
+        for (index, x) in positions.iter().enumerate().step_by(20) {
             // A Hann window, so that the other mode does not show.
-            let window = 1.0 - (TAU * index as f64 / places.len() as f64).cos();
+            let window = 1.0 - (TAU * index as f64 / positions.len() as f64).cos();
             let (s, c) = (TAU * hz * index as f64 / 200_000.0).sin_cos();
             re += window * (x - mean) * c;
             im += window * (x - mean) * s;
@@ -76,9 +76,9 @@ fn frequency(places: &[f64], guess: f64) -> f64 {
 #[test]
 fn two_masses_on_a_spring_have_two_frequencies() {
     let motor = MotorModel { load_inertia_g_cm2: 200.0, coupling_n_m_rad: Some(20.0), ..frictionless() };
-    let places = rings(&one(motor), 0.01, 16_000_000);
-    near_part(frequency(&places, 98.5), 98.5, 0.003);
-    near_part(frequency(&places, 455.9), 455.9, 0.003);
+    let positions = rings(&one(motor), 0.01, 16_000_000);
+    near_part(frequency(&positions, 98.5), 98.5, 0.003);
+    near_part(frequency(&positions, 455.9), 455.9, 0.003);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn torque(rate: f64, lag: f64) -> f64 {
     let period = 4.0 / full_steps_s;
     let (from, to) = (0.02, 0.02 + (0.035 / period).floor().max(1.0) * period);
     let mut speeds = vec![];
-    let mut look = Each(|plant: &Plant| {
+    let mut observer = Each(|plant: &Plant| {
         let t = plant.cycle() as f64 / HZ;
         if t >= from && t <= to {
             speeds.push((t, plant.state(0).expect("a motor").w));
@@ -124,7 +124,7 @@ fn torque(rate: f64, lag: f64) -> f64 {
     });
     for record in records(&[rises], 1) {
         if record.cycle.0 as f64 / HZ <= to {
-            plant.record(record, &mut look);
+            plant.record(record, &mut observer);
         }
     }
     let ((t_0, w_0), (t_1, w_1)) = (speeds[0], speeds[speeds.len() - 1]);
@@ -270,15 +270,15 @@ proptest! {
         let low = ((b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a)).sqrt() / TAU;
         let high = ((b + (b * b - 4.0 * a * c).sqrt()) / (2.0 * a)).sqrt() / TAU;
         prop_assume!(high / low > 1.5 && high < 2000.0 && low > 20.0);
-        let places = rings(&held(motor), 0.001, 16_000_000);
+        let positions = rings(&held(motor), 0.001, 16_000_000);
         for expected in [low, high] {
-            let found = frequency(&places, expected);
+            let found = frequency(&positions, expected);
             prop_assert!((found / expected - 1.0).abs() < 0.003, "{found} {expected}");
         }
     }
 
     #[test]
-    fn energy_is_kept(
+    fn energy_is_conserved(
         motor in motors(), rate in 100.0..3000.0, detent in 0.0..0.1, gravity in -0.2..0.2, sine in 0.0..0.1,
         coupled: bool, buffer: bool, off: bool,
     ) {
@@ -344,17 +344,17 @@ fn a_step_is_of_second_order_and_close_to_the_continuous_equations_at_five_micro
             Plant::new(&Setup { step_cycles: Some(step_cycles), ..one(motor) }).expect("it holds");
         let state = *plant.state(0).expect("a motor");
         plant.set_state(0, State { x: 0.5, ..state });
-        let mut places = vec![];
-        let mut look = Each(|plant: &Plant| {
+        let mut positions = vec![];
+        let mut observer = Each(|plant: &Plant| {
             if plant.cycle().is_multiple_of(160) {
-                places.push(plant.state(0).expect("a motor").x);
+                positions.push(plant.state(0).expect("a motor").x);
             }
         });
-        plant.advance(480_000, &mut look);
-        places
+        plant.advance(480_000, &mut observer);
+        positions
     };
     let [coarse, middle, fine] = [80, 40, 5].map(ringing);
-    let off = |places: &[f64]| places.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let off = |positions: &[f64]| positions.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("{} {}", off(&coarse), off(&middle));
     assert!(off(&coarse) < 2e-4);
     assert!(off(&coarse) > 3.0 * off(&middle), "halving the step quarters the error");

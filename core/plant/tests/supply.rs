@@ -63,13 +63,13 @@ fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
 #[test]
 fn currents_decay_through_the_diodes_in_the_time_of_supply_and_inductance() {
     let mut zero = None;
-    let mut look = Each(|plant: &Plant| {
+    let mut observer = Each(|plant: &Plant| {
         if plant.state(0).expect("a motor").i_a == 0.0 {
             zero.get_or_insert(plant.cycle() - 1600);
         }
     });
     let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..MotorModel::default() };
-    run(&one(motor), &[off()], 160_000, &mut look);
+    run(&one(motor), &[off()], 160_000, &mut observer);
     // L/R*ln(1 + R*i/(V + 2*0.7)) = 0.1737 ms, then the next point.
     near(zero.expect("it ends") as f64 / 16e3, 0.1737, 0.005);
 }

@@ -1,4 +1,4 @@
-//! The rows of F10 that edges alone tell; those of motions and scenarios are in `tests/tests/plant.rs`.
+//! The rows of F10 that edges alone define; those of motions and scenarios are in `tests/tests/plant.rs`.
 
 use crate::common::{
     Each, T_STEP, frictionless, full_steps, near, near_part, one, patent_plant, records, run, with_sensor,
@@ -40,12 +40,12 @@ fn locked() -> Setup {
 #[test]
 fn a_phase_of_a_locked_rotor_turns_its_current_round_in_the_time_of_its_inductance() {
     let mut arrived = None;
-    let mut look = Each(|plant: &Plant| {
+    let mut observer = Each(|plant: &Plant| {
         if plant.cycle() > 1600 && plant.state(0).expect("a motor").i_a < -1.0606 {
             arrived.get_or_insert(plant.cycle() - 1600);
         }
     });
-    run(&locked(), &records(&[vec![1600]], 16), 32_000, &mut look);
+    run(&locked(), &records(&[vec![1600]], 16), 32_000, &mut observer);
     near_part(arrived.expect("it arrives") as f64 / HZ * 1e3, 0.3807, 0.003);
 }
 
@@ -186,17 +186,17 @@ fn sensor_log(setup: &Setup, rises: &[Vec<u64>], cycles: u64) -> SensorLog {
     log
 }
 
-/// One step of one motor that rested for ten T_step, `place` cycles after a grid point.
-fn one_step(setup: &Setup, place: u64) -> StepResponse {
-    let rise = 12 * T_STEP / 80 * 80 + place;
+/// One step of one motor that rested for ten T_step, `after` cycles after a grid point.
+fn one_step(setup: &Setup, after: u64) -> StepResponse {
+    let rise = 12 * T_STEP / 80 * 80 + after;
     let log = sensor_log(setup, &[vec![rise]], rise + 2 * T_STEP);
     StepResponse::of(&log.samples, rise - 10 * T_STEP, rise, T_STEP, 0.2).expect("there are samples")
 }
 
 #[test]
 fn the_patents_figure_1_one_step_of_the_patent_set() {
-    for place in [0, 1, 20, 40, 79] {
-        let found = one_step(&patent_plant(1), place);
+    for position in [0, 1, 20, 40, 79] {
+        let found = one_step(&patent_plant(1), position);
         near_part(found.rest_a, 0.2167, 0.01);
         near_part(found.least_a, -0.481, 0.01);
         near(found.greatest_a, 0.922, 0.017);
@@ -250,12 +250,12 @@ fn overload(apart: u64) -> Option<u64> {
     let rises = |channel: u64| (1..=4).map(|k| 1600 + k * T_STEP + channel * apart).collect();
     let rises: Vec<Vec<u64>> = (0..4).map(rises).collect();
     let mut found = None;
-    let mut look = Each(|plant: &Plant| {
+    let mut observer = Each(|plant: &Plant| {
         if plant.events().overload {
             found.get_or_insert(plant.cycle());
         }
     });
-    run(&with_sensor(setup, 5000.0), &records(&rises, 16), 400_000, &mut look);
+    run(&with_sensor(setup, 5000.0), &records(&rises, 16), 400_000, &mut observer);
     found
 }
 

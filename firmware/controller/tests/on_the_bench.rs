@@ -246,7 +246,7 @@ fn a_limit_switch_that_is_closed_at_power_up_counts() {
 }
 
 #[test]
-fn an_emergency_stop_is_heard_at_once_however_late_the_chip_is() {
+fn an_emergency_stop_acts_at_once_however_late_the_chip_is() {
     let checked = checked(Parameters::default());
     for most in [0, 7, 3000, 100_000] {
         let pressed = 12_345_678;
@@ -260,7 +260,7 @@ fn an_emergency_stop_is_heard_at_once_however_late_the_chip_is() {
 }
 
 #[test]
-fn homing_to_a_real_switch_finds_the_place_of_it() {
+fn homing_to_a_real_switch_finds_its_position() {
     let json = include_str!("../../../core/scenario/presets/controller-homing.json");
     for most in [0, 40, 5000] {
         let (checked, inputs) = split(json);

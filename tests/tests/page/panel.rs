@@ -96,7 +96,7 @@ fn every_preset_with_a_panel_shows_what_the_core_says_at_any_cycle() -> Result<(
                 page.until_digest(&known.digest).await?;
                 let machine = at(&known, cycle);
                 until_shown(&page, &machine).await?;
-                let place = machine.axis_place(0).expect("a panel");
+                let place = machine.axis_position(0).expect("a panel");
                 let told = "document.querySelector('.axis-words').textContent.replace(/[\\u202f ]/g, '').replaceAll('−', '-')";
                 page.until(&format!("{told}.startsWith('Nutat{place}step')")).await?;
             }

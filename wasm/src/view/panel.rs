@@ -60,7 +60,7 @@ impl Simulation {
             machine.word(controller)?.0 as f64,
             f64::from(machine.position(controller)?),
             machine.display(controller)? as f64,
-            machine.axis_place(controller)? as f64,
+            machine.axis_position(controller)? as f64,
             machine.axis_error(controller)? as f64,
             f64::from(*numbers.first()?),
             f64::from(*numbers.get(1)?),

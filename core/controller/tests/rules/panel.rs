@@ -131,11 +131,11 @@ fn homing_seeks_goes_off_and_comes_back_slowly() {
     let run = row(0);
     // Three steps to -3; off to -2 and one more to -1, as the due one is the first of two; fine to -3.
     assert_eq!(run.rises(), [41, 51, 61, 74, 84, 94, 117, 137, 157]);
-    assert_eq!((run.position(), run.machine.axis_place(0), run.machine.trust(0)), (0, Some(-3), Some(2)));
+    assert_eq!((run.position(), run.machine.axis_position(0), run.machine.trust(0)), (0, Some(-3), Some(2)));
     assert_eq!(run.machine.axis_error(0), Some(0));
     assert_eq!(run.panel_from(28), ["31 Homing t1 g0/0", "158 Homing t2 g0/0", "160 Ready t2 g0/0"]);
     let run = row(7);
-    assert_eq!((run.position(), run.machine.axis_place(0), run.end().as_str()), (0, Some(-10), "Ready"));
+    assert_eq!((run.position(), run.machine.axis_position(0), run.end().as_str()), (0, Some(-10), "Ready"));
 }
 
 #[test]
@@ -237,7 +237,7 @@ fn a_hand_moves_the_axis_while_the_motor_is_off() {
     let inputs = vec![push(50, 9), level(60, Estop, true), push(60, 9), push(61, 5), push(62, -20)];
     let axis = Some(Axis { hard_min: Some(-10), ..Axis::default() });
     let run = run(Parameters { inputs, axis, ..small() });
-    assert_eq!((run.machine.axis_place(0), run.machine.axis_error(0)), (Some(-10), Some(-10)));
+    assert_eq!((run.machine.axis_position(0), run.machine.axis_error(0)), (Some(-10), Some(-10)));
 }
 
 /// An axis that does not start at what memory says is where it was then: what counts is what happens later.
@@ -246,7 +246,7 @@ fn before_a_zero_is_set_the_axis_error_counts_from_the_position_in_memory() {
     let axis = Some(Axis { start_steps: 50, hard_max: Some(51), ..Axis::default() });
     let row = |inputs| {
         let run = run(Parameters { inputs, axis: axis.clone(), ..small() });
-        (run.position(), run.machine.axis_place(0), run.machine.axis_error(0))
+        (run.position(), run.machine.axis_position(0), run.machine.axis_error(0))
     };
     assert_eq!(row(vec![]), (0, Some(50), Some(0)));
     // The program's three steps to the right end at 51: two are lost.

@@ -19,7 +19,7 @@ fn cut(parameters: Parameters, falls: u64, back: u64) -> Parameters {
 }
 
 #[test]
-fn the_record_that_is_ordered_at_16_bytes_of_8_5_ms_takes_136_ms() {
+fn the_record_that_is_requested_at_16_bytes_of_8_5_ms_takes_136_ms() {
     let setup = Setup::default();
     let mut machine = StandAlone::new(&setup.check().unwrap());
     machine.run(Instant::NEVER, &mut Vec::new());

@@ -138,7 +138,7 @@ fn each_other_rule_names_its_field() {
 }
 
 #[test]
-fn all_problems_are_told_at_once_and_those_of_the_bus_too() {
+fn all_problems_are_reported_at_once_and_those_of_the_bus_too() {
     let second = Parameters { inputs: vec![level(9, Signal::Power, false)], decimals: 9, ..good() };
     let setup = Setup { channels: 1, controllers: vec![good(), second], ..Setup::default() };
     let refused: Vec<String> = setup.check().unwrap_err().iter().map(ToString::to_string).collect();
@@ -168,7 +168,7 @@ fn warnings_tell_of_what_may_not_be_meant() {
 
 /// G3: 36 rows from 1000 at 3000 Hz/s, 4200 steps, come to 5119 Hz.
 #[test]
-fn a_move_that_never_comes_to_its_speed_is_told() {
+fn a_move_that_never_comes_to_its_speed_is_reported() {
     let warned = |length, short_move| {
         let own = Move { length, speed_hz: 5000, level: 3, ..Move::default() };
         let groups = vec![Group::Home, Group::Move(own)];
@@ -178,9 +178,9 @@ fn a_move_that_never_comes_to_its_speed_is_told() {
         let checked = Setup { controllers: vec![numbers], ..Setup::default() }.check().unwrap();
         checked.warnings().first().map(ToString::to_string)
     };
-    let told = "controller 0: groups[1].move.speed_hz: 8399 steps are too short for 5000 Hz, which takes 8400 up and down: the \
+    let warning = "controller 0: groups[1].move.speed_hz: 8399 steps are too short for 5000 Hz, which takes 8400 up and down: the \
                 whole move goes at 1000 Hz; a higher level needs fewer, and short_move \"turn_round\" goes up as far as they allow";
-    assert_eq!(warned(8399, ShortMove::Document).as_deref(), Some(told));
+    assert_eq!(warned(8399, ShortMove::Document).as_deref(), Some(warning));
     assert_eq!(warned(8400, ShortMove::Document), None);
     assert_eq!(warned(8399, ShortMove::TurnRound), None);
 }

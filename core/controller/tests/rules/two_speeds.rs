@@ -9,7 +9,7 @@ use stepscope_peripheral::{
 };
 
 /// Cycles after which a run that does not end is left.
-const MOST: u64 = 40_000;
+const MAX_CYCLES: u64 = 40_000;
 
 /// How many seeds are run, and the first of them.
 fn seeds() -> std::ops::Range<u64> {
@@ -28,8 +28,9 @@ fn compare(seed: u64, slow: &StandAlone, fast: &StandAlone) {
         assert_eq!(slow.memory(i), fast.memory(i), "seed {seed}: memory {i}");
         assert_eq!(slow.writes(i), fast.writes(i), "seed {seed}: wear {i}");
         assert_eq!(slow.ignored(i), fast.ignored(i), "seed {seed}: presses {i}");
-        let place = |machine: &StandAlone| (machine.axis_place(i), machine.axis_error(i), machine.word(i));
-        assert_eq!(place(slow), place(fast), "seed {seed}: axis {i}");
+        let position =
+            |machine: &StandAlone| (machine.axis_position(i), machine.axis_error(i), machine.word(i));
+        assert_eq!(position(slow), position(fast), "seed {seed}: axis {i}");
         assert_eq!(slow.numbers(i), fast.numbers(i), "seed {seed}: numbers {i}");
     }
     assert_eq!(slow.panel_digest(), fast.panel_digest());
@@ -42,11 +43,11 @@ fn clocked_and_skipped_runs_are_equal() {
         let checked =
             common::setup(seed).check().unwrap_or_else(|refused| panic!("seed {seed}: {refused:?}"));
         let (mut slow, mut slow_trace) = (StandAlone::new(&checked), Vec::<Record>::new());
-        while slow.now() < Instant(MOST) && !slow.at_rest() {
+        while slow.now() < Instant(MAX_CYCLES) && !slow.at_rest() {
             slow.clock(&mut slow_trace);
         }
         let (mut fast, mut fast_trace) = (StandAlone::new(&checked), Vec::<Record>::new());
-        fast.run(if slow.at_rest() { Instant::NEVER } else { Instant(MOST) }, &mut fast_trace);
+        fast.run(if slow.at_rest() { Instant::NEVER } else { Instant(MAX_CYCLES) }, &mut fast_trace);
         assert_eq!(slow_trace, fast_trace, "seed {seed}: trace");
         compare(seed, &slow, &fast);
         for record in fast.panel(0) {
@@ -65,7 +66,7 @@ fn slices_and_live_inputs_change_nothing() {
     for seed in seeds().take(200) {
         let mut setup = common::setup(seed);
         let random = &mut Random(seed ^ 0x55);
-        let until = Instant(MOST / 2);
+        let until = Instant(MAX_CYCLES / 2);
         let mut whole = StandAlone::new(&setup.clone().check().unwrap());
         let mut whole_trace = Vec::<Record>::new();
         whole.run(until, &mut whole_trace);

@@ -99,7 +99,7 @@ mod tests {
     use crate::{Curve, curves::trapezoid::Trapezoid};
 
     #[test]
-    fn a_place_is_found_in_a_curve_that_tells_only_its_positions() {
+    fn a_time_is_found_in_a_curve_that_has_only_positions() {
         for steps in [1, -2, 801, -40_000] {
             let curve = Trapezoid::new(steps, 250.0, 4000.0, 9000.0);
             let times = curve.step_times(1_000_000_000).map(|cycle| cycle as f64 * 1e-9);

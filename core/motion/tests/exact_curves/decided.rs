@@ -1,5 +1,5 @@
-//! Moves of which every step is judged in 106 bits. On a clock of 4 GHz a time of hours has no digit left that tells one
-//! cycle from the next, so none is decided in f64: the formulas that judge are held to the ideals over their whole length.
+//! Moves of which every step is decided in 106 bits. On a clock of 4 GHz a time of hours has no digit left to distinguish one
+//! cycle from the next, so none is decided in f64: the formulas that decide are checked against the ideals over their whole length.
 
 use crate::{
     by_rows, by_segments, by_slices,
@@ -20,7 +20,7 @@ use stepscope_motion::{
 const CLOCK_HZ: u32 = 4_000_000_000;
 const DAY_S: f64 = 86_400.0;
 /// Of a move with more steps so many are held at its beginning and its end, and so many between.
-const MOST: u64 = 100;
+const MAX_PER_PART: u64 = 100;
 
 /// Holds the steps of a move to an ideal that may be made of its plan; times may be off by so many roundings.
 fn check_planned(given: &Move, roundings: f64, ideal: impl FnOnce(&Profile) -> Ideal) {
@@ -29,9 +29,9 @@ fn check_planned(given: &Move, roundings: f64, ideal: impl FnOnce(&Profile) -> I
     let off = roundings * f64::EPSILON / 2.0 * profile.duration_s() * f64::from(CLOCK_HZ);
     assert!(off > 0.5, "some steps are decided in f64: off by {off} of {given:?}");
     let (ideal, clock, count) = (ideal(profile), whole(CLOCK_HZ.into()), profile.step_count());
-    let first = MOST.min(count);
+    let first = MAX_PER_PART.min(count);
     let last = (count - first + 1).max(first + 1);
-    let between = (first + 1..last).step_by((count / MOST) as usize + 1);
+    let between = (first + 1..last).step_by((count / MAX_PER_PART) as usize + 1);
     for k in (1..=first).chain(between).chain(last..=count) {
         let cycle = profile.step_cycle(k, CLOCK_HZ).expect("a step has a cycle");
         let at = |halves: i64| {
@@ -54,7 +54,7 @@ fn steps(count: i64) -> Distance {
 }
 
 #[test]
-fn every_step_of_a_sine_is_where_it_is_judged() {
+fn every_step_of_a_sine_is_in_its_exact_cycle() {
     for (amplitude, period_s, periods) in [(1, DAY_S, 1), (-2, 20_000.3, 3), (51, 12_345.678_9, 5)] {
         let given = Sine { amplitude: steps(amplitude), period_s, periods };
         check(Move::Sine(given), ideal::sine(amplitude, period_s, periods));
@@ -72,7 +72,7 @@ const MOVES: [(i64, f64, f64); 6] = [
 ];
 
 #[test]
-fn every_step_of_a_cosine_is_where_it_is_judged() {
+fn every_step_of_a_cosine_is_in_its_exact_cycle() {
     for (count, duration_s, ramp_s) in MOVES {
         let given = Cosine { distance: steps(count), duration_s, ramp_s, ..Cosine::default() };
         check(Move::Cosine(given), ideal::cosine(count, duration_s, ramp_s));
@@ -80,7 +80,7 @@ fn every_step_of_a_cosine_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_ramps_is_where_it_is_judged() {
+fn every_step_of_ramps_is_in_its_exact_cycle() {
     let with = |shape, parameters: &'static [f64]| parameters.iter().map(move |each| (shape, *each));
     let shapes = with(RampShape::Bezier, &[1.0])
         .chain(with(RampShape::Straight, &[1.0]))
@@ -107,7 +107,7 @@ fn every_step_of_ramps_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_trapezoid_is_where_it_is_judged() {
+fn every_step_of_a_trapezoid_is_in_its_exact_cycle() {
     let rows = [
         // A plateau, from a start speed and from rest; one speed; and triangles.
         (200, 0.000_7, 0.003_3, 1e-6),
@@ -131,7 +131,7 @@ fn every_step_of_a_trapezoid_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_jerk_limited_move_is_where_it_is_judged() {
+fn every_step_of_a_jerk_limited_move_is_in_its_exact_cycle() {
     let rows = [
         // The four rows of the planner's table, and two with next to nothing of the jerk.
         (500_000, 32.0, 0.004, 1e-6),
@@ -153,7 +153,7 @@ fn every_step_of_a_jerk_limited_move_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_curve_through_points_is_where_it_is_judged() {
+fn every_step_of_a_curve_through_points_is_in_its_exact_cycle() {
     let rows: [&[(f64, f64)]; 5] = [
         &[(0.0, 0.0), (DAY_S, 140.0)],
         &[(0.0, 0.0), (40_000.1, -77.3), (80_000.3, 0.2)],
@@ -185,7 +185,7 @@ fn every_step_of_a_curve_through_points_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_staircase_is_where_it_is_judged() {
+fn every_step_of_a_staircase_is_in_its_exact_cycle() {
     // All at one rate, one row up and down, and several.
     let rows = [
         (20_000, 1.0, 1.0, ShortMove::Document),
@@ -206,7 +206,7 @@ fn every_step_of_a_staircase_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_sine_by_segments_is_where_it_is_judged() {
+fn every_step_of_a_sine_by_segments_is_in_its_exact_cycle() {
     for (amplitude, period_s, periods) in [(1, DAY_S, 1), (-40, 20_000.3, 2), (100, 30_000.0, 1)] {
         for max_deviation in [0.0, 0.006, 0.05] {
             let given = SineSegments { amplitude: steps(amplitude), period_s, periods, max_deviation };
@@ -217,7 +217,7 @@ fn every_step_of_a_sine_by_segments_is_where_it_is_judged() {
 }
 
 #[test]
-fn every_step_of_a_sliced_move_is_where_it_is_judged() {
+fn every_step_of_a_sliced_move_is_in_its_exact_cycle() {
     // Slices that are shortened add their roundings: of 2000 they are enough.
     for (count, ramp_s) in [(5000, 40.0), (-7001, 60.0), (4400, 10.0)] {
         let given = Cosine {
@@ -227,7 +227,7 @@ fn every_step_of_a_sliced_move_is_where_it_is_judged() {
             method: CosineMethod::Sliced,
             slice_s: 0.1,
         };
-        let ideal = |profile: &Profile| by_slices(&given, profile).expect("its slices are told");
+        let ideal = |profile: &Profile| by_slices(&given, profile).expect("its slices are known");
         check_planned(&Move::Cosine(given.clone()), 64.0 + 4.0 * 1800.0, ideal);
     }
 }

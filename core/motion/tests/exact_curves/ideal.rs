@@ -5,7 +5,7 @@ use crate::fixed::{Fixed, PI, decimal, whole};
 use std::cmp::Ordering;
 use stepscope_motion::moves::{Interpolation, RampShape};
 
-/// Whether a move has less than the place of step k behind it at a time in s, just that, or more; both from its start.
+/// Whether a move has less than the position of step k behind it at a time in s, just that, or more; both from its start.
 type Compare = Box<dyn Fn(u64, &Fixed) -> Ordering>;
 
 pub(crate) struct Ideal {
@@ -13,7 +13,7 @@ pub(crate) struct Ideal {
     pub(crate) compare: Compare,
 }
 
-fn place(k: u64) -> Fixed {
+fn position(k: u64) -> Fixed {
     whole(2 * k as i64 - 1) / whole(2)
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn sine(amplitude: i64, period_s: f64, periods: u32) -> Ideal {
         }
         let phase = whole(2) * PI.clone() * since / period.clone();
         let travelled = whole(amplitude) * (whole(1) - phase.cosine());
-        travelled.order(&place((k - 1) % travel + 1))
+        travelled.order(&position((k - 1) % travel + 1))
     };
     Ideal { duration, compare: Box::new(compare) }
 }
@@ -51,7 +51,7 @@ fn mirrored(steps: i64, duration: Fixed, first: impl Fn(Fixed) -> Fixed + 'stati
         } else {
             steps.clone()
         };
-        way.order(&place(k))
+        way.order(&position(k))
     };
     Ideal { duration, compare: Box::new(compare) }
 }
@@ -219,12 +219,12 @@ pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ide
         let own = pieces.iter().find(|(steps, ..)| steps.contains(&(k - 1)));
         let (steps, from, right, start, way) = own.expect("a piece has the step");
         let past = whole(2 * (k - 1 - steps.start) as i64 + 1) / whole(2);
-        let place = whole(*from) + if *right { past } else { zero.clone() - past };
+        let position = whole(*from) + if *right { past } else { zero.clone() - past };
         match way(t) {
             None if t < start => Ordering::Less,
             None => Ordering::Greater,
-            Some(way) if *right => way.order(&place),
-            Some(way) => place.order(&way),
+            Some(way) if *right => way.order(&position),
+            Some(way) => position.order(&way),
         }
     };
     Ideal { duration, compare: Box::new(compare) }

@@ -1,11 +1,11 @@
-//! Every step has the cycle that B1 gives it: floor(t*clock_hz + 1/2), t being where the curve crosses its place, and every
+//! Every step has the cycle that B1 gives it: floor(t*clock_hz + 1/2), t being where the curve crosses its position, and every
 //! number the decimal that is printed for it. Held against numbers of 320 bits.
 //!
 //! ```text
 //! cycle c of step k    s((c - 1/2)/clock) <= k - 1/2 < s((c + 1/2)/clock)      s: `ideal`, in `fixed` numbers
 //! ```
 //!
-//! Of each motion all steps are looked at whose time in f64 is next to the middle of two cycles, and some others.
+//! Of each motion all steps are checked whose time in f64 is next to the middle of two cycles, and some others.
 //! `PROPTEST_CASES` sets how many motions of each kind are drawn:
 //!
 //! ```text
@@ -41,13 +41,13 @@ const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_0
 /// Motions of each kind, unless `PROPTEST_CASES` says otherwise.
 const MOTIONS: u64 = 60;
 /// Steps of a motion at most.
-const MOST_STEPS: f64 = 60_000.0;
-/// How near an edge a step's time is looked at, in cycles and in parts of the time.
+const MAX_STEPS: f64 = 60_000.0;
+/// How near an edge a step's time is checked, in cycles and in parts of the time.
 const NEAR: (f64, f64) = (1e-6, 1e-14);
 /// Greatest error of a time that blocks of steps give: four times 64 roundings of the longest, and 2^-17 cycles.
 const BY_BLOCKS: (f64, f64) = (4.0 * 64.0, 1.0 / 131_072.0);
-/// Of a motion whose times in f64 are all near an edge no more are looked at.
-const MOST_NEAR: u64 = 300;
+/// Of a motion whose times in f64 are all near an edge no more are checked.
+const MAX_NEAR: u64 = 300;
 
 fn motions() -> u64 {
     env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(MOTIONS)
@@ -84,7 +84,7 @@ fn way(right: bool) -> i64 {
     if right { 1 } else { -1 }
 }
 
-/// What was looked at.
+/// What was checked.
 #[derive(Default)]
 struct Tally {
     steps: u64,
@@ -93,7 +93,7 @@ struct Tally {
     ties: u64,
     /// Cycles by which the steps that are due were counted.
     due: u64,
-    /// How far times in f64 may be off, in parts of the motion's, and in cycles; not looked at where it is 0.
+    /// How far times in f64 may be off, in parts of the motion's, and in cycles; not checked where it is 0.
     most_off: f64,
     most_rest: f64,
 }
@@ -109,7 +109,7 @@ impl Tally {
             for k in 1..=count {
                 let (instant, step) = due.next().expect("the axis has the steps of its moves");
                 let from_edge = (instant - instant.floor() - 0.5).abs();
-                let is_near = from_edge < NEAR.0 + NEAR.1 * instant && near < MOST_NEAR;
+                let is_near = from_edge < NEAR.0 + NEAR.1 * instant && near < MAX_NEAR;
                 self.steps += 1;
                 if !is_near && draw.below(1 + count / 8) > 0 {
                     continue;
@@ -124,7 +124,7 @@ impl Tally {
                 let (before, after) = (at(-1), at(1));
                 self.ties += u64::from(before == Ordering::Equal);
                 if ideals.len() == 1 && self.most_off > 0.0 {
-                    // The time in f64 is no further from the exact one than the planners take it to be.
+                    // The time in f64 is no farther from the exact one than the planners assume.
                     let off = self.most_off * plan.duration_s() * f64::from(clock_hz) + self.most_rest;
                     let off = decimal(off);
                     let at = |cycles| (ideal.compare)(k, &(cycles / clock.clone()));
@@ -153,7 +153,7 @@ impl Tally {
         let of_moves = plan.moves().iter().enumerate();
         let mut steps =
             of_moves.flat_map(|(index, planned)| (1..=planned.profile.step_count()).map(move |k| (index, k)));
-        let (mut due_by, mut due, mut looked) = (plan.due_by(clock_hz), 0, 0);
+        let (mut due_by, mut due, mut checked) = (plan.due_by(clock_hz), 0, 0);
         let mut instants = plan.due_instants(clock_hz).peekable();
         while let Some((instant, step)) = instants.next() {
             let cycle = step.cycle;
@@ -162,9 +162,9 @@ impl Tally {
                 together.push((steps.next().expect("a step is one of a move"), next.right));
             }
             let from_cycle = (instant - cycle as f64).abs();
-            let is_near = from_cycle < NEAR.0 + NEAR.1 * instant && looked < MOST_NEAR;
+            let is_near = from_cycle < NEAR.0 + NEAR.1 * instant && checked < MAX_NEAR;
             if is_near || draw.below(64) == 0 {
-                looked += u64::from(is_near);
+                checked += u64::from(is_near);
                 let time = whole(cycle as i64) / clock.clone();
                 let is_due = |&&((index, k), right): &&((usize, u64), bool)| match (ideals[index].compare)(
                     k,
@@ -182,7 +182,7 @@ impl Tally {
         }
     }
 
-    fn tell(&self, what: &str) {
+    fn print(&self, what: &str) {
         let Self { steps, near, others, ties, due, .. } = self;
         println!(
             "{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties, counted by {due} cycles"
@@ -219,18 +219,18 @@ fn hold(
             moves.push(second);
             ideals.push(ideal);
         }
-        let told = format!("{moves:?}");
+        let description = format!("{moves:?}");
         let Some(plan) = plan_of(moves) else { continue };
         planned += 1;
-        tally.hold(&mut draw, &plan, &ideals, clock_hz, &told);
+        tally.hold(&mut draw, &plan, &ideals, clock_hz, &description);
     }
     assert!(planned > motions() / 4, "only {planned} could be planned");
-    tally.tell(what);
+    tally.print(what);
 }
 
 fn sine(draw: &mut Draw) -> (Move, Ideal) {
     let periods = draw.of(&[1, 1, 2, 5]);
-    let amplitude = draw.steps(MOST_STEPS / 4.0 / f64::from(periods));
+    let amplitude = draw.steps(MAX_STEPS / 4.0 / f64::from(periods));
     let period_s = draw.magnitude(1e-3, 86_400.0);
     let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods };
     (Move::Sine(given), ideal::sine(amplitude, period_s, periods))
@@ -254,7 +254,7 @@ fn times_s(draw: &mut Draw) -> (f64, f64) {
 }
 
 fn cosine(draw: &mut Draw) -> (Move, Ideal) {
-    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MAX_STEPS), times_s(draw));
     let given = Cosine { distance: Distance::Steps(steps as f64), duration_s, ramp_s, ..Cosine::default() };
     // Ramps under the shortest cycle of a clock are none.
     (Move::Cosine(given), ideal::cosine(steps, duration_s, if ramp_s < 1e-9 { 0.0 } else { ramp_s }))
@@ -285,7 +285,7 @@ fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
 }
 
 fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
-    let (steps, (duration_s, ramp_s)) = (draw.steps(MOST_STEPS), times_s(draw));
+    let (steps, (duration_s, ramp_s)) = (draw.steps(MAX_STEPS), times_s(draw));
     let parameter = draw.magnitude(0.1, 20.0);
     let given = Ramps {
         distance: Distance::Steps(steps as f64),
@@ -308,7 +308,7 @@ fn ramps_of_every_shape_have_every_step_in_its_cycle() {
 }
 
 fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
-    let steps = draw.steps(MOST_STEPS);
+    let steps = draw.steps(MAX_STEPS);
     let top = draw.magnitude(1.0, 1e6);
     let start = match draw.below(4) {
         0 => 0.0,
@@ -334,7 +334,7 @@ fn trapezoids_have_every_step_in_its_cycle() {
 }
 
 fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
-    let (steps, speed) = (draw.steps(MOST_STEPS), draw.magnitude(1.0, 1e6));
+    let (steps, speed) = (draw.steps(MAX_STEPS), draw.magnitude(1.0, 1e6));
     // Ramps from a step to far more than there are; of jerk alone, and next to none of it.
     let acceleration = draw.magnitude(speed * speed / 1e5, speed * speed * 10.0);
     let jerk = match draw.below(4) {
@@ -364,7 +364,7 @@ fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
     let (mut time_s, mut position) = (draw.of(&[0.0, 0.0, 1.5, 40_000.1]), far);
     let mut points = vec![(time_s, position)];
     for _ in 0..=draw.below(6) {
-        let (later_s, way) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MOST_STEPS / 6.0));
+        let (later_s, way) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MAX_STEPS / 6.0));
         time_s += later_s;
         position = match draw.below(6) {
             0 => position,
@@ -414,14 +414,14 @@ fn hold_planned(
         tally.hold(&mut draw, &plan, &ideals, clock_hz, &format!("{given:?}"));
     }
     assert!(planned > motions() / 4, "only {planned} could be planned");
-    tally.tell(what);
+    tally.print(what);
 }
 
 #[test]
 fn staircases_have_every_step_in_its_cycle() {
     let given = |draw: &mut Draw| {
         Move::Staircase(Staircase {
-            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            distance: Distance::Steps(draw.steps(MAX_STEPS / 6.0) as f64),
             top_speed: Speed::StepsPerSecond(libm::round(draw.magnitude(900.0, 20_000.0))),
             level: 1 + draw.below(5) as u8,
             short_move: draw.of(&[ShortMove::Document, ShortMove::Reverse]),
@@ -446,7 +446,7 @@ fn sines_by_segments_have_every_step_in_its_cycle() {
     let given = |draw: &mut Draw| {
         let periods = draw.of(&[1, 2]);
         Move::SineSegments(SineSegments {
-            amplitude: Distance::Steps(draw.steps(MOST_STEPS / 24.0) as f64),
+            amplitude: Distance::Steps(draw.steps(MAX_STEPS / 24.0) as f64),
             // Of round numbers many steps stand in the middle of two cycles.
             period_s: if draw.below(2) == 0 {
                 draw.of(&[0.5, 1.0, 0.128])
@@ -484,7 +484,7 @@ fn sliced_moves_have_every_step_in_its_cycle() {
         let slice_s = draw.of(&[0.001, 0.005, 0.0003]);
         let (ramp, plateau) = (1 + draw.below(100), draw.below(200));
         Move::Cosine(Cosine {
-            distance: Distance::Steps(draw.steps(MOST_STEPS / 6.0) as f64),
+            distance: Distance::Steps(draw.steps(MAX_STEPS / 6.0) as f64),
             duration_s: format!("{:.4}", slice_s * (2 * ramp + plateau) as f64).parse().expect("a number"),
             ramp_s: format!("{:.4}", slice_s * ramp as f64).parse().expect("a number"),
             method: CosineMethod::Sliced,
@@ -497,7 +497,7 @@ fn sliced_moves_have_every_step_in_its_cycle() {
     });
 }
 
-/// The slices of a plan, from their counts of steps alone; none where these do not tell how long it lasts.
+/// The slices of a plan, from their counts of steps alone; none where these do not define its duration.
 fn by_slices(given: &Cosine, profile: &Profile) -> Option<Ideal> {
     let Profile::Sliced(curve) = profile else { panic!("it is sliced") };
     // Those that are shorter have some of the steps that the plateau's have, at its rate.
@@ -555,7 +555,7 @@ fn a_step_next_to_an_edge_is_on_its_side_of_it() {
     assert_eq!(plan.moves()[0].profile.step_cycle(11_118, 16_000_000), Some(due[11_117]));
 }
 
-/// cos = 1/2 after a sixth of a period: of an odd amplitude A = 2*k - 1 that is the place of step k.
+/// cos = 1/2 after a sixth of a period: of an odd amplitude A = 2*k - 1 that is the position of step k.
 #[test]
 fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
     let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(2));

@@ -1,4 +1,4 @@
-//! Steps that whole numbers tell have the cycle that these give (DESIGN B1): of a timer's table, of one rate, and of moves
+//! Steps that whole numbers define have the cycle that these give (DESIGN B1): of a timer's table, of one rate, and of moves
 //! in a row; held against whole numbers of 128 bits.
 
 use rand_xoshiro::{
@@ -57,11 +57,11 @@ fn points_on_straight_pieces_are_quotients_of_decimals() {
         let Ok(plan) = plan_axis(&axis, "x") else { continue };
         for (k, due) in (1..).zip(plan.due_steps(clock as u32)) {
             // 10*(k - 1/2), in tenths.
-            let place = 10 * k - 5;
-            let piece = list.windows(2).find(|pair| pair[0].1 < place && place <= pair[1].1);
-            let Some(&[(t_0, y_0), (t_1, y_1)]) = piece else { panic!("no piece has {place}") };
+            let position = 10 * k - 5;
+            let piece = list.windows(2).find(|pair| pair[0].1 < position && position <= pair[1].1);
+            let Some(&[(t_0, y_0), (t_1, y_1)]) = piece else { panic!("no piece has {position}") };
             let under = 1000 * (y_1 - y_0);
-            let over = clock * (t_0 * (y_1 - y_0) + (place - y_0) * (t_1 - t_0));
+            let over = clock * (t_0 * (y_1 - y_0) + (position - y_0) * (t_1 - t_0));
             ties += i128::from((2 * over) % under == 0 && (2 * over / under) % 2 == 1);
             assert_eq!(i128::from(due.cycle), rounded(over, under), "step {k} of {list:?} at {clock} Hz");
         }

@@ -164,7 +164,7 @@ fn ignoring_ends_before_the_byte_that_is_delivered_in_the_gaps_cycle() {
 }
 
 #[test]
-fn a_tick_ends_before_the_frame_of_its_cycle_is_judged() {
+fn a_tick_ends_before_the_frame_of_its_cycle_is_validated() {
     let (busy, done) = (FrameOutcome::Refused(Reason::Busy), FrameOutcome::Taken(Kind::Disable));
     for (at, outcome) in [(E - 1, busy), (E, done)] {
         let sends = [(P, frame(Kind::Ticks, &[0, 1, 1])), (at, frame(Kind::Disable, &[]))];
@@ -205,7 +205,7 @@ fn a_tick_that_is_committed_in_the_cycle_of_the_end_does_not_prevent_the_underru
 }
 
 #[test]
-fn a_reply_tells_what_is_so_at_the_end_of_its_cycle() {
+fn a_reply_has_the_state_at_the_end_of_its_cycle() {
     // STATUS in, its state, free places, ticks done, faults.
     let rows = [
         (E - 1, State::Moving, 1, 0, 0),
@@ -248,11 +248,11 @@ fn positions_count_a_pulse_that_rises_in_the_cycle_of_the_frame() {
         let positions = encode_frame(&[0, Kind::Positions as u8]);
         let sends = [(P, frame(Kind::Ticks, &[0, 1, 0x84, 0x04])), (at, positions)];
         let (_, left) = run(&bus(2, 2), Protocol::Framed, &sends);
-        let told = left.events.iter().find_map(|(_, event)| match event {
+        let reply = left.events.iter().find_map(|(_, event)| match event {
             Event::Reply { positions, start, end, .. } => Some((*positions, end.0 - start.0)),
             _ => None,
         });
-        assert_eq!(told, Some((Positions::new(&counters), (17 + 4 * 2) * BYTE)), "POSITIONS in {at}");
+        assert_eq!(reply, Some((Positions::new(&counters), (17 + 4 * 2) * BYTE)), "POSITIONS in {at}");
     }
 }
 
@@ -274,10 +274,10 @@ fn a_line_that_is_low_from_reset_on_falls_in_the_cycle_after_it() {
 }
 
 #[test]
-fn the_line_is_heard_again_in_the_very_cycle_in_which_de_falls() {
+fn the_line_is_received_again_in_the_very_cycle_in_which_de_falls() {
     let fall = P + 11 * BIT + 17 * BYTE;
     let status = || encode_frame(&[0, Kind::Status as u8]);
-    // A byte begins, and is seen; the host's own start bit lasts to the look at it in all of them.
+    // A byte begins, and is seen; the host's own start bit lasts until its sample in all of them.
     for (start, seen) in [(fall - 1, fall), (fall, fall), (fall + 1, fall + 1)] {
         let (_, left) = run(&bus(1, 2), Protocol::Framed, &[(P, status()), (start + DELIVERY, vec![0xff])]);
         let last = left.events.iter().rev().find_map(|(_, event)| match event {

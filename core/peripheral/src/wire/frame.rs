@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ticks_body_is_judged_by_its_count_and_its_length() {
+    fn a_ticks_body_is_validated_by_its_count_and_its_length() {
         // Body, channels, ticks and first byte of each.
         type Row<'a> = (&'a [u8], u8, Option<&'a [u8]>);
         let long = [&[3, 32], [1; 64].as_slice()].concat();
@@ -448,7 +448,7 @@ mod tests {
         }
     }
 
-    /// The judgements of `bytes`, each with the byte that made it.
+    /// The results of `bytes`, each with the byte that made it.
     fn verdicts(bytes: &[u8]) -> Vec<(usize, &'static str)> {
         let mut deframer = Deframer::default();
         let mut found = Vec::new();

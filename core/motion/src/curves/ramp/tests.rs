@@ -175,7 +175,7 @@ fn the_numbers_that_a_calculator_gives_come_out() {
 }
 
 #[test]
-fn a_ways_place_is_found_to_the_last_digits() {
+fn a_travels_position_is_found_to_the_last_digits() {
     for ramp in ramps() {
         let area = ramp.area();
         let powers = (-40..0).map(|power| area * libm::exp2(f64::from(power)));

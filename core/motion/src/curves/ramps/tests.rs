@@ -46,11 +46,14 @@ fn the_end_is_exact_the_halves_are_mirrored_and_nothing_turns_round() {
             let mut before = 0.0;
             for i in 0..=4000 {
                 let t = duration_s * f64::from(i) / 4000.0;
-                let place = libm::fabs(curve.position(t));
-                assert!(place >= before && place <= count, "{ramp:?} {steps} at {t}: {before} {place}");
-                before = place;
+                let position = libm::fabs(curve.position(t));
+                assert!(
+                    position >= before && position <= count,
+                    "{ramp:?} {steps} at {t}: {before} {position}"
+                );
+                before = position;
                 let mirrored = count - libm::fabs(curve.position(duration_s - t));
-                assert!((place - mirrored).abs() <= 1e-13 * count, "{ramp:?} {steps} at {t}");
+                assert!((position - mirrored).abs() <= 1e-13 * count, "{ramp:?} {steps} at {t}");
             }
         }
     }
@@ -89,14 +92,14 @@ fn a_steps_cycle_is_where_the_position_is_rounded_to_the_next() {
             let all: Vec<u64> =
                 (1..=count.min(7000)).chain(some).chain(count.saturating_sub(99).max(1)..=count).collect();
             for k in all {
-                let place = k as f64 - 0.5;
-                let cycle = libm::floor(curve.time_s(place) * clock + 0.5);
+                let position = k as f64 - 0.5;
+                let cycle = libm::floor(curve.time_s(position) * clock + 0.5);
                 let at = |cycle: f64| libm::fabs(curve.position(cycle / clock));
                 // The position itself has its last digit.
                 let digit = count as f64 * 4.0 * f64::EPSILON;
                 let (before, after) = (at(cycle - 1.0), at(cycle + 1.0));
                 assert!(
-                    before <= place + digit && after >= place - digit,
+                    before <= position + digit && after >= position - digit,
                     "{ramp:?} {steps}: step {k} at {cycle}, {before} {after}"
                 );
             }

@@ -17,9 +17,9 @@ fn sliced(steps: i64, duration_s: f64, ramp_s: f64) -> Sliced {
     Sliced::new(steps, duration_s, ramp_s, 0.001, 1_000_000).unwrap()
 }
 
-/// The paper's table 2: plateau, steps, time asked for and made, time error.
+/// The paper's table 2: plateau, steps, requested and real time, time error.
 ///
-/// The three rows without a plateau come out as they are. Of the others the fourth asks for a plateau of 0.8 s in
+/// The three rows without a plateau come out as they are. Of the others the fourth requests a plateau of 0.8 s in
 /// 0.4 s, which cannot be; with one of 0.2 s its time comes out to the millisecond, as that of the last row does:
 /// 0.31 % for 0.25 % and 0.84 % for 0.80 %. The second comes out three times as great, 1.57 % for 0.50 %.
 #[test]
@@ -109,10 +109,10 @@ fn every_step_is_where_the_curve_crosses_its_half_integer() {
         let (mut before, cycle) = (0.0, 1.0 / 16e6);
         for k in (1..=count.min(7000)).chain((count - count / 3).max(7001)..(count - count / 3 + 9)) {
             let t = curve.time_s(k as f64 - 0.5);
-            let place = |t: f64| libm::fabs(curve.position(t));
+            let position = |t: f64| libm::fabs(curve.position(t));
             let digits = count as f64 * 1e-15;
-            assert!(place(t - cycle) <= k as f64 - 0.5 + digits, "{k} of {steps} at {t}");
-            assert!(place(t + cycle) >= k as f64 - 0.5 - digits, "{k} of {steps} at {t}");
+            assert!(position(t - cycle) <= k as f64 - 0.5 + digits, "{k} of {steps} at {t}");
+            assert!(position(t + cycle) >= k as f64 - 0.5 - digits, "{k} of {steps} at {t}");
             assert!(t > before);
             before = t;
         }
@@ -186,7 +186,7 @@ fn the_highest_rate_is_that_of_the_fastest_slice_whole_or_not() {
 /// Slices of hand-worked moves: their starts and end in s, the steps before each and all, and the highest rate.
 #[test]
 fn what_is_too_much_is_taken_from_the_plateaus_end_and_then_from_the_tail() {
-    // Steps, duration, ramp and slice in s, top speed: the steps of each slice before the compensation are told.
+    // Steps, duration, ramp and slice in s, top speed: the steps of each slice before the compensation are known.
     type Given = (i64, f64, f64, f64, f64);
     let rows: [(Given, &[f64], &[u32], f64); 8] = [
         // 0, 5, 10, 10, 10, 10, 10, 5 steps, of which the four in the middle are the plateau.

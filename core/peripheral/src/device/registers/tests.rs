@@ -173,7 +173,7 @@ fn before_cycle_0_nothing_is_taken_and_in_it_a_push_starts_its_tick_in_cycle_1()
 }
 
 #[test]
-fn a_push_is_judged_in_the_data_sheets_order() {
+fn a_push_is_validated_in_the_data_sheets_order() {
     let mut bench = Bench::new(&BUS, &SerialLine { baud: 100_000, ..SerialLine::default() });
     let faults = map::faults::OFFSET;
     bench.run_to(50);
