@@ -30,16 +30,8 @@ import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
 import { EARLIER } from "./state/result.js";
 import { update } from "./state/update.js";
-import { NAMES } from "./state/views.js";
 import { load as loadCharts } from "./time/plot.js";
-import { createMotion } from "./views/motion/motion.js";
-import { createMotorPane } from "./views/motor/pane.js";
-import { createPackets } from "./views/packets/packets.js";
-import { createPanelPane } from "./views/panel/pane.js";
-import { createPulses } from "./views/pulses/pulses.js";
-import { createSpectrum } from "./views/spectrum/pane.js";
-import { createStudy } from "./views/study/study.js";
-import { createTiming } from "./views/timing.js";
+import { createViews, exportsOf } from "./views/all_views.js";
 
 /** @typedef {import("./state/types.js").State} State */
 /** @typedef {{render: (state: State, before: State | undefined) => any}} View */
@@ -141,25 +133,6 @@ const runner = createRunner({
   },
 });
 
-/** The content of the export panel, loaded on demand. @param {{engine: Engine} & import("./state/types.js").Page} page @param {import("./shell/lazy_popover.js").Popover} popover */
-async function exportsOf(page, popover) {
-  const [{ createExports }, { chartFiles }, { packetFiles }, { tableFiles }] = await Promise.all([
-    import("./shell/exports.js"),
-    import("./views/chart_offers.js"),
-    import("./views/packets/files.js"),
-    import("./views/study/table_files.js"),
-  ]);
-  return createExports(
-    page,
-    [
-      ["Charts", chartFiles],
-      ["Packets", packetFiles],
-      ["Step tables", tableFiles],
-    ],
-    popover,
-  );
-}
-
 async function start() {
   createTheme();
   createCard();
@@ -189,26 +162,14 @@ async function start() {
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
   createImports({ openLink: link.openLink, ...page });
-  const pulses = createPulses(page);
   const remedies = createRemedyRequests(engine);
-  const spectrum = createSpectrum(page);
-  /** @type {{[view in import("./state/views.js").ViewName]: View}} */
-  const all = {
-    motion: createMotion(page),
-    motor: createMotorPane(page),
-    pulses,
-    packets: createPackets(page),
-    panel: createPanelPane(page),
-    spectrum,
-    timing: createTiming({ drivers, speak: pulses.speak, ...page }),
-    study: createStudy({ samples: made, ...page }),
-  };
+  const { all, loadKeys } = createViews(page, drivers, made);
   views = [
     createHeader({ presets, cancel: runner.cancel, retry: runner.retry, ...page }),
     createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
-    ...NAMES.map((name) => all[/** @type {import("./state/views.js").ViewName} */ (name)]),
+    ...all,
     createNotices(page),
     createLazyPopover(
       "share",
@@ -220,7 +181,7 @@ async function start() {
     createSavedExperiments({ fresh: fallback, ...page }),
     link,
   ];
-  createKeys(spectrum.load);
+  createKeys(loadKeys);
   createGuide(page);
   // Loaded only if there are saved recordings.
   if (listedRecordings())

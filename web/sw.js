@@ -1,5 +1,5 @@
 /**
- * The service worker: caches all files of a build for offline use. A newer build waits until the visitor reloads.
+ * The service worker: caches all files of a build for offline use. A newer build waits until the user reloads.
  *
  * In the sources the list is empty, and the worker removes itself and earlier caches.
  */

@@ -3,6 +3,7 @@
  * repeats the last valid run for the views. Long requests go to additional workers (worker_pool.js).
  */
 import { byId } from "../dom.js";
+import { Dropped, RequestSlots } from "./request_slots.js";
 import { compiled } from "./wasm.js";
 
 /** @typedef {import("../state/types.js").Progress} Progress */
@@ -28,9 +29,6 @@ const MAX_RECORDINGS = 3;
 /** Error if the code of additional workers cannot be fetched. */
 const MISSING = "this part of the page could not be loaded; check the network and try again";
 
-/** Rejects requests that were replaced or whose worker is gone. */
-export class Dropped extends Error {}
-
 export class Engine {
   #worker = this.#start();
   #listener;
@@ -52,8 +50,7 @@ export class Engine {
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
   #requests = new Map();
-  /** @type {Map<string, {busy: boolean, waiting: null | {method: string, args: any[], resolve: (value: any) => void, reject: (error: Error) => void}}>} */
-  #slots = new Map();
+  #slots = new RequestSlots((method, args) => this.ask(method, ...args));
 
   /** @param {Listener} listener */
   constructor(listener) {
@@ -76,37 +73,12 @@ export class Engine {
   }
 
   /**
-   * Like `ask`, but only the newest waiting request of a slot is sent; the others are rejected with `Dropped`. So a moving
-   * pointer builds no queue.
-   * @param {string} slot
-   * @param {string} method
-   * @param {...any} args
+   * Like `ask`, but only the newest waiting request of a slot is sent (request_slots.js).
+   * @param {string} slot @param {string} method @param {...any} args
    * @returns {Promise<any>}
    */
   latest(slot, method, ...args) {
-    const state = this.#slots.get(slot) ?? { busy: false, waiting: null };
-    this.#slots.set(slot, state);
-    return new Promise((resolve, reject) => {
-      state.waiting?.reject(new Dropped(slot));
-      state.waiting = { method, args, resolve, reject };
-      if (!state.busy) this.#pump(slot);
-    });
-  }
-
-  /** @param {string} slot */
-  async #pump(slot) {
-    const state = this.#slots.get(slot);
-    if (!state?.waiting) return;
-    const { method, args, resolve, reject } = state.waiting;
-    state.waiting = null;
-    state.busy = true;
-    try {
-      resolve(await this.ask(method, ...args));
-    } catch (error) {
-      reject(/** @type {Error} */ (error));
-    }
-    state.busy = false;
-    this.#pump(slot);
+    return this.#slots.latest(slot, method, args);
   }
 
   /** Runs a scenario and drops an unfinished run. @param {number} revision @param {string} json */

@@ -8,14 +8,13 @@
  * the worker cannot be used.
  */
 import init, * as core from "../pkg-tools/stepscope_wasm.js";
+import { openPort } from "./live_port.js";
 import { awaitModule, fatal, text } from "./worker_common.js";
 
 /** Additional delay of a reply by the system, the adapter and the page, in ms. */
 const SLACK_MS = 100;
 /** Maximum lag of the model before its clock is set back, in ms. */
 const LAG_MS = 50;
-/** Maximum time of a write beyond the line time, in ms. */
-const WRITE_MS = 2000;
 /** Minimum time between two reports, in ms. */
 const REPORT_MS = 100;
 /** Maximum pause of an idle model, in ms. */
@@ -26,8 +25,6 @@ const TIMER_MS = 5;
 const TURN_MS = 10;
 /** Maximum bytes of unread replies; more are lost, as on a real line. */
 const MAX_WAITING = 1 << 16;
-/** Bits of a byte on the line. */
-const BYTE_BITS = 10;
 
 const { provide, ready } = awaitModule(init);
 /** Ends a pause early. */
@@ -55,70 +52,6 @@ function rest(ms) {
   });
 }
 
-/**
- * The streams of a port.
- * @param {{readable: ReadableStream<Uint8Array>, writable: WritableStream<Uint8Array>}} streams
- * @param {(bytes: Uint8Array) => void | Promise<void>} receive  Reading continues when it is done.
- */
-function openPort({ readable, writable }, receive) {
-  const reader = readable.getReader();
-  const writer = writable.getWriter();
-  const port = {
-    /** Why it is lost; empty if it is not. */
-    lost: "",
-    /** @param {unknown} error */
-    lose(error) {
-      port.lost ||= text(error) || "the port is lost";
-      wake();
-    },
-    /** Bytes to be written. */
-    waiting: 0,
-    /** @param {Uint8Array} bytes */
-    write(bytes) {
-      port.waiting += bytes.length;
-      const written = writer.write(bytes);
-      written.then(() => {
-        port.waiting -= bytes.length;
-      }, port.lose);
-      return written;
-    },
-    /** Writes, and resolves when the system has accepted it. @param {Uint8Array} bytes @param {number} baud */
-    async send(bytes, baud) {
-      const within = WRITE_MS + (1000 * BYTE_BITS * bytes.length) / baud;
-      let timer = 0;
-      const late = new Promise((_, reject) => {
-        timer = setTimeout(() => reject(new Error("the port accepts no bytes")), within);
-      });
-      await Promise.race([port.write(bytes), late]).catch(port.lose);
-      clearTimeout(timer);
-    },
-    /** Closes the port after the work, even after an error. @param {() => Promise<void>} work */
-    async use(work) {
-      try {
-        await work();
-      } finally {
-        await port.close();
-      }
-    },
-    async close() {
-      const closing = port.lost ? writer.abort() : writer.close();
-      const late = new Promise((resolve) => setTimeout(resolve, WRITE_MS));
-      await Promise.race([Promise.allSettled([reader.cancel(), closing]), late]);
-    },
-  };
-  const read = async () => {
-    for (;;) {
-      const { value, done } = await reader.read();
-      if (done) throw new Error("the other end closed the port");
-      const taken = receive(value);
-      wake();
-      await taken;
-    }
-  };
-  read().catch(port.lose);
-  return port;
-}
-
 /** Limits the rate of reports. @param {() => void} report */
 function throttled(report) {
   let reported = 0;
@@ -136,7 +69,11 @@ async function stream({ stream: json, stop, ...streams }) {
   const began = performance.now();
   const now = () => performance.now() - began;
   const baud = host.baud();
-  const port = openPort(streams, (bytes) => host.receive(bytes, now()));
+  const port = openPort(
+    streams,
+    (bytes) => host.receive(bytes, now()),
+    () => wake(),
+  );
   let stopped = false;
   requested = { stop, end: false };
   const report = () => postMessage({ state: host.state(), rows: host.rows() });
@@ -170,7 +107,11 @@ async function streamRaw(json, stop, streams) {
   const now = () => performance.now() - began;
   const baud = host.baud();
   // Received bytes are ignored.
-  const port = openPort(streams, () => {});
+  const port = openPort(
+    streams,
+    () => {},
+    () => wake(),
+  );
   requested = { stop, end: false };
   const report = () => postMessage({ state: host.state() });
   const reportSometimes = throttled(report);
@@ -204,7 +145,7 @@ async function serve({ serve: json, ...streams }) {
     new Promise((/** @type {(value: void) => void} */ taken) => {
       received = { bytes, at: now(), taken };
     });
-  const port = openPort(streams, receive);
+  const port = openPort(streams, receive, () => wake());
   const take = () => {
     if (!received) return;
     const { bytes, at, taken } = received;

@@ -19,7 +19,7 @@ export class WorkerPool {
   #missing;
 
   /**
-   * @param {typeof import("./engine.js").Dropped} Dropped  Rejects requests that are no longer needed.
+   * @param {typeof import("./request_slots.js").Dropped} Dropped  Rejects requests that are no longer needed.
    * @param {string} missing  Error if the code cannot be fetched.
    */
   constructor(Dropped, missing) {

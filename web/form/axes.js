@@ -42,8 +42,8 @@ function axisItem(kit, place, axes, index) {
   const head = element(
     "div",
     { class: "item-head" },
-    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (chosen) =>
-      become(`${path}.mechanics`, "Mechanics", chosen, samples.mechanics[chosen]),
+    kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (selected) =>
+      become(`${path}.mechanics`, "Mechanics", selected, samples.mechanics[selected]),
     ),
     ...(axes.length > 1
       ? [button("Copy to all", `Copy ${name} to all others`, () => copyToAll(kit, place, index))]
@@ -74,8 +74,8 @@ function moveItem({ samples, become, raise, remove, block, item, kindSelect }, l
   const head = element(
     "div",
     { class: "item-head" },
-    kindSelect(`Kind of move ${index + 1}`, path, kind, labels("Move"), (chosen) =>
-      become(path, "Move", chosen, samples.moves[chosen]),
+    kindSelect(`Kind of move ${index + 1}`, path, kind, labels("Move"), (selected) =>
+      become(path, "Move", selected, samples.moves[selected]),
     ),
     button("↑", `Move ${index + 1} earlier`, () => raise(list, index), index === 0),
     button("✕", `Remove move ${index + 1}`, () => remove(list, index), moves.length === 1),

@@ -1,4 +1,4 @@
-/** Additional controllers on the line, in the form: each with its address, its bus and what it is to do. */
+/** Additional controllers on the line, each with its address, bus and commands. */
 import { button } from "../dom.js";
 import { MAX_ADDITIONAL_CONTROLLERS } from "../state/limits.js";
 import { hex } from "./source_kinds.js";

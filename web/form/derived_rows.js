@@ -1,4 +1,4 @@
-/** The numbers that are derived from a scenario, as the form lists them. */
+/** The derived values of a scenario in the form. */
 import { count, counted, plain, pretty, short, si } from "../state/number.js";
 import { get } from "../state/paths.js";
 import { derivedAxis } from "../state/queries.js";

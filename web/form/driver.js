@@ -1,4 +1,4 @@
-/** The driver that the pulses are checked against, in the form: none, one whose data sheet is known, or rules. */
+/** The driver of the timing check: none, a known one, or custom rules. */
 import { element } from "../dom.js";
 import { si } from "../state/number.js";
 import { fields, labelOf } from "./schema.js";
@@ -13,14 +13,14 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
     ...Object.fromEntries(sheets.map(({ id, name }) => [id, name])),
     rules: labelOf("DriverTiming", "rules"),
   };
-  const chosen = driver?.rules ? "rules" : (driver?.preset ?? "none");
-  const select = kit.kindSelect("Driver", "driver_timing", chosen, kinds, (kind) =>
+  const selected = driver?.rules ? "rules" : (driver?.preset ?? "none");
+  const select = kit.kindSelect("Driver", "driver_timing", selected, kinds, (kind) =>
     kit.change(
       "driver_timing",
       () =>
         kind === "none"
           ? null
-          : // Rules of one's own begin with those of the driver that was chosen.
+          : // Rules of one's own begin with those of the driver that was selected.
             kind === "rules"
             ? { rules: { ...kit.samples.rules, ...known?.rules } }
             : { preset: kind },
@@ -32,7 +32,7 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
   return known ? [...head, element("p", { class: "item-note" }, summary(known))] : head;
 }
 
-/** What a driver asks for, and where that stands. @param {DriverSheet} sheet */
+/** What a driver requires, and where that stands. @param {DriverSheet} sheet */
 function summary({ rules, source }) {
   const times = fields("TimingRules").flatMap(({ key, label }) => {
     const ns = rules[key];

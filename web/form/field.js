@@ -1,4 +1,4 @@
-/** How one field of the form is described: its name in the scenario, its label and unit, its range in words, and how it is typed. */
+/** The description of a form field: name, label, unit, range and kind. */
 
 /**
  * @typedef {object} Field

@@ -1,7 +1,4 @@
-/**
- * The layout of the form: which fields of the scenario stand in which part, and in which order. What each field is
- * called, its unit, its range and how it is typed says the schema.
- */
+/** The layout of the form. The schema has labels, units, ranges and kinds. */
 import { field, fields, labelOf } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
@@ -9,7 +6,7 @@ import { field, fields, labelOf } from "./schema.js";
 /** Packets, one a line: of the host, and of an additional controller. @param {"Packets" | "Controller"} group @returns {Field} */
 export const packetLines = (group) => ({ ...field(group, "packets"), rows: 8 });
 
-/** The level of a glitch is chosen. @returns {Field[]} */
+/** The level of a glitch is selected. @returns {Field[]} */
 export const glitchFields = () =>
   fields("Glitch").map((each) =>
     each.key === "level" ? { ...each, kind: "choice", choices: { 0: "0 (low)", 1: "1 (high)" } } : each,

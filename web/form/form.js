@@ -1,7 +1,4 @@
-/**
- * The form: built from the layout of `fields.js` and the kinds of `sources.js`. It is built anew only when the scenario's shape
- * changes (kinds, numbers of axes, moves, rows, controllers); else values are put into the fields that stand.
- */
+/** The form, built from `fields.js` and `sources.js`. It is only rebuilt if the shape of the scenario changes. */
 
 import { byId, element, fill } from "../dom.js";
 import { get } from "../state/paths.js";
@@ -44,9 +41,9 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     const kind = Object.keys(scenario.source)[0];
     // The first of them is in a part of the core that may not be there yet.
     const kinds = { standalone: "Stand-alone controller", ...labels("Source") };
-    const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, kinds, (chosen) => {
-      const change = () => kit.change("", (now) => withSource(now, chosen, samples), replacedBySource(scenario));
-      const { load } = SOURCES[chosen];
+    const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, kinds, (selected) => {
+      const change = () => kit.change("", (now) => withSource(now, selected, samples), replacedBySource(scenario));
+      const { load } = SOURCES[selected];
       if (!load) return change();
       const { scenario: before } = state;
       // What was changed while it came is newer.

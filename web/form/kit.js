@@ -1,4 +1,4 @@
-/** What the parts of the form are built with: fields, folded parts, fieldsets, lists and choices of kinds. */
+/** Building blocks of the form: fields, parts, fieldsets, lists and choices of kinds. */
 
 import { button, element, say } from "../dom.js";
 import { control } from "./control.js";

@@ -1,4 +1,4 @@
-/** How fields are typed that hold a list: whole numbers, segments, points of a curve. */
+/** Fields with lists: whole numbers, segments and points. */
 import { button, element } from "../dom.js";
 import { WHOLE, whole } from "../state/json.js";
 import { parseNumber } from "../state/parse_number.js";
@@ -20,21 +20,22 @@ export const LISTS = {
   points: { print: printPoints, read: readPoints, tools: fileChooser },
 };
 
-/** Most bytes of a file whose text goes into a field. */
+/** Maximum bytes of a file whose text goes into a field. */
 const MAX_FILE = 1 << 20;
 
 /** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
 function fileChooser(label, put, refuse) {
   const file = element("input", { type: "file", accept: ".csv,.txt,.tsv,text/csv,text/plain", hidden: "" });
   file.addEventListener("change", async () => {
-    const [chosen] = file.files ?? [];
+    const [selected] = file.files ?? [];
     file.value = "";
-    if (!chosen) return;
-    if (chosen.size > MAX_FILE) return refuse(`${chosen.name} has ${chosen.size} bytes; give at most ${MAX_FILE}.`);
+    if (!selected) return;
+    if (selected.size > MAX_FILE)
+      return refuse(`${selected.name} has ${selected.size} bytes; give at most ${MAX_FILE}.`);
     try {
-      put(await chosen.text());
+      put(await selected.text());
     } catch {
-      refuse(`${chosen.name} cannot be read.`);
+      refuse(`${selected.name} cannot be read.`);
     }
   });
   return [button("Choose CSV…", `Choose a CSV for ${label}`, () => file.click()), file];

@@ -1,4 +1,4 @@
-/** The motor of an axis in the form: without one nothing is said of torque, and a plant has the usual one. */
+/** The motor of an axis in the form. */
 import { element } from "../dom.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */

@@ -1,4 +1,4 @@
-/** A motor in the form, with its supply and its load. */
+/** The fields of a motor with its supply and load. */
 import { fields } from "./schema.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */

@@ -1,9 +1,9 @@
-/** Fields of stand-alone controllers: those that warn, and those whose 0 and 1 are a choice. */
+/** Fields of stand-alone controllers: warnings, and choices between 0 and 1. */
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {import("./field.js").Field} Field */
 
-/** What can be chosen where the schema has 0 and 1. */
+/** What can be selected where the schema has 0 and 1. */
 export const CHOICES = {
   direction: { 1: "1 (right)", 0: "0 (left)" },
   level: { 0: "0", 1: "1" },
@@ -21,7 +21,7 @@ export function withWarnings(path, given) {
   }));
 }
 
-/** Fields of which those that are 0 or 1 are chosen. @param {Kit} kit @param {string} path @param {Field[]} given @param {string[]} [keys]  Which those are; of jog, return and moves the level is an acceleration. */
+/** Fields of which those that are 0 or 1 are selected. @param {Kit} kit @param {string} path @param {Field[]} given @param {string[]} [keys]  Which those are; of jog, return and moves the level is an acceleration. */
 export function choiceBlock(
   kit,
   path,

@@ -1,4 +1,4 @@
-/** What the edges drive, in the form: nothing, or motors. */
+/** The simulation of motors in the form. */
 
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {

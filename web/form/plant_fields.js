@@ -1,4 +1,4 @@
-/** A plant in the form: supply, sensors, protection, and the motors of channels that no axis gives one. */
+/** The fields of a plant: supply, sensors, protection and motors. */
 import { button } from "../dom.js";
 import { motorFields } from "./motor_fields.js";
 import { fields, labelOf, mostOf } from "./schema.js";

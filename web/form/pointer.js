@@ -1,4 +1,4 @@
-/** Where focus and pointer are in the form, so that nothing moves under them. */
+/** Keeps fields in place under focus and pointer. */
 import { byId, say } from "../dom.js";
 
 /** The hint of the field that has the focus, where it moves nothing; to a screen reader the field itself describes it. @param {HTMLElement} root */
@@ -21,7 +21,7 @@ export function keepFocusInSight(scroller) {
     const becameLower = height < before && scroller.scrollHeight > height;
     if (!becameLower || !active || !scroller.contains(active)) return;
     const [field, sight] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
-    // What the visitor had scrolled away from stays away.
+    // What the user had scrolled away from stays away.
     if (field.top >= sight.top && field.bottom <= sight.top + before) active.scrollIntoView({ block: "nearest" });
   }).observe(scroller);
 }

@@ -1,7 +1,4 @@
-/**
- * Points as a person types or pastes them, a pair a line: time in s and position, between them a comma, a
- * semicolon, a tab or spaces. A table's line of names is left out, as the core does when it reads one.
- */
+/** Reads and prints points of a curve: one pair per line, separated by comma, semicolon, tab or spaces. */
 
 import { mostOf } from "./schema.js";
 

@@ -1,4 +1,4 @@
-/** Shows the problems of the scenario next to their fields, and as a list of ways to them. */
+/** Shows the problems of the scenario next to their fields and in a list. */
 import { button, byId, element, fill, say } from "../dom.js";
 import { counted } from "../state/number.js";
 import { placed, problemsOf } from "./problem_places.js";

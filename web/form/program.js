@@ -1,4 +1,4 @@
-/** The program of a stand-alone controller in the form: a table of groups. */
+/** The program of a stand-alone controller in the form. */
 import { button, element } from "../dom.js";
 import { get } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";

@@ -1,4 +1,4 @@
-/** The groups of a stand-alone controller's program as data: numbers that follow when groups move, and lengths in units. */
+/** The groups of a program: references between them, and lengths in units. */
 import { count } from "../state/number.js";
 
 /** Groups that a group names, by its kind. @type {{[kind: string]: string}} */

@@ -1,4 +1,4 @@
-/** Requests for what would let a refused motion run. */
+/** Requests remedies for an invalid motion. */
 import { unlessDropped } from "../engine/engine.js";
 
 /** Rest after a change before remedies are computed, in ms: each request plans some motions. */

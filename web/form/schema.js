@@ -1,5 +1,7 @@
 /** The schema of the core (`core/scenario/src/schema`) as fields, kinds, terms and samples for the form and the help. */
 
+import { hintOf, plain } from "./schema_text.js";
+
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./field.js").Term} Term */
 /** @typedef {import("./kit.js").Samples} Samples */
@@ -54,7 +56,7 @@ export function field(group, name) {
     key: name,
     label,
     kind: kindOf(type, unit),
-    hint: hintOf({ type, unit, ...given }),
+    hint: hintOf({ unit, ...given }, type === "bool" ? [] : wordsOf(type), labelAt),
     term: `${group}.${name}`,
     ...(unit && !units ? { unit } : {}),
     ...(wordsOf(type).length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
@@ -88,7 +90,7 @@ export function termOf(id) {
   if (!found) return undefined;
   const { label, text, from } = found;
   const [head, described] = explanations[id] ?? [label, text];
-  return { name: head, text: plain(described), from };
+  return { name: head, text: plain(described, labelAt), from };
 }
 
 /** All terms by their ids. @returns {{[id: string]: Term}} */
@@ -184,26 +186,6 @@ function kindOf(type, unit) {
   return groupIn(type.list) === "Segment" ? "segments" : null;
 }
 
-/** The hint of a field: its text, its range, and the meaning of an empty field. @param {Pick<Row, "text" | "type" | "range" | "empty" | "unit">} row */
-function hintOf({ text, type, range, empty, unit }) {
-  const words = type === "bool" ? [] : wordsOf(type);
-  const described = words.filter(({ label, text }) => text !== label);
-  const parts = [
-    text,
-    ...described.map(({ label, text }) => capital(text.startsWith(label) ? text : `${label}: ${text}`)),
-    capital(range),
-    empty && `Empty: ${empty}`,
-    unit === "cycles" || unit === "ns" ? "Or a time, such as 2.5 us" : "",
-  ];
-  return parts
-    .filter((part) => part)
-    .map((part) => plain(/** @type {string} */ (part)).replace(/\.?$/, "."))
-    .join(" ");
-}
-
-/** @param {string} text */
-const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
-
 /** The label of a field or word by its name or path; undefined for other text. @param {string} path */
 function labelAt(path) {
   const names = path.split(/[.[\]\d]+(?!_)/).filter(Boolean);
@@ -226,17 +208,4 @@ export function withLabels(text) {
     const label = labelAt(quoted ?? found);
     return label ? `“${label}”` : (quoted ?? found);
   });
-}
-
-/** Text of the documentation as the page prints it. @param {string} text */
-function plain(text) {
-  const raised = (/** @type {string} */ digits) =>
-    [...digits].map((digit) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(digit)]).join("");
-  return text
-    .replace(/`([\w.]+)`/g, (_, name) => labelAt(name) ?? name)
-    .replaceAll("`", "")
-    .replace(/\^(-?\d+)/g, (_, digits) => raised(digits))
-    .replace(/(?<=\w)\*(?=\w)/g, " · ")
-    .replace(/ - (?=\d)/g, " − ")
-    .replace(/(?<!\S)-(?=\d)/g, "−");
 }

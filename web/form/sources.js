@@ -11,9 +11,9 @@ import { samplePackets, sampleSegments, sampleSends } from "./source_kinds.js";
 /**
  * @typedef {object} SourceKind
  * @property {(kit: Kit) => Promise<void>} [load]  Loads what the page begins without.
- * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is chosen.
+ * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is selected.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
- * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} additional  What an additional controller is given when it is chosen.
+ * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} additional  What an additional controller is given when it is selected.
  * @property {(kit: Kit, index: number) => Node[]} additionalForm  The same in the form of additional controller `index`.
  */
 

@@ -1,6 +1,6 @@
 /**
  * Stand-alone controllers in the form: rates and units, the program as a table of groups, jog, return, homing, limits, axis,
- * memory and inputs. It loads when such a source is first on show.
+ * memory and inputs. It loads when such a source is first visible.
  */
 import { button, element } from "../dom.js";
 import { MAX_CHANNELS } from "../state/limits.js";

@@ -1,6 +1,6 @@
 /**
  * Changes of the scenario's structure: parts that are added, moved, removed, or become another kind. Each acts on the
- * scenario as it is when it is asked for, not as it was when the form was built, and what is typed in a part and is no
+ * scenario as it is when it is requested, not as it was when the form was built, and what is typed in a part and is no
  * value yet goes where the part goes.
  */
 import { get, movedTo } from "../state/paths.js";
@@ -13,7 +13,7 @@ import { fieldsOfKind } from "./schema.js";
 /** @param {{now: () => State, dispatch: (message: import("../state/message.js").Message) => void}} page */
 export function createStructure({ now, dispatch }) {
   /**
-   * What parts were before they became of another kind, by their paths: a kind that is chosen again has its numbers
+   * What parts were before they became of another kind, by their paths: a kind that is selected again has its numbers
    * again. It is of use only while the part still is what it became then.
    * @type {Map<string, {kind: string, others: {[kind: string]: any}}>}
    */

@@ -1,6 +1,6 @@
 /**
- * Every command that has a key: each part of the page lists its own, keys are heard from that list, and the
- * help is made of it. Letters alone are commands only where the focus is in the part that they belong to.
+ * Keyboard commands. Each part of the page registers its own; the help lists all. Single letters only work while the
+ * part has the focus.
  */
 
 /**

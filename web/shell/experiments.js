@@ -1,6 +1,6 @@
 /** The panel of experiments that are saved on this device. */
 import { button, byId, element, fill, say } from "../dom.js";
-import { Dropped } from "../engine/engine.js";
+import { Dropped } from "../engine/request_slots.js";
 import { MAX_TITLE } from "../state/history.js";
 import { readJson } from "../state/json.js";
 import { counted, si } from "../state/number.js";

@@ -1,4 +1,4 @@
-/** The files that the run, and what is between the cursors, can be saved as. */
+/** The files of a run, or of the time between the cursors. */
 import { count, time } from "../state/number.js";
 import { isStale, selected } from "../state/queries.js";
 import { baseName } from "./offers.js";

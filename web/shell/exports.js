@@ -1,9 +1,6 @@
-/**
- * Export: the run, or what lies between the cursors A and B, as files. The worker makes long ones in pieces, so
- * that ten million edges neither stop the page nor fill its memory.
- */
+/** The export panel. The worker writes long files in pieces. */
 import { byId, element, fill, options, say } from "../dom.js";
-import { Dropped } from "../engine/engine.js";
+import { Dropped } from "../engine/request_slots.js";
 import { si } from "../state/number.js";
 import { exportOffers, partsOf, sizeOf, statusOf } from "./export_offers.js";
 import { message } from "./link.js";

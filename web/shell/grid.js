@@ -1,7 +1,6 @@
 /**
- * The grid of the views on a wide screen, the one place where its template is made: bands below each other as the list of
- * the views has them, where views of one band stand beside each other. What is small, a head with at most a few lines,
- * gives its room to the others.
+ * The grid of the views on a wide screen: bands from top to bottom, with columns in a band. Folded views leave their
+ * room to the others.
  */
 
 /** @typedef {import("../state/views.js").Placed} Placed */
@@ -11,7 +10,7 @@ export const GAP_PX = 8;
 /** Least height of a view that is small. */
 const LINE_PX = 36;
 
-/** Views that are on show by the bands that they stand in, from the top. @param {readonly Placed[]} shown @returns {Placed[][]} */
+/** Views that are visible by the bands that they stand in, from the top. @param {readonly Placed[]} shown @returns {Placed[][]} */
 export function bandsOf(shown) {
   /** @type {Placed[][]} */
   const bands = [];
@@ -25,7 +24,7 @@ export function bandsOf(shown) {
 /**
  * @param {object} given
  * @param {readonly Placed[]} given.shown  One view a place.
- * @param {readonly number[] | null} given.rows  Heights that the visitor gave the bands, as parts of the room; more than 1 together scroll.
+ * @param {readonly number[] | null} given.rows  Heights that the user gave the bands, as parts of the room; more than 1 together scroll.
  * @param {readonly number[] | null} given.columns  Widths, as parts, of what stands beside each other.
  * @param {(view: string) => boolean} given.isSmall
  */

@@ -54,7 +54,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     },
   ]);
 
-  /** @param {Preset} chosen */
+  /** @param {Preset} selected */
   function openPreset({ id, scenario }) {
     try {
       dispatch({ type: "replace", scenario: readJson(scenario), origin: `preset:${id}` });

@@ -1,7 +1,4 @@
-/**
- * How a run went, in a line: what became of the host's orders, faults, and what a driver could not have followed. Faults
- * and violations are buttons that lead to their place.
- */
+/** The summary of a run: outcome of the host, faults and timing violations, with buttons to their times. */
 import { byId, element, fill } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { count } from "../state/number.js";

@@ -1,5 +1,4 @@
-/** What comes from outside: files that the visitor chooses, drops on the page, or pastes, and devices; what becomes of them loads
- * with the first (opened.js, live.js). */
+/** Opens files (selected, dropped or pasted) and devices; loads open_file.js and live.js on demand. */
 import { byId } from "../dom.js";
 
 /** @param {import("./open_file.js").Given} page */

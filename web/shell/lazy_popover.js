@@ -1,4 +1,4 @@
-/** Panels whose content loads when they are first opened. */
+/** Panels whose content loads when they first open. */
 import { byId } from "../dom.js";
 import { dropDown } from "./popover.js";
 

@@ -1,8 +1,5 @@
-/**
- * The link: the whole scenario behind the address's '#'. It follows the scenario without a history entry,
- * is heard when it changes, and never overwrites the visitor's own work.
- */
-import { Dropped } from "../engine/engine.js";
+/** The link in the address. It follows the scenario without history entries, and never overwrites own work. */
+import { Dropped } from "../engine/request_slots.js";
 import { readJson } from "../state/json.js";
 import { blockedBy } from "../state/queries.js";
 import { undoHint } from "./storage.js";
@@ -47,7 +44,7 @@ export function createLink({ engine, dispatch, now }) {
       const full = await address(now().seen?.text);
       // An address that came meanwhile is read, not written over.
       if (now().revision !== revision || location.hash !== before) return;
-      // The mark tells a reload that the address only repeats the visitor's own work.
+      // The mark tells a reload that the address only repeats the user's work.
       history.replaceState({ own: now().origin === "own" }, "", full);
       written = location.hash;
     } catch {
@@ -113,7 +110,7 @@ export function createLink({ engine, dispatch, now }) {
     )
       return;
     clearTimeout(timer);
-    // Standing by until the visitor changes something: an address without a link stays as it is.
+    // Standing by until the user changes something: an address without a link stays as it is.
     if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);
   }
   return { render, start, address, openLink };

@@ -1,4 +1,4 @@
-/** What the parts of the page offer to be saved, and how such files are called. */
+/** Files that parts of the page offer to save. */
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */

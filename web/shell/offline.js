@@ -1,10 +1,7 @@
-/**
- * The built page on this device: it works without a network from the second visit on, and says when a
- * newer version is there. Nothing is loaded anew unless the visitor asks for it; the work is saved then.
- */
+/** Offline use from the second visit on, and the message about a newer version. */
 import { byId } from "../dom.js";
 
-/** How often a page that stays open asks for a newer version, in ms. */
+/** How often a page that stays open requests a newer version, in ms. */
 const ASK_MS = 3_600_000;
 
 let begun = false;

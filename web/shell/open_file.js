@@ -1,5 +1,5 @@
 /** Opens a file: a scenario, a link as text, a table of packets, saved edges or a recording (recording.js). */
-import { Dropped } from "../engine/engine.js";
+import { Dropped } from "../engine/request_slots.js";
 import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/queries.js";

@@ -4,7 +4,7 @@ import { listen } from "./commands.js";
 
 /** @typedef {import("./pane_layout.js").Edge} Edge */
 
-/** A key moves an edge by so many CSS pixels, with Shift by five times as many. */
+/** A key moves an edge by this many CSS pixels, with Shift by five times as many. */
 const STEP_PX = 16;
 
 /**

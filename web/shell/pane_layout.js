@@ -1,4 +1,4 @@
-/** Panes of a wide screen: the lines between them, what fills the screen or is folded, and what a drag or a button changes. */
+/** The layout of panes on a wide screen: edges, folded and maximized views. */
 import { savedRows } from "../state/row_choices.js";
 import { inPlace, PLACED } from "../state/views.js";
 import { bandsOf, GAP_PX } from "./grid.js";
@@ -83,7 +83,7 @@ export function areaOf(view) {
   return PLACED.find(({ name }) => name === view)?.place.area ?? view ?? "";
 }
 
-/** The views on show, one per place. @param {State} state */
+/** The visible views, one per place. @param {State} state */
 export function shownViews(state) {
   return PLACED.filter(({ name, place }) => inPlace(state, place.area) === name);
 }
@@ -125,7 +125,7 @@ const limitsOf = ({ least, rest }, before, after) => ({
 /**
  * Gives the pane before an edge a size; the one after it has the rest.
  * @param {Edge} edge @param {number} px @param {{before: number, after: number, heights: number[], bands: Placed[][], room: number}} sizes
- *   Of its panes, and of the shown bands in a room of so many CSS pixels.
+ *   Of its panes, and of the shown bands in a room of this many CSS pixels.
  * @returns {Partial<Panes>}
  */
 export function resized(edge, px, { before, after, heights, bands, room }) {

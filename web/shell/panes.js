@@ -1,7 +1,4 @@
-/**
- * Panes of a wide screen: lines between them move their edges, each view folds to its head or fills the screen, and a view with
- * nothing to show gives its room away. The state has all of it, and this device saves it; a narrow screen has tabs instead.
- */
+/** Panes of a wide screen: edges to drag, and views that fold or maximize. A narrow screen has tabs instead. */
 import { button, byId, element } from "../dom.js";
 import { hasPanel, isOffered, PLACED, SHARED, VIEWS } from "../state/views.js";
 import { listen } from "./commands.js";

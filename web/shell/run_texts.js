@@ -1,4 +1,4 @@
-/** How a run goes and how it went, in words. */
+/** Texts about the progress and the result of a run. */
 import { count, si } from "../state/number.js";
 import { blockedBy, selected } from "../state/queries.js";
 

@@ -1,5 +1,5 @@
-/** Validates each scenario, and runs it once it is valid and the visitor rests. */
-import { Dropped } from "../engine/engine.js";
+/** Validates each scenario, and runs it if it is valid. */
+import { Dropped } from "../engine/request_slots.js";
 import { blockedBy } from "../state/queries.js";
 
 /** @typedef {import("../state/types.js").State} State */

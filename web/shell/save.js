@@ -1,4 +1,4 @@
-/** Files that the visitor saves: made in the page, handed to the browser's downloads. */
+/** Saves files through the downloads of the browser. */
 
 /**
  * @param {string} name  File name with its ending.

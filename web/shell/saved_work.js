@@ -1,4 +1,4 @@
-/** The work that an earlier visit left, and that of another tab. */
+/** Restores the work of an earlier visit, and offers that of another tab. */
 import { initial, OWN_TEXTS } from "../state/initial.js";
 import { readJson } from "../state/json.js";
 import { loadGood, loadHistory, loadNewer, loadPrevious, loadScenario } from "./storage.js";
@@ -7,7 +7,7 @@ import { loadGood, loadHistory, loadNewer, loadPrevious, loadScenario } from "./
 /** @typedef {import("../engine/engine.js").Engine} Engine */
 
 /**
- * The visitor's own scenario, also with problems in it; undo brings back the one that was set aside for it.
+ * the user's scenario, also with problems in it; undo brings back the one that was set aside for it.
  * @param {Engine} engine @param {string} fallback  The scenario of a first visit. @param {string} version  Of the page: the history of another one is not read.
  * @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */

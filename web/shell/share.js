@@ -1,4 +1,4 @@
-/** Share: the link with all that is in it, to be copied. */
+/** The share panel with the link. */
 import { byId, say } from "../dom.js";
 import { count } from "../state/number.js";
 import { blockedBy, isStale } from "../state/queries.js";
@@ -13,11 +13,11 @@ export function createShare({ engine, address, now }, { isOpen }) {
   const copy = /** @type {HTMLButtonElement} */ (byId("copy-link"));
   const about = byId("link-about");
   let timer = 0;
-  /** Counts the links that were asked for: an older one comes too late. */
+  /** Counts the links that were requested: an older one comes too late. */
   let request = 0;
   copy.addEventListener("click", toClipboard);
 
-  /** The link to share, and whether the digests of the run on show are in it. */
+  /** The link to share, and whether the digests of the visible run are in it. */
   async function shared() {
     // A recording's digests are no run's: whoever opens the link sees what the model makes of it.
     const isRun = !isStale(now()) && !now().result?.summary.recorded;
@@ -69,7 +69,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
   return { onOpen: make, render };
 }
 
-/** What is in the link, in words. @param {State} state @param {boolean} digests */
+/** What is in the link, as text. @param {State} state @param {boolean} digests */
 function contents(state, digests) {
   const edges = state.result?.summary.controllers.reduce((sum, { edges }) => sum + edges, 0) ?? 0;
   const seen = digests

@@ -1,7 +1,6 @@
 /**
- * What this device keeps: the visitor's own scenario, the last that ran, the choice of colours, the sizes of the panes.
- * Work is a tab's own: it is kept for the tab, and beside that for all as the last that any tab had, with which a new tab
- * begins. Storage may be refused; then nothing is kept.
+ * Storage of this device: scenarios, theme, pane sizes. Work is saved per tab, and as the latest of all tabs for a
+ * new tab. The page also works without storage.
  */
 
 const SCENARIO = "stepscope.scenario";
@@ -81,7 +80,7 @@ export function saveScenario(json) {
 /** What there is to say of what was shown before, where something else takes its place. */
 export const undoHint = () =>
   loadScenario() === null ? " Undo restores the previous experiment." : " Undo restores your own work.";
-/** The work that another tab kept after this one's; null where there is none, or this tab has none of its own. */
+/** The work that another tab kept after this one's; null if there is none, or this tab has none of its own. */
 export function loadNewer() {
   const [own, all] = [load(LATEST, ofTab), load(LATEST)].map(parsed);
   if (!own || !all || all.tab === tab() || !(all.at > own.at)) return null;
@@ -93,7 +92,7 @@ export function setAside(next) {
   const saved = loadScenario();
   if (saved !== null && saved !== next) saveWork(PREVIOUS, saved);
 }
-/** Experiments that the visitor named. @returns {any[]} */
+/** Experiments that the user named. @returns {any[]} */
 export function loadExperiments() {
   const saved = parsed(load(EXPERIMENTS));
   return Array.isArray(saved) ? saved.filter((each) => typeof each?.title === "string") : [];

@@ -1,4 +1,4 @@
-/** Results that the page shows as tables, as CSV: numbers as they are, without units and grouping. */
+/** CSV of tables, with plain numbers. */
 
 /** @typedef {import("../state/types.js").Spectra} Spectra */
 /** @typedef {import("../state/types.js").Timing} Timing */

@@ -1,4 +1,4 @@
-/** On a narrow screen the views are tabs and the form folds away; on a wide one all of them stand. */
+/** Tabs of the views on a narrow screen. */
 import { byId, element } from "../dom.js";
 import { isOffered, openTab, VIEWS } from "../state/views.js";
 

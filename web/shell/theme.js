@@ -1,4 +1,4 @@
-/** The button that goes through the themes. */
+/** The theme button. */
 import { byId, say } from "../dom.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
@@ -8,7 +8,7 @@ const THEMES = {
   dark: ["☾", "Colors: dark"],
 };
 
-/** Applies the saved theme, and each one that is chosen. */
+/** Applies the saved theme, and each one that is selected. */
 export function createTheme() {
   const button = byId("theme");
   const names = /** @type {(keyof typeof THEMES)[]} */ (Object.keys(THEMES));

@@ -1,4 +1,4 @@
-/** Whether a run is the one that a link's sender saw, in words, and where it first is another. */
+/** Text of the comparison with the run of the sender of a link. */
 import { count, time } from "../state/number.js";
 
 /** @typedef {import("../state/types.js").State} State */

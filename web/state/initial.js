@@ -7,7 +7,7 @@ import { AS_THEY_ARE } from "./row_choices.js";
 const NO_MARKERS = Array(10).fill(null);
 /** All packets are shown. @type {State["filter"]} */
 export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only: false };
-/** Name and note are the visitor's own. @type {import("./types.js").Borrowed} */
+/** Name and note are the user's. @type {import("./types.js").Borrowed} */
 export const OWN_TEXTS = { title: false, note: false };
 
 /** The part of the view that does not outlive a replaced scenario. */

@@ -2,7 +2,7 @@
 
 /** @typedef {import("./types.js").State} State */
 
-/** The summary of the controller on show; undefined before the first run. @param {State} state */
+/** The summary of the visible controller; undefined before the first run. @param {State} state */
 export function selected({ result }) {
   return result?.summary.controllers[result.controller];
 }

@@ -39,7 +39,7 @@
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
  *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string, why: string,
  *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
- *   position: number, rank: number | null}} PacketRow  Position among the rows on show, rank among those that the search finds: of the table alone.
+ *   position: number, rank: number | null}} PacketRow  Position among the visible rows, rank among those that the search finds: of the table alone.
  * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
  *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
  *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
@@ -62,7 +62,7 @@
  *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
- * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the scenario on show comes from.
+ * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the visible scenario comes from.
  * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still those of the preset, link or file.
  * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed}} Moment  One step of the history.
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  As one of its controllers shows it, and what followed from its scenario.
@@ -93,7 +93,7 @@
  * @property {Validation | null} validation  Of `validated`.
  * @property {number} validated        Revision that `validation` is about.
  * @property {Derived | null} derived  The last that there was.
- * @property {number} approved      Revision that the visitor lets run although it is over the budget.
+ * @property {number} approved      Revision that the user lets run although it is over the budget.
  * @property {Run} run
  * @property {Result | null} result The last good one.
  * @property {number} controller    The one that the views look at, as long as there is one of this number.
@@ -114,7 +114,7 @@
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
  * @property {number} row           Signal bit whose edges are looked for.
- * @property {{[channel: number]: boolean}} folds  Channels that the visitor folded or unfolded, and by their bits the decoders of RX and TX.
+ * @property {{[channel: number]: boolean}} folds  Channels that the user folded or unfolded, and by their bits the decoders of RX and TX.
  * @property {boolean} allSignals   Also the signals that never change.
  * @property {number | null} packet Selected packet.
  * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
@@ -122,7 +122,7 @@
  * @property {StudyName} study      Open tab of the study.
  * @property {Panes} panes          What this device keeps of how the views stand.
  * @property {string[]} bare        Views that have nothing to show of this run but a line.
- * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is on show, where one was chosen.
+ * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is visible, where one was selected.
  * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
  * @typedef {{dispatch: (message: import("./message.js").Message) => void, now: () => State}} Page  What each part of the page is given.

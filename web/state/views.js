@@ -14,7 +14,7 @@
  * @property {string} about  What the card behind its heading says first; what its words mean stands in `help/texts.js`.
  * @property {Place | null} place  On a wide screen; null stands alone.
  * @property {(state: State) => boolean} [offered]  Whether there is such a view now; always without it.
- * @property {(state: State) => boolean} [leads]  Whether it has its place where none was chosen; else the first has it.
+ * @property {(state: State) => boolean} [leads]  Whether it has its place where none was selected; else the first has it.
  *
  * @typedef {object} Place
  * @property {string} area  Name of the place; views of one name share it.
@@ -107,18 +107,18 @@ export function isOffered({ offered }, state) {
 }
 
 /**
- * The view on show in the place of one: that which was chosen, else that which leads there, else the first.
+ * The visible view in the place of one: that which was selected, else that which leads there, else the first.
  * @param {State} state @param {string} area
  */
 export function inPlace(state, area) {
   const here = PLACED.filter((view) => view.place.area === area && isOffered(view, state));
-  const chosen = here.find(({ name }) => name === state.sides[area]);
-  const found = chosen ?? here.find(({ leads }) => leads?.(state)) ?? here[0];
+  const selected = here.find(({ name }) => name === state.sides[area]);
+  const found = selected ?? here.find(({ leads }) => leads?.(state)) ?? here[0];
   return found.name;
 }
 
-/** The open tab of a narrow screen: that which was chosen, or what has its place where there is none. @param {State} state */
+/** The open tab of a narrow screen: that which was selected, or what has its place if there is none. @param {State} state */
 export function openTab(state) {
-  const chosen = VIEWS.find(({ name }) => name === state.view) ?? VIEWS[0];
-  return isOffered(chosen, state) || !chosen.place ? chosen.name : inPlace(state, chosen.place.area);
+  const selected = VIEWS.find(({ name }) => name === state.view) ?? VIEWS[0];
+  return isOffered(selected, state) || !selected.place ? selected.name : inPlace(state, selected.place.area);
 }

@@ -103,7 +103,7 @@ const fitted = new WeakMap();
  * Draws one chart.
  * @param {HTMLCanvasElement} canvas
  * @param {Chart} chart
- * @returns {Plot | null}  null where the canvas is not on show or the chart cannot be drawn.
+ * @returns {Plot | null}  null where the canvas is not visible or the chart cannot be drawn.
  */
 export function draw(canvas, chart) {
   const size = fit(canvas, CHART_RATIO);

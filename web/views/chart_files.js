@@ -1,7 +1,4 @@
-/**
- * What the motion and the spectrum view show, as files: PNG, SVG and CSV. The pictures are drawn by the same
- * code as the charts on the page, with a title, a legend and the quantities' names around them.
- */
+/** Exports charts of motion and spectrum as PNG, SVG and CSV. */
 import { unlessDropped } from "../engine/engine.js";
 import { csv } from "../shell/tables.js";
 import { time } from "../state/number.js";
@@ -200,7 +197,7 @@ function escaped(text) {
   return text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 }
 
-/** Time and the least and greatest value of each curve, a row a column of the picture. @param {State} state @param {import("./motion/bands.js").Seen} columns */
+/** Time and the minimum and maximum value of each curve, a row a column of the picture. @param {State} state @param {import("./motion/bands.js").Seen} columns */
 function motionTable(state, columns) {
   const bands = QUANTITIES.flatMap((quantity) => {
     const { unit } = chartOf(state, columns, quantity);

@@ -1,4 +1,4 @@
-/** What can be saved of the motion, the motor and the spectrum as they are; how that is made loads with the first of them. */
+/** Chart files for the export panel. */
 import { baseName } from "../shell/offers.js";
 
 /** @typedef {import("../state/types.js").State} State */

@@ -1,4 +1,4 @@
-/** A view whose code loads when it is first on show: it draws while it is, and what was missed when it comes back. */
+/** A view whose code loads when it is first visible. */
 import { byId, say } from "../dom.js";
 
 /** @typedef {import("../state/types.js").State} State */

@@ -1,4 +1,4 @@
-/** What the charts of several views have in common: the sign of a line in a legend, and the shape of what is one or a band. */
+/** Legend keys and line shapes of charts. */
 import { element } from "../dom.js";
 
 /** A piece of a line in its colour. @param {string} ink @param {boolean} dashed */

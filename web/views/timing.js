@@ -1,8 +1,4 @@
-/**
- * The timing check: could the driver have followed the pulses? A row a rule with what was measured, what is
- * required and the slack, and the violations one by one. It takes the spectrum's place where there is a driver; what
- * shows all that loads with the first (timing_found.js).
- */
+/** The timing view: pulses checked against the rules of a driver. */
 import { byId, say } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { listen } from "../shell/commands.js";
@@ -49,7 +45,7 @@ export function createTiming(page) {
     }
   }
 
-  /** The next violation after cursor A, or after the one that is chosen. @param {boolean} forward */
+  /** The next violation after cursor A, or after the one that is selected. @param {boolean} forward */
   async function next(forward) {
     if (!timing) return showNote("There is no driver to check.");
     await (await found())?.next(timing, forward);

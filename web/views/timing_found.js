@@ -1,7 +1,4 @@
-/**
- * What the timing check found, shown: its tables, and the ways from one violation to the next and from a rule to its place in
- * the pulses. It loads with the first driver.
- */
+/** Results of the timing check, with navigation between violations. */
 import { byId } from "../dom.js";
 import { unlessDropped } from "../engine/engine.js";
 import { ruleName } from "../form/schema.js";
@@ -28,14 +25,14 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
     if (row) show(Number(row.dataset.index));
   });
 
-  /** The next violation after cursor A, or after the one that is chosen. @param {Timing} found @param {boolean} forward */
+  /** The next violation after cursor A, or after the one that is selected. @param {Timing} found @param {boolean} forward */
   async function next(found, forward) {
     take(found);
     const state = now();
-    const chosen = timing?.violations[current];
+    const selected = timing?.violations[current];
     const { a } = state.cursors;
-    // Several may lie in one cycle; from the chosen one they are gone through one by one.
-    if (chosen && chosen.cycle === a) return show(current + (forward ? 1 : -1));
+    // Several may lie in one cycle; from the selected one they are gone through one by one.
+    if (selected && selected.cycle === a) return show(current + (forward ? 1 : -1));
     const index = await engine.ask("next_violation", a ?? (forward ? -1 : endOf(state)), forward).catch(unlessDropped);
     show(index ?? -1);
   }
@@ -89,9 +86,9 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
 
   function mark() {
     for (const row of body.children) {
-      const chosen = /** @type {HTMLElement} */ (row).dataset.index === String(current);
-      row.classList.toggle("current", chosen);
-      if (chosen) row.scrollIntoView({ block: "nearest" });
+      const selected = /** @type {HTMLElement} */ (row).dataset.index === String(current);
+      row.classList.toggle("current", selected);
+      if (selected) row.scrollIntoView({ block: "nearest" });
     }
   }
 

@@ -1,4 +1,4 @@
-/** What the timing check found, as tables: a row a rule with what was measured, what is required and the slack; and the violations. */
+/** Tables of the timing check: rules and violations. */
 import { byId, element, fill, say } from "../dom.js";
 import { ruleName } from "../form/schema.js";
 import { count, time } from "../state/number.js";

@@ -1,4 +1,4 @@
-/** A long table: only the rows on show are in the document, whole ones; the scroll bar stands for all of them. */
+/** A long table that only has its visible rows in the document. */
 
 /** Height of a row, and of the head, in CSS pixels; the style sheets have the same. */
 export const ROW_PX = 24;
@@ -15,7 +15,7 @@ export function virtualRows(scroller, space, total) {
   const last = () => Math.max(0, total() - visible());
   const path = () => space.offsetHeight - scroller.clientHeight;
 
-  /** Position of the first row on show. */
+  /** Position of the first visible row. */
   function first() {
     return path() <= 0 ? 0 : Math.min(last(), Math.round((scroller.scrollTop / path()) * last()));
   }

@@ -1,7 +1,4 @@
-/**
- * A button that has to be within reach whatever is in front (LIVE H4: STOP first of all): a modal dialog makes all that is outside of
- * it inert, so the button goes into the dialog that was opened last, and back when that closes.
- */
+/** Moves a button into the topmost modal dialog, so that STOP is always in reach (LIVE H4). */
 
 /** @param {() => boolean} isNeeded @param {HTMLElement} node @param {() => void} home  Puts it back in its own place. */
 export function carryInto(isNeeded, node, home) {

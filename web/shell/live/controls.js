@@ -1,4 +1,4 @@
-/** What the controls of the dialog of devices show, by what it is doing. */
+/** The state of the controls of the device dialog. */
 import { about, ROLES, stopTitle, whyNone } from "./roles.js";
 
 /** @typedef {import("./roles.js").Role} Role */

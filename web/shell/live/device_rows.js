@@ -1,10 +1,10 @@
-/** The packets view's other table (LIVE H4): a device's replies as they come, in place of the model's packets. It stays when they end. */
+/** The table of replies of a device in the packets view (LIVE H4). */
 import { byId, element, fill } from "../../dom.js";
 import { count } from "../../state/number.js";
 
 /** @typedef {import("../../engine/live.js").Exchange} Exchange */
 
-/** Rows of replies that stay on show. */
+/** Rows of replies that stay visible. */
 const MAX_ROWS = 300;
 const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", "differs"];
 const NUMBERS = [0, 1, 5, 6, 7];

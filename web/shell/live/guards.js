@@ -1,4 +1,4 @@
-/** Keeps a moving device under control while the dialog of devices is open: Escape stops it, and leaving the page asks first. */
+/** While the device dialog is open, Escape stops the device, and leaving the page asks first. */
 
 /**
  * @param {import("./session.js").LiveSession} session @param {HTMLDialogElement} dialog

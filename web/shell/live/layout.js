@@ -1,4 +1,4 @@
-/** The elements of the dialog of devices. */
+/** The elements of the device dialog. */
 import { element } from "../../dom.js";
 import { positionCurves } from "./position_curves.js";
 import { NAMES, ROLES } from "./roles.js";

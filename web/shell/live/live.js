@@ -1,8 +1,4 @@
-/**
- * The dialog of devices (LIVE H4): streams the experiment's ticks to a real device, or serves a real host as a soft device. Nothing
- * opens without a press. While it sends it stands aside: the packets view shows the replies, and STOP stays in reach. It loads when
- * it is first opened.
- */
+/** The device dialog (LIVE H4): streams the ticks of the experiment to a device, or is a soft device for a host. */
 import { fill, say, style } from "../../dom.js";
 import { openLive } from "../../engine/live.js";
 import { message } from "../link.js";
@@ -47,7 +43,7 @@ function createDialog(page) {
   let began = "";
   /** The notice of a dialog that is gone. */
   let noticed = "";
-  const ports = createPorts(device, view.allowed, { report, chosen: show, focus: () => start.focus() });
+  const ports = createPorts(device, view.allowed, { report, onSelect: show, focus: () => start.focus() });
   const role = () => view.roles.find(({ input }) => input.checked)?.name ?? "stream";
   const isInFront = () => dialog.matches(":modal");
 

@@ -1,4 +1,4 @@
-/** The ports of the dialog of devices: which one is chosen, which the browser allowed before, and which it does not give back. */
+/** The ports of the device dialog: selected, allowed earlier, or stuck. */
 import { element, fill } from "../../dom.js";
 import { serial } from "../../engine/live.js";
 import { message } from "../link.js";
@@ -12,15 +12,15 @@ const stuck = new WeakSet();
 
 /**
  * @param {import("./session.js").Device} device @param {HTMLElement} allowed  Filled with the ports that were allowed before.
- * @param {{report: (text: string, isError?: boolean) => void, chosen: () => void, focus: () => void}} dialog
+ * @param {{report: (text: string, isError?: boolean) => void, onSelect: () => void, focus: () => void}} dialog
  */
-export function createPorts(device, allowed, { report, chosen, focus }) {
+export function createPorts(device, allowed, { report, onSelect, focus }) {
   /** @param {any} port */
   function take(port) {
     if (stuck.has(port)) return report(STUCK, true);
     device.port = port;
     report(`Port selected${usbOf(port)}. It is not open yet.`);
-    chosen();
+    onSelect();
     return focus();
   }
 
@@ -28,14 +28,14 @@ export function createPorts(device, allowed, { report, chosen, focus }) {
     try {
       take(await serial().requestPort());
     } catch (error) {
-      // No port was chosen, or this page may have none.
+      // No port was selected, or this page may have none.
       const isNone = error instanceof DOMException && error.name === "NotFoundError";
       report(isNone ? "No port was selected." : `No port: ${message(error)}.`, !isNone);
       if (device.port) focus();
     }
   }
 
-  /** Ports that the visitor, or the browser's policy, allowed before need no chooser. None is opened. */
+  /** Ports that the user, or the browser's policy, allowed before need no chooser. None is opened. */
   async function offer() {
     /** @type {any[]} */
     const ports =

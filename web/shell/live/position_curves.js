@@ -1,4 +1,4 @@
-/** How the positions of a soft device went in the last seconds, from its live trace (LIVE H4): a line a channel. */
+/** Position curves of a soft device, one line per channel (LIVE H4). */
 import { element, fill, say } from "../../dom.js";
 import { count } from "../../state/number.js";
 

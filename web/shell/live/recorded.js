@@ -1,4 +1,4 @@
-/** A session that this page had as a device: it opens as a scenario, if it is the session (LIVE H5). */
+/** Opens a recorded session of a soft device as a scenario (LIVE H5). */
 import { button, byId } from "../../dom.js";
 import { readJson } from "../../state/json.js";
 import { counted } from "../../state/number.js";

@@ -1,4 +1,4 @@
-/** What the page can be to a device or to a host (LIVE H4), in words, and why it cannot. */
+/** What the page can be to a device or to a host (LIVE H4), as text, and why it cannot. */
 import { movesStreams, serial } from "../../engine/live.js";
 import { counted } from "../../state/number.js";
 

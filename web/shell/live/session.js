@@ -1,4 +1,4 @@
-/** What a dialog of devices is doing: what has the port, what went on it, and what is known of its end. No DOM, no port. */
+/** The state of the device dialog, without DOM and port. */
 import { outcome } from "./report.js";
 
 /** @typedef {import("../../engine/live.js").Facts} Facts */
@@ -7,7 +7,7 @@ import { outcome } from "./report.js";
 /** @typedef {import("./roles.js").Role} Role */
 /** @typedef {{json: string, title: string, baud: number, raw: boolean, port: any}} Sent  An experiment as it goes on a port. */
 /**
- * What outlives the dialog: the chosen port, and what a device has replied to and is not known to have ended. STOP goes as that
+ * What outlives the dialog: the selected port, and what a device has replied to and is not known to have ended. STOP goes as that
  * went, also from the next dialog.
  * @typedef {{port: any, unsettled: Sent | null}} Device
  */

@@ -63,7 +63,7 @@ export function createChannelTable(names) {
 
   return {
     node,
-    /** The field that comes first where nothing is chosen. */
+    /** The field that comes first where nothing is selected. */
     first: rows[0]?.field,
     /** Shows a map. @param {string} map */
     put(map) {

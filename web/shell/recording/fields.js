@@ -1,4 +1,4 @@
-/** The fields of a recording's dialog, each with its error under it. */
+/** Fields of the dialog of a recording, with their errors. */
 import { element } from "../../dom.js";
 import { parseNumber } from "../../state/parse_number.js";
 

@@ -1,4 +1,4 @@
-/** Puts a recording in place of the experiment: its scenario, its records, and the comparison with the run before. */
+/** Imports a recording: its scenario, its records, and the comparison with the previous run. */
 import { readJson } from "../../state/json.js";
 import { count } from "../../state/number.js";
 import { undoHint } from "../storage.js";
@@ -18,7 +18,7 @@ const PHONE = "(max-width: 599px)";
 /** Maximum time that a run may take, in ms, and the time between two looks for it. */
 const [MAX_RUN_MS, POLL_MS] = [60_000, 200];
 
-/** The result of the experiment as it is now, once it has run; null where there is none. @param {import("../../state/types.js").Page} page */
+/** The result of the experiment as it is now, once it has run; null if there is none. @param {import("../../state/types.js").Page} page */
 export async function resultOf({ now }) {
   const { revision } = now();
   for (let waited = 0; waited < MAX_RUN_MS && now().revision === revision; waited += POLL_MS) {
@@ -61,7 +61,7 @@ async function scenarioOf({ engine, now }, capture, note) {
   return { scenario, problem: texts.join("; ") };
 }
 
-/** Makes the run on show the baseline. @param {Page} page @param {Result} plan */
+/** Makes the visible run the baseline. @param {Page} page @param {Result} plan */
 async function takeBaseline({ engine, dispatch, now }, { summary, controller }) {
   await engine.ask("baseline", true);
   const { scenario, derived: all, revision } = now();

@@ -1,4 +1,4 @@
-/** The options of a recording's dialog: channel map, rates, the part to show, and the comparison with the experiment. */
+/** Options of the dialog of a recording: channel map, rates, visible part, comparison. */
 import { button, element, say } from "../../dom.js";
 import { createChannelTable } from "./channel_table.js";
 import { choiceField, numberField, timeField } from "./fields.js";
@@ -94,7 +94,7 @@ export function createOptions(facts, capture, hasPlan, changed) {
       }),
     isWrong: () =>
       table.isWrong() || [...fields, from, to, align].some(({ label, isWrong }) => !label.hidden && isWrong()),
-    /** Whether a channel has to be chosen first. */
+    /** Whether a channel has to be selected first. */
     needsMap: () => facts.has_levels && table.map() === "",
     /** The step that both have at one time; null where the experiment is not compared. */
     alignedStep: () => (align.label.hidden ? null : align.value()),

@@ -1,7 +1,4 @@
-/**
- * All of a recording at a glance, in its dialog: position and speed of a channel from its beginning to its end, as the worker makes
- * them of what it has packed. What is dragged over becomes the part that the views show.
- */
+/** The overview of a recording in its dialog. Dragging selects the visible part. */
 import { element, fill } from "../../dom.js";
 import { plain, time } from "../../state/number.js";
 import { message } from "../link.js";
@@ -15,7 +12,7 @@ const [POSITION_PX, SPEED_PX, BETWEEN_PX] = [64, 40, 6];
 const STILL_PX = 4;
 /** How much of what is left out is seen through. */
 const LEFT_OUT = 0.7;
-/** Rest after a change of the width before other columns are asked for, in ms. */
+/** Rest after a change of the width before other columns are requested, in ms. */
 const REST_MS = 200;
 
 /**
@@ -32,7 +29,7 @@ export function createOverview(capture, choose) {
   node.hidden = true;
   /** What was looked at. @type {Preview | null} */
   let preview = null;
-  /** What the columns are of, and how many were asked for. */
+  /** What the columns are of, and how many were requested. */
   let [shown, askedColumns] = ["", 0];
   /** @type {Columns | null} */
   let columns = null;
@@ -79,7 +76,7 @@ export function createOverview(capture, choose) {
     timer = window.setTimeout(() => void refresh(), REST_MS);
   }).observe(canvas);
 
-  /** Asks for the columns, if these are others. */
+  /** Requests the columns, if these are others. */
   async function refresh() {
     const width = canvas.clientWidth;
     if (!preview || width === 0) return;
@@ -156,16 +153,16 @@ export function createOverview(capture, choose) {
       const options = found.steps.map(({ channel: each }) =>
         element("option", { value: String(each) }, `channel ${each}`),
       );
-      const chosen = found.steps.some(({ channel: each }) => String(each) === channel.value) ? channel.value : "";
+      const selected = found.steps.some(({ channel: each }) => String(each) === channel.value) ? channel.value : "";
       fill(channel, ...options);
-      channel.value = chosen || String(found.steps[0].channel);
+      channel.value = selected || String(found.steps[0].channel);
       channel.hidden = found.steps.length < 2;
       void refresh();
     },
   };
 }
 
-/** Least and greatest of all. @param {number[][]} all @returns {number[]} */
+/** Minimum and maximum of all. @param {number[][]} all @returns {number[]} */
 function rangeOf(all) {
   const values = all.flat().filter(Number.isFinite);
   return [values.reduce((a, b) => Math.min(a, b), 0), values.reduce((a, b) => Math.max(a, b), 0)];

@@ -1,4 +1,4 @@
-/** The packets that a recording's lines carry: a part of its dialog that is filled when it is unfolded. */
+/** The packets of a recording in its dialog. */
 import { button, element, fill } from "../../dom.js";
 import { save } from "../save.js";
 import { MAX_PACKETS, packetCells, packetsFile, packetsText } from "./texts.js";

@@ -1,4 +1,4 @@
-/** The file of which a part is on show: another part can be chosen without reading it again, until something else is shown. */
+/** Keeps the file of a partly shown recording open, to show another part. */
 import { button, byId } from "../../dom.js";
 import { openDialog } from "./dialog.js";
 import { scenarioKey } from "./saved_recordings.js";

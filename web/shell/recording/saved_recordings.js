@@ -1,9 +1,4 @@
-/**
- * Recordings that this device saves, so that a reload shows them again: the records of the last few that were imported, each with
- * its scenario. The database is opened only where `listedRecordings` (storage.js) has a list.
- *
- * Every failure of the storage is reported, and the page goes on with the model's view of the scenario.
- */
+/** Saves the last imported recordings with their scenarios, so that a reload shows them again. */
 import { readJson } from "../../state/json.js";
 import { count } from "../../state/number.js";
 import { listedRecordings, listRecordings } from "../storage.js";
@@ -14,7 +9,7 @@ import { MAX_BYTES, RECORD_BYTES, sizeOf } from "./record_limits.js";
  * @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page
  * @typedef {import("./record_limits.js").Saved} Saved
  * @typedef {{id: string, file: string, scenario: string, lost: string}} Known  A recording of this tab, and why it is not saved; "" where it is.
- * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The one that was on show when the page was left.
+ * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The one that was visible when the page was left.
  */
 
 /** Maximum time to wait for a first result, in ms, and the time between two looks for it. */
@@ -76,7 +71,7 @@ const message = (error) => (error instanceof Error && error.message ? error.mess
 
 /**
  * Gives the engine the saved recordings of this experiment, of those of undo and redo, and of the address. Shows the recording
- * that was on show and has no link. To be called before the first run.
+ * that was visible and has no link. To be called before the first run.
  * @param {Page} page
  */
 export async function restore(page) {
@@ -142,7 +137,7 @@ async function restoreFrom(page, database, before, shown) {
   return lost;
 }
 
-/** The recording on show when the page was left, if this is a reload. @returns {Shown | null} */
+/** The visible recording when the page was left, if this is a reload. @returns {Shown | null} */
 function shownBefore() {
   try {
     const [entry] = /** @type {PerformanceNavigationTiming[]} */ (performance.getEntriesByType("navigation"));
@@ -155,7 +150,7 @@ function shownBefore() {
 
 let isWatched = false;
 
-/** Notes which recording is on show when the page is left. @param {Page} page */
+/** Notes which recording is visible when the page is left. @param {Page} page */
 function watch({ now }) {
   if (isWatched) return;
   isWatched = true;

@@ -1,4 +1,4 @@
-/** What the dialog of a recording and its messages say, and the scenario that a recording is shown with. */
+/** Texts of the dialog of a recording, and the scenario of a recording. */
 import { readJson } from "../../state/json.js";
 import { count, counted, plain, si, time } from "../../state/number.js";
 import { around } from "../verdict.js";
@@ -36,7 +36,7 @@ export function formatText({ format, count, has_levels, has_bytes }) {
   return `${format}, ${counted(count, has_levels ? "change" : has_bytes ? "byte" : "row")}`;
 }
 
-/** The part on show of a recording that is not shown whole. @param {NonNullable<Preview["part"]>} part */
+/** The visible part of a recording that is not shown whole. @param {NonNullable<Preview["part"]>} part */
 export function partText({ from_s, to_s, end_s, records, of }) {
   return `Shown: ${time(from_s)} to ${time(to_s)} of ${time(end_s)}, ${count(records)} of ${counted(of, "change")}`;
 }
@@ -119,7 +119,7 @@ export function worstPlace({ largest, recorded }, { summary, controller }) {
 /**
  * The message of an imported recording.
  * @param {{file: string, part: Preview["part"], isRecorded: boolean, hasBaseline: boolean, replies: Replies | undefined, isShort: boolean, own: string}} import_
- *   `own` says where the visitor's own work is.
+ *   `own` says where the user's work is.
  */
 export function importedText({ file, part: visible, isRecorded, hasBaseline, replies, isShort, own }) {
   const part = isRecorded && visible ? ` ${partText(visible)}; its position begins at 0.` : "";

@@ -1,10 +1,10 @@
-/** Asks the engine for a stretch of the motion in columns: this run's, and the baseline's where there is one. */
+/** Requests a part of the motion in columns, and that of the baseline. */
 import { baselineAxis, unitOf } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
 
-/** What a step is in the chosen unit, here and in the baseline. @param {State} state */
+/** What a step is in the selected unit, here and in the baseline. @param {State} state */
 export function unitPair(state) {
   const { scale, baseline } = unitOf(state);
   return new Float64Array([scale, baseline]);

@@ -1,4 +1,4 @@
-/** What the three charts of a motion show: which curves, in which unit and colour, over which range. */
+/** Curves, unit, color and range of the three motion charts. */
 
 import { shown } from "../../state/time_window.js";
 import { color, GUTTER } from "../../time/plot.js";
@@ -16,7 +16,7 @@ export const QUANTITIES = /** @type {const} */ (["position", "speed", "accelerat
 /** Height of the time axis's labels under the lowest chart, in CSS pixels. */
 export const TIME_PX = 20;
 
-/** What follows from the axis on show. @param {State} state */
+/** What follows from the visible axis. @param {State} state */
 function axisOnShow(state) {
   return state.derived?.controllers[state.result?.controller ?? 0]?.axes[state.axis];
 }
@@ -36,7 +36,7 @@ export function unitsOf(state) {
   );
 }
 
-/** The chosen unit, or steps where the axis has no such unit; what a step is in it, here and in the baseline. @param {State} state */
+/** The selected unit, or steps where the axis has no such unit; what a step is in it, here and in the baseline. @param {State} state */
 export function unitOf(state) {
   const axis = axisOnShow(state);
   const { derived } = baselineAxis(state);
@@ -94,7 +94,7 @@ export function bandsOf(state, { columns, baseline, apart }, quantity) {
   ].filter((band) => band !== null);
 }
 
-/** Least and greatest value, and a range around them that leaves air. @param {Columns[]} bands @param {boolean} zero @returns {Range} */
+/** Minimum and maximum value, and a range around them that leaves air. @param {Columns[]} bands @param {boolean} zero @returns {Range} */
 function rangeOf(bands, zero) {
   let [low, high] = [Infinity, -Infinity];
   for (const { min, max } of bands) {

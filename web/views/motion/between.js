@@ -1,4 +1,4 @@
-/** What lies between the two cursors: the values at both, their difference, mean and root mean square, ideal and actual. */
+/** Values at both cursors and between them. */
 import { byId, element, fill, say } from "../../dom.js";
 import { exactTime, short, si } from "../../state/number.js";
 import { QUANTITIES, unitFor, unitOf } from "./bands.js";

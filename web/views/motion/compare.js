@@ -1,4 +1,4 @@
-/** Two runs on one axis: a run is kept as the baseline, and every later one is drawn and measured beside it. */
+/** The baseline of the motion view. */
 import { button, byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 

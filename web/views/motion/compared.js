@@ -1,4 +1,4 @@
-/** The kept run and the one on show, measured beside each other; it loads with the first that is kept. */
+/** The comparison with the baseline. */
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";

@@ -1,4 +1,4 @@
-/** The motion view: position, speed and acceleration over one time axis, the ideal curve over what the pulses make. */
+/** The motion view: position, speed and acceleration, ideal and actual. */
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";

@@ -1,7 +1,4 @@
-/**
- * Readings of the curves: the exact values at the pointer, or at a cursor, in its very cycle; asked of the run, for the
- * columns that are drawn have a range each.
- */
+/** Exact values at the pointer or a cursor. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short } from "../../state/number.js";

@@ -1,4 +1,4 @@
-/** The data table behind the charts: what is seen as numbers, fifty rows a page. */
+/** The data table of the motion charts, fifty rows per page. */
 import { button, byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";

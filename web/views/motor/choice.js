@@ -1,6 +1,6 @@
-/** Which motor and which driver: figures of the lists in the place of the scenario's own, for all of its motors at once. */
+/** The choice of a motor and a driver from the lists. */
 import { element, fill, say } from "../../dom.js";
-import { Dropped } from "../../engine/engine.js";
+import { Dropped } from "../../engine/request_slots.js";
 import { readJson } from "../../state/json.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -46,15 +46,15 @@ export function createChoice({ engine, dispatch, now }, fold) {
 
   /** Where the figures come from. */
   function describe() {
-    const chosen = [
+    const selected = [
       sheets?.motors.find(({ id }) => id === motor.value),
       sheets?.drives.find(({ id }) => id === drive.value),
     ].filter((sheet) => sheet !== undefined);
-    const words = chosen.map(({ source, typical }) =>
+    const words = selected.map(({ source, typical }) =>
       typical.length > 0 ? `${source}; typical only: ${typical.join(", ").replaceAll("_", " ")}` : source,
     );
     say(about, words.join(". ") || (driven ? "" : NONE));
-    press.disabled = driven === true && chosen.length === 0;
+    press.disabled = driven === true && selected.length === 0;
   }
 
   async function take() {

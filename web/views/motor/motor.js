@@ -1,7 +1,4 @@
-/**
- * The view Motor: what the pulses do to a motor, over the time axis that all views share; a verdict in words, and the
- * numbers behind it. It loads when it is first opened.
- */
+/** The motor view: curves over time, a verdict and numbers. */
 import { byId, element, fill, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";
@@ -84,7 +81,7 @@ export function createMotor({ engine, dispatch, now }) {
     dispatch({ type: "view", view: "study" });
   });
 
-  /** The charts on show share the room; the last one has the time's labels. */
+  /** The visible charts share the room; the last one has the time's labels. */
   function arrange() {
     const on = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
     for (const { quantity, root, press } of charts) {
@@ -172,7 +169,7 @@ export function createMotor({ engine, dispatch, now }) {
     speak(values && state.hover === null ? `${at}${sentence(valueText)}` : "");
   }
 
-  /** The values on show in words. @param {(line: {of: string}) => string} valueText */
+  /** The visible values as text. @param {(line: {of: string}) => string} valueText */
   function sentence(valueText) {
     const on = QUANTITIES.filter(({ name }) => shownQuantities.has(name));
     return on

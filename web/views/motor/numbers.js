@@ -1,4 +1,4 @@
-/** The numbers of a run's motors, and where the energy went, as a table with a column for each motor. */
+/** The table of motor numbers and energies. */
 import { element, fill } from "../../dom.js";
 import { short, si } from "../../state/number.js";
 

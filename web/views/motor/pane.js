@@ -1,4 +1,4 @@
-/** The pane of the motor: asks what its plant did while it is on show. What draws it (motor.js) loads when it is first opened. */
+/** The pane of the motor view; loads motor.js on demand. */
 import { createLater } from "../later.js";
 
 /** @typedef {import("../later.js").Page} Page */

@@ -1,4 +1,4 @@
-/** What the view Motor can show over time, and how each chart is drawn. */
+/** The quantities of the motor view and their charts. */
 import { selected } from "../../state/queries.js";
 import { color, GUTTER } from "../../time/plot.js";
 import { shapeOf } from "../lines.js";
@@ -54,13 +54,13 @@ export const QUANTITIES = [
   },
 ];
 
-/** Those on show, by their names. */
+/** Those visible, by their names. */
 export const shownQuantities = new Set(["angle", "error", "phases", "supply"]);
 
-/** Those on show, in their order. */
-export const chosen = () => QUANTITIES.filter(({ name }) => shownQuantities.has(name));
+/** Those visible, in their order. */
+export const visibleQuantities = () => QUANTITIES.filter(({ name }) => shownQuantities.has(name));
 
-/** The motor on show: the last one where there are fewer. @param {State} state */
+/** The visible motor: the last one where there are fewer. @param {State} state */
 export const channelOf = (state) => Math.min(state.axis, (selected(state)?.channels ?? 1) - 1);
 
 /** Least distance of two marks, in parts of the stretch. */
@@ -76,7 +76,7 @@ export function marksOf({ slips }, channel, { start, end }, clock) {
   });
 }
 
-/** Least and greatest of a quantity's lines, and a range with air around them. @param {Quantity} quantity @param {Curves} curves */
+/** Minimum and maximum of a quantity's lines, and a range with air around them. @param {Quantity} quantity @param {Curves} curves */
 export function rangeOf({ lines }, curves) {
   let [low, high] = [Infinity, -Infinity];
   for (const { of } of lines) {

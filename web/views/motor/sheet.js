@@ -1,9 +1,9 @@
-/** What the view Motor shows, as a picture's parts and as a table. */
+/** Exports the motor view as picture and table. */
 import { unlessDropped } from "../../engine/engine.js";
 import { csv } from "../../shell/tables.js";
 import { time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
-import { channelOf, chartOf, chosen, marksOf } from "./quantities.js";
+import { channelOf, chartOf, marksOf, visibleQuantities } from "./quantities.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
@@ -33,7 +33,7 @@ async function seen(state, engine, columns) {
 /** @param {State} state @param {Engine} engine @param {number} columns  Of the picture. @returns {Promise<{about: string, legend: {name: string, ink: string, dash: number}[], panels: {caption: string, chart: import("../../time/plot.js").Chart, height: number}[]}>} */
 export async function motorPanels(state, engine, columns) {
   const { curves, channel, from, to, marks } = await seen(state, engine, columns);
-  const all = chosen();
+  const all = visibleQuantities();
   return {
     about: `motor ${channel} · ${time(from)} to ${time(to)}`,
     legend: [],
@@ -49,10 +49,10 @@ export async function motorPanels(state, engine, columns) {
   };
 }
 
-/** Least and greatest of each curve on show, a row a place. @param {State} state @param {Engine} engine @param {number} columns */
+/** Minimum and maximum of each visible curve, a row a place. @param {State} state @param {Engine} engine @param {number} columns */
 export async function motorValues(state, engine, columns) {
   const { curves } = await seen(state, engine, columns);
-  const lines = chosen().flatMap(({ unit, lines }) => lines.map(({ of }) => ({ of, unit })));
+  const lines = visibleQuantities().flatMap(({ unit, lines }) => lines.map(({ of }) => ({ of, unit })));
   const head = ["time (s)", ...lines.flatMap(({ of, unit }) => [`${of} min (${unit})`, `${of} max (${unit})`])];
   const { x } = curves[lines[0].of];
   return csv([

@@ -1,6 +1,6 @@
-/** Whether the motors follow, in words; of one that loses steps also why, as far as its start-stop rate tells it. */
+/** Whether the motors follow, and why one loses steps. */
 import { element, fill, say } from "../../dom.js";
-import { Dropped } from "../../engine/engine.js";
+import { Dropped } from "../../engine/request_slots.js";
 import { plain, short, si } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").State} State */

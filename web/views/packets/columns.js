@@ -1,4 +1,4 @@
-/** The columns of the table of packets: their texts, and their widths in a narrow room. */
+/** Texts and widths of the columns of the packet table. */
 import { count } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */

@@ -1,4 +1,4 @@
-/** Bytes for the clipboard, as hex; where the browser refuses, as a text that is selected. */
+/** Copies bytes as hex; if the browser refuses, shows them as selected text. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
@@ -27,7 +27,7 @@ export async function copyHex(hex, what) {
   }
 }
 
-/** All rows on show, a line each. @param {import("../../engine/engine.js").Engine} engine */
+/** All visible rows, one per line. @param {import("../../engine/engine.js").Engine} engine */
 export async function copyAll(engine) {
   let hex = "";
   for (let from = 0; from !== undefined; ) {

@@ -1,4 +1,4 @@
-/** Packets as files, for the menu of exports. */
+/** Packet files for the export panel. */
 import { isFiltering } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -13,7 +13,7 @@ const FORMATS = [
 ];
 
 /**
- * The files that the packets of the run on show can be saved as: of all rows, of those that the filter shows, of
+ * The files that the packets of the visible run can be saved as: of all rows, of those that the filter shows, of
  * those on the line between the cursors; each as a table, as hex and as bytes. Nothing is made before `make`.
  * @param {State} state
  * @param {import("../../engine/engine.js").Engine} engine

@@ -1,4 +1,4 @@
-/** The inspector of the current row: what it is, in a line. All of it (unfolded.js) loads when it is first unfolded. */
+/** The inspector of the current row; loads unfolded.js on demand. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
@@ -58,7 +58,7 @@ export function createInspector(page) {
 
   return {
     show,
-    /** Lights the bytes and fields that something points at. @param {State} state */
+    /** Highlights the bytes and fields that something points at. @param {State} state */
     light: (state) => unfolded?.light(state),
     row: () => row,
     reset: () => {

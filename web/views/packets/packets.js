@@ -1,7 +1,4 @@
-/**
- * The packets view: what went over the line, a row a packet, frame or reply; a search and filters over all
- * of them, which the worker judges; and an inspector of the current row.
- */
+/** The packets view: a table of packets, frames and replies with search, filters and inspector. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";

@@ -1,4 +1,4 @@
-/** Search and filters of the packets: what is asked for is state, which rows that are the worker knows. */
+/** Search and filters of the packets; the worker finds the rows. */
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { NO_FILTER } from "../../state/initial.js";

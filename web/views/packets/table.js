@@ -1,4 +1,4 @@
-/** The table: only the rows on show are in the document, the scroll bar stands for all of them. */
+/** The packet table. */
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
@@ -23,7 +23,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   const body = /** @type {HTMLTableSectionElement} */ (table.querySelector("tbody"));
   /** @type {PacketPage} */
   let reply = { total: 0, shown: 0, matches: 0, unit: "ms", rows: [] };
-  /** Position of the current row among those on show. */
+  /** Position of the current row among those visible. */
   let current = 0;
   /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
   let widest = {};
@@ -66,7 +66,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     return page?.rows[0] ?? null;
   }
 
-  /** Asks for the rows on show. */
+  /** Requests the visible rows. */
   async function reload() {
     const { result, bare } = now();
     // Out of sight nothing is drawn; whether there is anything to show has to be known all the same.

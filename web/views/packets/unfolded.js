@@ -1,8 +1,4 @@
-/**
- * The inspector unfolded: all of one row. Its bytes, its fields with the bytes that they stand in, its check, and the times
- * around it. What is pointed at, or has the focus, is highlighted in all views; what others point at is highlighted here.
- * It loads when it is first unfolded.
- */
+/** The unfolded inspector: bytes, fields, CRC and times of a row. */
 import { byId, element, fill, say } from "../../dom.js";
 import { count, time } from "../../state/number.js";
 
@@ -63,7 +59,7 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
     });
   }
 
-  /** Shows a row; none where there is none any more. @param {PacketDetail | null} shown */
+  /** Shows a row; none if there is none any more. @param {PacketDetail | null} shown */
   function show(shown) {
     row = shown;
     if (!row) return;
@@ -125,7 +121,7 @@ export function createUnfolded({ dispatch, now }, bytes, fields) {
     bytes.hidden = fields.hidden = hex.length === 0;
   }
 
-  /** Lights the bytes and fields that something points at. @param {State} state */
+  /** Highlights the bytes and fields that something points at. @param {State} state */
   function light({ highlighted, result }) {
     const shown = row;
     const over =

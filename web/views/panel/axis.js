@@ -1,4 +1,4 @@
-/** The virtual axis: ends, switches, the nut where it really is, and where the controller believes it to be. */
+/** The virtual axis: hard stops, switches, the nut, and the position of the controller. */
 import { element, fill, say } from "../../dom.js";
 import { count } from "../../state/number.js";
 

@@ -1,4 +1,4 @@
-/** The line under the rows for the chosen entry of the script: its name, its time, and how to remove it. */
+/** The selected entry of the script: name, time and remove button. */
 import { element, say } from "../../dom.js";
 import { parseNumber } from "../../state/parse_number.js";
 import { nameOf } from "./script.js";
@@ -26,23 +26,23 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
     ...[key("N"), " and ", key("P"), " and move it with ", key(","), " and ", key(".")],
   );
   /** @type {Placed | null} */
-  let chosen = null;
+  let selected = null;
   cycle.addEventListener("change", () => {
     const given = parseNumber(cycle.value, "cycles", { integer: true, clockHz: clock() });
     if ("message" in given) return report(given.message, true);
-    const to = chosen && move(chosen, given.value);
+    const to = selected && move(selected, given.value);
     if (to) cycle.value = String(to.entry.cycle);
     return undefined;
   });
   removeButton.addEventListener("click", () => {
-    if (chosen) remove(chosen);
+    if (selected) remove(selected);
   });
 
   return {
     parts: [line, idle],
     /** @param {Placed | null} placed @param {boolean} hasEntries */
     show(placed, hasEntries) {
-      chosen = placed;
+      selected = placed;
       line.hidden = placed === null;
       idle.hidden = placed !== null || !hasEntries;
       if (!placed) return;

@@ -1,4 +1,4 @@
-/** The front of a panel: display, LED, buttons, keys, emergency stop, power, switches; how they stand at one moment. */
+/** The front panel: display, LED, buttons, keys, emergency stop, power and switches. */
 import { element, fill, say } from "../../dom.js";
 import { advice, lcd, led, SWITCHES, sentence } from "./names.js";
 import { driven } from "./script.js";
@@ -7,7 +7,7 @@ import { driven } from "./script.js";
 /** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean, loops: number, groups: number}} Moment */
 /** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} Hand */
 
-/** Buttons of the panel, a row each. */
+/** Buttons of the panel, one per row. */
 const BUTTONS = [
   ["start", "pause", "clear"],
   ["jog_minus", "jog_plus", "zero", "home"],

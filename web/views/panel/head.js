@@ -1,4 +1,4 @@
-/** The head of the view Panel: the controller, how long a press lasts, live and its speed, and the time on show. */
+/** The header of the panel view: controller, hold time and live mode. */
 import { element, options, say } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { parseHold, shortestPress } from "./presses.js";

@@ -1,4 +1,4 @@
-/** The names of a panel's numbers (CONTROLLER.md G2, G8): inputs, states, alarms, trust; its display and its LED. */
+/** Names of panel numbers (CONTROLLER.md G2, G8): inputs, states, alarms, display and LED. */
 
 /** Inputs in the core's order. */
 export const INPUTS = [

@@ -1,4 +1,4 @@
-/** Draws the rows of a panel over time: bands of what it did, levels of its inputs, and the entries of its script. */
+/** Draws the rows of a panel over time: state, inputs and script. */
 import { si } from "../../state/number.js";
 import { color, font } from "../../time/plot.js";
 import { read, STATES, TRUST } from "./names.js";
@@ -118,23 +118,23 @@ export function paintLevel(ground, changes, initial, top) {
   context.stroke();
 }
 
-/** An entry of the script: a diamond that can be taken. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top @param {boolean} chosen */
-export function paintEntry(context, x, top, chosen) {
-  const [y, reach] = [top + ROW_PX / 2, chosen ? 6 : 4];
+/** An entry of the script: a diamond that can be taken. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top @param {boolean} selected */
+export function paintEntry(context, x, top, selected) {
+  const [y, reach] = [top + ROW_PX / 2, selected ? 6 : 4];
   context.beginPath();
   context.moveTo(x - reach, y);
   context.lineTo(x, y - reach);
   context.lineTo(x + reach, y);
   context.lineTo(x, y + reach);
   context.closePath();
-  context.fillStyle = color(chosen ? "--accent" : "--pane");
+  context.fillStyle = color(selected ? "--accent" : "--pane");
   context.fill();
-  context.strokeStyle = color(chosen ? "--ink" : "--wire");
+  context.strokeStyle = color(selected ? "--ink" : "--wire");
   context.lineWidth = 1.5;
   context.stroke();
 }
 
-/** A press that meant nothing. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top */
+/** A press that had no effect. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top */
 export function paintIgnored(context, x, top) {
   const y = top + 6;
   context.strokeStyle = color("--error");
@@ -147,11 +147,11 @@ export function paintIgnored(context, x, top) {
   context.stroke();
 }
 
-/** Name of a row, in the gutter. @param {CanvasRenderingContext2D} context @param {string} name @param {number} right @param {number} top @param {boolean} chosen */
-export function paintName(context, name, right, top, chosen) {
-  context.font = `${chosen ? "bold " : ""}11px ${font()}`;
+/** Name of a row, in the gutter. @param {CanvasRenderingContext2D} context @param {string} name @param {number} right @param {number} top @param {boolean} selected */
+export function paintName(context, name, right, top, selected) {
+  context.font = `${selected ? "bold " : ""}11px ${font()}`;
   context.textAlign = "right";
-  context.fillStyle = color(chosen ? "--ink" : "--quiet");
+  context.fillStyle = color(selected ? "--ink" : "--quiet");
   context.fillText(name, right - 6, top + ROW_PX / 2, right - 8);
   context.textAlign = "left";
   context.font = `11px ${font()}`;

@@ -1,4 +1,4 @@
-/** The pane of the panel: what draws it (panel.js) and its style load when it is first opened. */
+/** The pane of the panel view; loads panel.js on demand. */
 import { createLater } from "../later.js";
 
 /** @typedef {import("../later.js").Page} Page */

@@ -1,6 +1,6 @@
 /**
- * The view Panel: the front of a stand-alone controller as it is at the cursor, its presses over time, and its axis. A press goes
- * into the scenario at the cursor, or live; so it is undone, saved and linked as any change is. It loads when first opened.
+ * The panel view: the front panel at the cursor, its inputs over time, and its axis. Presses become inputs of the
+ * scenario.
  */
 import { byId, element, fill, say, style } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
@@ -72,7 +72,7 @@ export async function createPanel({ engine, dispatch, now }) {
   /** The result and the controller of the story. @type {{result: State["result"], index: number} | null} */
   let storyOf = null;
   /** @type {Placed | null} */
-  let chosen = null;
+  let selected = null;
 
   const live = createPlayback({
     hz: clock,
@@ -111,8 +111,8 @@ export async function createPanel({ engine, dispatch, now }) {
     room: () => (isWide.matches ? body.clientHeight - axisPlace.offsetHeight - LINES_PX : 0),
     channel: index,
     print: (steps) => short(steps / (panel()?.pulses_per_unit || 1), 6),
-    chosen(placed) {
-      chosen = placed;
+    selected(placed) {
+      selected = placed;
       showLine();
     },
   });
@@ -124,7 +124,7 @@ export async function createPanel({ engine, dispatch, now }) {
   }
 
   function showLine() {
-    line.show(chosen, editor.entries().length > 0);
+    line.show(selected, editor.entries().length > 0);
   }
 
   function play() {
@@ -180,7 +180,7 @@ export async function createPanel({ engine, dispatch, now }) {
     fill(/** @type {Element} */ (ignored.lastElementChild), ...buttons, ...rest);
   }
 
-  /** The panel at the cycle on show. @param {State} state */
+  /** The panel at the visible cycle. @param {State} state */
   async function draw(state) {
     strip.paintCursor(state);
     const { cycle, name } = shownCycle(state, played());
@@ -202,7 +202,7 @@ export async function createPanel({ engine, dispatch, now }) {
     head.showControllers(panels().length, index());
     if (before?.scenario !== state.scenario) {
       head.showHold();
-      if (chosen) strip.choose(editor.same(chosen));
+      if (selected) strip.choose(editor.same(selected));
       else strip.paint();
       showLine();
       // The report is of a change that may be undone by now.

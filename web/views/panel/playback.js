@@ -1,7 +1,4 @@
-/**
- * The panel live: the cursor goes on with the clock, or slower, and a button that is held goes into the script as it is pressed
- * and let go. While it is held its release stands a little ahead, and is put off as time comes near.
- */
+/** Live mode of a panel: the cursor follows the clock, and held buttons become inputs. */
 
 /** A release that is to come stands so far ahead, in s of a person's time. */
 const AHEAD_S = 1;

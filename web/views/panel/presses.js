@@ -1,4 +1,4 @@
-/** When a press goes into the script and how long it lasts, and what is reported of it. */
+/** Time, length and text of a press. */
 import { count, si } from "../../state/number.js";
 import { parseNumber } from "../../state/parse_number.js";
 import { endOf } from "../../state/time_window.js";
@@ -18,7 +18,7 @@ const beyond = (clock) => Math.round(BEYOND_S * clock);
 /** Minimum cycles of a press that is seen. @param {any} panel @param {number} clock */
 export const shortestPress = (panel, clock) => (panel?.debounce_cycles ?? DEBOUNCE_CYCLES) + beyond(clock);
 
-/** The cycle on show: of the playback, under the pointer, at the cursor, else the end. @param {State} state @param {number | null} played */
+/** The visible cycle: of the playback, under the pointer, at the cursor, else the end. @param {State} state @param {number | null} played */
 export function shownCycle(state, played) {
   const { hover, cursors } = state;
   if (played !== null) return { cycle: played, name: "live" };

@@ -1,7 +1,4 @@
-/**
- * The script of a panel's inputs, as a person changes it: presses are put, moved, removed. Nothing is drawn or dispatched
- * here; what cannot be is told in a sentence, and the script stays as it is.
- */
+/** Changes of the script of panel inputs; errors are returned as text. */
 import { SHARED } from "./names.js";
 
 /** @typedef {{cycle: number, input: string | null, level: number, push_steps: number | null}} Entry */

@@ -1,4 +1,4 @@
-/** Edits of the scripts of stand-alone controllers in the scenario: each is dispatched, and what became of it is reported. No DOM. */
+/** Dispatches changes of scripts and reports the result. No DOM. */
 import { exactTime } from "../../state/number.js";
 import { levelText, pressCycle, pressText, pushText, shortestPress, whyNoPush } from "./presses.js";
 import { entriesOf, inputsOf, moved, nameOf, ownerOf, press, put, sameEntry } from "./script.js";

@@ -1,4 +1,4 @@
-/** What became of a panel: its records, the levels of its inputs, and the presses that meant nothing. */
+/** The history of a panel: records, inputs and ignored presses. */
 import { count } from "../../state/number.js";
 import { INPUTS, read, STATES } from "./names.js";
 
@@ -54,7 +54,7 @@ export function momentFrom(reply) {
   };
 }
 
-/** The presses that meant nothing, as far as they are listed. @param {Story} story @param {boolean} hasHome @param {(cycle: number) => string} timeOf */
+/** The presses that had no effect, as far as they are listed. @param {Story} story @param {boolean} hasHome @param {(cycle: number) => string} timeOf */
 export function ignoredPresses({ ignored }, hasHome, timeOf) {
   return {
     title: `${count(ignored.length)} ${ignored.length === 1 ? "press" : "presses"} ignored`,

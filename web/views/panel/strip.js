@@ -1,7 +1,4 @@
-/**
- * The rows of a panel over the time axis that all views share: bands of state, group, loop and trust, the levels of its inputs,
- * and the entries of its script, which a pointer drags and keys move.
- */
+/** The rows of a panel over time, with draggable script entries. */
 import { element } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
@@ -27,7 +24,7 @@ import { paintStrip } from "./strip_picture.js";
 /** What a fast key moves an entry by, in columns of pixels. */
 const FAST = 10;
 
-/** @param {HTMLElement} place @param {Script & import("./pane.js").Page & {chosen: (placed: Placed | null) => void, print: (steps: number) => string, room: () => number, channel: () => number}} page  `print` says a position, `room` how tall it all may be. */
+/** @param {HTMLElement} place @param {Script & import("./pane.js").Page & {selected: (placed: Placed | null) => void, print: (steps: number) => string, room: () => number, channel: () => number}} page  `print` says a position, `room` how tall it all may be. */
 export function createStrip(place, page) {
   const { engine, dispatch, now } = page;
   const canvas = element("canvas", {
@@ -51,7 +48,7 @@ export function createStrip(place, page) {
   /** Height of the position's curve. */
   let curvePx = 0;
   /** @type {Placed | null} */
-  let chosen = null;
+  let selected = null;
   /** What is dragged, and how far the pointer was from it. @type {{placed: Placed, by: number, moved: boolean} | null} */
   let drag = null;
 
@@ -66,9 +63,9 @@ export function createStrip(place, page) {
   /** @param {Placed | null} placed */
   function choose(placed) {
     // Another one's moves are a change of their own.
-    if (placed?.entry.input !== chosen?.entry.input || placed === null) dispatch({ type: "committed" });
-    chosen = placed;
-    page.chosen(placed);
+    if (placed?.entry.input !== selected?.entry.input || placed === null) dispatch({ type: "committed" });
+    selected = placed;
+    page.selected(placed);
     paint();
   }
 
@@ -115,7 +112,7 @@ export function createStrip(place, page) {
 
   /** Chooses the next or the previous entry. @param {number} by */
   function step(by) {
-    const to = entryAfter(page.entries(), chosen, by);
+    const to = entryAfter(page.entries(), selected, by);
     if (!to) return;
     choose(to);
     reveal(page, to.entry.cycle);
@@ -123,16 +120,16 @@ export function createStrip(place, page) {
 
   /** Chooses an entry of the row below or above. @param {number} by */
   function stepRow(by) {
-    const to = entryBelow(page.entries(), rows, chosen, by);
+    const to = entryBelow(page.entries(), rows, selected, by);
     if (to) choose(to);
   }
 
   /** @param {number} columns */
   function nudge(columns) {
-    if (!chosen) return;
+    if (!selected) return;
     const { start, end } = shown(now());
     const column = Math.max(1, Math.round((end - start) / Math.max(1, plot.right - plot.left)));
-    const to = page.move(chosen, chosen.entry.cycle + columns * column, true);
+    const to = page.move(selected, selected.entry.cycle + columns * column, true);
     if (to) choose(to);
   }
 
@@ -148,9 +145,9 @@ export function createStrip(place, page) {
     {
       keys: ["Enter"],
       text: "move cursor A to the selected input",
-      run: () => (chosen ? dispatch({ type: "cursor", which: "a", cycle: chosen.entry.cycle }) : false),
+      run: () => (selected ? dispatch({ type: "cursor", which: "a", cycle: selected.entry.cycle }) : false),
     },
-    { keys: ["Delete"], text: "remove the selected input", run: () => (chosen ? page.remove(chosen) : false) },
+    { keys: ["Delete"], text: "remove the selected input", run: () => (selected ? page.remove(selected) : false) },
   ]);
 
   /** @param {State} state @returns {import("./paint.js").Ground | null} */
@@ -178,12 +175,12 @@ export function createStrip(place, page) {
     const clock = state.result?.summary.clock_hz ?? 1;
     const { print } = page;
     const entries = page.entries();
-    paintStrip(ground, { story, curve, rows, entries, chosen, clock, curvePx, height: tall, print });
+    paintStrip(ground, { story, curve, rows, entries, selected, clock, curvePx, height: tall, print });
     fit(overlay);
     paintCursor(state);
   }
 
-  /** Asks for the position over what is shown. @param {State} state */
+  /** Requests the position over what is shown. @param {State} state */
   async function curveOf(state) {
     const { result } = state;
     if (!result || stack.clientWidth < 60) return;
@@ -209,7 +206,7 @@ export function createStrip(place, page) {
   return {
     paint,
     paintCursor,
-    /** The entry that a person has chosen; another one after the script has changed. @param {Placed | null} placed */
+    /** The entry that a person has selected; another one after the script has changed. @param {Placed | null} placed */
     choose,
     /** @param {import("./story.js").Story} next @param {string} about */
     show(next, about) {

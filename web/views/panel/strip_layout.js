@@ -1,4 +1,4 @@
-/** Rows of the panel's strip, and which entry of the script a pointer or a key means. */
+/** Rows of the strip, and the script entry under a pointer or key. */
 import { INPUTS } from "./names.js";
 
 /** @typedef {import("./script.js").Entry} Entry */
@@ -25,7 +25,7 @@ export function rowsOf(changed, entries) {
 /** The row of an entry, below the bands. @param {string[]} rows @param {Entry} entry */
 export const rowOf = (rows, { input }) => BANDS.length + rows.indexOf(input ?? PUSH);
 
-/** Heights in a room of so many CSS pixels: the curve takes what the rows leave. @param {number} room @param {string[]} rows */
+/** Heights in a room of this many CSS pixels: the curve takes what the rows leave. @param {number} room @param {string[]} rows */
 export function heights(room, rows) {
   const below = (BANDS.length + rows.length) * ROW_PX;
   const curve = Math.min(MAX_CURVE_PX, Math.max(MIN_CURVE_PX, Math.floor(room - below - TIME_PX)));
@@ -35,16 +35,16 @@ export function heights(room, rows) {
 /** @param {Placed | null} one @param {Placed} other */
 const isSame = (one, other) => one !== null && one.owner === other.owner && one.index === other.index;
 
-/** The entry before or after the chosen one; from none the last or the first. @param {Placed[]} all @param {Placed | null} chosen @param {number} by @returns {Placed | undefined} */
-export function entryAfter(all, chosen, by) {
-  const at = all.findIndex((each) => isSame(chosen, each));
+/** The entry before or after the selected one; from none the last or the first. @param {Placed[]} all @param {Placed | null} selected @param {number} by @returns {Placed | undefined} */
+export function entryAfter(all, selected, by) {
+  const at = all.findIndex((each) => isSame(selected, each));
   return all[at < 0 ? (by > 0 ? 0 : all.length - 1) : at + by];
 }
 
-/** The entry of the next row up or down that is nearest in time. @param {Placed[]} all @param {string[]} rows @param {Placed | null} chosen @param {number} by @returns {Placed | undefined} */
-export function entryBelow(all, rows, chosen, by) {
-  const away = (/** @type {Placed} */ { entry }) => Math.abs(entry.cycle - (chosen?.entry.cycle ?? 0));
-  const from = chosen ? rowOf(rows, chosen.entry) : BANDS.length - (by > 0 ? 1 : 0);
+/** The entry of the next row up or down that is nearest in time. @param {Placed[]} all @param {string[]} rows @param {Placed | null} selected @param {number} by @returns {Placed | undefined} */
+export function entryBelow(all, rows, selected, by) {
+  const away = (/** @type {Placed} */ { entry }) => Math.abs(entry.cycle - (selected?.entry.cycle ?? 0));
+  const from = selected ? rowOf(rows, selected.entry) : BANDS.length - (by > 0 ? 1 : 0);
   for (let at = from + by; at >= BANDS.length && at < BANDS.length + rows.length; at += by) {
     const [first] = all.filter(({ entry }) => rowOf(rows, entry) === at).sort((a, b) => away(a) - away(b));
     if (first) return first;

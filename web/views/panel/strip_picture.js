@@ -1,4 +1,4 @@
-/** The picture of the panel's strip: the position's curve, the bands, the inputs, and the entries of the script. */
+/** Draws the strip: position, bands, inputs and script. */
 import { paintBand, paintCurve, paintEntry, paintIgnored, paintLevel, paintName, paintTime, xOf } from "./paint.js";
 import { BANDS, PUSH, ROW_PX, rowOf } from "./strip_layout.js";
 
@@ -10,10 +10,10 @@ const SAME_PX = 0.05;
 
 /**
  * @param {Ground} ground
- * @param {{story: import("./story.js").Story, curve: import("./paint.js").Curve | null, rows: string[], entries: Placed[], chosen: Placed | null,
+ * @param {{story: import("./story.js").Story, curve: import("./paint.js").Curve | null, rows: string[], entries: Placed[], selected: Placed | null,
  *   clock: number, curvePx: number, height: number, print: (steps: number) => string}} strip
  */
-export function paintStrip(ground, { story, curve, rows, entries, chosen, clock, curvePx, height, print }) {
+export function paintStrip(ground, { story, curve, rows, entries, selected, clock, curvePx, height, print }) {
   const { context, plot } = ground;
   const isShown = (/** @type {number} */ cycle) => cycle >= ground.start && cycle <= ground.end;
   const topOf = (/** @type {number} */ row) => curvePx + row * ROW_PX;
@@ -23,10 +23,10 @@ export function paintStrip(ground, { story, curve, rows, entries, chosen, clock,
     paintName(context, band, plot.left, topOf(at), false);
     paintBand(ground, story.records, band, topOf(at));
   }
-  const chosenRow = chosen && rowOf(rows, chosen.entry);
+  const selectedRow = selected && rowOf(rows, selected.entry);
   for (const [at, input] of rows.entries()) {
     const top = topOf(BANDS.length + at);
-    paintName(context, input, plot.left, top, BANDS.length + at === chosenRow);
+    paintName(context, input, plot.left, top, BANDS.length + at === selectedRow);
     if (input !== PUSH) paintLevel(ground, story.inputs.get(input), input === "power" ? 1 : 0, top);
     for (const press of story.ignored)
       if (press.input === input && isShown(press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
@@ -35,11 +35,11 @@ export function paintStrip(ground, { story, curve, rows, entries, chosen, clock,
   const last = new Map();
   for (const { entry, owner, index } of entries) {
     if (!isShown(entry.cycle)) continue;
-    const isChosen = owner === chosen?.owner && index === chosen.index;
+    const isSelected = owner === selected?.owner && index === selected.index;
     const x = xOf(ground, entry.cycle);
     const row = rowOf(rows, entry);
-    if (!isChosen && Math.abs(x - (last.get(row) ?? -Infinity)) < SAME_PX) continue;
+    if (!isSelected && Math.abs(x - (last.get(row) ?? -Infinity)) < SAME_PX) continue;
     last.set(row, x);
-    paintEntry(context, x, topOf(row), isChosen);
+    paintEntry(context, x, topOf(row), isSelected);
   }
 }

@@ -1,4 +1,4 @@
-/** Edges near a cycle, the edge that a jump goes to, and the row that a key chooses. */
+/** Finds edges near a cycle and rows for keys. */
 import { time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
 import { shows } from "./rows.js";
@@ -14,7 +14,7 @@ export function reachOf(state, { left, right }) {
   return (SNAP_PX * (end - start)) / (right - left);
 }
 
-/** The edge nearest to a cycle and within reach of it; null where there is none. @param {(number | null | undefined)[]} edges @param {number} cycle @param {number} reach */
+/** The edge nearest to a cycle and within reach of it; null if there is none. @param {(number | null | undefined)[]} edges @param {number} cycle @param {number} reach */
 export function nearestEdge(edges, cycle, reach) {
   const near = edges.filter((edge) => typeof edge === "number" && Math.abs(edge - cycle) <= reach);
   const [first] = near.sort((a, b) => Math.abs(Number(a) - cycle) - Math.abs(Number(b) - cycle));
@@ -35,9 +35,9 @@ export function jumpText(name, kind, forward, edge, clock) {
   return `${name}: ${which}edge at ${time(edge / clock)}, cycle ${edge}.`;
 }
 
-/** The signal above or below the chosen one. @param {import("./rows.js").Row[]} rows @param {number} chosen @param {number} by */
-export function rowAfter(rows, chosen, by) {
+/** The signal above or below the selected one. @param {import("./rows.js").Row[]} rows @param {number} selected @param {number} by */
+export function rowAfter(rows, selected, by) {
   const signals = rows.flatMap((row) => ("bit" in row ? [row] : []));
-  const at = signals.findIndex((row) => shows(row, chosen));
+  const at = signals.findIndex((row) => shows(row, selected));
   return signals[Math.min(signals.length - 1, Math.max(0, at + by))];
 }

@@ -1,4 +1,4 @@
-/** The edges as a table, a page at a time: what the logic view shows, in words. */
+/** The table of edges, one page at a time. */
 import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, time } from "../../state/number.js";

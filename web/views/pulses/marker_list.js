@@ -1,4 +1,4 @@
-/** The table of the markers: what lies between them. */
+/** The table of markers. */
 import { button, byId, element, fill } from "../../dom.js";
 import { count, time } from "../../state/number.js";
 import { goToMarker } from "../../time/timeline.js";

@@ -1,4 +1,4 @@
-/** The markers 0 to 9: a button that sets one, and a table of what lies between them (marker_list.js), which goes with the last. */
+/** The markers 0 to 9 and their table (marker_list.js). */
 import { byId, element, fill, say } from "../../dom.js";
 import { shown } from "../../state/time_window.js";
 

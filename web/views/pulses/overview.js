@@ -1,7 +1,4 @@
-/**
- * The strip over the pulses: how busy the whole run is, and which part of it is shown. The part is dragged, by its
- * edges made longer or shorter, and a press beside it brings it there; keys do the same.
- */
+/** The overview strip above the pulses, with the visible part to drag. */
 import { byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
@@ -14,14 +11,14 @@ import { paintOverview } from "./paint.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 
-/** An edge of the part is taken within so many CSS pixels. */
+/** An edge of the part is taken within this many CSS pixels. */
 const EDGE_PX = 6;
 
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createOverview({ engine, dispatch, now }) {
   const page = { dispatch, now };
   const canvas = /** @type {HTMLCanvasElement} */ (byId("overview"));
-  /** The strip without the part on show. */
+  /** The strip without the visible part. */
   const strip = document.createElement("canvas");
   /** @type {PulseColumns | null} */
   let whole = null;

@@ -1,11 +1,8 @@
-/**
- * Paints the logic view's rows on a 2D context: a column in which a signal was high and low is a bar from top
- * to bottom, so one edge is a line and a region too dense to draw is a filled block.
- */
+/** Paints rows of the logic view. A column with both levels is a bar, so dense regions become blocks. */
 import { color } from "../../time/plot.js";
 
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
-/** @typedef {{columns: PulseColumns, from: number, to: number, at: (column: number) => number}} Picture  Columns `from` to `to` are on show; `at` is a column's left edge in device pixels. */
+/** @typedef {{columns: PulseColumns, from: number, to: number, at: (column: number) => number}} Picture  Columns `from` to `to` are visible; `at` is a column's left edge in device pixels. */
 
 /** Consecutive busy columns from which on they count as a block. */
 const BLOCK = 4;

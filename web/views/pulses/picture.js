@@ -1,4 +1,4 @@
-/** The picture of the logic view: its rows, one below the other, and what is highlighted in them. */
+/** Draws the logic view with its highlights. */
 
 import { rowPx } from "../../state/row_choices.js";
 import { shown } from "../../state/time_window.js";
@@ -42,15 +42,15 @@ export function paintRows(canvas, state, plot, answer, spans) {
   for (const [index, row] of rowsOf(state).entries()) {
     const top = Math.round((index * px + 4) * scale);
     const height = Math.round((px - 6) * scale);
-    const chosen = shows(row, state.row);
-    if (chosen) {
+    const selected = shows(row, state.row);
+    if (selected) {
       context.fillStyle = color("--chosen");
       context.fillRect(0, top - 3 * scale, width * scale, px * scale);
     }
-    context.fillStyle = color(chosen ? "--ink" : "--quiet");
+    context.fillStyle = color(selected ? "--ink" : "--quiet");
     context.textAlign = "right";
     context.textBaseline = "middle";
-    context.font = `${chosen ? "bold " : ""}${font}`;
+    context.font = `${selected ? "bold " : ""}${font}`;
     const folds = "open" in row && row.open !== undefined;
     const name = ("short" in row && row.short) || row.name;
     context.fillText(fitting(context, name, left - (folds ? 28 : 12) * scale), left - 8 * scale, top + height / 2);

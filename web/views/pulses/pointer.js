@@ -1,4 +1,4 @@
-/** The pointer over the pulses: what it points at lights up in all views, and a click chooses it. */
+/** The pointer over the pulses: highlight and selection. */
 import { unlessDropped } from "../../engine/engine.js";
 import { cycleAt, onTimeAxis } from "../../time/timeline.js";
 import { nearestEdge, reachOf } from "./edge_search.js";
@@ -6,7 +6,7 @@ import { rowsOf, shows } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** The sign that folds a channel is within so many CSS pixels of the left edge. */
+/** The sign that folds a channel is within this many CSS pixels of the left edge. */
 const FOLD_PX = 26;
 
 /**

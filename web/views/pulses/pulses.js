@@ -1,4 +1,4 @@
-/** The pulses view: a logic analyser over all signals of the bus, with the line and the ticks decoded between them. */
+/** The pulses view: a logic analyzer of all signals, with decoded line and ticks. */
 import { byId, options, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { listen } from "../../shell/commands.js";
@@ -97,7 +97,7 @@ export function createPulses({ engine, dispatch, now }) {
     );
   }
 
-  /** Sets cursor A to the next edge of the chosen row and brings it into view. @param {boolean} forward */
+  /** Sets cursor A to the next edge of the selected row and brings it into view. @param {boolean} forward */
   async function jump(forward) {
     const state = now();
     if (!state.result) return;
@@ -111,7 +111,7 @@ export function createPulses({ engine, dispatch, now }) {
     reading.speak(jumpText(nameOf(state, state.row), kind, forward, edge, state.result.summary.clock_hz));
   }
 
-  /** Asks for what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */
+  /** Requests what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */
   async function refresh(state) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
@@ -189,7 +189,7 @@ export function createPulses({ engine, dispatch, now }) {
     byId("views").style.setProperty("--rows-px", `${tall}px`);
   }
 
-  /** Scrolls the chosen row into view. @param {State} state */
+  /** Scrolls the selected row into view. @param {State} state */
   function follow(state) {
     const scroller = /** @type {HTMLElement} */ (stack.parentElement);
     const tall = px();

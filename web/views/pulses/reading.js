@@ -1,4 +1,4 @@
-/** The line under the pulses: the pointer's time, the pulse or span under it, the cursors and what lies between them; and what is spoken. */
+/** The readings below the pulses: pointer, pulse or span, and cursors. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short, si, time } from "../../state/number.js";
@@ -13,7 +13,7 @@ const coarse = () => matchMedia("(pointer: coarse)").matches;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createReading({ engine, now }) {
-  /** What is under the pointer, in words. */
+  /** What is under the pointer, as text. */
   let pointed = "";
   /** What was announced last, shown until the pointer moves. */
   let announced = "";
@@ -79,7 +79,7 @@ export function createReading({ engine, now }) {
     timer = window.setTimeout(() => say(byId("pulses-sentence"), text), SPEAK_MS);
   }
 
-  /** Speaks what the chosen row does at cursor A. */
+  /** Speaks what the selected row does at cursor A. */
   async function speakCursor() {
     const {
       row,
@@ -107,7 +107,7 @@ export function createReading({ engine, now }) {
   return { signal, span, speak, speakCursor, render };
 }
 
-/** A level and what is around it in words. @param {State} state @param {number} bit @param {Pulse} pulse */
+/** A level and what is around it as text. @param {State} state @param {number} bit @param {Pulse} pulse */
 function measured(state, bit, { high, begin, end, next }) {
   const clock = state.result?.summary.clock_hz ?? 1;
   const level = `${nameOf(state, bit)} ${high ? "high" : "low"}`;

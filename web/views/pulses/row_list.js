@@ -1,4 +1,4 @@
-/** The rows as the visitor has them: the list in their panel, a line a group, and what keys do to the chosen one. */
+/** The list of rows in their panel, and the keys of the selected row. */
 import { button, byId, element, fill, say } from "../../dom.js";
 import {
   AS_THEY_ARE,
@@ -17,7 +17,7 @@ import { calledBy, groupsOf, rowsOf, shownGroups, shows } from "./rows.js";
 /** @typedef {import("./rows.js").Group} Group */
 /** @typedef {{line: HTMLElement, box: HTMLInputElement, field: HTMLInputElement, up: HTMLButtonElement, down: HTMLButtonElement, put: (group: Group) => void}} Line */
 
-/** A key makes the rows so many CSS pixels taller or lower. */
+/** A key makes the rows this many CSS pixels taller or lower. */
 const STEP_PX = 3;
 
 /** @param {{speak: (text: string) => void} & import("../../state/types.js").Page} page */
@@ -27,7 +27,7 @@ export function createRowList({ speak, dispatch, now }) {
   const panel = byId("rows-panel");
   /** Lines of the panel by their groups: one that stays keeps its elements. @type {Map<string, Line>} */
   const lines = new Map();
-  /** Whether a key opens the panel: the focus goes to the chosen row's name. */
+  /** Whether a key opens the panel: the focus goes to the selected row's name. */
   let byKey = false;
   const choices = () => now().panes.pulses;
   /** @param {Partial<import("../../state/row_choices.js").RowChoices>} rows */
@@ -40,8 +40,8 @@ export function createRowList({ speak, dispatch, now }) {
     speak("The rows are reset.");
   });
 
-  /** The group of the chosen signal. */
-  function chosen() {
+  /** The group of the selected signal. */
+  function selectedGroup() {
     return groupsOf(now()).find(({ rows }) => rows.some((row) => shows(row, now().row)));
   }
 
@@ -62,10 +62,10 @@ export function createRowList({ speak, dispatch, now }) {
     speak(`${nameOf(what)} is row ${names.indexOf(beside) + 1} of ${names.length}.`);
   }
 
-  /** Another signal is chosen where the chosen one goes; the last one stays. @param {Group | undefined} what @param {boolean} away */
+  /** Another signal is selected where the selected one goes; the last one stays. @param {Group | undefined} what @param {boolean} away */
   function hide(what, away) {
     if (!what) return;
-    if (away && what.group === chosen()?.group) {
+    if (away && what.group === selectedGroup()?.group) {
       const rows = rowsOf(now());
       const from = rows.findIndex((row) => what.rows.some((own) => own.name === row.name && own.kind === row.kind));
       const others = rows.flatMap((row, at) =>
@@ -98,7 +98,7 @@ export function createRowList({ speak, dispatch, now }) {
 
   function onOpen() {
     paint(now());
-    if (byKey) lines.get(chosen()?.group ?? "")?.field.focus();
+    if (byKey) lines.get(selectedGroup()?.group ?? "")?.field.focus();
     byKey = false;
   }
 
@@ -175,9 +175,9 @@ export function createRowList({ speak, dispatch, now }) {
     onOpen,
     render,
     open,
-    /** By one among those on show. @param {number} by */
-    move: (by) => move(chosen(), by, shownGroups(now())),
-    hide: () => hide(chosen(), true),
+    /** By one among those visible. @param {number} by */
+    move: (by) => move(selectedGroup(), by, shownGroups(now())),
+    hide: () => hide(selectedGroup(), true),
     /** @param {number} steps */
     stretch: (steps) => stretch(steps * STEP_PX),
   };

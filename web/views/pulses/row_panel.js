@@ -1,7 +1,4 @@
-/**
- * The rows as the visitor has them: a panel under the button in the view's head, and keys for the chosen one. What both do
- * loads with the first of them (row_list.js).
- */
+/** The panel of rows; loads row_list.js on demand. */
 import { listen } from "../../shell/commands.js";
 import { createLazyPopover } from "../../shell/lazy_popover.js";
 

@@ -1,8 +1,4 @@
-/**
- * The rows of the logic view: which there are, which are on show. They come in groups, which the visitor orders, hides and
- * names: at first the line, so that it is in view beside the first channels; a channel is DIR and STEP, or both in one row
- * when it is folded. Under RX and TX stand their decoders, until they are folded.
- */
+/** The rows of the logic view, in groups that the user orders, hides and names. */
 
 import { selected } from "../../state/queries.js";
 import { inOrder } from "../../state/row_choices.js";
@@ -14,7 +10,7 @@ import { inOrder } from "../../state/row_choices.js";
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
  * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
  * @typedef {SignalRow | FoldedRow | SpanRow | LineRow} Row
- * @typedef {{group: string, own: string, rows: Row[]}} Group  Its rows, named as the visitor does; `own` is what it is called without that.
+ * @typedef {{group: string, own: string, rows: Row[]}} Group  Its rows, named as the user does; `own` is what it is called without that.
  */
 
 /** Signal bits (contract A3). */
@@ -62,7 +58,7 @@ export function hasLine(state) {
   return selected(state)?.changing.includes(RX) ?? false;
 }
 
-/** What the visitor calls a group, or what it is called without that. @param {State} state @param {string} group @param {string} own */
+/** What the user calls a group, or what it is called without that. @param {State} state @param {string} group @param {string} own */
 export function calledBy(state, group, own) {
   return state.panes.pulses.names[group] ?? own;
 }
@@ -87,7 +83,7 @@ function lineRows(state, { name: own, bit }) {
   ];
 }
 
-/** All groups that the run has something of, in the visitor's order, also those that are hidden. @param {State} state @returns {Group[]} */
+/** All groups that the run has something of, in the user's order, also those that are hidden. @param {State} state @returns {Group[]} */
 export function groupsOf(state) {
   const away = state.allSignals ? [] : idle(state).filter(({ bit }) => bit !== state.row);
   const framed = state.result?.summary.framed ?? false;
@@ -131,7 +127,7 @@ function channelRows(state, channel) {
       ];
 }
 
-/** Groups on show: those that are not hidden, and that of the chosen signal. @param {State} state */
+/** The visible groups: those that are not hidden, and that of the selected signal. @param {State} state */
 export function shownGroups(state) {
   const { hidden } = state.panes.pulses;
   return groupsOf(state).filter(
@@ -139,7 +135,7 @@ export function shownGroups(state) {
   );
 }
 
-/** The rows on show. @param {State} state @returns {Row[]} */
+/** The visible rows. @param {State} state @returns {Row[]} */
 export function rowsOf(state) {
   return shownGroups(state).flatMap(({ rows }) => rows);
 }
@@ -153,7 +149,7 @@ function signalsOfChannel(state, channel) {
   ];
 }
 
-/** Every signal that there is, on show or not. @param {State} state @returns {{name: string, bit: number}[]} */
+/** Every signal that there is, visible or not. @param {State} state @returns {{name: string, bit: number}[]} */
 export function signalsOf(state) {
   const line = [{ name: "EN", bit: EN }, ...LINE].map(({ name, bit }) => ({ name: calledBy(state, name, name), bit }));
   const channels = Array.from({ length: channelsOf(state) }, (_, channel) => signalsOfChannel(state, channel));

@@ -1,4 +1,4 @@
-/** The decoded rows of the logic view: bits, bytes and fields, packets and frames, replies, ticks, and what breaks the driver's timing. */
+/** Decoded rows of the logic view: bits, bytes, fields, packets, ticks and violations. */
 import { unlessDropped } from "../../engine/engine.js";
 import { ruleName } from "../../form/schema.js";
 import { si } from "../../state/number.js";
@@ -38,7 +38,7 @@ export function createSpans({ engine }) {
 
   let decoded = NOTHING;
 
-  /** Asks for what lies in the shown time, and calls `ready` as each answer comes; false where a newer question took their place. @param {State} state @param {number} width  CSS pixels. @param {() => void} ready @returns {Promise<boolean>} */
+  /** Requests what lies in the shown time, and calls `ready` as each answer comes; false where a newer question took their place. @param {State} state @param {number} width  CSS pixels. @param {() => void} ready @returns {Promise<boolean>} */
   async function fetch(state, width, ready) {
     const { start, end } = shown(state);
     const margin = (end - start) / 4;

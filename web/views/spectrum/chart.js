@@ -1,4 +1,4 @@
-/** The chart of a spectrum: a stem each harmonic, over frequency; what it shows is chosen in the view. */
+/** The chart of a spectrum. */
 import { byId } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { color } from "../../time/plot.js";
@@ -15,7 +15,7 @@ const TICKS_PX = 20;
 /** Room for a frequency's text, in CSS pixels. */
 const LABEL_PX = 56;
 
-/** What is chosen in the view's head. @returns {{quantity: Quantity, db: boolean}} */
+/** What is selected in the view's head. @returns {{quantity: Quantity, db: boolean}} */
 export function chosenSpectrum() {
   const value = (/** @type {string} */ id) => /** @type {HTMLSelectElement} */ (byId(id)).value;
   return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
@@ -25,7 +25,7 @@ export function chosenSpectrum() {
  * Of harmonics that fall into one pixel the strongest: more cannot be seen, and each stem takes its time.
  * @param {ArrayLike<number>} amplitudes  Of the first harmonic first.
  * @param {(n: number) => number} pixel
- * @param {number} from @param {number} to  The harmonics on show.
+ * @param {number} from @param {number} to  The visible harmonics.
  */
 function strongest(amplitudes, pixel, from, to) {
   /** @type {Map<number, number>} */
@@ -39,7 +39,7 @@ function strongest(amplitudes, pixel, from, to) {
 }
 
 /**
- * Ticks of a logarithmic axis and their labels, a line each: 1, 2 and 5, or 1, times powers of ten; of the powers each
+ * Ticks of a logarithmic axis and their labels, one per line: 1, 2 and 5, or 1, times powers of ten; of the powers each
  * second, third or so where they are more than wanted; and where that leaves too few, round numbers as on a linear axis.
  * @param {number} min @param {number} max  Hz. @param {number} wanted  Most ticks.
  */

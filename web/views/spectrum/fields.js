@@ -1,4 +1,4 @@
-/** The frequencies on show in fields and buttons: from, to, zoom in, zoom out, all of it, back, logarithmic. */
+/** Fields and buttons of the visible frequencies. */
 import { button, byId, element, say } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { parseNumber } from "../../state/parse_number.js";

@@ -1,7 +1,4 @@
-/**
- * The frequencies on show, on a linear or a logarithmic axis, and those before them to go back to. Places on the axis
- * are Hz, or their common logarithms. One axis for the view and for what is saved of it.
- */
+/** The visible frequencies on a linear or logarithmic axis. Positions are Hz or their logarithms. */
 import { DEPTH } from "../../state/history.js";
 
 /** @typedef {import("../../state/types.js").Span} Span */
@@ -31,7 +28,7 @@ export const frequency = {
 
   isLog: () => log,
 
-  /** Turns to the other kind of axis, with the same frequencies on show. @param {boolean} on */
+  /** Turns to the other kind of axis, with the same visible frequencies. @param {boolean} on */
   setLog(on) {
     if (on === log) return;
     const { start, end } = hertz();

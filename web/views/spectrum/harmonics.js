@@ -1,4 +1,4 @@
-/** The figures of a spectrum: harmonics beside their parts of the fundamental, the distortion, and how both are defined. */
+/** Figures of a spectrum: harmonics and distortion, with their definitions. */
 import { short, si } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").Spectrum} Spectrum */
@@ -20,7 +20,7 @@ export const UNITS = {
   acceleration_filtered: "steps/s²",
 };
 
-/** A quantity in words. @param {Quantity} quantity */
+/** A quantity as text. @param {Quantity} quantity */
 export function nameOf(quantity) {
   return quantity === "acceleration_filtered" ? "acceleration, filtered by the sensor" : quantity;
 }
@@ -69,12 +69,12 @@ function decibels(part) {
   return part > 0 ? `${short(20 * Math.log10(part), 4)} dB` : "nothing";
 }
 
-/** A harmonic on the scale that is chosen. @param {Part} part @param {Quantity} quantity @param {boolean} db */
+/** A harmonic on the scale that is selected. @param {Part} part @param {Quantity} quantity @param {boolean} db */
 export function value({ amplitude, part }, quantity, db) {
   return db ? decibels(part) : `${short(amplitude, 4)} ${UNITS[quantity]}`;
 }
 
-/** One harmonic in words. @param {ReturnType<typeof harmonics>[number]} row @param {Quantity} quantity @param {boolean} periodic */
+/** One harmonic as text. @param {ReturnType<typeof harmonics>[number]} row @param {Quantity} quantity @param {boolean} periodic */
 export function describe({ n, hz, parts }, quantity, periodic) {
   const each = parts.map(
     ({ name, amplitude, part }) =>

@@ -1,7 +1,4 @@
-/**
- * The pane of the spectrum: asks for it while the pane is on show, and says in a line where there is nothing but a note.
- * What draws it (spectrum.js) loads with the first one that there is room for.
- */
+/** The pane of the spectrum; loads spectrum.js on demand. */
 import { byId, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 

@@ -1,7 +1,4 @@
-/**
- * The spectrum where it is on show: harmonics of the ideal motion beside those of the pulses that make it, as chart and as
- * table, and the distortion. It loads with the first spectrum that there is room for.
- */
+/** The spectrum view: harmonics of the ideal and the actual motion as chart and table, and the distortion. */
 import { button, byId, element, say } from "../../dom.js";
 import { listen } from "../../shell/commands.js";
 import { si } from "../../state/number.js";
@@ -16,7 +13,7 @@ import { createHarmonicsTable } from "./table.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
 
-/** Of the harmonics within so many CSS pixels of the pointer the strongest is meant. */
+/** Of the harmonics within this many CSS pixels of the pointer the strongest is meant. */
 const NEAR_PX = 2;
 
 /** @param {import("../../state/types.js").Page} page */
@@ -41,7 +38,7 @@ export function createSpectrumView({ dispatch, now }) {
     frequency.show(window, joins);
     soon();
   };
-  /** The chosen harmonic's place, if it is on show. */
+  /** The selected harmonic's place, if it is visible. */
   const anchor = () => {
     const { start, end } = frequency.shown();
     const at = frequency.place(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
@@ -149,7 +146,7 @@ export function createSpectrumView({ dispatch, now }) {
     paint();
   }
 
-  /** What follows from the spectra and from what is chosen of them. */
+  /** What follows from the spectra and from what is selected of them. */
   function paint() {
     const { quantity, db } = chosenSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
@@ -183,7 +180,7 @@ export function createSpectrumView({ dispatch, now }) {
     mark(now());
   }
 
-  /** Lights up the harmonic that is pointed at, stem and row, and draws the box. @param {State} state */
+  /** Highlights the harmonic that is pointed at, stem and row, and draws the box. @param {State} state */
   function mark({ harmonic }) {
     const row = harmonic === null ? undefined : rows[harmonic - 1];
     const { quantity, db } = chosenSpectrum();

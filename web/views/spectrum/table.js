@@ -1,4 +1,4 @@
-/** The table of the harmonics: amplitude and part of the fundamental, to the order that is stated. */
+/** The table of harmonics. */
 import { byId, element, fill } from "../../dom.js";
 import { short, si } from "../../state/number.js";
 import { virtualRows } from "../virtual_rows.js";
@@ -59,7 +59,7 @@ export function createHarmonicsTable(point) {
     paint();
   }
 
-  /** Lights up a harmonic and brings it into view. @param {number | null} n */
+  /** Highlights a harmonic and brings it into view. @param {number | null} n */
   function mark(n) {
     if (n === marked) return;
     marked = n;

@@ -1,7 +1,4 @@
-/**
- * The tab Compare of the study: the selected move's steps in its time by every kind of motion, their curves, and what each
- * costs. study.js says what a tab is.
- */
+/** The tab Compare: the selected move as every kind of motion (see study.js). */
 import { button, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { pretty } from "../../state/number.js";

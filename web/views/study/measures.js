@@ -1,9 +1,6 @@
-/**
- * The tab Measures of the study: how good the selected axis is, in numbers. Compares the ideal curve, its steps and the actual
- * pulses; where no plan is known, measures the steps alone. study.js says what a tab is.
- */
+/** The tab Measures: figures of the selected axis (see study.js). */
 import { element, fill, say } from "../../dom.js";
-import { Dropped } from "../../engine/engine.js";
+import { Dropped } from "../../engine/request_slots.js";
 import { isStale } from "../../state/queries.js";
 import {
   comparedNote,

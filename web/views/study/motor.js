@@ -1,7 +1,4 @@
-/**
- * The tab Motor of the study: the limits of a motor of the plant, at once and by a ramp, its resonance, and the effect of its
- * steps on the supply (the patent's figures 1 and 2). study.js says what a tab is.
- */
+/** The tab Motor: limits, resonance and supply current of a motor (see study.js). */
 import { button, element, fill, say } from "../../dom.js";
 import { createMotorCharts } from "./motor_charts.js";
 import {

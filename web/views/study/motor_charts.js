@@ -37,7 +37,7 @@ const line = (ink, x, y, { width = 1.8, dash = 0 } = {}) => ({
 /** @param {string} ink @param {string} text @param {boolean} [dashed] */
 const key = (ink, text, dashed = false) => element("span", {}, swatch(ink, dashed), ` ${text} `);
 
-/** @param {() => Findings | null} shown  Null where the charts are not on show. */
+/** @param {() => Findings | null} shown  Null where the charts are not visible. */
 export function createMotorCharts(shown) {
   const torque = chart("Torque over rate, mN·m over steps/s: ", "Torque over rate");
   const map = chart("Swing at each rate, full steps over full steps/s: ", "Resonance");

@@ -1,4 +1,4 @@
-/** What the tab Motor finds out about a motor, its questions to the engine, and its texts. */
+/** Requests and texts of the tab Motor. */
 import { hasNoLine } from "../../form/source_kinds.js";
 import { readJson } from "../../state/json.js";
 import { plain, short, si } from "../../state/number.js";

@@ -1,6 +1,6 @@
-/** What the tabs of the study are built with: fields, tables, and long work that tells how far it is. */
+/** Building blocks of the study: fields, tables, and long work with progress. */
 import { element, fill, say } from "../../dom.js";
-import { Dropped } from "../../engine/engine.js";
+import { Dropped } from "../../engine/request_slots.js";
 import { parseNumber } from "../../state/parse_number.js";
 
 /** Work that is done within this time, in ms, says nothing of its progress. */
@@ -11,7 +11,7 @@ const REST_MS = 120;
 let made = 0;
 
 /**
- * A number that a tab asks for; `change` hears it once it is one in its range.
+ * A number that a tab requests; `change` hears it once it is one in its range.
  * @param {string} label @param {string} unit @param {number} start @param {{least: number, most: number, integer?: boolean}} range @param {() => void} change
  */
 export function field(label, unit, start, { least, most, integer = false }, change) {

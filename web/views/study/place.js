@@ -1,9 +1,9 @@
-/** Where in the scenario stands what the study is about. */
+/** Path of the selected axis. */
 import { get } from "../../state/paths.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** Where the selected axis is in the scenario, whether or not the form has problems; no path where there is none. @param {State} state */
+/** Where the selected axis is in the scenario, whether or not the form has problems; no path if there is none. @param {State} state */
 export function place({ scenario, result, axis: wanted }) {
   const controller = result?.controller ?? 0;
   const list = controller > 0 ? `controllers[${controller - 1}].axes` : "source.motion.axes";

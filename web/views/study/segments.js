@@ -1,4 +1,4 @@
-/** The segments of a quarter of the scenario's sine: where they break, their steps and rates, and the memory that they save. */
+/** The table of segments of the current sine. */
 import { element, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, si } from "../../state/number.js";

@@ -1,4 +1,4 @@
-/** What the study is about. */
+/** The selected axis of the study. */
 import { place } from "./place.js";
 
 /** @typedef {import("../../state/types.js").State} State */

@@ -1,4 +1,4 @@
-/** What the study is about where no plan is known: the steps of a channel, as the views show them. */
+/** The selected channel of the study without a plan. */
 import { element, fill } from "../../dom.js";
 import { isStale } from "../../state/queries.js";
 
@@ -14,7 +14,7 @@ export function selectedSteps(state) {
   return { json: validation.scenario, revision, controller, channel, clock_hz: summary.clock_hz };
 }
 
-/** A choice out of the list of motors, which is asked for once. @param {Engine} engine @param {() => void} change */
+/** A choice out of the list of motors, which is requested once. @param {Engine} engine @param {() => void} change */
 export function motorChoice(engine, change) {
   const select = element("select", {});
   const root = element("label", {}, "Motor ", select);

@@ -1,7 +1,4 @@
-/**
- * The tab Sine of the study: the effect of the largest deviation d1 on a sine in segments (Song 2022, figure 4), the best d1
- * of a range, and the best vertices for a number of segments. study.js says what a tab is.
- */
+/** The tab Sine: effect of d1 on a sine in segments, best d1 and best vertices (see study.js). */
 import { button, element, fill } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { counted, short } from "../../state/number.js";
@@ -58,7 +55,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const bestList = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
   const vertices = createVertices({ engine, order: order.value, take: note.putMove });
   const quarter = createSegments({ engine });
-  /** The rows on show, as far as they have arrived. @type {import("./sine_sweep.js").Rows | null} */
+  /** The visible rows, as far as they have arrived. @type {import("./sine_sweep.js").Rows | null} */
   let rows = null;
   /** @type {Row | null} */
   let best = null;

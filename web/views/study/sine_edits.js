@@ -1,4 +1,4 @@
-/** How the tab Sine changes the scenario: pure, so that each edit and its message can be tested. */
+/** Changes of the scenario by the tab Sine. */
 import { selectedAxis } from "./selected_axis.js";
 import { rounded } from "./sine_sweep.js";
 
@@ -51,7 +51,7 @@ export function vertexEdit({ axis, move }, sample, make) {
   };
 }
 
-/** The sensor's bandwidth in harmonics of the axis' sine; undefined where there is none. @param {State} state @returns {number | undefined} */
+/** The sensor's bandwidth in harmonics of the axis' sine; undefined if there is none. @param {State} state @returns {number | undefined} */
 export function sensorHarmonics(state) {
   const { axis, move } = targetOf(state);
   const { analysis } = state.scenario;

@@ -1,4 +1,4 @@
-/** The sweep of the largest deviation d1 of a sine in segments: its questions to the engine, its rows, and the best of them. */
+/** The sweep of d1: requests, rows and best rows. */
 import { short } from "../../state/number.js";
 
 /** @typedef {"position" | "speed" | "acceleration" | "filtered"} Quantity */
@@ -109,7 +109,7 @@ export function cellsOf(name, row, none) {
   return [name, short(d1, 6), String(segments), ...ratios, short(euclidean, 4)];
 }
 
-/** The chosen row as a slider's text. @param {Row | null} row @param {Quantity} quantity */
+/** The selected row as a slider's text. @param {Row | null} row @param {Quantity} quantity */
 export function valueText(row, quantity) {
   if (!row) return "no d1 selected";
   return `d1 ${short(row.d1)}, ${row.segments} segments, THD of ${quantity} ${percent(row[quantity])}, Ev ${short(row.euclidean)}; Enter uses it`;

@@ -109,7 +109,7 @@ export function createStudy(page) {
   }
 
   let wasOpened = false;
-  /** A sine makes no n steps in a time that could be compared: the study of one that the visitor opens begins with its own tab. @param {State} state */
+  /** A sine makes no n steps in a time that could be compared: the study of one that the user opens begins with its own tab. @param {State} state */
   function begins(state) {
     const first = !wasOpened;
     return (

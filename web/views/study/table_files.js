@@ -1,4 +1,4 @@
-/** The step tables of an axis, or of what the views show, as files for a firmware: in the study's tab Tables and in the export panel. */
+/** Files of step tables for the tab Tables and the export panel. */
 import { baseName } from "../../shell/offers.js";
 import { selectedAxis } from "./selected_axis.js";
 import { selectedSteps } from "./selected_steps.js";
@@ -17,8 +17,8 @@ export const LANGUAGES = {
   rust: ["Rust", ".rs", "text/rust"],
   csv: ["CSV", ".csv", "text/csv"],
 };
-/** The table that is chosen in the tab, which the export panel offers, too. @type {Choice} */
-export const chosen = { form: "compressed", widths: "q16", us: 25 };
+/** The table that is selected in the tab, which the export panel offers, too. @type {Choice} */
+export const choice = { form: "compressed", widths: "q16", us: 25 };
 
 /** Whose steps are kept. @param {State} state @returns {Tabled | string | null}  As `selectedAxis`. */
 export function tabled(state) {
@@ -37,7 +37,7 @@ export async function question(engine, name, { json, controller, axis, run }) {
   return run === null ? [name, begin] : [`${name}_of_run`, [...begin, await engine.ask("records_of", axis)]];
 }
 
-/** Files of the table that is chosen, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
+/** Files of the table that is selected, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
 export function tableFiles(state, engine) {
   const of = tabled(state);
   return of && typeof of !== "string" ? files(state, engine, of) : [];
@@ -46,7 +46,7 @@ export function tableFiles(state, engine) {
 /** @param {State} state @param {Engine} engine @param {Tabled} of */
 export function files(state, engine, of) {
   const { controller, axis } = of;
-  const { form, widths, us } = chosen;
+  const { form, widths, us } = choice;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
   return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
     name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`,

@@ -4,7 +4,7 @@ import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
-import { chosen, FORMS, files, LANGUAGES, question, tabled } from "./table_files.js";
+import { choice, FORMS, files, LANGUAGES, question, tabled } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
@@ -15,7 +15,7 @@ const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((width
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {
-  const error = field("Max error of compressed list", "µs", chosen.us, { least: 0, most: 1e6 }, () => refresh(now()));
+  const error = field("Max error of compressed list", "µs", choice.us, { least: 0, most: 1e6 }, () => refresh(now()));
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
@@ -44,23 +44,23 @@ export function createTables({ engine, now, panel }) {
 
   /** @param {string} id */
   function choose(id) {
-    [chosen.form, chosen.widths] = id.split("-");
+    [choice.form, choice.widths] = id.split("-");
     mark();
   }
 
   function mark() {
     for (const pick of list.body.querySelectorAll("input")) {
-      pick.checked = pick.value === `${chosen.form}-${chosen.widths}`;
+      pick.checked = pick.value === `${choice.form}-${choice.widths}`;
       pick.closest("tr")?.classList.toggle("chosen", pick.checked);
     }
     const of = tabled(now());
     if (!of || typeof of === "string") return fill(saves);
     const none =
-      forms[ROWS.findIndex(({ form, widths }) => form === chosen.form && widths === chosen.widths)]?.why !== null;
+      forms[ROWS.findIndex(({ form, widths }) => form === choice.form && widths === choice.widths)]?.why !== null;
     say(status, "");
     fill(
       saves,
-      element("span", {}, none ? "" : `Save ${FORMS[chosen.form].toLowerCase()}, ${chosen.widths}, as`),
+      element("span", {}, none ? "" : `Save ${FORMS[choice.form].toLowerCase()}, ${choice.widths}, as`),
       ...(none
         ? []
         : files(now(), engine, of).map(({ name, type, language, make }) => {
@@ -151,8 +151,8 @@ export function createTables({ engine, now, panel }) {
       for (const each of [list.root, note, saves]) each.hidden = true;
       return;
     }
-    chosen.us = error.value();
-    const next = JSON.stringify([of.json, of.controller, of.axis, of.run, chosen.us]);
+    choice.us = error.value();
+    const next = JSON.stringify([of.json, of.controller, of.axis, of.run, choice.us]);
     if (next === key) return mark();
     key = next;
     job.run(
@@ -160,7 +160,7 @@ export function createTables({ engine, now, panel }) {
         let done = 0;
         tell(0, `0 of ${ROWS.length} tables`);
         const [method, begin] = await question(engine, "step_table", of);
-        const pieces = ROWS.map(({ form, widths }) => [...begin, form, widths, chosen.us]);
+        const pieces = ROWS.map(({ form, widths }) => [...begin, form, widths, choice.us]);
         return engine.distribute(method, pieces, signal, () =>
           tell(++done / pieces.length, `${done} of ${pieces.length} tables`),
         );

@@ -1,7 +1,4 @@
-/**
- * The tab Torque of the study: the torque of the selected axis' motor at each rate, the torque that the plan needs, where that is
- * too much, and which ramps leave enough; where no plan is known, the torque that the steps need. study.js says what a tab is.
- */
+/** The tab Torque: available and needed torque, and ramps with enough torque (see study.js). */
 import { button, element, fill, say } from "../../dom.js";
 import { get } from "../../state/paths.js";
 import { createJob, table } from "./parts.js";

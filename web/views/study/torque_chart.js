@@ -2,7 +2,7 @@
 import { element } from "../../dom.js";
 import { color, draw, watch } from "../../time/plot.js";
 
-/** @param {() => import("./torque_report.js").Torque | null} shown  Null where the chart is not on show. */
+/** @param {() => import("./torque_report.js").Torque | null} shown  Null where the chart is not visible. */
 export function createTorqueChart(shown) {
   const canvas = element("canvas", { role: "img", "aria-label": "Torque-speed curve" });
   const key = (/** @type {string} */ kind, /** @type {string} */ text) =>

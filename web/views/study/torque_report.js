@@ -1,4 +1,4 @@
-/** What the tab Torque shows of the core's report, as texts and rows. */
+/** Texts and rows of the tab Torque. */
 import { count, plain, short, si } from "../../state/number.js";
 
 /** @typedef {{at_s: number, rate: number, needed_mn_m: number, available_mn_m: number}} Moment */
@@ -20,7 +20,7 @@ const upTo = (rate) => (rate === null ? "any rate" : rate === 0 ? "no rate" : ra
 /** @param {number} seconds */
 const rampText = (seconds) => `${seconds.toFixed(4)} s`;
 
-/** Ramps with enough torque; where there are none, whether rate or torque is the limit. @param {Ramps} ramps */
+/** Ramps with enough torque; if there are none, whether rate or torque is the limit. @param {Ramps} ramps */
 function enough({ enough_s, too_fast_s, without_ramps }) {
   if (enough_s) return `${enough_s[0].toFixed(4)} to ${rampText(enough_s[1])}`;
   const all = too_fast_s ? "all above the working rate" : "none";

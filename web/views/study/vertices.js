@@ -1,7 +1,4 @@
-/**
- * The vertices of so many segments a quarter that make a sine with least distortion, on the curve or free; and the move
- * through them, as points with straight lines between.
- */
+/** The best vertices for a number of segments, and the move through them. */
 import { button, element, fill } from "../../dom.js";
 import { mostOf } from "../../form/schema.js";
 import { count, counted, short } from "../../state/number.js";
