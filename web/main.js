@@ -95,7 +95,7 @@ function follow(before) {
     document.documentElement.dataset.state = "busy";
     if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
     // Before the requests of the views.
-    engine.ask("select", result.controller).catch(unlessDropped);
+    engine.request("select", result.controller).catch(unlessDropped);
   }
   if (state.run.progress) unveil();
   const drawn = views.map((view) => view.render(state, before));
@@ -143,10 +143,10 @@ async function start() {
     return;
   }
   const [fallback, presets, drivers, schema] = await Promise.all([
-    engine.ask("default_scenario"),
-    engine.ask("presets"),
-    engine.ask("drivers"),
-    engine.ask("schema"),
+    engine.request("default_scenario"),
+    engine.request("presets"),
+    engine.request("drivers"),
+    engine.request("schema"),
     loadCharts(),
   ]);
   takeSchema(schema);

@@ -69,7 +69,7 @@ test("what is between the cursors can be saved alone", () => {
 test("a long file is fetched in pieces and kept in blobs", async () => {
   const calls = [];
   const engine = {
-    async ask(...question) {
+    async request(...question) {
       calls.push(question);
       const from = question.at(-1);
       return { bytes: new Uint8Array(10), next: from < 19 ? from + 1 : null, rows: 20 };

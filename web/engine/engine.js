@@ -50,7 +50,7 @@ export class Engine {
   #crashes = 0;
   /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
   #requests = new Map();
-  #slots = new RequestSlots((method, args) => this.ask(method, ...args));
+  #slots = new RequestSlots((method, args) => this.request(method, ...args));
 
   /** @param {Listener} listener */
   constructor(listener) {
@@ -63,7 +63,7 @@ export class Engine {
    * @param {...any} args
    * @returns {Promise<any>}  null if there is no run.
    */
-  ask(method, ...args) {
+  request(method, ...args) {
     const id = this.#next++;
     if (method === "select") this.#selected = args[0];
     return new Promise((resolve, reject) => {
@@ -73,7 +73,7 @@ export class Engine {
   }
 
   /**
-   * Like `ask`, but only the newest waiting request of a slot is sent (request_slots.js).
+   * Like `request`, but only the newest waiting request of a slot is sent (request_slots.js).
    * @param {string} slot @param {string} method @param {...any} args
    * @returns {Promise<any>}
    */
@@ -173,13 +173,13 @@ export class Engine {
    * Several requests to one additional worker about the last valid run: `open` creates an object of its scenario, `of` calls
    * it.
    * @template T
-   * @param {(ask: (method: "open" | "of", ...args: any[]) => Promise<any>, json: string) => Promise<T>} work
+   * @param {(request: (method: "open" | "of", ...args: any[]) => Promise<any>, json: string) => Promise<T>} work
    * @returns {Promise<T | null>}  null if there is no run.
    */
   async session(work) {
     const good = this.#good ?? this.#restoring;
     if (good === null) return null;
-    return (await this.#pool()).session((ask) => work(ask, good.json));
+    return (await this.#pool()).session((request) => work(request, good.json));
   }
 
   /** @param {any} data */

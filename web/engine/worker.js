@@ -98,7 +98,7 @@ async function runInSlices(simulation, { run, quiet = false }) {
     }
     await yieldToMessages();
     if (run !== newest) {
-      letGo(simulation);
+      release(simulation);
       return false;
     }
   }
@@ -124,10 +124,10 @@ async function simulate(request) {
       : new Promise((resolve) => {
           goOn = resolve;
         }));
-    if (run !== newest) return letGo(simulation);
+    if (run !== newest) return release(simulation);
   }
   if (!(await runInSlices(simulation, request))) return;
-  if (finished !== baseline) letGo(finished);
+  if (finished !== baseline) release(finished);
   finished = simulation;
   selected = 0;
   if (quiet) {
@@ -139,13 +139,13 @@ async function simulate(request) {
 }
 
 /** Frees a run. @param {any} simulation */
-function letGo(simulation) {
+function release(simulation) {
   simulation?.free();
 }
 
 /** Sets or clears the baseline. @param {boolean} on */
 function setBaseline(on) {
-  if (baseline !== finished) letGo(baseline);
+  if (baseline !== finished) release(baseline);
   baseline = on ? finished : null;
   return baseline !== null;
 }

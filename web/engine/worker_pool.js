@@ -67,7 +67,7 @@ export class WorkerPool {
     return reply;
   }
 
-  /** See `Engine`. @template T @param {(ask: (method: "open" | "of", ...args: any[]) => Promise<any>) => Promise<T>} work @returns {Promise<T>} */
+  /** See `Engine`. @template T @param {(request: (method: "open" | "of", ...args: any[]) => Promise<any>) => Promise<T>} work @returns {Promise<T>} */
   async session(work) {
     const worker = this.#idle.pop() ?? startWorker(this.#missing);
     const { signal } = new AbortController();

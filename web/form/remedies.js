@@ -30,16 +30,16 @@ export function showRemedy(state, sheets, apply) {
 
 /**
  * Offers changes for a motion that is too fast for its bus.
- * @param {(json: string | null) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} ask
+ * @param {(json: string | null) => Promise<{wrong: string, offers: {change: string, scenario: string}[]} | null>} request
  * @param {() => State} now @param {(scenario: Scenario) => void} apply @param {() => Promise<void>} released  Waits for the pointer, so that nothing moves under it.
  */
-export async function showOffers(ask, now, apply, released) {
+export async function showOffers(request, now, apply, released) {
   const { revision, scenario, validation, drafts } = now();
   const root = byId("offers");
   const refused = (validation?.problems.length ?? 0) > 0 && Object.keys(drafts).length === 0;
   // Current offers belong to earlier numbers.
   for (const press of root.querySelectorAll("button")) press.disabled = true;
-  const found = await ask(refused ? JSON.stringify(scenario) : null);
+  const found = await request(refused ? JSON.stringify(scenario) : null);
   await released();
   const isCurrent = () => now().revision === revision;
   if (!isCurrent()) return;

@@ -125,7 +125,7 @@ async function importExperiments(text, engine) {
     const saved = loadExperiments();
     const refused = [];
     for (const each of file.experiments) {
-      const { problems, scenario } = await engine.ask("check", JSON.stringify(each));
+      const { problems, scenario } = await engine.request("check", JSON.stringify(each));
       const read = readJson(scenario);
       if (problems.length > 0) refused.push(`“${read.title}” (${problems[0].path}: ${problems[0].message})`);
       else if (!saved.some((known) => JSON.stringify(known) === JSON.stringify(read)))

@@ -8,7 +8,7 @@ import { harmonicsTable, marginsTable, violationsTable } from "./tables.js";
 /** @typedef {import("../state/types.js").Span} Span */
 /** @typedef {import("./offers.js").Offer} Offer */
 /** @typedef {import("./offers.js").Group} Group */
-/** @typedef {Pick<import("../engine/engine.js").Engine, "ask">} Engine */
+/** @typedef {Pick<import("../engine/engine.js").Engine, "request">} Engine */
 
 /** Pieces of a file that become one blob, which the browser may keep on disk. */
 const PIECES = 16;
@@ -51,7 +51,7 @@ export function exportOffers(state, engine, span) {
     name: `${baseName(state)}-line.json`,
     type: "application/json",
     label: hasSegments ? "Scenario with its segments, JSON" : "Line script of the sent bytes, JSON",
-    make: async () => [await engine.ask("line_script"), "\n"],
+    make: async () => [await engine.request("line_script"), "\n"],
   };
   return [
     {
@@ -104,7 +104,7 @@ function makers(state, engine, span) {
       name: `${base}${suffix}`,
       type: "text/csv",
       label,
-      make: async () => [text(await engine.ask(method), clock_hz)],
+      make: async () => [text(await engine.request(method), clock_hz)],
     }),
   };
 }
@@ -118,7 +118,7 @@ async function pieces(engine, file, pace) {
   /** @type {number | null} */
   let from = 0;
   while (from !== null) {
-    const piece = await engine.ask("file_piece", ...file, from);
+    const piece = await engine.request("file_piece", ...file, from);
     if (!piece) throw new Error("there is no run to save");
     gathered.push(piece.bytes);
     if (gathered.length === PIECES || piece.next === null) {

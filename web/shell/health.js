@@ -20,7 +20,7 @@ export function createHealth({ engine, dispatch, now }) {
   /** Shows where a fault was raised first. @param {string} name */
   async function lead(name) {
     /** @type {FaultPlace[] | null} */
-    const places = await engine.ask("fault_places").catch(unlessDropped);
+    const places = await engine.request("fault_places").catch(unlessDropped);
     const place = places?.find((each) => each.name === name);
     if (!place) return;
     open(place.row === null ? "pulses" : "packets");

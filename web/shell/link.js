@@ -22,12 +22,12 @@ export function createLink({ engine, dispatch, now }) {
 
   /** The page's address with the scenario, the view and a run's digests in it. @param {string | undefined} digests @returns {Promise<string>} */
   async function address(digests) {
-    let fragment = await engine.ask("encode_link", JSON.stringify(now().scenario));
+    let fragment = await engine.request("encode_link", JSON.stringify(now().scenario));
     for (const [name, part] of [
       ["v", viewOf(now())],
       ["d", digests],
     ])
-      if (part) fragment = await engine.ask("link_with", fragment, name, part);
+      if (part) fragment = await engine.request("link_with", fragment, name, part);
     return `${location.origin}${location.pathname}${location.search}#${fragment}`;
   }
 
@@ -62,7 +62,7 @@ export function createLink({ engine, dispatch, now }) {
 
   /** Shows what a fragment asks to be shown, and keeps what its sender saw. @param {string} fragment */
   async function open(fragment) {
-    const [view, seen] = await Promise.all(["v", "d"].map((name) => engine.ask("link_part", fragment, name)));
+    const [view, seen] = await Promise.all(["v", "d"].map((name) => engine.request("link_part", fragment, name)));
     const part = parseView(view);
     if (Object.keys(part).length > 0) dispatch({ type: "open", view: part });
     if (seen) dispatch({ type: "seen", text: seen });
@@ -81,7 +81,7 @@ export function createLink({ engine, dispatch, now }) {
   /** Shows the scenario of a link as a shared one and says so unless it is known, or says why it cannot. @param {string} fragment @param {boolean} [isKnown] */
   async function openLink(fragment, isKnown = false) {
     try {
-      const reply = await engine.ask("decode_link", fragment);
+      const reply = await engine.request("decode_link", fragment);
       if ("error" in reply) return refuse(reply.error);
       const scenario = readJson(reply.scenario);
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {

@@ -24,7 +24,7 @@ export function createNotices(page) {
   /** @param {string} text */
   async function compare(text) {
     const { result } = now();
-    const verdict = await engine.ask("verify", text).catch(unlessDropped);
+    const verdict = await engine.request("verify", text).catch(unlessDropped);
     verdictText ??= (await import("./verdict.js").catch(() => null))?.verdictText ?? null;
     if (!verdictText)
       return showLine(

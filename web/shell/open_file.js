@@ -89,7 +89,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** Shows a scenario if it is valid. @param {string} json @param {File} file @param {(scenario: any) => string} words */
   async function take(json, file, words) {
-    const { problems, scenario } = await engine.ask("check", json);
+    const { problems, scenario } = await engine.request("check", json);
     if (problems.length > 0) {
       const listed = problems
         .slice(0, MAX_LISTED)
@@ -115,14 +115,14 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (!result) throw new Error("there is no run to compare with");
     if (isStale(now())) throw new Error("the current experiment has not run; fix the form or run it, then compare");
     const { controller, summary } = result;
-    const comparison = await engine.session(async (ask, json) => {
-      await ask("open", "trace_file", json, controller);
+    const comparison = await engine.session(async (request, json) => {
+      await request("open", "trace_file", json, controller);
       for (let at = 0; at < file.size; at += PIECE) {
         const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
-        if (await ask("of", "feed", piece)) break;
+        if (await request("of", "feed", piece)) break;
         if (at > 0) notify("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
       }
-      return ask("of", "end");
+      return request("of", "end");
     });
     if (!comparison || now().result?.summary !== summary)
       throw new Error("the experiment has run again; compare again");

@@ -18,7 +18,7 @@ function listSaved() {
 
 /** Shows a saved experiment. The core reads it, since an earlier version may have saved it. @param {import("./experiments.js").Given} page @param {any} saved */
 async function openSaved({ engine, dispatch }, saved) {
-  const read = await engine.ask("check", JSON.stringify(saved)).catch(unlessDropped);
+  const read = await engine.request("check", JSON.stringify(saved)).catch(unlessDropped);
   if (read) dispatch({ type: "replace", scenario: readJson(read.scenario), origin: "own" });
 }
 

@@ -16,7 +16,7 @@ export async function savedWork(engine, fallback, version) {
   if (saved === null) return { left: initial(readJson(fallback)), good: null };
   // Where the core cannot be fetched, the scenario stays as it was saved.
   const read = (/** @type {string} */ json) =>
-    engine.ask("check", json).catch(() => ({ scenario: json, problems: [] }));
+    engine.request("check", json).catch(() => ({ scenario: json, problems: [] }));
   const { scenario, problems } = await read(saved);
   const { past, future } = loadHistory(version);
   const isAside = past.length === 0 && previous !== null && previous !== saved;
@@ -32,7 +32,7 @@ const momentOf = (scenario) => ({ scenario: readJson(scenario), origin: "own", b
 export async function offerNewer({ engine, dispatch }) {
   const newer = loadNewer();
   if (newer === null) return;
-  const validation = await engine.ask("check", newer).catch(() => null);
+  const validation = await engine.request("check", newer).catch(() => null);
   if (validation === null) return;
   const scenario = readJson(validation.scenario);
   const name = scenario.title ? `, “${scenario.title}”` : "";

@@ -21,7 +21,7 @@ export function createShare({ engine, address, now }, { isOpen }) {
   async function shared() {
     // A recording's digests are no run's: whoever opens the link sees what the model makes of it.
     const isRun = !isStale(now()) && !now().result?.summary.recorded;
-    const digests = isRun ? await engine.ask("fingerprint") : null;
+    const digests = isRun ? await engine.request("fingerprint") : null;
     const full = await address(digests ?? undefined);
     return { full, digests: digests !== null && full.endsWith(digests) };
   }

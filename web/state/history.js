@@ -27,7 +27,7 @@ export function edit(state, { path, value, joins = false, moved = [[path, null]]
   if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
   const joined = joins && state.edited === path;
   const before = joined ? state : remember(state);
-  const { scenario, borrowed } = disowned(state, set(state.scenario, path, value));
+  const { scenario, borrowed } = withOwnName(state, set(state.scenario, path, value));
   return { ...changed(before, scenario, "own"), borrowed, drafts, edited: joins ? path : null };
 }
 
@@ -35,7 +35,7 @@ export function edit(state, { path, value, joins = false, moved = [[path, null]]
  * An edited preset or shared experiment gets the name "changed from …" and loses its note.
  * @param {State} state @param {Scenario} next
  */
-function disowned({ scenario, borrowed }, next) {
+function withOwnName({ scenario, borrowed }, next) {
   const named = next.title !== scenario.title;
   const noted = next.note !== scenario.note;
   if (named || noted)

@@ -4,10 +4,10 @@ import { csv } from "../shell/tables.js";
 import { time } from "../state/number.js";
 import { shown } from "../state/time_window.js";
 import { color, drawing, font, picture } from "../time/plot.js";
-import { ask } from "./motion/ask.js";
 import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
+import { requestColumns } from "./motion/request_columns.js";
 import { motorPanels, motorValues as motorTable } from "./motor/sheet.js";
-import { chosenSpectrum, spectrumChart } from "./spectrum/chart.js";
+import { selectedSpectrum, spectrumChart } from "./spectrum/chart.js";
 import { distortion, namedSpectra, nameOf, overFrequency, UNITS } from "./spectrum/harmonics.js";
 
 /** @typedef {import("../state/types.js").State} State */
@@ -25,14 +25,14 @@ const COLUMNS = WIDTH - 94;
 
 /** @param {State} state @param {Engine} engine */
 async function seen(state, engine) {
-  const reply = await ask(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
+  const reply = await requestColumns(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
   if (!reply) throw new Error("there is no motion to save");
   return reply;
 }
 
 /** @param {Engine} engine @returns {Promise<import("../state/types.js").Spectra>} */
 async function spectra(engine) {
-  const reply = await engine.ask("spectrum");
+  const reply = await engine.request("spectrum");
   if (!reply?.ideal && !reply?.pulses) throw new Error(reply?.note || "there is no spectrum to save");
   return reply;
 }
@@ -85,7 +85,7 @@ export function motorValues(state, engine) {
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
 export async function spectrumSheet(state, engine) {
   const found = await spectra(engine);
-  const { quantity, db } = chosenSpectrum();
+  const { quantity, db } = selectedSpectrum();
   const { title, note } = titleOf(state);
   const all = namedSpectra(found);
   const thd = all[0][1].periodic ? `${distortion(found, quantity)} · ` : "";

@@ -6,7 +6,7 @@ import { selected } from "../state/queries.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
-/** @typedef {ReturnType<typeof import("./timing_found.js").createFound>} Found */
+/** @typedef {ReturnType<typeof import("./timing_results.js").createResults>} Found */
 
 /** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], speak: (text: string) => void} & import("../state/types.js").Page} page */
 export function createTiming(page) {
@@ -36,7 +36,7 @@ export function createTiming(page) {
   /** What shows what was found; nothing where it could not be loaded. */
   async function found() {
     try {
-      loading ??= import("./timing_found.js").then(({ createFound }) => createFound({ ...page, showNote }));
+      loading ??= import("./timing_results.js").then(({ createResults }) => createResults({ ...page, showNote }));
       return await loading;
     } catch {
       loading = null;

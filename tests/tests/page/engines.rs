@@ -74,7 +74,7 @@ const ENGINE: &str = "
             failed: (_, message) => end(message), crashed: (message) => end(message),
         });
         let number = 0;
-        window.plant = () => engine.ask('plant').then(({ plant }) => plant.digest);
+        window.plant = () => engine.request('plant').then(({ plant }) => plant.digest);
         window.digests = (json) => new Promise((resolve) => { end = resolve; engine.run(number++, json); });
         return true;
     });";

@@ -108,7 +108,7 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
             .js(
                 "return import('/engine/engine.js').then(({ Engine }) => new Promise((resolve, reject) => {
                      const engine = new Engine({ progress() {}, failed: (_, text) => reject(new Error(text)), crashed: reject,
-                         done: () => engine.ask('decoded', arguments[1], arguments[2], 250, 250).then(resolve, reject) });
+                         done: () => engine.request('decoded', arguments[1], arguments[2], 250, 250).then(resolve, reject) });
                      engine.run(0, arguments[0]);
                  }));",
                 vec![known.scenario.to_json().into(), from.into(), to.into()],

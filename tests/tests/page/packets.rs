@@ -260,7 +260,7 @@ fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()
             let ready; const ran = new Promise((resolve) => { ready = resolve; });
             engine.run(0, arguments[0]); await ran;
             const filter = { text: '', kind: '', address: null, outcome: 'bad', only: false };
-            await engine.ask('filter', '', '', null, 'bad', false);
+            await engine.request('filter', '', '', null, 'bad', false);
             const state = { result: {}, filter, cursors: { a: arguments[2], b: arguments[1] } };
             const files = {};
             for (const { name, make } of packetFiles(state, engine)) {

@@ -32,7 +32,7 @@ export async function resultOf({ now }) {
 /** The selected channel of a run, to be compared with. @param {Page} page @param {Result} plan @param {number} aligned @returns {Promise<Baseline>} */
 export async function baselineOf({ engine, now }, plan, aligned) {
   const { axis: channel, scenario } = now();
-  const records = await engine.ask("records_of", channel);
+  const records = await engine.request("records_of", channel);
   return { aligned, records, clock_hz: plan.summary.clock_hz, channel, baud: scenario.line.baud };
 }
 
@@ -54,7 +54,7 @@ export async function alignment(capture, baseline, preview) {
 async function scenarioOf({ engine, now }, capture, note) {
   const own = readJson(withControllers(await capture.scenario(false), now().scenario));
   if (note) own.note = extendedNote(own.note, note);
-  const { problems, scenario } = await engine.ask("check", JSON.stringify(own));
+  const { problems, scenario } = await engine.request("check", JSON.stringify(own));
   const texts = problems.map(
     (/** @type {import("../../state/types.js").Problem} */ { path, message }) => `${path}: ${message}`,
   );
@@ -63,7 +63,7 @@ async function scenarioOf({ engine, now }, capture, note) {
 
 /** Makes the visible run the baseline. @param {Page} page @param {Result} plan */
 async function takeBaseline({ engine, dispatch, now }, { summary, controller }) {
-  await engine.ask("baseline", true);
+  await engine.request("baseline", true);
   const { scenario, derived: all, revision } = now();
   const derived = all?.controllers[controller] ?? null;
   const title = scenario.title || "the experiment";

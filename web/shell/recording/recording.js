@@ -45,7 +45,7 @@ export async function openRecording(page, source, options) {
     if (facts.count === 0 && !facts.has_base) throw new Error(facts.error ?? "it contains no recording");
     const sample = capture.sample();
     if (sample) {
-      const { scenario } = await page.engine.ask("check", sample.scenario);
+      const { scenario } = await page.engine.request("check", sample.scenario);
       page.dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
       await resultOf(page);
     }

@@ -106,7 +106,7 @@ async function restoreFrom(page, database, before, shown) {
   const { engine, dispatch, now } = page;
   const { scenario, past, future } = now();
   const wanted = new Set([scenario, ...[...past, ...future].map((moment) => moment.scenario)].map(scenarioKey));
-  const linked = await engine.ask("decode_link", location.hash.slice(1)).catch(() => null);
+  const linked = await engine.request("decode_link", location.hash.slice(1)).catch(() => null);
   const addressed = linked?.scenario ? scenarioKey(readJson(linked.scenario)) : null;
   if (addressed !== null) wanted.add(addressed);
   const all = await list(database);
@@ -115,7 +115,7 @@ async function restoreFrom(page, database, before, shown) {
   for (const { id, file, scenario, sizes, replies } of all) {
     const isShown = shown?.id === id;
     // An earlier version may have saved it, so the core upgrades it.
-    const own = await engine.ask("check", String(scenario));
+    const own = await engine.request("check", String(scenario));
     const read = readJson(own.scenario);
     if (!isShown && !wanted.has(scenarioKey(read))) continue;
     const pieces = own.problems.length === 0 && Array.isArray(sizes) ? await load(database, id, sizes) : null;

@@ -17,7 +17,7 @@ export const QUANTITIES = /** @type {const} */ (["position", "speed", "accelerat
 export const TIME_PX = 20;
 
 /** What follows from the visible axis. @param {State} state */
-function axisOnShow(state) {
+function visibleAxis(state) {
   return state.derived?.controllers[state.result?.controller ?? 0]?.axes[state.axis];
 }
 
@@ -30,7 +30,7 @@ export function baselineAxis({ baseline, axis }) {
 
 /** @param {State} state @returns {[string, string][]} */
 export function unitsOf(state) {
-  const axis = axisOnShow(state);
+  const axis = visibleAxis(state);
   return [["steps", "steps"], ...(axis?.step_mm ? [["mm", "mm"]] : []), ...(axis?.step_deg ? [["deg", "°"]] : [])].map(
     ([name, text]) => [name, text],
   );
@@ -38,7 +38,7 @@ export function unitsOf(state) {
 
 /** The selected unit, or steps where the axis has no such unit; what a step is in it, here and in the baseline. @param {State} state */
 export function unitOf(state) {
-  const axis = axisOnShow(state);
+  const axis = visibleAxis(state);
   const { derived } = baselineAxis(state);
   if (state.unit === "mm" && axis?.step_mm)
     return { name: "mm", unit: "mm", scale: axis.step_mm, baseline: derived?.step_mm ?? axis.step_mm };

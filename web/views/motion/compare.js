@@ -21,7 +21,8 @@ export function createCompare({ engine, dispatch, now }) {
   async function keep() {
     const { result, scenario, derived, origin, revision } = now();
     // What is kept is what the worker has: only a run of the scenario in the form.
-    if (!result || result.revision !== revision || !(await engine.ask("baseline", true).catch(unlessDropped))) return;
+    if (!result || result.revision !== revision || !(await engine.request("baseline", true).catch(unlessDropped)))
+      return;
     const title =
       scenario.title ||
       (origin.startsWith("preset:")
@@ -43,8 +44,8 @@ export function createCompare({ engine, dispatch, now }) {
   async function showDifference(state) {
     place.hidden = !state.baseline;
     if (!state.baseline || !state.result) return;
-    const { tellCompared } = await import("./compared.js");
-    await tellCompared(engine, state);
+    const { showCompared } = await import("./compared.js");
+    await showCompared(engine, state);
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -52,7 +53,7 @@ export function createCompare({ engine, dispatch, now }) {
     keepButton.disabled = state.result === null || state.result.revision !== state.revision;
     const { baseline, result, axis, unit, derived } = state;
     if (before?.baseline !== baseline) {
-      if (before?.baseline && !baseline) engine.ask("baseline", false).catch(unlessDropped);
+      if (before?.baseline && !baseline) engine.request("baseline", false).catch(unlessDropped);
       for (const node of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".with-baseline")))
         node.hidden = !baseline;
       keepButton.textContent = baseline ? "Set as new baseline" : "Set as baseline";

@@ -3,13 +3,13 @@ import { byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
-import { unitPair } from "./ask.js";
 import { baselineAxis, unitOf } from "./bands.js";
+import { unitPair } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
 /** @param {import("../../engine/engine.js").Engine} engine @param {State} state */
-export async function tellCompared(engine, state) {
+export async function showCompared(engine, state) {
   const { baseline, result } = state;
   if (!baseline || !result) return;
   const controller = selected(state);

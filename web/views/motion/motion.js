@@ -8,10 +8,10 @@ import { drawCursors, overlaid } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
-import { ask } from "./ask.js";
 import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
 import { createCompare } from "./compare.js";
 import { createReading } from "./reading.js";
+import { requestColumns } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {ReturnType<typeof chartOf>} Drawn */
@@ -74,7 +74,7 @@ export function createMotion({ engine, dispatch, now }) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const wanted = Math.max(16, Math.round(plot.right - plot.left));
-    const reply = await ask(engine, state, shown(state), wanted).catch(unlessDropped);
+    const reply = await requestColumns(engine, state, shown(state), wanted).catch(unlessDropped);
     if (!reply) return;
     if (state.baseline && !reply.baseline) dispatch({ type: "baseline", baseline: null });
     seen = reply;
@@ -119,7 +119,7 @@ export function createMotion({ engine, dispatch, now }) {
   }
 
   /** @param {State} state */
-  async function tellBetween({ cursors: { a, b } }) {
+  async function showBetween({ cursors: { a, b } }) {
     if (!between && (a === null || b === null)) return;
     try {
       const { createBetween } = await import("./between.js");
@@ -169,7 +169,7 @@ export function createMotion({ engine, dispatch, now }) {
     if (before && byKeys && before.cursors !== state.cursors)
       reading.speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
     if (before?.cursors !== state.cursors || other || before?.unit !== state.unit)
-      void tellBetween(state).catch(unlessDropped);
+      void showBetween(state).catch(unlessDropped);
     if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
     if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
       return refresh(state);

@@ -27,7 +27,7 @@ export function createReading({ engine, now }) {
   let speaking = 0;
 
   /** What is known of one cycle, of this run and of the baseline. @param {State} state @param {number} cycle @param {string} slot @returns {Promise<(Between | null | undefined)[]>} */
-  function ask({ axis, baseline, result }, cycle, slot) {
+  function readingsAt({ axis, baseline, result }, cycle, slot) {
     const at = (cycle / (result?.summary.clock_hz ?? 1)) * (baseline?.summary.clock_hz ?? 1);
     const of = baselineAxis(now()).index;
     return Promise.all([
@@ -43,7 +43,7 @@ export function createReading({ engine, now }) {
     const cycle = readingCycle(state);
     const result = state.result;
     if (cycle === null || !result) return write("", []);
-    const [own, other] = await ask(state, cycle, "reading");
+    const [own, other] = await readingsAt(state, cycle, "reading");
     // What has gone on meanwhile has asked anew, or has nothing to say.
     if (!own || now().result !== result || readingCycle(now()) === null) return undefined;
     const name = cycle === a ? "A " : cycle === b ? "B " : "";
@@ -84,7 +84,7 @@ export function createReading({ engine, now }) {
     const cycle = state.cursors[which];
     speaking = window.setTimeout(async () => {
       if (cycle === null) return say(byId("motion-spoken"), `Cursor ${which.toUpperCase()} is removed.`);
-      const [reply] = await ask({ ...state, baseline: null }, cycle, "spoken");
+      const [reply] = await readingsAt({ ...state, baseline: null }, cycle, "spoken");
       if (!reply) return;
       const { scale } = unitOf(state);
       const texts = QUANTITIES.flatMap((quantity, index) => {

@@ -3,8 +3,8 @@ import { button, byId, element, fill, say } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
-import { ask } from "./ask.js";
 import { bandsOf, QUANTITIES, unitFor } from "./bands.js";
+import { requestColumns } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -33,7 +33,9 @@ export function createRecord({ engine, now }) {
     const { start, end } = shown(state);
     const page = (end - start) / PAGES;
     const span = { start: start + at * page, end: start + (at + 1) * page };
-    const seen = await ask(engine, { ...state, difference: false }, span, ROWS, "record").catch(unlessDropped);
+    const seen = await requestColumns(engine, { ...state, difference: false }, span, ROWS, "record").catch(
+      unlessDropped,
+    );
     if (!seen) return;
     const bands = QUANTITIES.flatMap((quantity) =>
       bandsOf(state, { ...seen, apart: null }, quantity)

@@ -16,7 +16,7 @@ async function seen(state, engine, columns) {
   const { start, end } = shown(state);
   const channel = channelOf(state);
   const [report, curves] = await Promise.all([
-    engine.ask("plant"),
+    engine.request("plant"),
     engine.latest("motor file", "plant_curves", channel, start, end, columns).catch(unlessDropped),
   ]);
   if (!curves || !report) throw new Error("no motor is simulated, so there is nothing to save");

@@ -34,7 +34,7 @@ export function createVerdict({ engine, now, node }) {
   /** The rate of the first two steps against what the motor starts at. @param {State} state @param {number} channel */
   async function reason(state, channel) {
     const of = state.result;
-    const edges = await engine.ask("edges", channel, -1, true, 3);
+    const edges = await engine.request("edges", channel, -1, true, 3);
     const rises = (edges?.rows ?? []).filter((/** @type {{high: boolean}} */ { high }) => high);
     if (rises.length < 2 || !of) return "";
     const rate = of.summary.clock_hz / (rises[1].cycle - rises[0].cycle);

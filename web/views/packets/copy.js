@@ -31,7 +31,7 @@ export async function copyHex(hex, what) {
 export async function copyAll(engine) {
   let hex = "";
   for (let from = 0; from !== undefined; ) {
-    const reply = await engine.ask("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
+    const reply = await engine.request("packet_file", "hex", true, from, ROWS).catch(unlessDropped);
     if (!reply) return say(byId("packets-note"), "Nothing was copied: the engine was restarted; copy again.");
     hex += reply.part;
     from = reply.next;

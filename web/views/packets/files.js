@@ -41,7 +41,7 @@ export function packetFiles(state, engine) {
       make: async (/** @type {(part: number) => void} */ pace) => {
         const parts = [];
         for (let from = 0; from !== undefined; ) {
-          const { part, next, rows } = await engine.ask(
+          const { part, next, rows } = await engine.request(
             "packet_file",
             format,
             scope.shown,

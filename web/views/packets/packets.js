@@ -129,7 +129,7 @@ export function createPackets(page) {
     if (before?.filter !== state.filter) return search.filter(state);
     if (before?.packet !== state.packet) {
       if (state.packet === null) return table.reload();
-      const position = await engine.ask("packet_position", state.packet).catch(unlessDropped);
+      const position = await engine.request("packet_position", state.packet).catch(unlessDropped);
       // A row that the filter leaves out is still told.
       if (typeof position === "number") return table.moveTo(position);
       await inspector.show(state.packet);

@@ -65,7 +65,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
 
   /** Goes to the next row that the text finds. @param {boolean} forward */
   async function next(forward) {
-    const position = await engine.ask("next_match", place().position, forward).catch(unlessDropped);
+    const position = await engine.request("next_match", place().position, forward).catch(unlessDropped);
     if (typeof position !== "number") return;
     await moveTo(position);
     found();
@@ -93,7 +93,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
   /** Another run: what there is to choose from, and the same filter over its rows. @param {State} state */
   async function start(state) {
     const own = ++request;
-    const choices = await engine.ask("packet_choices").catch(unlessDropped);
+    const choices = await engine.request("packet_choices").catch(unlessDropped);
     if (choices) {
       const { framed } = state.result?.summary ?? {};
       options(
@@ -132,13 +132,13 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     const slow = setTimeout(() => say(byId("packets-found"), "searching…"), LONG_MS);
     const { text: wanted, kind: kindWanted, address: at, outcome: mark, only: alone } = state.filter;
     const row = place().row;
-    const reply = await engine.ask("filter", wanted, kindWanted, at, mark, alone).catch(unlessDropped);
+    const reply = await engine.request("filter", wanted, kindWanted, at, mark, alone).catch(unlessDropped);
     clearTimeout(slow);
     if (!reply || own !== request) return;
     matches = reply.matches;
     say(byId("packets-note"), reply.note);
     // The row that was the current one stays it; a search goes on from there.
-    const there = row ? await engine.ask("packet_position", row.index).catch(unlessDropped) : undefined;
+    const there = row ? await engine.request("packet_position", row.index).catch(unlessDropped) : undefined;
     if (own === request) await reload();
     if (own !== request) return;
     if (typeof there === "number") await moveTo(there);

@@ -62,7 +62,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   /** The current row, also where the table has not drawn it yet. @returns {Promise<PacketRow | null>} */
   async function currentRow() {
-    const page = await engine.ask("packets", current, 1).catch(unlessDropped);
+    const page = await engine.request("packets", current, 1).catch(unlessDropped);
     return page?.rows[0] ?? null;
   }
 

@@ -93,7 +93,7 @@ function placed(state, plot, { start, end, sample, ...rest }) {
 }
 
 /** A frame around the spans that are highlighted, whoever points at them, and around a highlighted edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
-export function drawLit(context, state, plot, spans) {
+export function drawHighlights(context, state, plot, spans) {
   const { highlighted } = state;
   if (!highlighted) return;
   context.setLineDash([]);

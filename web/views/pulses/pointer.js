@@ -68,7 +68,7 @@ export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fol
     const reach = reachOf(now(), plot());
     const edges = await Promise.all(
       [true, false].map((forward) =>
-        engine.ask("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped),
+        engine.request("next_edge", bit, forward ? cycle - 1 : cycle + 1, forward, "any").catch(unlessDropped),
       ),
     );
     return nearestEdge(edges, cycle, reach) ?? cycle;

@@ -14,7 +14,7 @@ import { reveal } from "../../time/timeline.js";
 import { jumpText, rowAfter, searchStart } from "./edge_search.js";
 import { createMarkers } from "./markers.js";
 import { createOverview } from "./overview.js";
-import { drawLit, paintRows } from "./picture.js";
+import { drawHighlights, paintRows } from "./picture.js";
 import { createPointer } from "./pointer.js";
 import { createReading } from "./reading.js";
 import { createRowPanel } from "./row_panel.js";
@@ -103,7 +103,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (!state.result) return;
     const { value: kind } = kindSelect;
     const from = searchStart(state, forward);
-    const edge = (await engine.ask("next_edge", state.row, from, forward, kind).catch(unlessDropped)) ?? null;
+    const edge = (await engine.request("next_edge", state.row, from, forward, kind).catch(unlessDropped)) ?? null;
     if (edge !== null) {
       dispatch({ type: "cursor", which: "a", cycle: edge });
       reveal(page, edge);
@@ -155,7 +155,7 @@ export function createPulses({ engine, dispatch, now }) {
     if (!context || !state.result) return;
     context.scale(scale, scale);
     drawCursors(context, state, plot, height);
-    drawLit(context, state, plot, spans);
+    drawHighlights(context, state, plot, spans);
     handles.render(state);
     reading.render(state);
   }

@@ -16,7 +16,7 @@ const TICKS_PX = 20;
 const LABEL_PX = 56;
 
 /** What is selected in the view's head. @returns {{quantity: Quantity, db: boolean}} */
-export function chosenSpectrum() {
+export function selectedSpectrum() {
   const value = (/** @type {string} */ id) => /** @type {HTMLSelectElement} */ (byId(id)).value;
   return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
 }

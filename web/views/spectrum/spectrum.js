@@ -4,7 +4,7 @@ import { listen } from "../../shell/commands.js";
 import { si } from "../../state/number.js";
 import { gestures, moved, zoomed } from "../../time/gestures.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
-import { chosenSpectrum, spectrumChart } from "./chart.js";
+import { selectedSpectrum, spectrumChart } from "./chart.js";
 import { createFields } from "./fields.js";
 import { frequency } from "./frequency.js";
 import { describe, distortion, harmonics, method, nameOf, overFrequency, UNITS, value } from "./harmonics.js";
@@ -148,7 +148,7 @@ export function createSpectrumView({ dispatch, now }) {
 
   /** What follows from the spectra and from what is selected of them. */
   function paint() {
-    const { quantity, db } = chosenSpectrum();
+    const { quantity, db } = selectedSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses ?? null;
     const note = byId("spectrum-note");
     say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
@@ -166,7 +166,7 @@ export function createSpectrumView({ dispatch, now }) {
   function drawChart() {
     cancelAnimationFrame(frame);
     frame = 0;
-    const { quantity, db } = chosenSpectrum();
+    const { quantity, db } = selectedSpectrum();
     if (spectra && rows.length > 0 && canvas.clientWidth > 0) {
       plot = draw(canvas, spectrumChart(spectra, quantity, db, canvas.clientWidth));
       fit(overlay);
@@ -183,7 +183,7 @@ export function createSpectrumView({ dispatch, now }) {
   /** Highlights the harmonic that is pointed at, stem and row, and draws the box. @param {State} state */
   function mark({ harmonic }) {
     const row = harmonic === null ? undefined : rows[harmonic - 1];
-    const { quantity, db } = chosenSpectrum();
+    const { quantity, db } = selectedSpectrum();
     const some = spectra?.ideal ?? spectra?.pulses;
     const text = row ? describe(row, quantity, some?.periodic ?? false) : "";
     const reading = (/** @type {string} */ of) => {

@@ -47,7 +47,7 @@ export function field(label, unit, start, { least, most, integer = false }, chan
         ? read.message
         : read.value >= least && read.value <= most
           ? ""
-          : `Out of range; use ${least} to ${most}.`;
+          : `${input.value.trim()} is out of range; use ${least} to ${most}.`;
     showError();
     if (wrong || !("value" in read) || read.value === value) return;
     value = read.value;

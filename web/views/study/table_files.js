@@ -31,10 +31,10 @@ export function tabled(state) {
   return /** @type {string | null} */ (of);
 }
 
-/** A question about tables, and how its arguments begin. @param {Engine} engine @param {"step_table" | "step_source"} name @param {Tabled} of @returns {Promise<[string, any[]]>} */
-export async function question(engine, name, { json, controller, axis, run }) {
+/** A tableRequest about tables, and how its arguments begin. @param {Engine} engine @param {"step_table" | "step_source"} name @param {Tabled} of @returns {Promise<[string, any[]]>} */
+export async function tableRequest(engine, name, { json, controller, axis, run }) {
   const begin = [json, controller, axis];
-  return run === null ? [name, begin] : [`${name}_of_run`, [...begin, await engine.ask("records_of", axis)]];
+  return run === null ? [name, begin] : [`${name}_of_run`, [...begin, await engine.request("records_of", axis)]];
 }
 
 /** Files of the table that is selected, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
@@ -54,7 +54,7 @@ export function files(state, engine, of) {
     label: `${label}: axis ${axis}, ${form}, ${widths}`,
     language,
     make: async () => {
-      const [method, begin] = await question(engine, "step_source", of);
+      const [method, begin] = await tableRequest(engine, "step_source", of);
       const pieces = [[...begin, form, widths, us, language]];
       return engine.distribute(method, pieces, new AbortController().signal);
     },

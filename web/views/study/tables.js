@@ -4,7 +4,7 @@ import { save } from "../../shell/save.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
 import { createJob, field, table } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
-import { choice, FORMS, files, LANGUAGES, question, tabled } from "./table_files.js";
+import { choice, FORMS, files, LANGUAGES, tabled, tableRequest } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
@@ -159,7 +159,7 @@ export function createTables({ engine, now, panel }) {
       async (signal, tell) => {
         let done = 0;
         tell(0, `0 of ${ROWS.length} tables`);
-        const [method, begin] = await question(engine, "step_table", of);
+        const [method, begin] = await tableRequest(engine, "step_table", of);
         const pieces = ROWS.map(({ form, widths }) => [...begin, form, widths, choice.us]);
         return engine.distribute(method, pieces, signal, () =>
           tell(++done / pieces.length, `${done} of ${pieces.length} tables`),

@@ -122,7 +122,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     }
     job.run(
       async () => {
-        const run = await engine.ask("records_of", channel);
+        const run = await engine.request("records_of", channel);
         return engine.consider("torque", "torque_of_steps", json, controller, channel, run, named);
       },
       (/** @type {Torque | undefined} */ found) => {

@@ -2,7 +2,7 @@
 
 use crate::{
     Hex,
-    schema::{OWN, PATENT, label, rows::settings},
+    schema::{PATENT, label, line::RECEIVER_BAUD, rows::settings},
 };
 use alloc::vec::Vec;
 use stepscope_motion::moves::Axis;
@@ -23,12 +23,7 @@ settings! {
             .term("Address", "Number of a controller on a shared line. A controller accepts packets that begin with its own address or with 255.")
             .from(PATENT),
         /// Bit rate of its receiver and its replies, if its clock differs from the host's.
-        pub receiver_baud: Option<u32> = None => label("Receiver bit rate")
-            .unit("baud")
-            .follows("1 to 2*`clock_hz`/21")
-            .empty("same as the host")
-            .term("Receiver bit rate", "The receiver has its own clock. If its bit rate is about 5 % off, it samples the stop bit at the wrong time.")
-            .from(OWN),
+        pub receiver_baud: Option<u32> = None => RECEIVER_BAUD,
         /// Driver bus and queue.
         pub bus: Bus = Bus::default() => label("Driver bus"),
         /// Axes, if the source is a motion.

@@ -3,7 +3,7 @@
 use crate::{
     END_OF_TIME,
     schema::{
-        OWN, PATENT, label,
+        Field, OWN, PATENT, label,
         rows::{settings, words},
     },
 };
@@ -17,6 +17,14 @@ use stepscope_peripheral::{
 const MAX_GLITCHES: usize = 10_000;
 const PPM: RangeInclusive<u64> = 0..=1_000_000;
 
+/// The row of `receiver_baud`, for the first and for additional controllers.
+pub const RECEIVER_BAUD: Field = label("Receiver bit rate")
+    .unit("baud")
+    .follows("1 to 2*`clock_hz`/21")
+    .empty("same as the host")
+    .term("Receiver bit rate", "The receiver has its own clock. If its bit rate is about 5 % off, it samples the stop bit at the wrong time.")
+    .from(OWN);
+
 settings! {
     /// RS-485, half duplex, 8N1. A bit of the receiver must last at least 11 cycles.
     pub struct Line {
@@ -27,12 +35,7 @@ settings! {
             .term("Bit rate", "Bits per second on the line. A byte takes ten bits.")
             .from(PATENT),
         /// Bit rate of the receiver, if its clock differs from the host's.
-        pub receiver_baud: Option<u32> = None => label("Receiver bit rate")
-            .unit("baud")
-            .follows("1 to 2*`clock_hz`/21")
-            .empty("same as the host")
-            .term("Receiver bit rate", "The receiver has its own clock. If its bit rate is about 5 % off, it samples the stop bit at the wrong time.")
-            .from(OWN),
+        pub receiver_baud: Option<u32> = None => RECEIVER_BAUD,
         /// Address of the controller, if packets begin with one; 255 addresses all.
         pub address: Option<u8> = None => label("Address")
             .whole(limits::ADDRESS)

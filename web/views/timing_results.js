@@ -15,7 +15,7 @@ const DIR = 16;
 const AROUND = 14;
 
 /** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], showNote: (text: string) => void} & import("../state/types.js").Page} page */
-export function createFound({ engine, drivers, showNote, dispatch, now }) {
+export function createResults({ engine, drivers, showNote, dispatch, now }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
   /** @type {Timing | null} */
   let timing = null;
@@ -33,7 +33,9 @@ export function createFound({ engine, drivers, showNote, dispatch, now }) {
     const { a } = state.cursors;
     // Several may lie in one cycle; from the selected one they are gone through one by one.
     if (selected && selected.cycle === a) return show(current + (forward ? 1 : -1));
-    const index = await engine.ask("next_violation", a ?? (forward ? -1 : endOf(state)), forward).catch(unlessDropped);
+    const index = await engine
+      .request("next_violation", a ?? (forward ? -1 : endOf(state)), forward)
+      .catch(unlessDropped);
     show(index ?? -1);
   }
 

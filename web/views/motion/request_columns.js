@@ -18,7 +18,7 @@ export function unitPair(state) {
  * @param {string} [slot]  Of questions in one slot only the newest is answered.
  * @returns {Promise<import("./bands.js").Seen | null>}
  */
-export async function ask(engine, state, { start, end }, columns, slot = "motion") {
+export async function requestColumns(engine, state, { start, end }, columns, slot = "motion") {
   const clock = state.result?.summary.clock_hz ?? 1;
   const window = [start / clock, end / clock, columns];
   const { baseline, axis } = state;
