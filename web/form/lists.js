@@ -9,7 +9,7 @@ import { printSegments, readSegments } from "./segments.js";
  * @typedef {object} List
  * @property {(value: any) => string} print
  * @property {(text: string) => {value: any} | {message: string}} read
- * @property {(label: string, put: (text: string) => void, refuse: (message: string) => void) => Node[]} [tools]  What stands beside the field.
+ * @property {(label: string, put: (text: string) => void, refuse: (message: string) => void) => Node[]} [tools]  Buttons next to the field.
  * @typedef {{[kind: string]: List}} Lists
  */
 

@@ -25,7 +25,7 @@ export function bandsOf(shown) {
  * @param {object} given
  * @param {readonly Placed[]} given.shown  One view a place.
  * @param {readonly number[] | null} given.rows  Heights that the user gave the bands, as parts of the room; more than 1 together scroll.
- * @param {readonly number[] | null} given.columns  Widths, as parts, of what stands beside each other.
+ * @param {readonly number[] | null} given.columns  Widths, as parts, of columns next to each other.
  * @param {(view: string) => boolean} given.isSmall
  */
 export function template({ shown, rows, columns, isSmall }) {

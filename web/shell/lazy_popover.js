@@ -6,7 +6,7 @@ import { dropDown } from "./popover.js";
 /** @typedef {{isOpen: () => boolean, close: () => void}} Popover */
 /** @typedef {{onOpen: () => void, render?: (state: State, before: State | undefined) => void}} Content  `onOpen` is called whenever the panel opens. */
 
-/** What is told where its code could not be fetched. */
+/** The text if its code cannot be loaded. */
 const MISSING = "This part of the page could not be loaded. Check the network and try again.";
 
 /** @param {string} button @param {string} panel  Their ids. @param {(popover: Popover) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */

@@ -3,8 +3,8 @@
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
 /**
- * A file that can be saved. `make` gives its parts; `pace` is to be called as it goes on, and throws where the
- * visitor leaves off.
+ * A file that can be saved. `make` gives its parts; `pace` is to be called as it goes on, and throws where the user
+ * cancels.
  * @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} Offer
  * @typedef {{title: string, offers: Offer[]}} Group
  */

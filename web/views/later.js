@@ -21,7 +21,7 @@ export function createLater(page, name, load) {
     if (!view.checkVisibility()) return;
     try {
       loading ??= load(page);
-      // Once it is there it draws at once, in the change that it is told of.
+      // Once it is there it draws at once, in the same change.
       made ??= await loading;
     } catch {
       loading = null;

@@ -27,7 +27,7 @@ const TEST_LIMIT: Duration = Duration::from_secs(1800);
 const END_LIMIT: Duration = Duration::from_secs(60);
 
 /// Takes the means of keeping the page from documents to come, before their own scripts look for it: all files of the page
-/// would be fetched and stored for each visitor.
+/// would be fetched and stored for each user.
 const NOT_KEPT: &str = "delete Navigator.prototype.serviceWorker;";
 
 /// Whether the page is kept on the device by its service worker.
@@ -41,7 +41,7 @@ enum Keeping {
 pub(crate) struct Bench {
     pub(crate) browser: Browser,
     keeping: Keeping,
-    /// Address of the page, such as `http://127.0.0.1:40000/`, of which every visitor has a name of its own.
+    /// Address of the page, such as `http://127.0.0.1:40000/`, of which every user has a name of its own.
     page: String,
     /// Of an engine whose browsers are not shared, or of a Chromium that is the test's own.
     driver: Option<Program>,
@@ -50,7 +50,7 @@ pub(crate) struct Bench {
     visitors: Mutex<Vec<(Session, Option<Lent>)>>,
 }
 
-/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a visitor that it has never seen,
+/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a user that it has never seen,
 /// on whose device nothing of the page is kept.
 pub(crate) fn in_browser<T, F>(test: T) -> Result<()>
 where
@@ -182,7 +182,7 @@ impl Bench {
         Ok(session)
     }
 
-    /// What every visitor has: a screen of this size, and a device that keeps the page or does not.
+    /// What every user has: a screen of this size, and a device that keeps the page or does not.
     async fn prepare(&self, session: &Session) -> Result<()> {
         session.screen(1440, 900).await?;
         match self.keeping {
@@ -191,8 +191,8 @@ impl Bench {
         }
     }
 
-    /// Lets somebody else into the browser of the test's only visitor, at another address; with what the console said of
-    /// that visitor.
+    /// Lets somebody else into the browser of the test's only user, at another address; with what the console said of
+    /// that user.
     pub(crate) async fn next_in_browser(self: &Arc<Self>) -> Result<(Vec<String>, Session)> {
         let last = self.visitors().pop();
         let (Some((session, lent)), true) = (last, self.visitors().is_empty()) else {
@@ -228,7 +228,7 @@ impl Bench {
         self.visitors.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads every visitor's console and gives the browsers back; `outcome` with what the consoles add.
+    /// Reads every user's console and gives the browsers back; `outcome` with what the consoles add.
     pub(crate) async fn end_visits(&self, mut outcome: Result<()>) -> Result<()> {
         let visitors = std::mem::take(&mut *self.visitors());
         for (session, lent) in visitors {

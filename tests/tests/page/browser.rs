@@ -14,7 +14,7 @@ const FLAGS: &[&str] = &[
     "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
-    // A browser has one visitor after another, whose pages need no process each.
+    // A browser has one user after another, whose pages need no process each.
     "--renderer-process-limit=1",
     "--disable-background-networking",
     "--disable-component-update",

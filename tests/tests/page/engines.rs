@@ -12,7 +12,7 @@ use crate::{
     session::Session,
 };
 
-/// What a visitor does with the page, from its loading to the link that another visitor, who is given, opens.
+/// What a user does with the page, from its loading to the link that another user, who is given, opens.
 async fn main_job(page: Session) -> Result<Session> {
     let (default, typed) = (Known::of("{}")?, Known::of(&with_distance(1200.0))?);
     page.open("").await?;

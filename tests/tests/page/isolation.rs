@@ -29,7 +29,7 @@ const LEAVE: &str = "
         navigator.serviceWorker.ready,
     ]).then(() => true);";
 
-/// All that a visitor can find of that, by its name.
+/// All that a user can find of that, by its name.
 const FOUND: &str = "
     return (async () => ({
         'local storage': localStorage.getItem('left'),
@@ -60,7 +60,7 @@ const FOUND: &str = "
 
 type Found = BTreeMap<String, Value>;
 
-/// What a visitor finds before the page's own scripts have run.
+/// What a user finds before the page's own scripts have run.
 async fn found(page: &Session) -> Result<Found> {
     // A page without scripts, so that all there is was there before.
     page.go("licenses.html").await?;

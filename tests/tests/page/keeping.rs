@@ -75,7 +75,7 @@ fn what_was_typed_into_a_field_that_is_gone_holds_nothing() -> Result<()> {
     })
 }
 
-/// Types into a field, then presses a button of the form's structure by its key, as a visitor who does not wait does.
+/// Types into a field, then presses a button of the form's structure by its key, as a user who does not wait does.
 async fn edit_and_press(page: &Session, path: &str, text: &str, button: &str) -> Result<()> {
     page.fill(path, text).await?;
     page.press(&format!("#fields button[aria-label='{button}']"), &ENTER.to_string()).await
@@ -210,7 +210,7 @@ fn a_changed_preset_is_called_so_until_it_has_a_name() -> Result<()> {
     })
 }
 
-/// Types 77, and 0 as soon as what follows from 77 is told: before it is run.
+/// Types 77, and 0 as soon as what follows from 77 is reported: before it is run.
 const BETWEEN_RUNS: &str = "const input = document.querySelector(arguments[0]);
     const note = document.querySelector('[data-note]');
     const type = (text) => { input.value = text; input.dispatchEvent(new Event('input')); };

@@ -133,7 +133,7 @@ fn the_own_work_is_there_again_on_the_next_visit_whatever_link_was_opened_betwee
         page.until_digest(&own.digest).await?;
         page.open(&format!("#{}", shared.link)).await?;
         page.until_digest(&shared.digest).await?;
-        // What it says is told once, and can be closed.
+        // What it says is reported once, and can be closed.
         page.until("document.getElementById('link-message').textContent.startsWith('Shared with you')")
             .await?;
         page.click("#link-message .close").await?;

@@ -44,7 +44,7 @@ fn device(folder: &Folder, json: &str) -> Result<Program> {
 fn pair() -> Result<(Program, String, String)> {
     let mut socat = Command::new("socat");
     socat.args(["-d", "-d", "pty,raw,echo=0", "pty,raw,echo=0"]);
-    // The second is told a moment after the first.
+    // The second is reported a moment after the first.
     let socat = Program::start(&socat, Says::Path("starting data transfer loop")).context("socat")?;
     let heard = socat.heard();
     let mut ends = heard.iter().filter_map(|line| Some(line.split_once("PTY is ")?.1.to_owned()));

@@ -1,9 +1,9 @@
 //! The page in real browsers, driven by WebDriver, under the headers that a host sends: its main job in three engines,
-//! all else in Chromium without a window. What the page shows is held against what the core gives natively.
+//! all else in Chromium without a window. What the page shows is compared with native runs of the core.
 //!
 //! `cargo xtask test --only page --only engines` builds the page and sets the environment:
 //!
-//! | variable | what it names |
+//! | variable | meaning |
 //! | --- | --- |
 //! | `STEPSCOPE_CHROMIUM`, `STEPSCOPE_CHROMEDRIVER` | the browser and its driver |
 //! | `STEPSCOPE_FIREFOX`, `STEPSCOPE_GECKODRIVER` | the same of Firefox |
@@ -17,11 +17,11 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | `programs` | servers and drivers, ended with this process however it ends |
-//! | `pool` | browsers that the tests share, and how each visitor meets one as if it were new |
+//! | `pool` | browsers that the tests share; reset between tests |
 //! | `bench` | what one test uses, given back at its end however it ends |
 //! | `browser` | the three engines: drivers, sessions, consoles |
-//! | `session` | one browser with the page in it: what a visitor does and sees |
-//! | `devtools` | what is asked of a browser beyond WebDriver |
+//! | `session` | one browser with the page in it: what a user does and sees |
+//! | `devtools` | requests to a browser beyond WebDriver |
 //! | `pixels` | what is drawn on a canvas |
 //! | `device` | the dialog Device, and a mock of `navigator.serial` |
 //! | `native` | what the core says of the same scenario |

@@ -19,7 +19,7 @@ use crate::{
 
 /// What the display shows.
 const LCD: &str = "document.querySelector('.lcd')?.textContent";
-/// What the panel says in words.
+/// What the panel says as text.
 const WORDS: &str = "document.querySelector('.panel-words')?.textContent";
 /// What became of the last press.
 const SAID: &str = "document.getElementById('panel-status').textContent";
@@ -185,7 +185,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
             .await?;
         page.ready().await?;
         until_run(&page, &known).await?;
-        // A press that means nothing is told, and where.
+        // A press that means nothing is reported, and where.
         page.click("[data-input='ok']").await?;
         page.until("document.querySelector('.ignored').textContent.includes('1 press meant nothing')")
             .await?;

@@ -44,7 +44,7 @@ struct Pool {
     free: Mutex<Vec<Lent>>,
 }
 
-/// A Chromium, open at a tab for one visitor.
+/// A Chromium, open at a tab for one user.
 pub(crate) struct Lent {
     pub(crate) client: Client,
     /// The tab that keeps the browser open between two visitors.
@@ -121,7 +121,7 @@ impl Lent {
         Ok(self.client.switch_to_window(tab.try_into()?).await?)
     }
 
-    /// Closes all that the visitor opened, lifts what was held down and forgets what the console said.
+    /// Closes all that the user opened, lifts what was held down and forgets what the console said.
     pub(crate) async fn clear(&self) -> Result<()> {
         for tab in self.client.windows().await? {
             if tab != self.home {

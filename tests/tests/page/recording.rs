@@ -136,7 +136,7 @@ pub(crate) async fn shown_map(page: &Session) -> Result<Vec<String>> {
 }
 
 /// Chooses the signal of a channel, such as RX, STEP3 or DIR0,1. WebDriver's choice is a change, without the input event of a
-/// visitor's.
+/// user's.
 pub(crate) async fn choose_signal(page: &Session, channel: &str, signal: &str) -> Result<()> {
     let (kind, motors) =
         signal.split_at(signal.find(|each: char| each.is_ascii_digit()).unwrap_or(signal.len()));
@@ -148,7 +148,7 @@ pub(crate) async fn choose_signal(page: &Session, channel: &str, signal: &str) -
     Ok(())
 }
 
-/// Sets a field as a visitor's input does.
+/// Sets a field as a user's input does.
 pub(crate) async fn set(page: &Session, css: &str, value: &str) -> Result<()> {
     let script = "const field = document.querySelector(arguments[0]); field.value = arguments[1];
         return field.dispatchEvent(new Event('input', { bubbles: true }));";
@@ -203,7 +203,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         page.until("document.getElementById('link-text').value.includes('#c=')").await?;
         ensure!(!page.eval::<bool>("/[&]d=/.test(document.getElementById('link-text').value)").await?);
         page.click("#share").await?;
-        // Each step is held against the model's, and the one that is off most can be shown.
+        // Each step is compared with the model's, and the one that is off most can be shown.
         page.until(&format!(
             "{MESSAGE}.startsWith('Compared with the baseline: 200 steps, the baseline has 800')"
         ))

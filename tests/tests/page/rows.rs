@@ -22,12 +22,12 @@ const ESCAPE: char = '\u{e00c}';
 /// Height of the rows until another is chosen.
 const ROW_PX: f64 = 19.0;
 
-/// How many rows there are, as a screen reader is told.
+/// How many rows there are, for a screen reader.
 async fn until_rows(page: &Session, rows: usize) -> Result<()> {
     page.until(&format!("document.getElementById('pulses').ariaLabel.includes(', {rows} rows,')")).await
 }
 
-/// Names in the panel, from the top: what the visitor calls them, else their own.
+/// Names in the panel, from the top: what the user calls them, else their own.
 async fn names(page: &Session) -> Result<Vec<String>> {
     page.eval("[...document.querySelectorAll('#rows-list input[type=text]')].map((field) => field.value || field.placeholder)")
         .await

@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 /// Rest between two looks.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
-/// A visitor's browser.
+/// A user's browser.
 #[derive(Clone)]
 pub(crate) struct Session {
     pub(crate) client: Client,
@@ -23,7 +23,7 @@ pub(crate) struct Session {
     address: String,
 }
 
-/// One field of the form as a visitor, or a screen reader, meets it.
+/// One field of the form as a user, or a screen reader, meets it.
 #[derive(Debug, Deserialize, PartialEq)]
 pub(crate) struct Field {
     pub(crate) value: String,
@@ -49,7 +49,7 @@ impl Session {
         Self { client, bench: Arc::clone(bench), address }
     }
 
-    /// Another visitor: at the same address in a second browser, which was never there.
+    /// Another user: at the same address in a second browser, which was never there.
     pub(crate) async fn stranger(&self) -> Result<Self> {
         self.bench.visitor(Some(self.address.clone())).await
     }
@@ -59,7 +59,7 @@ impl Session {
         Ok(self.client.goto(&format!("{}{path}", self.address())).await?)
     }
 
-    /// Another visitor where a driver has one browser at a time: this one goes, its console silent.
+    /// Another user where a driver has one browser at a time: this one goes, its console silent.
     pub(crate) async fn next_visitor(&self) -> Result<Self> {
         let (said, next) = self.bench.next_in_browser().await?;
         ensure!(said.is_empty(), "the console is not silent:\n{}", said.join("\n"));
@@ -195,7 +195,7 @@ impl Session {
         Ok(field.send_keys(text).await?)
     }
 
-    /// Chooses an option of the field of a path, as a visitor's click does.
+    /// Chooses an option of the field of a path, as a user's click does.
     pub(crate) async fn choose(&self, css: &str, value: &str) -> Result<()> {
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }

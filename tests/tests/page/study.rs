@@ -537,7 +537,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
         page.until_equal(USABLE, &json!(0)).await?;
         page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0.4").await?;
         page.until_equal(USABLE, &json!(11)).await?;
-        // A ramp that no shape can have is told once, at its field.
+        // A ramp that no shape can have is reported once, at its field.
         fill(&page, "Ramp", "0.5").await?;
         page.until(
             "document.querySelector('#study-compare .study-field .error').textContent.includes('0.5 s')",

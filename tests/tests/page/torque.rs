@@ -119,7 +119,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
         says("There is no motor: choose one").await?;
         page.until("document.querySelectorAll('#study-torque select option').length > 5").await?;
         page.choose("#study-torque select", "song-2021").await?;
-        // A driver's choice is a change, and no input as a visitor's is.
+        // A driver's choice is a change, and no input as a user's is.
         page.until("document.getElementById('torque-verdict').textContent !== ''").await?;
         let machine =
             Machine::of(&Axis { motor: Some(Default::default()), ..Axis::default() }).expect("a motor");

@@ -31,7 +31,7 @@ export function createMarkers({ dispatch, now, speak }) {
     if (list || count > 0) await fillTable();
   }
 
-  /** Once it is there it fills the table at once, in the change that it is told of. */
+  /** Once it is there it fills the table at once, in the same change. */
   async function fillTable() {
     try {
       list ??= (await import("./marker_list.js")).listMarkers;

@@ -5,7 +5,7 @@ import { inOrder } from "../../state/row_choices.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
- * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`; `short` stands beside it where there is no room for the name.
+ * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`; `short` is shown where there is no room for the name.
  * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP over its DIR.
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
  * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.

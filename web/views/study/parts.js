@@ -144,7 +144,7 @@ export function table(label, head) {
 
 /**
  * Long work of a tab, one at a time: newer work ends the older. After a moment it says how far it is, and it can be left off and begun anew.
- * @param {string} label @param {() => string} [left]  What is told of what stays when it is left off.
+ * @param {string} label @param {() => string} [left]  Text about what stays without it.
  */
 export function createJob(label, left = () => "") {
   const bar = element("progress", { max: "1", value: "0", "aria-label": label });

@@ -102,7 +102,7 @@ pub enum Limit {
     Number(f64, f64),
     /// A number of characters or entries, and their name.
     Length(usize, usize, &'static str),
-    /// A range that depends on other fields, described in words.
+    /// A range that depends on other fields, as text.
     Follows(&'static str),
 }
 
