@@ -21,7 +21,6 @@ pub trait Compact: ToParts {
 
 impl<T: ToParts> Compact for T {}
 
-/// Which fields are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fields {
     Differing,
