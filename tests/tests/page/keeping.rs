@@ -338,7 +338,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("[aria-label='Remove Rig']").await?;
         page.until_equal(NAMES, &serde_json::json!([])).await?;
-        page.click("[aria-label='Put Rig back']").await?;
+        page.click("[aria-label='Restore Rig']").await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await
     })
 }

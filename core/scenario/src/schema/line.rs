@@ -18,7 +18,7 @@ const MAX_GLITCHES: usize = 10_000;
 const PPM: RangeInclusive<u64> = 0..=1_000_000;
 
 /// The row of `receiver_baud`, for the first and for additional controllers.
-pub const RECEIVER_BAUD: Field = label("Receiver bit rate")
+pub(super) const RECEIVER_BAUD: Field = label("Receiver bit rate")
     .unit("baud")
     .follows("1 to 2*`clock_hz`/21")
     .empty("same as the host")
