@@ -254,9 +254,7 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
         )
         .await?;
         page.ready().await?;
-        ensure!(
-            page.eval::<bool>("document.activeElement.ariaLabel === 'Use: 6 segments, best d1'").await?
-        );
+        ensure!(page.eval::<bool>("document.activeElement.ariaLabel === 'Use: 6 segments, best d1'").await?);
         page.click("#undo").await?;
         page.until("document.getElementById('sine-note').textContent === ''").await
     })
