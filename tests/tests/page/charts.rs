@@ -193,7 +193,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
 
         let both = page.canvas("chart-position").await?.hash;
         page.click("#show-difference").await?;
-        page.until("document.getElementById('caption-position').textContent.includes('less the baseline')")
+        page.until("document.getElementById('caption-position').textContent.includes('minus the baseline')")
             .await?;
         let look = async || Ok((page.canvas("chart-position").await?.hash != both).then_some(()));
         page.eventually("the difference is drawn", look).await?;

@@ -62,9 +62,9 @@ fn a_link_of_another_run_says_between_which_edges_the_first_difference_lies_and_
         let changed = trace.len() / 2;
         trace.get_mut(changed).context("a record")?.levels.0 ^= 1 << 35;
         page.open(&link(&known, &trace)).await?;
-        page.until(&format!("{SEEN}.startsWith('Not the run that the sender saw')")).await?;
+        page.until(&format!("{SEEN}.startsWith('The run differs from the sender')")).await?;
         let said = page.text("#seen-message").await?;
-        ensure!(said.contains("lies between edge") && !said.contains("version"), "{said}");
+        ensure!(said.contains("is between edge") && !said.contains("version"), "{said}");
         page.click("#seen-message button").await?;
         let cycle = known.recording.trace.get(changed).context("a record")?.cycle.0;
         let (start, end): (f64, f64) = page
@@ -209,7 +209,7 @@ fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
         let at = other.len() / 3;
         other.get_mut(at).context("a record")?.levels.0 ^= 1;
         drop_file(&page, "other.csv", &table(&other)?).await?;
-        page.until(&format!("{MESSAGE}.startsWith('other.csv is not this run')")).await?;
+        page.until(&format!("{MESSAGE}.startsWith('other.csv differs from this run')")).await?;
         let said = page.text("#link-message").await?;
         ensure!(said.contains("STEP0 is") && said.contains("in line"), "{said}");
         page.click("#link-message button").await?;

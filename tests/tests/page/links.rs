@@ -73,7 +73,7 @@ fn a_refused_clipboard_leaves_the_link_to_be_copied_by_hand() -> Result<()> {
         page.click("#share").await?;
         page.until("!document.getElementById('copy-link').disabled").await?;
         page.click("#copy-link").await?;
-        page.until("document.getElementById('link-about').textContent.includes('did not let')").await?;
+        page.until("document.getElementById('link-about').textContent.includes('blocked copying')").await?;
         let link = whole(&page, &Known::of("{}")?);
         assert_eq!(page.eval::<String>("document.getElementById('link-text').value").await?, link);
         assert_eq!(page.eval::<String>("getSelection().toString()").await?, link, "it is selected");

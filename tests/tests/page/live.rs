@@ -44,7 +44,7 @@ fn a_stream_is_confirmed_to_its_end_with_the_models_positions() -> Result<()> {
         let steps = positions(&known).join("  ");
         let both = |name: &str, value: &str| [name.to_owned(), value.to_owned(), value.to_owned()];
         let expected =
-            Beside(vec![both("state", "READY"), both("ticks done", &ticks), both("steps gone", &steps)]);
+            Beside(vec![both("state", "READY"), both("ticks done", &ticks), both("steps moved", &steps)]);
         assert_eq!(beside(&page).await?, expected);
         // What the page tells of its port: opened at the line's rate, and closed.
         assert_eq!(page.eval::<(Vec<u32>, u32)>("[peer.opened, peer.closed]").await?, (vec![115_200], 1));
@@ -105,7 +105,7 @@ fn two_controllers_have_each_their_rows_and_their_end() -> Result<()> {
         page.until(&format!("{SAID}.startsWith('Verified')")).await?;
         let Beside(rows) = beside(&page).await?;
         assert_eq!(rows.len(), 6);
-        assert_eq!(rows[5], ["controller 1, steps gone", "100", "100"].map(str::to_owned));
+        assert_eq!(rows[5], ["controller 1, steps moved", "100", "100"].map(str::to_owned));
         ensure!(rows.iter().all(|[_, device, model]| device == model), "{rows:?}");
         Ok(())
     })

@@ -100,7 +100,7 @@ fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Res
         let sent = said.strip_prefix("Stopped sending after ").and_then(|rest| rest.split(' ').next());
         let sent: u32 = sent.and_then(|sent| sent.parse().ok()).with_context(|| said.clone())?;
         ensure!((21..packets as u32).contains(&sent), "{said}");
-        ensure!(said.contains("a raw line has no STOP, and the device does what is in its queue"), "{said}");
+        ensure!(said.contains("a raw line has no STOP, and the device still executes its queue"), "{said}");
         let report: String = page.eval(REPORT).await?;
         ensure!(report.contains("stopped sending: what the controller has queued runs on"), "{report}");
         // What was sent is done, and no more.
@@ -146,7 +146,7 @@ fn a_lost_port_ends_raw_packets_and_is_told() -> Result<()> {
         page.until(ENDED).await?;
         let said: String = page.eval(SAID).await?;
         let lost =
-            "Not verified: the port is lost: The device has been lost; the device does what is in its queue";
+            "Not verified: the port is lost: The device has been lost; the device still executes its queue";
         ensure!(said.starts_with(lost), "{said}");
         let report: String = page.eval(REPORT).await?;
         let packets = known.experiment.schedule().len();

@@ -187,7 +187,7 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
         page.eval::<Value>("(window.spoil = null)").await?;
         // What was answered before it failed nobody knows.
         page.click("#live-start").await?;
-        page.until(&format!("{SAID}.endsWith('press STOP first, or start once more.')")).await?;
+        page.until(&format!("{SAID}.endsWith('press STOP first, or start again.')")).await?;
         page.eval::<Value>(PRESS_START).await?;
         page.until("peer.closed === 2 && !document.getElementById('live-close').disabled").await?;
         verified(&page, &known).await.map(drop)
@@ -204,7 +204,7 @@ fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
         // As if the worker's memory were gone: nobody gives the port's streams back.
         let gone = "(own.terminate(), own.onmessage({ data: { error: 'unreachable' } }), null)";
         page.eval::<Value>(gone).await?;
-        page.until(&format!("{SAID}.includes('The port could not be closed: load this page again')")).await?;
+        page.until(&format!("{SAID}.includes('The port could not be closed: reload this page')")).await?;
         page.until(&format!("{ABOUT}.includes(' baud')")).await?;
         // A press on the browser's list, which has it all the same, says so again.
         page.click("#live-choose").await?;

@@ -101,8 +101,14 @@ fn a_part_that_does_not_come_is_told_of_and_asked_for_again() -> Result<()> {
             page.devtools("Network.setBlockedURLs", json!({ "urls": files })).await
         };
         page.open("").await?;
-        block(json!(["*/additional_parts.*", "*/row_list.*", "*/edges.*", "*/filled.*", "*/key_list.*"]))
-            .await?;
+        block(json!([
+            "*/additional_parts.*",
+            "*/row_list.*",
+            "*/edges.*",
+            "*/card_content.*",
+            "*/key_list.*"
+        ]))
+        .await?;
         let plant = "[data-path='plant#kind']";
         page.js::<()>("document.querySelector(arguments[0]).scrollIntoView();", vec![json!(plant)]).await?;
         page.click(plant).await?;

@@ -144,15 +144,15 @@ fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> R
         for (name, wanted) in [
             ("steps", figures.steps),
             ("right", figures.right),
-            ("of them left", figures.left),
-            ("turns", figures.turns),
+            ("left", figures.left),
+            ("reversals", figures.turns),
             ("position", figures.position.unsigned_abs().into()),
         ] {
             assert_eq!(one(name).await?, wanted.to_string(), "{name}");
         }
         close(&one("shortest interval").await?, figures.shortest_interval_s.expect("steps"))?;
         close(&one("longest interval").await?, figures.longest_interval_s.expect("steps"))?;
-        let rate = one("greatest rate").await?;
+        let rate = one("maximum rate").await?;
         assert_eq!(rate, format!("{} steps/s", figures.greatest_rate_steps_s.expect("steps")));
         // They go to and fro evenly, so what is distorted is known of the pulses alone.
         let distortion = cells(&page, "Distortion", "speed", 0).await?;

@@ -74,7 +74,12 @@ async fn until_shown(page: &Session, machine: &StandAlone) -> Result<()> {
     page.until_equal(LCD, &json!(lcd)).await?;
     let alarm = word.alarm().name();
     let state = format!("{}{}{alarm}", word.state().name(), if alarm.is_empty() { "" } else { " " });
-    let words = format!("'{state} · trust {}'", trust_name(word.trust()));
+    let position = match trust_name(word.trust()) {
+        "LOST" => "lost",
+        "HELD" => "restored",
+        _ => "confirmed",
+    };
+    let words = format!("'{state} · position {position}'");
     page.until(&format!("{WORDS}.startsWith({words})")).await
 }
 
@@ -141,11 +146,11 @@ fn what_is_to_be_done_next_is_told_and_where_a_move_never_comes_to_its_speed() -
         open(&page, &known, 3_200_000).await?;
         let advice = "document.querySelector('.panel-advice').textContent";
         page.until(&format!("{WORDS}.startsWith('ALARM MEMORY · position lost')")).await?;
-        page.until(&format!("{advice}.startsWith('Clear. Nothing is remembered')")).await?;
+        page.until(&format!("{advice}.startsWith('Clear. The memory is invalid')")).await?;
         let speed = "source.standalone[0].groups[0].move.speed_hz";
         page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('too short for 4000 Hz')")).await?;
         page.click("[data-input='clear']").await?;
-        page.until(&format!("{advice}.startsWith('The place is not known')")).await?;
+        page.until(&format!("{advice}.startsWith('The position is lost')")).await?;
         // Homing is not set up: the button says so, and so does the log.
         page.until("document.querySelector(`[data-input='home']`).title.includes('not set up')").await?;
         page.click("[data-input='home']").await?;
@@ -187,8 +192,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
         until_run(&page, &known).await?;
         // A press that means nothing is reported, and where.
         page.click("[data-input='ok']").await?;
-        page.until("document.querySelector('.ignored').textContent.includes('1 press meant nothing')")
-            .await?;
+        page.until("document.querySelector('.ignored').textContent.includes('1 press ignored')").await?;
         page.until("document.querySelector('.ignored').textContent.includes('ok at 260 ms in JOG')").await
     })
 }

@@ -185,8 +185,7 @@ fn what_storage_lost_damaged_or_refused_is_said_once_and_the_model_is_shown() ->
         linked(&page).await?;
         reload(&page).await?;
         page.until_digest(&model(&opened, "mine.csv")?).await?;
-        page.until(&format!("{MESSAGE}.includes('not there any more: this browser does not keep it')"))
-            .await?;
+        page.until(&format!("{MESSAGE}.includes('no longer available: the browser cannot save it')")).await?;
         // And lists of it that are none.
         for text in ["{", "7", "null", "[null,5]", "[]"] {
             page.js::<bool>("return (localStorage.setItem('stepscope.recordings', arguments[0]), sessionStorage.setItem('stepscope.recording', arguments[0]), true)", vec![json!(text)]).await?;

@@ -205,7 +205,7 @@ fn the_best_vertices_are_taken_as_points_that_have_their_distortion() -> Result<
         ))
         .await?;
         page.click("[aria-label='Use: 6 segments, vertices free']").await?;
-        page.until("document.getElementById('sine-note').textContent.includes('undo brings the sine back')")
+        page.until("document.getElementById('sine-note').textContent.includes('Undo restores the sine')")
             .await?;
         page.until("document.querySelector('[data-path=\"source.motion.axes[0].moves[0]#kind\"]').value === 'points'").await?;
         page.ready().await?;
@@ -391,7 +391,7 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         let packets = Known::of(r#"{"source":{"packets":{"packets":["8a"]}}}"#)?;
         page.open(&format!("#{}&v=tstudy.ytables", packets.link)).await?;
         page.until(
-            "document.querySelector('#study-tables .study-note').textContent.replace(/\\u202f/g, '').startsWith('Channel 0: 10 steps, as the views show them')",
+            "document.querySelector('#study-tables .study-note').textContent.replace(/\\u202f/g, '').startsWith('Channel 0: 10 steps, as shown in the views')",
         )
         .await?;
         page.until(made).await?;
