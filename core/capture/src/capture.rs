@@ -1,14 +1,4 @@
-//! What a file has recorded.
-//!
-//! ```
-//! use stepscope_capture::capture::{Capture, Format, TimedPosition};
-//!
-//! // Two steps in 10 ticks: the second at the row's time, the first half way to it.
-//! let rows = [(0, 5), (10, 7)].map(|(tick, position)| TimedPosition { tick, position });
-//! let capture = Capture { positions: rows.to_vec(), ..Capture::new(Format::PositionsCsv) };
-//! let steps = capture.steps(|tick| 100 * tick, 1000).expect("two are not too many");
-//! assert_eq!(steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>(), [(500, 1), (1000, 2)]);
-//! ```
+//! The contents of a recorded file.
 
 pub use crate::changes::Change;
 
@@ -27,17 +17,16 @@ pub enum Format {
     Vcd,
     /// Session of sigrok or PulseView (`.sr`).
     SigrokSession,
-    /// sigrok's or PulseView's table, one row per sample.
+    /// Table of sigrok or PulseView, one row per sample.
     SigrokCsv,
     /// Table of levels with times, one row per change: DSView, WaveForms and others.
     LevelsCsv,
-    /// Saleae Logic 2's table of digital channels, one row per change.
+    /// Saleae Logic 2, digital channels, one row per change.
     SaleaeCsv,
-    /// Saleae Logic 2's table of decoded bytes.
+    /// Saleae Logic 2, decoded bytes.
     SaleaeBytes,
-    /// Stepscope's own table of edges.
     EdgesCsv,
-    /// Stepscope's own trace: cycle and levels in hexadecimal.
+    /// Cycle and levels in hexadecimal.
     Trace,
     /// Bytes in hexadecimal, with or without times.
     HexBytes,
@@ -45,11 +34,9 @@ pub enum Format {
     HexDump,
     /// Log of bytes in hexadecimal, with times of day.
     SerialLog,
-    /// Annotations of sigrok's UART decoder.
+    /// Output of sigrok's UART decoder.
     Annotations,
-    /// Step commands of Klipper.
     Klipper,
-    /// A table of times and positions.
     PositionsCsv,
     /// Not a readable kind: the capture is empty, and the error lists the kinds that can be read.
     Unknown,
@@ -77,60 +64,52 @@ impl fmt::Display for Format {
     }
 }
 
-/// A channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// The name in the file, after its scopes and points (`top.motor.STEP`).
     pub name: String,
 }
 
-/// A byte that another program has decoded.
+/// A byte that another program decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedByte {
     /// Start of the start bit, in ticks of the file; without times the index of the byte.
     pub tick: u64,
-    /// Its channel, an index into [`Capture::channels`].
+    /// Index into [`Capture::channels`].
     pub channel: u8,
-    /// The byte.
     pub byte: u8,
     /// Whether the file reports a low stop bit.
     pub framing_error: bool,
 }
 
-/// A position at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedPosition {
     /// In ticks of the file.
     pub tick: u64,
-    /// In steps.
     pub position: i64,
 }
 
 /// The contents of a file: levels, bytes or positions; the other two are empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capture {
-    /// The kind of file.
     pub format: Format,
     /// Length of a tick; `None` if the file does not give it.
     pub timebase: Option<Timebase>,
-    /// The channels, at most [`MAX_CHANNELS`].
+    /// At most [`MAX_CHANNELS`].
     pub channels: Vec<Channel>,
     /// Levels in order of time, each different from the one before. The first also holds before its time.
     pub changes: Changes,
-    /// Bytes in order of time.
     pub bytes: Vec<TimedByte>,
-    /// Positions in order of time.
     pub positions: Vec<TimedPosition>,
     /// The last tick in the file.
     pub end: u64,
-    /// Number of channels beyond [`MAX_CHANNELS`], which are not read.
+    /// Channels beyond [`MAX_CHANNELS`], which are not read.
     pub channels_left_out: u64,
     /// What was not read, one sentence each.
     pub left_out: Vec<String>,
 }
 
 impl Capture {
-    /// An empty capture.
     #[must_use]
     pub const fn new(format: Format) -> Self {
         Self {
@@ -147,20 +126,17 @@ impl Capture {
     }
 
     /// Number of changes, bytes or positions.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.changes.len() + self.bytes.len() + self.positions.len()
     }
 
-    /// Steps for the positions, in cycles. The steps of a row are evenly spaced from the row before; the last is at
-    /// the row's time. Positions are relative to the first row. `None` if there are more than `most` steps or a
-    /// position does not fit into 32 bits.
-    #[must_use]
-    pub fn steps(&self, cycle: impl Fn(u64) -> u64, most: u64) -> Option<Vec<Step>> {
+    /// Steps for the positions, in cycles: evenly spaced from row to row, relative to the first. `None` if there are more
+    /// than `most` steps or a position does not fit into 32 bits.
+    pub fn steps(&self, cycle: impl Fn(u64) -> u64, max_steps: u64) -> Option<Vec<Step>> {
         let pairs = || self.positions.iter().zip(self.positions.iter().skip(1));
         let all = pairs()
             .fold(0, |sum: u64, (before, row)| sum.saturating_add(row.position.abs_diff(before.position)));
-        if all > most {
+        if all > max_steps {
             return None;
         }
         let start = i128::from(self.positions.first().map_or(0, |row| row.position));
@@ -179,8 +155,6 @@ impl Capture {
         Some(steps)
     }
 
-    /// Whether it is empty.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -196,8 +170,8 @@ mod tests {
             positions: rows.iter().map(|&(tick, position)| TimedPosition { tick, position }).collect(),
             ..Capture::new(Format::PositionsCsv)
         };
-        let steps = |positions: &[(u64, i64)], most| {
-            let steps = rows(positions).steps(|tick| 10 * tick, most)?;
+        let steps = |positions: &[(u64, i64)], max_steps| {
+            let steps = rows(positions).steps(|tick| 10 * tick, max_steps)?;
             Some(steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>())
         };
         let found = steps(&[(0, 5), (10, 7), (20, 7), (30, 6)], 3);
@@ -205,5 +179,19 @@ mod tests {
         assert_eq!(steps(&[(0, 5), (10, 7), (20, 7), (30, 6)], 2), None);
         assert_eq!(steps(&[(0, i64::MIN), (1, i64::MAX)], u64::MAX - 1), None);
         assert_eq!(steps(&[], 0), Some(vec![]));
+    }
+
+    #[test]
+    fn a_table_becomes_changes() {
+        use crate::capture::{Capture, Format, TimedPosition};
+
+        // Two steps in 10 ticks: the second at the row's time, the first half way to it.
+        let rows = [(0, 5), (10, 7)].map(|(tick, position)| TimedPosition { tick, position });
+        let capture = Capture { positions: rows.to_vec(), ..Capture::new(Format::PositionsCsv) };
+        let steps = capture.steps(|tick| 100 * tick, 1000).expect("two are not too many");
+        assert_eq!(
+            steps.iter().map(|step| (step.cycle, step.position)).collect::<Vec<_>>(),
+            [(500, 1), (1000, 2)]
+        );
     }
 }

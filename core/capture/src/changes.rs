@@ -7,16 +7,7 @@
 //!           7 bits each, the lowest first         changes again, as STEP does
 //! ```
 //!
-//! Blocks begin with a whole change, so that a time is found without reading what is before its block.
-//!
-//! ```
-//! use stepscope_capture::changes::{Change, Changes};
-//!
-//! let steps = (0..1000).map(|k| Change { tick: 700 * k, levels: k % 2 });
-//! let changes: Changes = steps.clone().collect();
-//! assert!(changes.iter().eq(steps.clone()) && changes.bytes() < 2 * 1000 + 100);
-//! assert!(changes.iter_from(350_000).eq(steps.skip(500)));
-//! ```
+//! Blocks begin with a whole change, so a time is found without reading earlier blocks.
 
 use std::{collections::TryReserveError, slice, vec};
 
@@ -31,7 +22,7 @@ pub struct Change {
     pub levels: u64,
 }
 
-/// Large enough that the C library gets each block from the system and returns it.
+/// Large enough that the C library returns each block to the system.
 const BLOCK: usize = 1 << 17;
 /// Ten bytes of time, nine of changed bits.
 const MAX_ROW: usize = 19;
@@ -62,46 +53,33 @@ struct Block {
 }
 
 impl Changes {
-    /// No changes.
     #[must_use]
     pub const fn new() -> Self {
         Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
     }
 
-    /// Number of changes.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether it is empty.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The first change.
-    #[must_use]
     pub fn first(&self) -> Option<Change> {
         self.blocks.first().map(|block| block.first)
     }
 
-    /// The last change.
-    #[must_use]
     pub const fn last(&self) -> Option<Change> {
         self.last
     }
 
-    /// Memory of the changes, in bytes.
-    #[must_use]
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         self.blocks.iter().map(|block| size_of::<Block>() + block.rows.len()).sum()
     }
 
-    /// Reserves space for one change, so that [`Self::push`] does not allocate.
-    ///
-    /// # Errors
-    /// Out of memory.
+    /// Reserves space for one change, so that [`Self::push`] does not allocate. Errors: out of memory.
     pub fn reserve(&mut self) -> Result<(), TryReserveError> {
         if self.blocks.len() == self.blocks.capacity() {
             self.blocks.try_reserve((self.blocks.len() / 2).max(16))?;
@@ -152,14 +130,11 @@ impl Changes {
         self.blocks.push(Block { first, rows });
     }
 
-    /// Iterates over all changes.
-    #[must_use]
     pub fn iter(&self) -> Iter<'_> {
         Iter { blocks: self.blocks.iter(), row: Row::default(), rows: &[] }
     }
 
     /// Iterates from the last change at or before `tick`; from the first if there is none.
-    #[must_use]
     pub fn iter_from(&self, tick: u64) -> Iter<'_> {
         let block = self.blocks.partition_point(|block| block.first.tick <= tick).saturating_sub(1);
         let mut from = Iter {
@@ -223,7 +198,6 @@ impl Row {
     }
 }
 
-/// Iterator over changes.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
     blocks: slice::Iter<'a, Block>,
@@ -338,5 +312,15 @@ mod tests {
         let packed: Changes =
             (0..1_000_000).map(|k| Change { tick: 400 * k + k % 5, levels: k & 1 }).collect();
         assert!(packed.bytes() <= 2 * packed.len() + packed.len() / 100, "{}", packed.bytes());
+    }
+
+    #[test]
+    fn changes_are_read_back() {
+        use crate::changes::{Change, Changes};
+
+        let steps = (0..1000).map(|k| Change { tick: 700 * k, levels: k % 2 });
+        let changes: Changes = steps.clone().collect();
+        assert!(changes.iter().eq(steps.clone()) && changes.bytes() < 2 * 1000 + 100);
+        assert!(changes.iter_from(350_000).eq(steps.skip(500)));
     }
 }

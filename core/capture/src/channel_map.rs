@@ -7,16 +7,6 @@
 //! CW0=CH1,CCW0=CH2               one pulse input per direction
 //! A0=CH1,B0=CH2                  a quadrature encoder: one count per edge
 //! ```
-//!
-//! ```
-//! use stepscope_capture::{capture::{Capture, Channel, Format}, channel_map::ChannelMap};
-//!
-//! let mut capture = Capture::new(Format::Vcd);
-//! capture.channels = ["X_STEP", "X_DIR", "nEN"].map(|name| Channel { name: name.into() }).into();
-//! let map = ChannelMap::proposed(&capture);
-//! assert_eq!(map.to_text(&capture), "STEP0=X_STEP,DIR0=X_DIR,EN=!nEN");
-//! assert_eq!(ChannelMap::parse(&map.to_text(&capture), &capture), Ok(map));
-//! ```
 
 use crate::capture::{Capture, Channel};
 use core::fmt;
@@ -38,47 +28,31 @@ pub(crate) enum Input {
 }
 
 impl Input {
-    const MADE: [Self; 5] = [Self::BothEdges, Self::Cw, Self::Ccw, Self::A, Self::B];
+    const ALL: [Self; 7] = [Self::Step, Self::Dir, Self::BothEdges, Self::Cw, Self::Ccw, Self::A, Self::B];
+
+    /// The name, and the bit of motor 0.
+    const fn parts(self) -> (&'static str, u32) {
+        match self {
+            Self::Step => ("STEP", 0),
+            Self::Dir => ("DIR", Levels::DIR_SHIFT),
+            Self::BothEdges => ("DEDGE", BUS_SIGNALS),
+            Self::Cw => ("CW", BUS_SIGNALS + MOTORS),
+            Self::Ccw => ("CCW", BUS_SIGNALS + 2 * MOTORS),
+            Self::A => ("A", BUS_SIGNALS + 3 * MOTORS),
+            Self::B => ("B", BUS_SIGNALS + 4 * MOTORS),
+        }
+    }
 
     pub(crate) const fn bit(self, motor: u32) -> u32 {
-        motor
-            + match self {
-                Self::Step => 0,
-                Self::Dir => Levels::DIR_SHIFT,
-                Self::BothEdges => BUS_SIGNALS,
-                Self::Cw => BUS_SIGNALS + MOTORS,
-                Self::Ccw => BUS_SIGNALS + 2 * MOTORS,
-                Self::A => BUS_SIGNALS + 3 * MOTORS,
-                Self::B => BUS_SIGNALS + 4 * MOTORS,
-            }
+        self.parts().1 + motor
     }
 
     pub(crate) fn of(bit: u32) -> Option<(Self, u32)> {
-        let motor = |first: u32| bit - first;
-        match bit {
-            0..MOTORS => Some((Self::Step, motor(0))),
-            Levels::DIR_SHIFT..32 => Some((Self::Dir, motor(Levels::DIR_SHIFT))),
-            32..BUS_SIGNALS => None,
-            _ => {
-                let at = bit - BUS_SIGNALS;
-                Self::MADE.get((at / MOTORS) as usize).map(|input| (*input, at % MOTORS))
-            }
-        }
+        let motor = |input: Self| bit.checked_sub(input.bit(0)).filter(|motor| *motor < MOTORS);
+        Self::ALL.into_iter().find_map(|input| Some((input, motor(input)?)))
     }
 
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Step => "STEP",
-            Self::Dir => "DIR",
-            Self::BothEdges => "DEDGE",
-            Self::Cw => "CW",
-            Self::Ccw => "CCW",
-            Self::A => "A",
-            Self::B => "B",
-        }
-    }
-
-    /// The signal that this one needs.
+    /// The signal that this one requires.
     const fn partner(self) -> Option<Self> {
         match self {
             Self::Cw => Some(Self::Ccw),
@@ -92,17 +66,15 @@ impl Input {
 
 fn signal_name(bit: u32) -> String {
     match Input::of(bit) {
-        Some((input, motor)) => format!("{}{motor}", input.name()),
+        Some((input, motor)) => format!("{}{motor}", input.parts().0),
         None => signal::name(bit).unwrap_or_default(),
     }
 }
 
-/// What a motor's STEP pulses are made from.
+/// The source of a motor's STEP pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PulseSource {
-    /// STEP itself.
     Step,
-    /// Both edges of STEP.
     BothEdges,
     /// One pulse input per direction, which also gives DIR.
     CwCcw,
@@ -113,9 +85,7 @@ pub enum PulseSource {
 /// A motor's edges of STEP.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeHint {
-    /// The motor.
     pub motor: u8,
-    /// Index of its channel.
     pub channel: usize,
     /// Rising and falling edges are evenly spaced, as for a driver that steps on both edges.
     pub both_edges: bool,
@@ -125,15 +95,13 @@ pub struct EdgeHint {
     pub edges: Option<u64>,
 }
 
-/// A signal and its channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Bit of the signal: 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each: DEDGE, CW, CCW, A
     /// and B.
     pub bit: u32,
-    /// Index of the channel.
     pub channel: usize,
-    /// Whether the channel is active low.
+    /// Active low.
     pub inverted: bool,
 }
 
@@ -149,13 +117,12 @@ pub struct ChannelMap {
     entries: Vec<Entry>,
 }
 
-/// Why a text is not a map.
+/// Why a text is not a channel map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MapError {
     /// An entry without `=`.
     NoPair(String),
-    /// No such signal.
     Signal(String),
     /// No such channel; the second text lists the channels.
     Channel(String, String),
@@ -221,9 +188,7 @@ impl ChannelMap {
     }
 
     /// Reads a map as [`Self::to_text`] writes it; ignores blanks and the case of signals.
-    ///
-    /// # Errors
-    /// [`MapError`] with what is wrong with the first pair that cannot be used.
+    /// Errors: [`MapError`] with what is wrong with the first pair that cannot be used.
     pub fn parse(text: &str, capture: &Capture) -> Result<Self, MapError> {
         let mut map = Self::default();
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
@@ -283,8 +248,6 @@ impl ChannelMap {
         Self::of(self.entries.into_iter().map(both).collect())
     }
 
-    /// What the steps of a motor are made from.
-    #[must_use]
     pub fn pulses(&self, motor: u8) -> PulseSource {
         let has = |input: Input| self.has(input.bit(motor.into()));
         match () {
@@ -296,14 +259,11 @@ impl ChannelMap {
     }
 
     /// Whether pulses are made from edges: DEDGE or an encoder.
-    #[must_use]
     pub fn makes_pulses(&self) -> bool {
         let is_made = |motor| matches!(self.pulses(motor), PulseSource::BothEdges | PulseSource::Quadrature);
         (0..self.bus_channels()).any(is_made)
     }
 
-    /// Whether the direction of a motor is known.
-    #[must_use]
     pub fn has_direction(&self, motor: u8) -> bool {
         self.has(Input::Dir.bit(motor.into()))
             || matches!(self.pulses(motor), PulseSource::CwCcw | PulseSource::Quadrature)
@@ -330,26 +290,21 @@ impl ChannelMap {
     }
 
     /// The entries: sources of steps, then DIR, then the other signals.
-    #[must_use]
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Whether a signal has a channel.
-    #[must_use]
     pub fn has(&self, bit: u32) -> bool {
         self.entries.iter().any(|entry| entry.bit == bit)
     }
 
     /// Channels of the bus up to the map's last motor; at least 1.
-    #[must_use]
     pub fn bus_channels(&self) -> u8 {
         let motors = self.entries.iter().filter_map(|entry| Input::of(entry.bit));
         motors.map(|(_, motor)| motor as u8 + 1).max().unwrap_or(1)
     }
 
     /// The map as text, for [`Self::parse`].
-    #[must_use]
     pub fn to_text(&self, capture: &Capture) -> String {
         let pair = |entry: &Entry| {
             let signal = signal_name(entry.bit);
@@ -446,5 +401,19 @@ mod tests {
             let error = ChannelMap::parse(text, &capture).expect_err("no map").to_string();
             assert!(error.starts_with(expected), "{error}");
         }
+    }
+
+    #[test]
+    fn a_map_is_proposed_and_read_back() {
+        use crate::{
+            capture::{Capture, Channel, Format},
+            channel_map::ChannelMap,
+        };
+
+        let mut capture = Capture::new(Format::Vcd);
+        capture.channels = ["X_STEP", "X_DIR", "nEN"].map(|name| Channel { name: name.into() }).into();
+        let map = ChannelMap::proposed(&capture);
+        assert_eq!(map.to_text(&capture), "STEP0=X_STEP,DIR0=X_DIR,EN=!nEN");
+        assert_eq!(ChannelMap::parse(&map.to_text(&capture), &capture), Ok(map));
     }
 }

@@ -13,32 +13,23 @@
 //! assert_eq!(reading.capture.changes.iter().nth(1).map(|change| change.tick), Some(10));
 //! ```
 
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
+
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub mod timebase;
-
 pub mod capture;
-
 pub mod changes;
-
-pub mod read;
-
-mod proposal;
-
-mod made_pulses;
-
-mod names;
-
-mod spacing;
-
 pub mod channel_map;
-
+mod generated_pulses;
+mod names;
+mod proposal;
+pub mod read;
 pub mod recorded;
-
 pub mod samples;
-
+mod spacing;
+pub mod timebase;
 pub mod uart;
 
 pub use capture::Capture;

@@ -43,58 +43,21 @@ pub(crate) enum Meaning {
     Unknown,
 }
 
-const WORDS: [(&str, Kind); 37] = [
-    ("STEP", Kind::Step),
-    ("STEPS", Kind::Step),
-    ("STP", Kind::Step),
-    ("PUL", Kind::Step),
-    ("PULS", Kind::Step),
-    ("PULSE", Kind::Step),
-    ("PULSES", Kind::Step),
-    ("PLS", Kind::Step),
-    ("PU", Kind::Step),
-    ("DIR", Kind::Dir),
-    ("DIRECTION", Kind::Dir),
-    ("DR", Kind::Dir),
-    ("SIGN", Kind::Dir),
-    ("CW", Kind::Cw),
-    ("UP", Kind::Cw),
-    ("CCW", Kind::Ccw),
-    ("DOWN", Kind::Ccw),
-    ("DN", Kind::Ccw),
-    ("CLK", Kind::Clock),
-    ("CLOCK", Kind::Clock),
-    ("CP", Kind::Clock),
-    ("EN", Kind::En),
-    ("ENA", Kind::En),
-    ("ENABLE", Kind::En),
-    ("ENN", Kind::En),
-    ("NEN", Kind::En),
-    ("NENABLE", Kind::En),
-    ("RX", Kind::Rx),
-    ("RXD", Kind::Rx),
-    ("TX", Kind::Tx),
-    ("TXD", Kind::Tx),
-    ("DE", Kind::De),
-    ("TXEN", Kind::De),
-    ("SCHRITT", Kind::Step),
-    ("TAKT", Kind::Clock),
-    ("RICHTUNG", Kind::Dir),
-    ("FREIGABE", Kind::En),
+const WORDS: [(Kind, &str); 9] = [
+    (Kind::Step, "STEP STEPS STP PUL PULS PULSE PULSES PLS PU SCHRITT"),
+    (Kind::Dir, "DIR DIRECTION DR SIGN RICHTUNG"),
+    (Kind::Cw, "CW UP"),
+    (Kind::Ccw, "CCW DOWN DN"),
+    (Kind::Clock, "CLK CLOCK CP TAKT"),
+    (Kind::En, "EN ENA ENABLE ENN NEN NENABLE FREIGABE"),
+    (Kind::Rx, "RX RXD"),
+    (Kind::Tx, "TX TXD"),
+    (Kind::De, "DE TXEN"),
 ];
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
 /// Pulses only if the opposite word is present, too.
 const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
-const PHASES: [(&str, Kind); 8] = [
-    ("ENCA", Kind::A),
-    ("PHA", Kind::A),
-    ("PHASEA", Kind::A),
-    ("QA", Kind::A),
-    ("ENCB", Kind::B),
-    ("PHB", Kind::B),
-    ("PHASEB", Kind::B),
-    ("QB", Kind::B),
-];
+const PHASES: [(Kind, &str); 2] = [(Kind::A, "ENCA PHA PHASEA QA"), (Kind::B, "ENCB PHB PHASEB QB")];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
 /// Do not identify a motor, except with a number: `MOTOR1`.
 const NOISE: [&str; 30] = [
@@ -102,6 +65,13 @@ const NOISE: [&str; 30] = [
     "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I", "ALL",
     "BOTH", "COMMON", "SHARED",
 ];
+/// The word and its kind.
+fn find(words: &[(Kind, &'static str)], wanted: &str) -> Option<(&'static str, Kind)> {
+    let find =
+        |(kind, words): &(Kind, &'static str)| Some((words.split(' ').find(|word| *word == wanted)?, *kind));
+    words.iter().find_map(find)
+}
+
 /// Names in one word: `FLSTEP`, `FLDIR`.
 const JOINED: [(&str, Kind); 3] = [("STEP", Kind::Step), ("DIRECTION", Kind::Dir), ("DIR", Kind::Dir)];
 /// Prefixes of pin or probe numbers.
@@ -110,70 +80,10 @@ const PINS: [&str; 16] = [
     "LOGIC",
 ];
 /// Never signals, whatever the other words are.
-const OTHERS: [&str; 62] = [
-    "ACK",
-    "ALARM",
-    "ALM",
-    "BUSY",
-    "CHANGE",
-    "CHANGED",
-    "CNT",
-    "COUNT",
-    "COUNTER",
-    "CS",
-    "DELAY",
-    "DIAG",
-    "DONE",
-    "END",
-    "ENDSTOP",
-    "ERR",
-    "ERROR",
-    "FAULT",
-    "FLT",
-    "FREQ",
-    "HOME",
-    "IDX",
-    "INDEX",
-    "INT",
-    "INTERVAL",
-    "IRQ",
-    "LAST",
-    "LED",
-    "LEN",
-    "LENGTH",
-    "LIMIT",
-    "MICRO",
-    "MICROSTEP",
-    "MISO",
-    "MODE",
-    "MOSI",
-    "NEXT",
-    "NUM",
-    "PERIOD",
-    "POS",
-    "POSITION",
-    "PREV",
-    "RATE",
-    "READY",
-    "REQ",
-    "RESET",
-    "RST",
-    "SCK",
-    "SCL",
-    "SCLK",
-    "SDA",
-    "SIZE",
-    "SLEEP",
-    "SPEED",
-    "STALL",
-    "STATE",
-    "TOTAL",
-    "TRIG",
-    "TRIGGER",
-    "VALID",
-    "WIDTH",
-    "PWM",
-];
+const OTHERS: &str = "ACK ALARM ALM BUSY CHANGE CHANGED CNT COUNT COUNTER CS DELAY DIAG DONE END ENDSTOP ERR ERROR FAULT FLT \
+    FREQ HOME IDX INDEX INT INTERVAL IRQ LAST LED LEN LENGTH LIMIT MICRO MICROSTEP MISO MODE MOSI NEXT NUM \
+    PERIOD POS POSITION PREV RATE READY REQ RESET RST SCK SCL SCLK SDA SIZE SLEEP SPEED STALL STATE TOTAL \
+    TRIG TRIGGER VALID WIDTH PWM";
 pub(crate) const AXES: &str = "XYZABCUVWE";
 
 impl Meaning {
@@ -184,7 +94,7 @@ impl Meaning {
         let words = words(last);
         let has_word = |all: &[&str]| words.iter().any(|word| all.contains(&word.as_str()));
         let is_rest = has_word(&["STEPS"]) && has_word(&["LEFT", "REMAINING", "TODO"]);
-        if is_rest || words.iter().any(|word| OTHERS.contains(&letters(word))) {
+        if is_rest || words.iter().any(|word| OTHERS.split(' ').any(|other| other == letters(word))) {
             return Self::Other;
         }
         let mut kinds: Vec<(Kind, &str)> = Vec::new();
@@ -195,7 +105,7 @@ impl Meaning {
             let phase = |word: &str| match word {
                 "A" if is_encoder => Some(Kind::A),
                 "B" if is_encoder => Some(Kind::B),
-                _ => PHASES.iter().find(|(phase, _)| *phase == word).map(|(_, kind)| *kind),
+                _ => find(&PHASES, word).map(|(_, kind)| kind),
             };
             if let Some(kind) = phase(letters(word)) {
                 kinds.push((kind, "PHASE"));
@@ -262,7 +172,7 @@ impl Meaning {
         Some(Named { kind, inverted: false, negative: false, pulse: false, axis, scope })
     }
 
-    pub(crate) fn is_telling(name: &str) -> bool {
+    pub(crate) fn is_recognized(name: &str) -> bool {
         matches!(Self::of(name, false), Self::Signal(Named { kind, .. }) if kind != Kind::Clock)
     }
 }
@@ -302,7 +212,7 @@ fn words(name: &str) -> Vec<String> {
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {
         let upper = part.to_ascii_uppercase();
         let is_low = upper.strip_prefix('N').is_some_and(|word| signal(word).is_some());
-        if is_low || signal(&upper).is_some() || PHASES.iter().any(|(phase, _)| *phase == letters(&upper)) {
+        if is_low || signal(&upper).is_some() || find(&PHASES, letters(&upper)).is_some() {
             all.push(upper);
             continue;
         }
@@ -351,7 +261,7 @@ fn digits(word: &str) -> Option<String> {
 
 fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
     let text = letters(given);
-    let known = |text: &str| WORDS.iter().find(|(known, _)| *known == text).copied();
+    let known = |text: &str| find(&WORDS, text);
     if let Some((known, kind)) = known(text) {
         return Some((known, kind, digits(given)));
     }

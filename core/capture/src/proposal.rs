@@ -40,7 +40,7 @@ fn propose(mut draft: Draft<'_>) -> ChannelMap {
     draft.dirs_by_name();
     let named = draft.motors.len();
     draft.sort_motors();
-    // First: a bit rate may fit an encoder at constant speed.
+    // Encoders come first: a bit rate may fit one at constant speed.
     draft.encoders_by_behavior();
     draft.lines_by_behavior();
     draft.steps_by_behavior();

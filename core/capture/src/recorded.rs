@@ -2,23 +2,12 @@
 //!
 //! Times are rounded to the nearest cycle, halves up. With a slow clock, edges may share a cycle and pulses may be
 //! lost; both are counted.
-//!
-//! ```
-//! use stepscope_capture::{ChannelMap, Recorded, read::{Limits, read}};
-//!
-//! let table = "Time [s],STEP,DIR\n0,0,1\n0.00001,1,1\n0.0000125,0,1\n";
-//! let capture = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true).capture;
-//! let (map, base) = (ChannelMap::proposed(&capture), capture.timebase.expect("times in s"));
-//! let recorded = Recorded::new(capture, &map, base, 16_000_000).expect("it is short");
-//! assert_eq!(recorded.records.iter().map(|record| record.cycle.0).collect::<Vec<_>>(), [0, 160, 200]);
-//! assert!(recorded.records[1].levels.step() & 1 == 1 && recorded.rounding.lost == 0);
-//! ```
 
 use crate::{
     capture::{Capture, Change},
     changes,
     channel_map::{BUS_SIGNALS, ChannelMap, Entry},
-    made_pulses::{MadePulses, Steps},
+    generated_pulses::{GeneratedPulses, Steps},
     timebase::Timebase,
 };
 use core::fmt;
@@ -27,21 +16,17 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Pulses that are made have at most this part of a second: 2.5 us.
+/// Generated pulses last at most 1/400000 s: 2.5 us.
 const WIDEST: u64 = 400_000;
 const LAST_CYCLE: u64 = 9_000_000_000_000_000;
 
-/// A capture's signals in cycles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
-    /// Cycles per second.
     pub clock_hz: u32,
-    /// Number of channels of the bus, from 0.
     pub channels: u8,
     /// Records from cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels, DIR
     /// right.
     pub records: Vec<Record>,
-    /// The last known cycle.
     pub end: Instant,
     /// Effects of rounding.
     pub rounding: Rounding,
@@ -71,7 +56,7 @@ impl fmt::Display for Rounding {
             write!(f, "; {} times two changes meet in a cycle", self.met)?;
         }
         if self.lost > 0 {
-            write!(f, ", and {} pulses within one are lost: take a faster clock", self.lost)?;
+            write!(f, ", and {} pulses within one are lost: use a faster clock", self.lost)?;
         }
         Ok(())
     }
@@ -88,7 +73,7 @@ impl fmt::Display for TooLate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "tick {} of the file is after cycle {LAST_CYCLE}, the last that there can be: take a slower clock",
+            "tick {} of the file is after cycle {LAST_CYCLE}, the last that there can be: use a slower clock",
             self.tick
         )
     }
@@ -101,10 +86,8 @@ fn cycle(timebase: Timebase, tick: u64, clock_hz: u32) -> Result<u64, TooLate> {
 }
 
 impl Recorded {
-    /// Converts a capture to cycles of `clock_hz`, with ticks of `timebase`. Frees the capture's memory on the way.
-    ///
-    /// # Errors
-    /// [`TooLate`] if a time has no cycle.
+    /// Converts a capture to cycles of `clock_hz`, with ticks of `timebase`; frees the capture's memory meanwhile.
+    /// Errors: [`TooLate`] if a time has no cycle.
     pub fn new(
         capture: Capture,
         map: &ChannelMap,
@@ -116,7 +99,7 @@ impl Recorded {
             cycle(timebase, last.tick, clock_hz)?;
         }
         let signals = Signals::new(map);
-        // A pulse that is made has an additional fall.
+        // A generated pulse has an additional fall.
         let count = capture.changes.len() * if map.makes_pulses() { 2 } else { 1 };
         let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
         // Allocated once: a doubled vector may not fit next to the old one.
@@ -141,18 +124,15 @@ pub struct Records<'m, I> {
     cycles: Option<u64>,
     before: Option<Record>,
     last: Option<Levels>,
-    /// STEP signals whose made pulses are high in `before`, and when the last ones end.
+    /// STEP signals whose generated pulses are high in `before`.
     high: u64,
     fall: Option<Record>,
-    /// Effects of rounding so far.
     pub rounding: Rounding,
 }
 
 impl<'m> Records<'m, changes::Iter<'m>> {
     /// Records of a capture, as in [`Recorded::new`].
-    ///
-    /// # Errors
-    /// [`TooLate`] if a time has no cycle.
+    /// Errors: [`TooLate`] if a time has no cycle.
     pub fn of(
         capture: &'m Capture,
         map: &'m ChannelMap,
@@ -163,9 +143,7 @@ impl<'m> Records<'m, changes::Iter<'m>> {
     }
 
     /// Records from a tick on; the first, at cycle 0, has the levels at that time.
-    ///
-    /// # Errors
-    /// [`TooLate`] if a time has no cycle.
+    /// Errors: [`TooLate`] if a time has no cycle.
     pub fn from(
         capture: &'m Capture,
         map: &'m ChannelMap,
@@ -209,8 +187,8 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         };
         let mut now = Record { cycle: Instant(at), levels: self.signals.levels(levels) };
         let mut high = 0;
-        if let Some(made) = &mut self.signals.made {
-            let Steps { pulses, levels, ambiguous } = made.take(levels);
+        if let Some(generated) = &mut self.signals.generated {
+            let Steps { pulses, levels, ambiguous } = generated.take(levels);
             self.rounding.ambiguous += u64::from(ambiguous);
             let since = self.before.map_or(u64::MAX, |before| at - before.cycle.0);
             // A pulse lasts at least one cycle, so an earlier step waits for it.
@@ -222,7 +200,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         let (shown, falling) = (self.before.replace(now)?, core::mem::replace(&mut self.high, high));
         if shown.cycle == now.cycle {
             let since = self.last.unwrap_or(Levels::RESET).0;
-            let recorded = !self.signals.made.as_ref().map_or(0, MadePulses::signals);
+            let recorded = !self.signals.generated.as_ref().map_or(0, GeneratedPulses::signals);
             self.rounding.met += u64::from(shown.levels != now.levels);
             self.rounding.lost +=
                 u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0) & recorded).count_ones());
@@ -231,7 +209,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
         self.show(shown, falling, at - shown.cycle.0)
     }
 
-    /// Returns a record if its levels are new, then the end of made pulses: halfway to the next record, at most
+    /// Returns a record if its levels are new, then the end of generated pulses: halfway to the next record, at most
     /// [`WIDEST`].
     fn show(&mut self, shown: Record, falling: u64, room: u64) -> Option<Record> {
         let is_new = self.last.replace(shown.levels) != Some(shown.levels);
@@ -269,20 +247,21 @@ impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
 struct Signals<'m> {
     entries: &'m [Entry],
     rest: u64,
-    made: Option<MadePulses>,
+    generated: Option<GeneratedPulses>,
 }
 
 impl<'m> Signals<'m> {
     fn new(map: &'m ChannelMap) -> Self {
         let right = 0xffff << Levels::DIR_SHIFT;
-        let made = MadePulses::new(map);
+        let generated = GeneratedPulses::new(map);
         let bus = map.entries().iter().filter(|entry| entry.bit < BUS_SIGNALS);
-        let mapped =
-            bus.fold(made.as_ref().map_or(0, MadePulses::signals), |mask, entry| mask | 1 << entry.bit);
+        let mapped = bus.fold(generated.as_ref().map_or(0, GeneratedPulses::signals), |mask, entry| {
+            mask | 1 << entry.bit
+        });
         // DIR of unused channels is low.
         let used = (1_u64 << map.bus_channels()) - 1;
         let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
-        Self { entries: map.entries(), rest, made }
+        Self { entries: map.entries(), rest, generated }
     }
 
     fn levels(&self, channels: u64) -> Levels {
@@ -334,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn what_meets_in_a_cycle_is_counted_and_so_is_what_it_loses() {
+    fn simultaneous_and_lost_changes_are_counted() {
         // At 100 kHz a cycle is 10 us: the pulse from 21 to 23 is within one, DIR and STEP meet at 50.
         let (records, rounding, _) =
             recorded(&[(0, 0), (21, 1), (23, 0), (51, 2), (53, 3), (70, 2)], 100_000);
@@ -359,7 +338,7 @@ mod tests {
         assert_eq!(none.records.len(), 1);
     }
 
-    fn made(map: &str, changes: &[(u64, u64)]) -> (Vec<(u64, u64, u64)>, Rounding) {
+    fn generated(map: &str, changes: &[(u64, u64)]) -> (Vec<(u64, u64, u64)>, Rounding) {
         let capture = capture(changes);
         let map = ChannelMap::parse(map, &capture).expect("a map");
         let base = Timebase::new(1, 1_000_000).expect("it has a length");
@@ -375,7 +354,7 @@ mod tests {
     fn both_edges_make_a_pulse_each() {
         // The edge at 31 comes a cycle after the one at 30, whose pulse cannot end before; so does the second one at 60.
         let edges = [(0, 0b10), (20, 0b11), (23, 0b01), (30, 0b00), (31, 0b01), (50, 0b00), (60, 0b01)];
-        let (records, rounding) = made("DEDGE0=STEP,DIR0=DIR", &edges);
+        let (records, rounding) = generated("DEDGE0=STEP,DIR0=DIR", &edges);
         let expected = [
             (0, 0, 1),
             (20, 1, 1),
@@ -400,23 +379,38 @@ mod tests {
     #[test]
     fn cw_and_ccw_pulses_keep_their_width_and_give_dir() {
         let pulses = [(0, 0), (20, 1), (25, 0), (40, 2), (43, 0), (60, 1), (62, 3), (64, 0)];
-        let (records, rounding) = made("CW0=STEP,CCW0=DIR", &pulses);
+        let (records, rounding) = generated("CW0=STEP,CCW0=DIR", &pulses);
         let expected = [(0, 0, 1), (20, 1, 1), (25, 0, 1), (40, 1, 0), (43, 0, 0), (60, 1, 1), (64, 0, 1)];
         // Both are high at 62.
         assert_eq!((records, rounding.ambiguous, rounding.lost), (expected.to_vec(), 1, 0));
-        let (records, _) = made("CW0=!STEP,CCW0=!DIR", &[(0, 3), (20, 2), (25, 3)]);
+        let (records, _) = generated("CW0=!STEP,CCW0=!DIR", &[(0, 3), (20, 2), (25, 3)]);
         assert_eq!(records, [(0, 0, 1), (20, 1, 1), (25, 0, 1)]);
     }
 
     #[test]
     fn each_edge_of_an_encoder_counts_by_its_phase() {
         let phases = [(0, 0), (10, 1), (20, 3), (30, 2), (40, 0), (50, 2), (60, 3), (70, 0)];
-        let (records, rounding) = made("A0=STEP,B0=DIR", &phases);
+        let (records, rounding) = generated("A0=STEP,B0=DIR", &phases);
         let rises: Vec<(u64, u64)> =
             records.iter().filter(|record| record.1 == 1).map(|record| (record.0, record.2)).collect();
         // Four steps ahead, two back, and then both lines at once.
         assert_eq!(rises, [(10, 1), (20, 1), (30, 1), (40, 1), (50, 0), (60, 0)]);
         assert_eq!((rounding.ambiguous, rounding.lost), (1, 0));
-        assert_eq!(made("A0=!STEP,B0=DIR", &phases).0[1], (10, 1, 0));
+        assert_eq!(generated("A0=!STEP,B0=DIR", &phases).0[1], (10, 1, 0));
+    }
+
+    #[test]
+    fn a_table_becomes_records() {
+        use crate::{
+            ChannelMap, Recorded,
+            read::{Limits, read},
+        };
+
+        let table = "Time [s],STEP,DIR\n0,0,1\n0.00001,1,1\n0.0000125,0,1\n";
+        let capture = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true).capture;
+        let (map, base) = (ChannelMap::proposed(&capture), capture.timebase.expect("times in s"));
+        let recorded = Recorded::new(capture, &map, base, 16_000_000).expect("it is short");
+        assert_eq!(recorded.records.iter().map(|record| record.cycle.0).collect::<Vec<_>>(), [0, 160, 200]);
+        assert!(recorded.records[1].levels.step() & 1 == 1 && recorded.rounding.lost == 0);
     }
 }

@@ -9,14 +9,11 @@
 //! }
 //! ```
 
-/// A recording and its scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Name on the command line and in the page.
     pub id: &'static str,
-    /// The file's name.
     pub file: &'static str,
-    /// The contents of the file.
     pub bytes: &'static [u8],
     /// The scenario, as JSON.
     pub scenario: &'static str,
@@ -38,7 +35,6 @@ pub const SAMPLES: [Sample; 2] = [
     },
 ];
 
-/// The sample with this name.
 #[must_use]
 pub fn sample(id: &str) -> Option<&'static Sample> {
     SAMPLES.iter().find(|sample| sample.id == id)

@@ -42,7 +42,6 @@ impl Edges {
 
 impl ChannelMap {
     /// Hints for the motors whose edges are conclusive.
-    #[must_use]
     pub fn edge_hints(&self, capture: &Capture) -> Vec<EdgeHint> {
         let step = |entry: &Entry| match Input::of(entry.bit) {
             Some((Input::Step, motor)) => Some((motor as u8, *entry, Edges::default())),

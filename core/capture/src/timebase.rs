@@ -1,13 +1,4 @@
-//! A file's exact time base, and the conversion of ticks to clock cycles.
-//!
-//! ```
-//! use stepscope_capture::timebase::Timebase;
-//!
-//! // Samples at 24 MHz, seen by a clock of 16 MHz: the third comes at 2 cycles, the second is rounded.
-//! let base = Timebase::new(1, 24_000_000).expect("it has a length");
-//! assert_eq!([0, 1, 2, 3].map(|tick| base.cycle(tick, 16_000_000)), [Some(0), Some(1), Some(1), Some(2)]);
-//! assert!(!base.is_exact(16_000_000) && base.is_exact(48_000_000));
-//! ```
+//! A file's exact time base, and the conversion of ticks to clock cycles (DESIGN B1).
 
 /// Length of a tick: `numerator / denominator` seconds, in lowest terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +8,6 @@ pub struct Timebase {
 }
 
 impl Timebase {
-    /// Ticks of one second.
     pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
 
     /// Ticks of `numerator / denominator` seconds; `None` if one is 0.
@@ -33,13 +23,11 @@ impl Timebase {
         Some(Self { numerator: numerator / a, denominator: denominator / a })
     }
 
-    /// Length of a tick in s.
     #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
-    /// Numerator and denominator.
     #[must_use]
     pub const fn parts(self) -> (u64, u64) {
         (self.numerator, self.denominator)
@@ -51,7 +39,7 @@ impl Timebase {
         if self.numerator == 1 { u32::try_from(self.denominator).ok() } else { None }
     }
 
-    /// The cycle of a tick at `clock_hz`, rounded to the nearest, halves up (DESIGN B1); `None` if it does not fit.
+    /// The cycle of a tick at `clock_hz`, rounded to the nearest, halves up; `None` if it does not fit.
     #[must_use]
     pub fn cycle(self, tick: u64, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
@@ -109,5 +97,18 @@ mod tests {
         assert_eq!(Timebase::new(0, 1), None);
         assert_eq!(Timebase::new(1, 0), None);
         assert_eq!(Timebase::new(10, 1_000_000_000), Timebase::new(1, 100_000_000));
+    }
+
+    #[test]
+    fn samples_become_cycles() {
+        use crate::timebase::Timebase;
+
+        // Samples at 24 MHz, seen by a clock of 16 MHz: the third comes at 2 cycles, the second is rounded.
+        let base = Timebase::new(1, 24_000_000).expect("it has a length");
+        assert_eq!(
+            [0, 1, 2, 3].map(|tick| base.cycle(tick, 16_000_000)),
+            [Some(0), Some(1), Some(1), Some(2)]
+        );
+        assert!(!base.is_exact(16_000_000) && base.is_exact(48_000_000));
     }
 }

@@ -7,27 +7,6 @@
 //! idle ¯¯¯\___/¯¯¯\_______/¯¯¯ …      edge n bits after the start edge: round((edge - start) / bit) = n
 //!         start  1   0   0   1        words with edges that are no whole bits, or a low stop bit, do not fit
 //! ```
-//!
-//! ```
-//! use stepscope_capture::uart::{Edge, Format, Word, decode, estimate};
-//!
-//! // 'U' and 'A', 8.68 samples per bit.
-//! let mut edges = Vec::new();
-//! let mut high = true;
-//! for (start, byte) in [(100.0, 0x55_u16), (200.0, 0x41)] {
-//!     for (k, bit) in (0..10).map(|k| (k, (byte << 1 | 0x200) >> k & 1 == 1)) {
-//!         if bit != high {
-//!             edges.push(Edge { at: (start + 8.68 * f64::from(k)) as u64, high: bit });
-//!             high = bit;
-//!         }
-//!     }
-//! }
-//! let found = estimate(&edges, Format::default(), Some(1e6)).expect("a rate fits");
-//! assert_eq!(found.usual, Some(115_200));
-//! let mut bytes = Vec::new();
-//! decode(edges, found.bit, Format::default(), |word: Word| bytes.push(word.byte));
-//! assert_eq!(bytes, [0x55, 0x41]);
-//! ```
 
 mod rate;
 
@@ -44,15 +23,12 @@ const MAX_EDGES: usize = 64;
 const START_OFF: f64 = 1.5;
 const START_STEP: f64 = 0.25;
 
-/// Parity of a word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Parity {
-    /// No parity bit.
     #[default]
     None,
     /// Even number of ones, parity bit included.
     Even,
-    /// Odd number of ones.
     Odd,
 }
 
@@ -135,16 +111,13 @@ impl FromStr for Format {
     }
 }
 
-/// A level change of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// In any unit: samples, ticks or cycles.
     pub at: u64,
-    /// The new level.
     pub high: bool,
 }
 
-/// An error in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A low stop bit.
@@ -153,14 +126,11 @@ pub enum Fault {
     Parity,
 }
 
-/// A decoded word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Time of its start edge.
+    /// Its start edge.
     pub start: u64,
-    /// Its data.
     pub byte: u8,
-    /// Its error, if any.
     pub fault: Option<Fault>,
 }
 
@@ -229,9 +199,9 @@ fn fit(times: &[f64], bit: f64, format: Format) -> Fitted {
     if bit >= COARSE_BIT {
         return best.0;
     }
-    let most = START_OFF.min(0.4 * bit);
+    let max_off = START_OFF.min(0.4 * bit);
     let mut off = START_STEP;
-    while off <= most {
+    while off <= max_off {
         for off in [off, -off] {
             let other = fit_from(times, bit, format, off);
             if other.1 < best.1 {

@@ -81,7 +81,7 @@ fn in_order(capture: &Capture) {
 fn survives(bytes: &[u8]) {
     let reading = read_bytes(bytes);
     in_order(&reading.capture);
-    let few = read(BufReader::with_capacity(3, Cursor::new(bytes)), &Limits { most: 5 }, &mut |_| true);
+    let few = read(BufReader::with_capacity(3, Cursor::new(bytes)), &Limits { max_rows: 5 }, &mut |_| true);
     in_order(&few.capture);
     assert!(few.capture.len() <= 5);
 }
@@ -120,14 +120,14 @@ fn a_session_that_unpacks_to_more_than_it_should_is_ended() {
     let session = writers::zip(&files, true);
     assert!(session.len() < 20_000);
     let mut heard = 0;
-    let reading = read(Cursor::new(&session), &Limits { most: 100 }, &mut |_| {
+    let reading = read(Cursor::new(&session), &Limits { max_rows: 100 }, &mut |_| {
         heard += 1;
         true
     });
     let error = reading.error.expect("it is ended");
     assert_eq!(error.what, "more than 1 000 000 samples; record a shorter time");
     assert!(heard >= 3);
-    assert_eq!(read(Cursor::new(&session), &Limits { most: 1000 }, &mut |_| true).error, None);
+    assert_eq!(read(Cursor::new(&session), &Limits { max_rows: 1000 }, &mut |_| true).error, None);
 }
 
 /// Overlapping files, files that unpack to more than they say, and files of one name are refused before anything is unpacked.

@@ -174,10 +174,10 @@ fn a_recording_of_sigroks_demo_device_is_the_same_in_all_of_its_formats() {
 /// Its tables cannot hold both kinds of channels (sigrok-cli 0.7.2 ends by a memory fault), but its sessions can.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
-fn analogue_channels_of_a_session_are_left_out() {
+fn analog_channels_of_a_session_are_left_out() {
     let capture = open(&demo("20k", &[]));
     assert_eq!((capture.channels.len(), capture.end), (8, 8999));
-    assert_eq!(capture.left_out, ["analogue channels: A0, A1, A2, A3, A4"]);
+    assert_eq!(capture.left_out, ["analog channels: A0, A1, A2, A3, A4"]);
 }
 
 /// 9000 samples of the demo device, as a session.

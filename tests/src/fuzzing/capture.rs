@@ -28,7 +28,7 @@ use stepscope_core::{
             alignment::{Alignment, Side},
             loaded_capture::{LoadedCapture, Part},
             open_options::OpenOptions,
-            scenario::{Made, Steps, of_step_times, of_steps},
+            scenario::{Reproduction, Steps, of_step_times, of_steps},
             tolerance::Tolerance,
         },
     },
@@ -200,7 +200,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
 
 /// What a file holds, in order, the same again, and with room for a few rows no more than those.
 fn whole(file: &[u8]) -> Capture {
-    let with_room = |most| read(Cursor::new(file), &Limits { most }, &mut |_| true);
+    let with_room = |max_rows| read(Cursor::new(file), &Limits { max_rows }, &mut |_| true);
     let Reading { capture, error } = with_room(MOST);
     assert!(error.as_ref().is_none_or(|error| !error.what.is_empty()), "refused without a reason");
     in_order(&capture, MOST);
@@ -375,7 +375,7 @@ fn again(opened: &LoadedCapture) {
         let steps = opened.steps_of(0);
         of_step_times(slice::from_ref(&steps), &asked)
     };
-    let Ok(Made { scenario, later_cycles, greatest_error_cycles, .. }) = made else { return };
+    let Ok(Reproduction { scenario, later_cycles, greatest_error_cycles, .. }) = made else { return };
     assert_eq!(greatest_error_cycles, 0, "asked for none");
     let Some(records) = Experiment::new(&scenario).ok().and_then(|experiment| run(&experiment)) else {
         return;

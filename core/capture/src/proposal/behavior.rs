@@ -28,6 +28,19 @@ pub(super) struct Behavior {
 }
 
 impl Behavior {
+    fn edge(&mut self, tick: u64, was_high: bool) {
+        let (edges, sum, longest, shortest) = if was_high {
+            (&mut self.falls, &mut self.high, &mut self.longest_high, &mut self.shortest_high)
+        } else {
+            (&mut self.rises, &mut self.low, &mut self.longest_low, &mut self.shortest_low)
+        };
+        *edges += 1;
+        if let Some(since) = self.since.replace(tick) {
+            let length = tick - since;
+            (*sum, *longest, *shortest) = (*sum + length, length.max(*longest), length.min(*shortest));
+        }
+    }
+
     pub(super) fn changes(&self) -> u64 {
         self.rises + self.falls
     }
@@ -57,44 +70,23 @@ pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
     for (channel, each) in all.iter_mut().enumerate() {
         (each.first, each.last) = (first.levels >> channel & 1 == 1, last.levels >> channel & 1 == 1);
     }
-    each_pulse(changes, &mut all, &mut |each, length, high| {
-        *(if high { &mut each.high } else { &mut each.low }) += length;
-        let longest = if high { &mut each.longest_high } else { &mut each.longest_low };
-        *longest = length.max(*longest);
-        let shortest = if high { &mut each.shortest_high } else { &mut each.shortest_low };
-        *shortest = length.min(*shortest);
-    });
     let mut edges: Vec<Vec<Edge>> = vec![Vec::new(); channels];
     for pair in changes.windows(2) {
         let [before, now] = pair else { continue };
         let mut changed = before.levels ^ now.levels;
         while changed != 0 {
-            let channel = changed.trailing_zeros();
+            let channel = changed.trailing_zeros() as usize;
             changed &= changed - 1;
-            if let Some(edges) = edges.get_mut(channel as usize).filter(|edges| edges.len() < LINE_EDGES) {
-                edges.push(Edge { at: now.tick, high: now.levels >> channel & 1 == 1 });
+            let (Some(each), Some(edges)) = (all.get_mut(channel), edges.get_mut(channel)) else { continue };
+            let was_high = before.levels >> channel & 1 == 1;
+            if edges.len() < LINE_EDGES {
+                edges.push(Edge { at: now.tick, high: !was_high });
             }
+            each.edge(now.tick, was_high);
         }
     }
     for (each, edges) in all.iter_mut().zip(&edges) {
         each.line = uart::looks_like_a_line(edges);
     }
     all
-}
-
-fn each_pulse(changes: &[Change], all: &mut [Behavior], pulse: &mut dyn FnMut(&mut Behavior, u64, bool)) {
-    for pair in changes.windows(2) {
-        let [before, now] = pair else { continue };
-        let mut changed = before.levels ^ now.levels;
-        while changed != 0 {
-            let channel = changed.trailing_zeros();
-            changed &= changed - 1;
-            let Some(each) = all.get_mut(channel as usize) else { continue };
-            let was_high = before.levels >> channel & 1 == 1;
-            *(if was_high { &mut each.falls } else { &mut each.rises }) += 1;
-            if let Some(since) = each.since.replace(now.tick) {
-                pulse(each, now.tick - since, was_high);
-            }
-        }
-    }
 }

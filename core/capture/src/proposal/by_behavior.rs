@@ -86,11 +86,11 @@ impl Draft<'_> {
     pub(super) fn polarity(&mut self) {
         let low = |motor: &Motor| {
             let channel = motor.step()?;
-            let is_said = match self.meanings.get(channel) {
+            let is_stated = match self.meanings.get(channel) {
                 Some(Meaning::Signal(named)) if named.kind == Kind::Step => !named.negative,
                 _ => false,
             };
-            (!is_said).then(|| self.behavior(channel).idles_high())
+            (!is_stated).then(|| self.behavior(channel).idles_high())
         };
         let low: Vec<Option<bool>> = self.motors.iter().map(low).collect();
         for (motor, low) in self.motors.iter_mut().zip(low) {

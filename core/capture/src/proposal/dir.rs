@@ -8,7 +8,7 @@ use super::{
 use crate::names::shared_words;
 use std::collections::BTreeSet;
 
-/// How well a channel fits as a motor's DIR; the best is first.
+/// How well a channel fits as a motor's DIR, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Fit {
     is_others: bool,
@@ -49,9 +49,9 @@ impl Draft<'_> {
                 // Names count before levels: X-Foo and X-Bar belong to one motor.
                 let shared = |step: usize| shared_words(name(step), name(*channel));
                 let by_name = steps.iter().map(|(_, step, _)| shared(*step));
-                let (most, least) = (by_name.clone().max(), by_name.min());
-                let is_others = if most > least {
-                    Some(shared(*step)) < most
+                let (max, min) = (by_name.clone().max(), by_name.min());
+                let is_others = if max > min {
+                    Some(shared(*step)) < max
                 } else {
                     others().any(|(_, (near, (.., edges)))| {
                         near.saturating_mul(2) < own && is_next_to(*near, changes.len(), edges)
@@ -71,7 +71,7 @@ impl Draft<'_> {
                 }
             }
         }
-        // As many candidates as motors are paired in order, whether DIR comes before or after STEP.
+        // With one candidate per motor, both are paired in order.
         let fitting = pairs.iter().filter(|(fit, ..)| !fit.one_level).map(|(_, channel, _)| *channel);
         let fitting: BTreeSet<usize> = fitting.collect();
         let is_one_each = fitting.len() == steps.len();

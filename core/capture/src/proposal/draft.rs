@@ -106,7 +106,7 @@ fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
     }
 }
 
-/// Pin numbers do not identify motors. If STEP and DIR are equally many and no number repeats, pair them in order.
+/// Pin numbers do not identify motors. With one DIR per STEP and no repeated number, both are paired in order.
 fn number_pins(meanings: &mut [Meaning]) {
     let numbers = |kind: Kind| -> Vec<&str> {
         let signals = meanings.iter().filter_map(|meaning| match meaning {

@@ -11,7 +11,7 @@ fn proposed(names: &[&str], changes: &[(u64, u64)]) -> String {
 }
 
 #[test]
-fn names_say_what_a_channel_is() {
+fn names_give_signals() {
     for (names, expected) in [
         (&["STEP", "DIR", "EN"][..], "STEP0=STEP,DIR0=DIR,EN=EN"),
         (&["x_step", "x_dir", "y_step", "y_dir"], "STEP0=x_step,STEP1=y_step,DIR0=x_dir,DIR1=y_dir"),
@@ -189,7 +189,7 @@ fn each_motor_gets_the_dir_that_changes_next_to_its_pulses() {
 }
 
 #[test]
-fn an_idle_level_that_is_high_inverts_what_no_name_says() {
+fn a_high_idle_level_inverts_unless_named() {
     let step = pulses(100, 40, 100, 10);
     for (name, expected) in
         [("D0", "STEP0=!D0"), ("PUL-", "STEP0=!PUL-"), ("STEP", "STEP0=STEP"), ("STEP_N", "STEP0=!STEP_N")]
@@ -225,7 +225,7 @@ fn edges_that_alternate_are_an_encoder() {
 }
 
 #[test]
-fn where_names_say_nothing_what_the_channels_do_is_looked_at() {
+fn without_known_names_behavior_decides() {
     // D0 is DIR, D1 STEP, D2 a line of 104 ticks per bit.
     let mut edges = vec![(0, 0b100)];
     for step in 0..40_u64 {

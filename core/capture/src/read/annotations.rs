@@ -4,9 +4,8 @@
 //! uart-1: 41          208-2291 uart-1: rx-data: 41          123-456 UART: RX data: 41          123-456,UART,TX data,41
 //! ```
 //!
-//! Samples are ticks; the file does not give their rate. A byte's annotation begins with its first bit of data; where the
-//! start bit before it has an annotation, the byte begins there. The decoder's option `format` is not in the file: all values
-//! together tell the base.
+//! Samples are ticks; the file does not give their rate. A byte begins at its start bit if that has an annotation,
+//! otherwise at its first data bit. The option `format` is not in the file: all values together determine the base.
 
 use super::{
     base::{Base, Digits, Guess},
@@ -26,7 +25,7 @@ pub(super) struct Annotations {
     lines: BTreeMap<u8, Line>,
     is_data: bool,
     is_unnamed: bool,
-    /// Only all values together show the base.
+    /// The base depends on all values together.
     values: Vec<Value>,
     digits: Digits,
     is_text: bool,
@@ -188,8 +187,7 @@ impl Annotations {
             Guess::Unclear(Base::Hexadecimal, _) => {
                 self.recorder.leave_out(
                     "the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, print \
-                     them with format=hex"
-                        .into(),
+                     them with format=hex",
                 );
                 Ok(Base::Hexadecimal)
             }
@@ -295,11 +293,11 @@ impl Reader for Annotations {
         let found = self.set_bytes();
         self.recorder.sort_bytes();
         if !self.others.is_empty() {
-            self.recorder.leave_out(format!("other annotations skipped: {}", self.others.told()));
+            self.recorder.leave_out(format!("other annotations skipped: {}", self.others.to_text()));
         }
         if self.is_data {
             self.recorder.leave_out(
-                "bytes without an annotated start bit are timed by their first data bit, one bit late".into(),
+                "bytes without an annotated start bit are timed by their first data bit, one bit late",
             );
         }
         let is_empty = self.recorder.capture.is_empty();
@@ -307,13 +305,11 @@ impl Reader for Annotations {
         if named("RX") && named("TX") {
             self.recorder.leave_out(
                 "RX and TX are named as in the decoder, and kept apart: RX is taken as the line to the controller; if that \
-                 is TX, exchange the channels of RX and TX"
-                    .into(),
+                 is TX, exchange the channels of RX and TX",
             );
         }
         if self.is_unnamed && !is_empty {
-            self.recorder
-                .leave_out("no annotation names RX or TX: all bytes are assigned to one line".into());
+            self.recorder.leave_out("no annotation names RX or TX: all bytes are assigned to one line");
         }
         let missing = if found.is_err() {
             found

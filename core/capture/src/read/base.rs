@@ -2,16 +2,11 @@
 
 use core::str::FromStr;
 
-/// The base of written bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// Digits 0 and 1.
     Binary,
-    /// Digits 0 to 7.
     Octal,
-    /// Digits 0 to 9.
     Decimal,
-    /// Digits 0 to 9 and A to F.
     Hexadecimal,
 }
 
@@ -106,7 +101,7 @@ impl Digits {
         self.any.hexadecimal &= Base::Hexadecimal.byte(digits).is_some();
     }
 
-    /// Each is 0 or 1, which may also be levels.
+    /// Each word is 0 or 1, so the column may hold levels.
     pub(super) const fn are_single_bits(&self) -> bool {
         self.lengths == 0b10 && self.any.binary
     }
@@ -138,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_tell_their_base_or_that_it_is_unclear() {
+    fn digits_determine_the_base_or_are_ambiguous() {
         let hex_or_decimal = Guess::Unclear(Base::Hexadecimal, Base::Decimal);
         for (words, expected) in [
             ("55 AA 01", Guess::Sure(Base::Hexadecimal)),

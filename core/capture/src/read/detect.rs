@@ -41,7 +41,7 @@ impl Found {
     }
 }
 
-/// Shorter heads are the whole file; three bytes may have been a byte order mark.
+/// A shorter head is the whole file; three bytes may have been a byte order mark.
 const FULL: usize = (1 << 16) - 3;
 const MAX_LINES: usize = 200;
 
@@ -80,9 +80,9 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
         Some((head, rows)) => by_head(head, rows, base)?,
         None => None,
     };
-    let says =
+    let has_word =
         |word: &[u8]| lines.iter().take(5).any(|line| line.windows(word.len()).any(|text| text == word));
-    let is_of_sigrok = says(b"libsigrok") && !says(b"libsigrok4DSL")
+    let is_of_sigrok = has_word(b"libsigrok") && !has_word(b"libsigrok4DSL")
         || before.first().is_some_and(|line| line.starts_with(b";") && sigrok::is_comment(line))
             && !of_table.is_some_and(|found| matches!(found.format, Format::LevelsCsv | Format::SaleaeCsv));
     if is_of_sigrok {
@@ -217,10 +217,10 @@ fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     if is_trace(lines) {
         return Some(Found::of(Format::Trace));
     }
-    let said: Vec<&[u8]> =
+    let texts: Vec<&[u8]> =
         lines.iter().filter(|line| !log_line::without_comment(line).is_empty()).copied().collect();
-    let first = *said.first()?;
-    if dump::is_dump(&said) {
+    let first = *texts.first()?;
+    if dump::is_dump(&texts) {
         return Some(Found::of(Format::HexDump));
     }
     if annotations::is_annotation(first) {
@@ -229,7 +229,7 @@ fn by_rows(lines: &[&[u8]]) -> Option<Found> {
     if hex::is_log(first) {
         return Some(Found::of(Format::SerialLog));
     }
-    if let Some(found) = by_numbers(&said) {
+    if let Some(found) = by_numbers(&texts) {
         return found;
     }
     if hex::is_line(first) {

@@ -16,7 +16,7 @@ use crate::capture::{Capture, TimedByte};
 
 const BASES: [u64; 3] = [16, 8, 10];
 const MIN_DIGITS: usize = 4;
-/// A terminal may cut off rows that begin at multiples of these.
+/// A terminal may truncate rows that begin at multiples of these.
 const WIDTHS: [u64; 3] = [8, 16, 32];
 
 pub(super) struct HexDump {
@@ -109,13 +109,13 @@ impl HexDump {
     }
 
     fn repeat(&mut self, count: u64) -> Result<(), String> {
-        let (most, there) = (self.recorder.most(), self.recorder.capture.bytes.len());
+        let (max_rows, there) = (self.recorder.max_rows(), self.recorder.capture.bytes.len());
         let more = count.saturating_mul(self.row.len() as u64);
-        if more > most.saturating_sub(there) as u64 {
+        if more > max_rows.saturating_sub(there) as u64 {
             return Err(format!(
                 "* stands for {} bytes; at most {} are read: dump a shorter part",
                 grouped(more),
-                grouped(most as u64)
+                grouped(max_rows as u64)
             ));
         }
         for _ in 0..count {
@@ -178,7 +178,7 @@ pub(super) fn is_dump(lines: &[&[u8]]) -> bool {
     let mut bytes = Vec::new();
     let is_row = row::parse(first.rest, &mut bytes).is_ok() && !bytes.is_empty();
     let is_zero = first.digits.iter().all(|digit| *digit == b'0');
-    // A dump from offset 0 with words that are no bytes is still a dump: its reader reports them.
+    // A dump from offset 0 with invalid bytes is still a dump; the reader reports the bytes.
     let words = first.rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let is_words = words.count() > 1;
     if is_zero && first.digits.len() > MIN_DIGITS && (is_row || is_words) || first.colon && is_row {

@@ -8,7 +8,7 @@
 //! 26.11.2026 12:00:00.123 [TX] - 55 AA       [ 12.345678] >> 55 AA      55 AA 01 02        U...
 //! ```
 //!
-//! Bytes of one line of a time have the same tick. Without times a byte's tick is its place. RX and TX are channels.
+//! Bytes of one timed line have the same tick. Without times a byte's tick is its index. RX and TX are channels.
 
 use super::{
     base::Base,
@@ -177,19 +177,17 @@ impl Reader for HexText {
         if named("RX") && named("TX") {
             self.recorder.leave_out(
                 "RX and TX are named as in the log: in one of the host, TX is what the controller receives; \
-                 for such a log, exchange the channels of RX and TX"
-                    .into(),
+                 for such a log, exchange the channels of RX and TX",
             );
         }
         if self.table.is_some_and(|table| table.is_unclear) && self.recorder.base.is_none() {
             self.recorder.leave_out(
                 "the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, name their \
-                 column dec (t_us,dec)"
-                    .into(),
+                 column dec (t_us,dec)",
             );
         }
         if self.has_minutes {
-            self.recorder.leave_out("times have no seconds: all bytes of a minute have one time".into());
+            self.recorder.leave_out("times have no seconds: all bytes of a minute have one time");
         }
         if self.wrong_lengths > 0 {
             self.recorder.leave_out(format!(

@@ -6,8 +6,8 @@
 //! queue_step oid=3 interval=1000 count=4 add=-10    steps 1000, 990, 980 and 970 ticks after the one before
 //! ```
 //!
-//! Several commands may stand on a line, and anything may stand before them. The commands are kept until the file ends, since
-//! those of one stepper come before earlier ones of another; then their steps become levels in the order of time.
+//! A line may have several commands after any other text. Commands are stored until the file ends, because those of one
+//! stepper come before earlier ones of another; then their steps become levels in order of time.
 
 use super::{
     decimal::whole,
@@ -151,13 +151,13 @@ impl StepCommands {
             ));
         };
         let add: i16 = add;
-        let most = self.recorder.most() as u64 / 2;
+        let max_rows = self.recorder.max_rows() as u64 / 2;
         self.steps = self.steps.saturating_add(u64::from(count));
-        if self.steps > most {
+        if self.steps > max_rows {
             return Err(format!(
                 "more than {} steps, which are {} changes; give a shorter part of the log",
-                grouped(most),
-                grouped(self.recorder.most() as u64)
+                grouped(max_rows),
+                grouped(self.recorder.max_rows() as u64)
             ));
         }
         let is_reset = self.is_reset;
@@ -369,7 +369,7 @@ impl Reader for StepCommands {
                 }
                 words.next();
             }
-            // A name alone is part of a sentence.
+            // A name without values is part of a sentence.
             if values.list.is_empty() && words.peek().is_none_or(|word| !word.contains(&b'=')) {
                 continue;
             }
@@ -392,22 +392,22 @@ impl Reader for StepCommands {
         if !steppers.is_empty() {
             self.recorder.leave_out(format!("steppers: {}", steppers.join(", ")));
             self.recorder.leave_out(format!(
-                "the commands have no pulse widths and no DIR set-up times: pulses of at most {PULSE} ticks are made, so \
+                "the commands have no pulse widths and no DIR set-up times: pulses of at max_rows {PULSE} ticks are made, so \
                  timing checks do not apply"
             ));
         }
         if !self.is_reset && self.steps > 0 {
             self.recorder.leave_out(
-                "no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared".into(),
+                "no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared",
             );
         }
         if !self.beyond.is_empty() {
-            let sentence = format!("more than {MAX_STEPPERS} steppers: {} left out", self.beyond.told());
+            let sentence = format!("more than {MAX_STEPPERS} steppers: {} left out", self.beyond.to_text());
             self.recorder.leave_out(sentence);
         }
         if self.is_unclear {
             self.recorder
-                .leave_out("several frequencies (CLOCK_FREQ): the log is of more than one controller".into());
+                .leave_out("several frequencies (CLOCK_FREQ): the log is of more than one controller");
         } else {
             self.recorder.capture.timebase = self.frequency.and_then(|frequency| Timebase::new(1, frequency));
         }

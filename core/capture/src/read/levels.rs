@@ -8,32 +8,27 @@
 //! ```
 
 use super::{
-    decimal::Decimal,
     fields::{Fields, fields, not_a_level, separator},
     reading::Reader,
     recorder::{Names, Recorder, quoted},
+    sample_rate::{SampleRate, period},
     selection::select,
-    sigrok::parse_rate,
     times::{TimeUnit, Times},
 };
-use crate::{capture::Capture, timebase::Timebase};
+use crate::capture::Capture;
 
 pub(super) struct LevelsTable {
     recorder: Recorder,
     /// Without a unit, whole numbers are not seconds.
     whole_times: bool,
     others: u64,
-    head: Head,
+    rate: SampleRate,
+    /// The program writes decimal commas between fields that commas separate.
+    decimal_commas: bool,
+    line: u64,
     columns: Option<Columns>,
     unknown: u64,
     quoted: Fields,
-}
-
-#[derive(Default)]
-struct Head {
-    rate: Option<Decimal>,
-    /// The program writes decimal commas between fields that commas separate.
-    decimal_commas: bool,
 }
 
 struct Columns {
@@ -50,9 +45,18 @@ enum Column {
 }
 
 impl LevelsTable {
-    pub(super) const fn new(recorder: Recorder, whole_times: bool, others: u64) -> Self {
-        let head = Head { rate: None, decimal_commas: false };
-        Self { recorder, whole_times, others, head, columns: None, unknown: 0, quoted: Fields::new() }
+    pub(super) fn new(recorder: Recorder, whole_times: bool, others: u64) -> Self {
+        Self {
+            recorder,
+            whole_times,
+            others,
+            rate: SampleRate::default(),
+            decimal_commas: false,
+            line: 0,
+            columns: None,
+            unknown: 0,
+            quoted: Fields::new(),
+        }
     }
 
     /// A first row of numbers is not a head; the first column is then the time.
@@ -71,14 +75,14 @@ impl LevelsTable {
             unit: if self.whole_times { TimeUnit::Cycles } else { TimeUnit::Seconds(0) },
             others: Vec::new(),
         });
-        let unit = if has_head && self.whole_times && !TimeUnit::is_said(names.get(time)) {
+        let unit = if has_head && self.whole_times && !TimeUnit::is_stated(names.get(time)) {
             TimeUnit::Cycles
         } else {
             unit
         };
         if !has_head {
             self.recorder.leave_out(
-                "the table does not name its columns: the first is taken as the time, each other as a channel".into(),
+                "the table does not name its columns: the first is taken as the time, each other as a channel",
             );
         }
         let (mut list, mut channels) = (Vec::new(), Vec::new());
@@ -101,31 +105,30 @@ impl LevelsTable {
             bit += 1;
         }
         if !left_out.is_empty() {
-            self.recorder.leave_out(format!("columns that are no levels: {}", left_out.told()));
+            self.recorder.leave_out(format!("columns that are no levels: {}", left_out.to_text()));
         }
         if bit == 0 {
             return Err("the head of the table names no channel; name the time and then each channel".into());
         }
         let mut bits = select(channels.iter().map(String::as_str), &mut self.recorder).into_iter();
         for column in &mut list {
-            if let Column::Level(place, _) = column {
-                *place = bits.next().flatten();
+            if let Column::Level(bit, _) = column {
+                *bit = bits.next().flatten();
             }
         }
         self.columns = Some(Columns { separator, times: Times::new(unit), list, first_row: true });
         Ok(has_head)
     }
 
-    fn comment(&mut self, line: &[u8]) {
+    fn comment(&mut self, line: &[u8]) -> Result<(), String> {
+        let lower = String::from_utf8_lossy(line).to_ascii_lowercase();
+        self.decimal_commas |= lower.contains("libsigrok4dsl") || lower.contains("dsview");
+        let keys = ["sample rate:", "samplerate:", "sample rate (hz):"];
+        // The text as the file has it, for messages.
         let text = String::from_utf8_lossy(line);
-        let lower = text.to_lowercase();
-        self.head.decimal_commas |= lower.contains("libsigrok4dsl") || lower.contains("dsview");
-        if let Some(at) = ["sample rate:", "samplerate:", "sample rate (hz):"]
-            .iter()
-            .find_map(|key| lower.find(key).map(|at| at + key.len()))
-            && let Some(rate) = lower.get(at..).and_then(|rate| parse_rate(rate.trim()))
-        {
-            self.head.rate = Some(rate);
+        match keys.iter().find_map(|key| text.get(lower.find(key)? + key.len()..)) {
+            Some(rate) => self.rate.give(rate.trim(), self.line),
+            None => Ok(()),
         }
     }
 
@@ -164,7 +167,7 @@ impl Layout {
         let time = if is_cycles {
             Some(0)
         } else {
-            of(&|(unit, said)| *unit != TimeUnit::Cycles && *said)
+            of(&|(unit, stated)| *unit != TimeUnit::Cycles && *stated)
                 .or_else(|| of(&|(unit, _)| *unit != TimeUnit::Cycles))
                 .or_else(|| of(&|_| true))
         }?;
@@ -195,13 +198,13 @@ pub(super) fn is_comment(line: &[u8]) -> bool {
 
 impl Reader for LevelsTable {
     fn take(&mut self, line: &[u8]) -> Result<(), String> {
+        self.line += 1;
         let line = line.trim_ascii();
         if line.is_empty() {
             return Ok(());
         }
         if is_comment(line) {
-            self.comment(line);
-            return Ok(());
+            return self.comment(line);
         }
         if self.columns.is_none() && self.begin(line)? {
             return Ok(());
@@ -217,7 +220,7 @@ impl Reader for LevelsTable {
         } else {
             let count = fields(line, separator).count();
             if let Some((time, rest)) = decimal_comma(line, columns, count) {
-                if !self.head.decimal_commas {
+                if !self.decimal_commas {
                     return Err(format!(
                         "{} has one field more than the head of the table names, as with a decimal comma; export with \
                          decimal points, or with semicolons between the fields",
@@ -245,16 +248,11 @@ impl Reader for LevelsTable {
         self.recorder.leave_out_unknown(self.unknown, "X: no data");
         let mut capture = self.recorder.finish();
         if capture.timebase.is_none() {
-            capture.timebase = self.head.rate.and_then(period);
+            capture.timebase = self.rate.get().and_then(period);
         }
         let found = if found.is_ok() && capture.is_empty() { Err(NO_ROWS.into()) } else { found };
         (capture, found)
     }
-}
-
-fn period(rate: Decimal) -> Option<Timebase> {
-    let unit = super::decimal::power_of_ten(rate.places).and_then(|unit| u64::try_from(unit).ok());
-    Timebase::new(unit?, u64::try_from(rate.mantissa).ok()?)
 }
 
 /// Joins a time that a decimal comma has split.
@@ -294,10 +292,7 @@ fn row<'l>(
         }
     }
     if count > columns.list.len() && all.any(|field| !field.is_empty()) {
-        return Err(format!(
-            "more fields than the head of the table names, which are {}",
-            columns.list.len()
-        ));
+        return Err(format!("more fields than the header names, which are {}", columns.list.len()));
     }
     Ok((time, levels))
 }

@@ -6,17 +6,6 @@
 //!
 //! A file is read once, front to back (a sigrok session by its directory at the end). Needs memory for the changes
 //! plus less than 4 MB.
-//!
-//! ```
-//! use stepscope_capture::read::{Limits, ReadError, read};
-//!
-//! // An incomplete reading has an error; `watch` may cancel it.
-//! let bytes = "55 AA\n01 xx\n";
-//! let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
-//! assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
-//! let cancelled = read(std::io::Cursor::new("55 AA\n"), &Limits { most: 1000 }, &mut |_| false);
-//! assert_eq!(cancelled.error.map(|error| error.what).as_deref(), Some(ReadError::CANCELLED));
-//! ```
 
 pub mod decimal;
 
@@ -27,6 +16,7 @@ mod fields;
 mod reading;
 mod recorder;
 mod row;
+mod sample_rate;
 mod selection;
 mod source;
 mod times;
@@ -56,8 +46,7 @@ use std::io::{BufRead, Seek};
 pub use base::Base;
 pub use reading::{Limits, ReadError, Reading, Wanted};
 
-/// Reads a file of any kind. `watch` gets the number of bytes read at intervals; it stops the reading by returning
-/// `false`.
+/// Reads a file of any kind. `watch` receives the number of bytes read at intervals and cancels by returning `false`.
 ///
 /// ```
 /// use stepscope_capture::{capture::Format, read::{Limits, read}};
@@ -96,7 +85,7 @@ pub fn read_wanted<R: BufRead + Seek>(
         Ok(found) => found,
         Err(what) => return refusal(ReadError::whole(what)),
     };
-    let mut recorder = Recorder::new(format, limits.most);
+    let mut recorder = Recorder::new(format, limits.max_rows);
     (recorder.wanted, recorder.base) = (wanted.channels.clone(), wanted.base);
     match format {
         Format::Vcd => {
@@ -134,4 +123,19 @@ fn ended(reader: impl Reader, error: Option<ReadError>, line: u64) -> Reading {
 
 const fn refusal(error: ReadError) -> Reading {
     Reading { capture: Capture::new(Format::Unknown), error: Some(error) }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn an_incomplete_reading_has_an_error() {
+        use crate::read::{Limits, ReadError, read};
+
+        // An incomplete reading has an error; `watch` may cancel it.
+        let bytes = "55 AA\n01 xx\n";
+        let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
+        assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
+        let cancelled = read(std::io::Cursor::new("55 AA\n"), &Limits { max_rows: 1000 }, &mut |_| false);
+        assert_eq!(cancelled.error.map(|error| error.what).as_deref(), Some(ReadError::CANCELLED));
+    }
 }

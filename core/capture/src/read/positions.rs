@@ -15,6 +15,8 @@ use super::{
 };
 use crate::capture::{Capture, TimedPosition};
 
+const STEP_UNITS: [&str; 7] = ["steps", "step", "microsteps", "microstep", "usteps", "pulses", "counts"];
+
 pub(super) struct Positions {
     recorder: Recorder,
     /// Without a unit, whole numbers are not seconds.
@@ -43,14 +45,9 @@ impl Positions {
             return Ok(false);
         };
         let at = position_column(&names, time).unwrap_or(usize::from(time == 0));
-        if let Some((name, unit)) = names.get(at).and_then(|name| Some((name, unit_of(name)?))) {
-            return Err(format!(
-                "the column “{name}” is in {unit}, not in steps; multiply it by the steps per {unit}, round it, and name it \
-                 position"
-            ));
-        }
-        let is_said = !self.whole_times || TimeUnit::is_said(names.get(time));
-        self.times = Times::new(if is_said { unit } else { TimeUnit::Cycles });
+        names.get(at).map_or(Ok(()), |name| check_unit(name))?;
+        let is_stated = !self.whole_times || TimeUnit::is_stated(names.get(time));
+        self.times = Times::new(if is_stated { unit } else { TimeUnit::Cycles });
         self.columns = Some((separator, time, at));
         let mut others = Names::new();
         names
@@ -59,7 +56,7 @@ impl Positions {
             .filter(|(column, _)| *column != time && *column != at)
             .for_each(|(_, name)| others.add(name));
         if !others.is_empty() {
-            self.recorder.leave_out(format!("columns besides time and position: {}", others.told()));
+            self.recorder.leave_out(format!("columns besides time and position: {}", others.to_text()));
         }
         Ok(true)
     }
@@ -103,22 +100,38 @@ impl Reader for Positions {
     }
 }
 
-/// The unit if it is not steps: `position_mm`, `x [mm]`, `angle (deg)`.
-fn unit_of(name: &str) -> Option<&'static str> {
-    let lower = name.to_lowercase();
-    let last =
-        lower.split(|letter: char| !letter.is_alphabetic() && letter != '°').rfind(|word| !word.is_empty());
-    Some(match last? {
-        "mm" | "millimeter" | "millimeters" => "mm",
-        "um" | "µm" | "μm" => "µm",
+/// Accepts `position`, `position_steps`, `x [steps]`. A file does not give the steps per mm, inch or turn, so
+/// `position_mm` and `angle (deg)` are refused, and so is an unknown unit in brackets. A last word that is no unit belongs
+/// to the name: `position_x`.
+fn check_unit(name: &str) -> Result<(), String> {
+    let name = name.trim();
+    let bracketed = name.strip_suffix([']', ')']).and_then(|name| name.rsplit_once(['[', '(']));
+    let last = bracketed.map_or_else(
+        || name.split(|letter: char| !letter.is_alphabetic() && letter != '°').rfind(|word| !word.is_empty()),
+        |(_, unit)| Some(unit.trim()),
+    );
+    let unit = match last.unwrap_or_default().to_lowercase().as_str() {
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => "mm",
+        "um" | "µm" | "μm" | "micron" | "microns" => "µm",
         "cm" => "cm",
-        "m" | "meter" | "meters" => "m",
-        "in" | "inch" | "inches" => "inch",
+        "m" | "meter" | "meters" | "metre" | "metres" => "m",
+        "in" | "inch" | "inches" | "\"" => "inch",
+        "mil" | "mils" | "thou" => "mil",
         "deg" | "degree" | "degrees" | "°" => "degree",
         "rad" | "radian" | "radians" => "radian",
         "rev" | "revs" | "revolution" | "revolutions" | "turn" | "turns" => "turn",
-        _ => return None,
-    })
+        unit if bracketed.is_none() || unit.is_empty() || STEP_UNITS.contains(&unit) => return Ok(()),
+        unit => {
+            return Err(format!(
+                "the column “{name}” is in {unit}, which is not a unit of positions; give whole steps and name the column \
+                 position, or name its unit: {}, mm, cm, m, um, in, mil, deg, rad or turns",
+                STEP_UNITS.join(", ")
+            ));
+        }
+    };
+    Err(format!(
+        "the column “{name}” is in {unit}, not in steps; multiply it by the steps per {unit}, round it, and name it position"
+    ))
 }
 
 pub(super) fn is_position(name: &str) -> bool {

@@ -9,12 +9,12 @@ use core::fmt;
 pub struct Limits {
     /// Maximum number of changes, bytes or positions: a byte or position takes 16 bytes, a change usually two to
     /// four.
-    pub most: usize,
+    pub max_rows: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { most: 120_000_000 }
+        Self { max_rows: 120_000_000 }
     }
 }
 
@@ -27,7 +27,6 @@ pub struct Wanted {
     pub base: Option<Base>,
 }
 
-/// An error and its line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Line of the text, from 1; 0 if the file has no lines.
@@ -56,19 +55,16 @@ impl fmt::Display for ReadError {
 
 impl core::error::Error for ReadError {}
 
-/// Everything that was read up to the end or the first error.
+/// The contents up to the end or the first error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// What could be read.
     pub capture: Capture,
-    /// The first error.
     pub error: Option<ReadError>,
 }
 
 pub(super) trait Reader {
-    /// An error describes what is wrong with this line or word.
+    /// Errors: what is wrong with this line or word.
     fn take(&mut self, text: &[u8]) -> Result<(), String>;
 
-    /// The capture, and an error if its end is missing.
     fn finish(self) -> (Capture, Result<(), String>);
 }

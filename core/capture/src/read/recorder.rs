@@ -10,11 +10,11 @@ use crate::{
 
 const MAX_LEFT_OUT: usize = 20;
 const MAX_NAME: usize = 400;
-const MAX_TOLD: usize = 6;
+const MAX_NAMED: usize = 6;
 
 pub(super) struct Recorder {
     pub(super) capture: Capture,
-    most: usize,
+    max_rows: usize,
     latest: Option<Change>,
     /// Bits that changed at the latest row's time, and the number of lost pulses per channel.
     changed: u64,
@@ -25,10 +25,10 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    pub(super) const fn new(format: Format, most: usize) -> Self {
+    pub(super) const fn new(format: Format, max_rows: usize) -> Self {
         Self {
             capture: Capture::new(format),
-            most,
+            max_rows,
             latest: None,
             changed: 0,
             lost: [0; MAX_CHANNELS],
@@ -38,8 +38,8 @@ impl Recorder {
         }
     }
 
-    pub(super) const fn most(&self) -> usize {
-        self.most
+    pub(super) const fn max_rows(&self) -> usize {
+        self.max_rows
     }
 
     /// `None` if all bits are used, which is reported as a note.
@@ -81,7 +81,7 @@ impl Recorder {
                 self.changed = self.latest.map_or(0, |before| before.levels ^ levels);
                 self.settle();
                 let changes = &mut self.capture.changes;
-                fits(changes.len(), self.most, "changes")?;
+                fits(changes.len(), self.max_rows, "changes")?;
                 changes.reserve().map_err(|_| no_memory(changes.len(), "changes"))?;
                 self.latest = Some(Change { tick, levels });
                 Ok(())
@@ -117,7 +117,7 @@ impl Recorder {
             Meaning::Unknown => !is_dump,
             Meaning::Other => false,
         };
-        // With a map, its channels matter whatever their names are.
+        // With a map, only its channels matter.
         let is_wanted = |index: usize, name: &str| {
             let last = name.rsplit('.').next().unwrap_or(name);
             let number = format!("#{index}");
@@ -163,7 +163,7 @@ impl Recorder {
     }
 
     pub(super) fn byte(&mut self, byte: TimedByte) -> Result<(), String> {
-        room(&mut self.capture.bytes, self.most, "bytes")?;
+        room(&mut self.capture.bytes, self.max_rows, "bytes")?;
         self.capture.end = byte.tick;
         self.capture.bytes.push(byte);
         Ok(())
@@ -177,7 +177,7 @@ impl Recorder {
     }
 
     pub(super) fn position(&mut self, position: TimedPosition) -> Result<(), String> {
-        room(&mut self.capture.positions, self.most, "positions")?;
+        room(&mut self.capture.positions, self.max_rows, "positions")?;
         self.capture.end = position.tick;
         self.capture.positions.push(position);
         Ok(())
@@ -210,9 +210,9 @@ impl Recorder {
         self.retime(|tick| Some(map(tick)))
     }
 
-    pub(super) fn leave_out(&mut self, sentence: String) {
+    pub(super) fn leave_out(&mut self, sentence: impl Into<String>) {
         if self.capture.left_out.len() < MAX_LEFT_OUT {
-            self.capture.left_out.push(sentence);
+            self.capture.left_out.push(sentence.into());
         }
     }
 
@@ -235,7 +235,7 @@ impl Recorder {
                 "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",
                 grouped(self.beyond.count),
                 grouped(self.beyond.count.saturating_add(self.capture.channels.len() as u64)),
-                self.beyond.told()
+                self.beyond.to_text()
             );
             self.leave_out(sentence);
         }
@@ -243,8 +243,8 @@ impl Recorder {
     }
 }
 
-fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
-    fits(rows.len(), most, what)?;
+fn room<T>(rows: &mut Vec<T>, max_rows: usize, what: &str) -> Result<(), String> {
+    fits(rows.len(), max_rows, what)?;
     if rows.len() == rows.capacity() {
         // Growing by half: a doubled vector may not fit next to the old one.
         let more = (rows.len() / 2).max(1024);
@@ -254,11 +254,11 @@ fn room<T>(rows: &mut Vec<T>, most: usize, what: &str) -> Result<(), String> {
     Ok(())
 }
 
-fn fits(count: usize, most: usize, what: &str) -> Result<(), String> {
-    if count < most {
+fn fits(count: usize, max_rows: usize, what: &str) -> Result<(), String> {
+    if count < max_rows {
         return Ok(());
     }
-    Err(format!("more than {} {what}; record a shorter time, or fewer channels", grouped(most as u64)))
+    Err(format!("more than {} {what}; record a shorter time, or fewer channels", grouped(max_rows as u64)))
 }
 
 fn no_memory(count: usize, what: &str) -> String {
@@ -278,7 +278,7 @@ impl Names {
 
     pub(super) fn add(&mut self, name: &str) {
         self.count += 1;
-        if self.first.len() < MAX_TOLD {
+        if self.first.len() < MAX_NAMED {
             self.first.push(cut(name).into());
         }
     }
@@ -287,14 +287,14 @@ impl Names {
         self.count == 0
     }
 
-    pub(super) fn told(&self) -> String {
+    pub(super) fn to_text(&self) -> String {
         let more = self.count - self.first.len() as u64;
         let names = self.first.join(", ");
         if more == 0 { names } else { format!("{names} and {} more", grouped(more)) }
     }
 }
 
-/// `100 000 000`, with thin gaps.
+/// `100 000 000`, with thin spaces.
 pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();

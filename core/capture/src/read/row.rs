@@ -4,7 +4,7 @@
 //! 44 45 41 44 42 45 45 46  43 41 46 45  |DEADBEEFCAFE|        55aa 0102 8361  U....a        44 45 >DE<
 //! ```
 //!
-//! The text is never read as bytes, whatever its letters are, and where it does not fit the bytes the row is refused.
+//! The text is never read as bytes. A row whose text does not match its bytes is refused.
 
 use super::recorder::quoted;
 
@@ -14,7 +14,7 @@ const MAX_TEXT_ROW: usize = 4096;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Shape {
     pub(super) group: usize,
-    /// Whether the text proves the order of bytes within groups.
+    /// Whether the text confirms the order of bytes within groups.
     pub(super) is_proven: bool,
     pub(super) has_text: bool,
 }

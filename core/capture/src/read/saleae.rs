@@ -5,7 +5,7 @@
 //! "Async Serial","data",0.00125,8.68e-05,0x55             0.001250000000000,0x55,,
 //! ```
 //!
-//! A channel is an analyser. The table of levels is read by [`super::levels`].
+//! Each analyzer is a channel. [`super::levels`] reads the table of levels.
 
 use super::{
     fields::{Fields, separator},
@@ -122,7 +122,7 @@ impl Reader for DecodedBytes {
     fn finish(mut self) -> (Capture, Result<(), String>) {
         self.times.finish(&mut self.recorder);
         if !self.others.is_empty() {
-            self.recorder.leave_out(format!("rows that are no bytes: {}", self.others.told()));
+            self.recorder.leave_out(format!("rows that are no bytes: {}", self.others.to_text()));
         }
         let capture = self.recorder.finish();
         let missing = if capture.is_empty() { Err("the table has no bytes".into()) } else { Ok(()) };

@@ -8,8 +8,8 @@ use crate::{capture::MAX_CHANNELS, names::Meaning};
 pub(super) enum Rank {
     Named,
     Meant,
-    Telling,
-    TellingBit,
+    Recognized,
+    RecognizedBit,
     Other,
 }
 
@@ -19,9 +19,9 @@ impl Rank {
         match () {
             () if wanted.iter().any(|wanted| wanted == name) => Self::Named,
             () if wanted.iter().any(|wanted| wanted.eq_ignore_ascii_case(last)) => Self::Meant,
-            () if !Meaning::is_telling(name) => Self::Other,
-            () if name.ends_with(']') => Self::TellingBit,
-            () => Self::Telling,
+            () if !Meaning::is_recognized(name) => Self::Other,
+            () if name.ends_with(']') => Self::RecognizedBit,
+            () => Self::Recognized,
         }
     }
 }

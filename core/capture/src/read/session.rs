@@ -7,7 +7,7 @@
 //! logic-1-2    …
 //! ```
 //!
-//! The samples are unpacked piece by piece and never kept: a session may unpack to a thousand times its size.
+//! Samples are unpacked piece by piece and not stored: a session may unpack to a thousand times its size.
 
 mod metadata;
 mod samples;
@@ -80,11 +80,11 @@ fn whole<R: BufRead + Seek>(
         .read_to_end(&mut text)
         .map_err(|error| format!("“metadata” cannot be read: {error}"))?;
     let metadata = Metadata::parse(&String::from_utf8_lossy(&text))?;
-    if !metadata.analogue.is_empty() {
-        recorder.leave_out(format!("analogue channels: {}", names(&metadata.analogue).told()));
+    if !metadata.analog.is_empty() {
+        recorder.leave_out(format!("analog channels: {}", names(&metadata.analog).to_text()));
     }
     if metadata.devices > 1 {
-        recorder.leave_out("all devices but the first".into());
+        recorder.leave_out("all devices but the first");
     }
     recorder.capture.timebase = metadata.timebase();
     let mut stream = SampleStream::new(&metadata, recorder, watch)?;

@@ -22,8 +22,8 @@ use super::{
     selection::select,
 };
 use crate::capture::Capture;
+pub(super) use head::is_comment;
 use head::{Head, RowClock};
-pub(super) use head::{is_comment, parse_rate};
 
 pub(super) struct Samples {
     recorder: Recorder,
@@ -48,8 +48,8 @@ enum Column {
 }
 
 impl Samples {
-    pub(super) const fn new(recorder: Recorder) -> Self {
-        Self { recorder, head: Head::new(), columns: None, rows: 0 }
+    pub(super) fn new(recorder: Recorder) -> Self {
+        Self { recorder, head: Head::default(), columns: None, rows: 0 }
     }
 
     fn begin(&mut self, row: &[u8]) -> Result<(), String> {
@@ -63,20 +63,20 @@ impl Samples {
         });
         let mut bits = select(levels, &mut self.recorder).into_iter();
         let mut list = Vec::new();
-        let mut analogue = Names::new();
+        let mut analog = Names::new();
         for kind in kinds {
             list.push(match kind {
                 head::Kind::Time => Column::Time,
                 head::Kind::Trigger => Column::Other,
                 head::Kind::Level(_) => bits.next().flatten().map_or(Column::Other, Column::Level),
-                head::Kind::Analogue(name) => {
-                    analogue.add(&name);
+                head::Kind::Analog(name) => {
+                    analog.add(&name);
                     Column::Other
                 }
             });
         }
-        if !analogue.is_empty() {
-            self.recorder.leave_out(format!("analogue channels: {}", analogue.told()));
+        if !analog.is_empty() {
+            self.recorder.leave_out(format!("analog channels: {}", analog.to_text()));
         }
         if self.recorder.capture.channels.is_empty() {
             return Err(format!(
@@ -86,9 +86,8 @@ impl Samples {
         }
         let clock = if list.contains(&Column::Time) { self.head.clock() } else { RowClock::Count };
         if list.contains(&Column::Time) && clock == RowClock::Count {
-            self.recorder.leave_out(
-                "the column of times, which has no unit: each row is taken as the next sample".into(),
-            );
+            self.recorder
+                .leave_out("the column of times, which has no unit: each row is taken as the next sample");
         }
         self.recorder.capture.timebase = self.head.timebase(clock);
         self.columns = Some(Columns { separator, list, clock, first: 0 });
@@ -136,6 +135,7 @@ fn nearest(time: u64, units: u64, rate_hz: u64) -> Option<u64> {
 
 impl Reader for Samples {
     fn take(&mut self, line: &[u8]) -> Result<(), String> {
+        self.head.line += 1;
         let row = line.trim_ascii();
         if row.is_empty() {
             return Ok(());

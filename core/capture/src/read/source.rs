@@ -12,14 +12,14 @@ pub(super) const WATCH_EVERY: u64 = 1 << 18;
 
 /// A file that is being read.
 ///
-/// Invariant: `start..` of the buffer has not been taken yet; at most [`MAX_LINE`] + [`PIECE`] bytes.
+/// `start..` of the buffer has not been read yet; at most [`MAX_LINE`] + [`PIECE`] bytes.
 pub(super) struct Source<'w, R> {
     input: R,
     watch: &'w mut dyn FnMut(u64) -> bool,
     buffer: Vec<u8>,
     start: usize,
     read: u64,
-    heard: u64,
+    watched: u64,
     line: u64,
     /// Reported when all bytes before it are taken.
     failed: Option<String>,
@@ -29,7 +29,7 @@ impl<'w, R: BufRead> Source<'w, R> {
     /// Skips a byte order mark.
     pub(super) fn open(input: R, watch: &'w mut dyn FnMut(u64) -> bool) -> Result<Self, String> {
         let mut source =
-            Self { input, watch, buffer: Vec::new(), start: 0, read: 0, heard: 0, line: 0, failed: None };
+            Self { input, watch, buffer: Vec::new(), start: 0, read: 0, watched: 0, line: 0, failed: None };
         source.fill()?;
         if source.buffer.starts_with(b"\xef\xbb\xbf") {
             source.start = 3;
@@ -49,7 +49,7 @@ impl<'w, R: BufRead> Source<'w, R> {
         (self.input, self.watch)
     }
 
-    /// Keeps the last `left` bytes and reads on; false at the end of the file.
+    /// Reads more behind the last `left` bytes; false at the end of the file.
     fn more(&mut self, left: usize) -> Result<bool, String> {
         let start = self.buffer.len() - left;
         bounded(self.buffer.get(start..).unwrap_or_default())?;
@@ -118,7 +118,6 @@ impl<'w, R: BufRead> Source<'w, R> {
         ReadError { line: if what == ReadError::CANCELLED { 0 } else { line }, what }
     }
 
-    /// False at the end of the file.
     fn fill(&mut self) -> Result<bool, String> {
         if let Some(what) = self.failed.take() {
             return Err(what);
@@ -142,8 +141,8 @@ impl<'w, R: BufRead> Source<'w, R> {
         self.buffer.truncate(end);
         self.read += (end - before) as u64;
         let over = end == before;
-        if self.read - self.heard >= WATCH_EVERY || over && self.read > self.heard {
-            self.heard = self.read;
+        if self.read - self.watched >= WATCH_EVERY || over && self.read > self.watched {
+            self.watched = self.read;
             if !(self.watch)(self.read) {
                 return Err(ReadError::CANCELLED.into());
             }

@@ -5,7 +5,7 @@
 //! 1f4a 700000001
 //! ```
 //!
-//! The table of edges, which has a head, is read by [`super::levels`].
+//! [`super::levels`] reads the table of edges.
 
 use super::{
     reading::Reader,

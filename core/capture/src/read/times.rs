@@ -5,8 +5,8 @@
 //! 0.00125    places 5, tick 125         and now 10 us: the tick before becomes 100
 //! ```
 //!
-//! Ticks have 64 bits. Times with more places than fit, such as 5.000000000000013e-06 of a program's binary fractions, are
-//! rounded to the nearest tick, and a note says so.
+//! Ticks have 64 bits. Times with more places than fit, such as 5.000000000000013e-06, are rounded to the nearest tick,
+//! and a note reports it.
 
 use super::{
     clock::{Dated, Stamp},
@@ -22,7 +22,7 @@ const MAX_PLACES: u32 = 18;
 const MAX_FIRST_PLACES: u32 = 12;
 /// ns, however long the recording is.
 const MIN_PLACES: u32 = 9;
-/// A first time in this range (s) counts from 1970 or from the start of a clock that has run for years: it becomes tick 0.
+/// A first time in this range (s) counts from 1970 or from the start of a long-running clock: it becomes tick 0.
 const EPOCH_S: Range<i128> = 100_000_000..100_000_000_000;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,8 +49,8 @@ impl TimeUnit {
         Self::named(name).map(|(unit, _)| unit)
     }
 
-    pub(super) fn is_said(name: Option<&String>) -> bool {
-        name.and_then(|name| Self::named(name)).is_some_and(|(_, said)| said)
+    pub(super) fn is_stated(name: Option<&String>) -> bool {
+        name.and_then(|name| Self::named(name)).is_some_and(|(_, stated)| stated)
     }
 
     /// The unit, and whether the name gives it: `Time` alone means s by default.

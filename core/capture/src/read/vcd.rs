@@ -8,7 +8,7 @@
 //! #10 1!
 //! ```
 //!
-//! Its words are taken one by one, so that neither a comment without end nor scopes in scopes need memory.
+//! Words are read one by one, so endless comments and nested scopes need no memory.
 
 mod header;
 mod variables;
@@ -31,7 +31,7 @@ pub(super) struct Vcd {
     now: u64,
     levels: u64,
     touched: bool,
-    /// Between `$dumpoff` and its end all values are x, whatever the lines do.
+    /// Between `$dumpoff` and its end all values are x, whatever the levels are.
     off: bool,
     offs: u64,
     unknown: u64,
@@ -150,12 +150,16 @@ impl Vcd {
         match keyword {
             Keyword::EndDefinitions => self.begin(),
             Keyword::Timescale => {
-                let timescale = Some(self.header.timescale()?);
-                let known = &mut self.recorder.capture.timebase;
-                if known.is_some() && *known != timescale {
-                    return Err("the dump gives two time scales; record again".into());
+                let timescale = self.header.timescale()?;
+                if let Some(first) = self.recorder.capture.timebase.replace(timescale)
+                    && first != timescale
+                {
+                    return Err(format!(
+                        "the time scale is {:e} s here and {:e} s before; a dump has one: record again",
+                        timescale.seconds(),
+                        first.seconds()
+                    ));
                 }
-                *known = timescale;
             }
             Keyword::Scope => self.header.enter()?,
             Keyword::Upscope => self.header.leave(),
@@ -251,11 +255,11 @@ impl Reader for Vcd {
         let is_whole = self.body;
         self.begin();
         let mut missing = match self.expected {
-            Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is not whole")),
+            Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is truncated")),
             Expected::Scalar(_) | Expected::Vector | Expected::Other | Expected::Text(_) => {
-                Err("the file ends within a value change; it is not whole".into())
+                Err("the file ends within a value change; it is truncated".into())
             }
-            _ if !is_whole => Err("the file ends before $enddefinitions; it is not whole".into()),
+            _ if !is_whole => Err("the file ends before $enddefinitions; it is truncated".into()),
             _ if self.recorder.capture.channels.is_empty() => {
                 Err("the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR"
                     .into())
@@ -267,7 +271,7 @@ impl Reader for Vcd {
         }
         let others: Names = self.header.into_others();
         if !others.is_empty() {
-            self.recorder.leave_out(format!("variables that are no lines: {}", others.told()));
+            self.recorder.leave_out(format!("variables that are no lines: {}", others.to_text()));
         }
         self.recorder.leave_out_unknown(self.unknown, "x or z");
         if self.offs > 0 {

@@ -3,15 +3,15 @@
 use super::{Edge, Fault, Format, each_word};
 use std::collections::BTreeSet;
 
-const USUAL: [u32; 26] = [
+const USUAL: [u32; 27] = [
     300, 1200, 2400, 4800, 9600, 14_400, 19_200, 28_800, 31_250, 38_400, 57_600, 74_880, 76_800, 115_200,
-    128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000, 2_000_000,
-    3_000_000,
+    125_000, 128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000,
+    2_000_000, 3_000_000,
 ];
 /// Five times a far more usual rate, so it is used only if no other fits.
 const RARE: u32 = 576_000;
 /// Rare rates come last in an ambiguous result.
-const SELDOM: [u32; 8] = [14_400, 28_800, 31_250, 74_880, 76_800, 128_000, 256_000, RARE];
+const SELDOM: [u32; 9] = [14_400, 28_800, 31_250, 74_880, 76_800, 125_000, 128_000, 256_000, RARE];
 /// Maximum deviation of a measured rate from a usual one: oscillators' tolerance.
 const NEAR: f64 = 0.02;
 /// Minimum samples per bit.
@@ -26,14 +26,13 @@ const MAX_MEASURED: usize = 16;
 const MAX_FAULTS: f64 = 0.2;
 /// Minimum number of different bytes to accept an unusual rate.
 const MIN_VALUES: usize = 3;
-/// An event with a chance of one in this number is not a coincidence.
+/// An event with a probability of one in this number is no coincidence.
 const NO_CHANCE: u64 = 64;
 /// Minimum pulses and words, and maximum share of faults, of a channel detected as a line.
 const LINE_PULSES: usize = 12;
 const LINE_WORDS: u32 = 3;
 const LINE_FAULTS: f64 = 0.05;
 
-/// A rate that fits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Length of a bit, in the unit of the edges.
@@ -44,18 +43,15 @@ pub struct Estimate {
     pub usual: Option<u32>,
 }
 
-/// Why no rate was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoRate {
-    /// The line does not change.
     NoEdges,
     /// Several usual rates fit with different bytes; the nearest and most usual is first.
     Ambiguous(Vec<u32>),
-    /// No rate fits.
+    /// The best fit has too few samples per bit.
+    TooCoarse,
     None,
-    /// Another format fits.
     Format(Format),
-    /// The inverted line fits.
     Inverted,
 }
 
@@ -119,8 +115,8 @@ impl Quality {
 
     fn fits(&self) -> bool {
         // The error of sampling and slow edges.
-        let most = 0.02 + 0.25 / (self.bit * self.bit);
-        self.words > 0 && self.share <= MAX_FAULTS && self.squares <= most
+        let max_squares = 0.02 + 0.25 / (self.bit * self.bit);
+        self.words > 0 && self.share <= MAX_FAULTS && self.squares <= max_squares
     }
 
     /// No more faults than `best`, and edges off by no more than sampling explains.
@@ -143,9 +139,7 @@ fn low_lengths(levels: u16, format: Format) -> u32 {
 }
 
 /// Estimates the rate of a line that is high when idle. `hz` converts the unit of edges to seconds, if known.
-///
-/// # Errors
-/// [`NoRate`], with what would help where something does.
+/// Errors: [`NoRate`], with what would help where something does.
 pub fn estimate(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoRate> {
     match best(edges, format, hz) {
         Err(NoRate::None) => {}
@@ -185,7 +179,11 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
         return Err(NoRate::NoEdges);
     }
     let edges = edges.get(..MEASURED_EDGES).unwrap_or(edges);
-    let mut best = best_quality(edges, format).ok_or(NoRate::None)?;
+    let best = best_quality(edges, format);
+    if is_too_coarse(edges, format, best) {
+        return Err(NoRate::TooCoarse);
+    }
+    let mut best = best.ok_or(NoRate::None)?;
     if let Some(hz) = hz {
         let fitting = fitting_usual(edges, format, hz, &best);
         match fitting.as_slice() {
@@ -202,6 +200,19 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
     });
     let bit = usual.zip(hz).map_or(measured, |(rate, hz)| hz / f64::from(rate));
     Ok(Estimate { bit, measured, usual })
+}
+
+/// Whether a bit shorter than [`MIN_BIT`] fits at least as well. A line with more samples per bit has longer pulses.
+fn is_too_coarse(edges: &[Edge], format: Format, best: Option<Quality>) -> bool {
+    let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
+    if shortest_pulse(tried).is_none_or(|shortest| shortest > MIN_BIT) {
+        return false;
+    }
+    let max_share = best.map_or(LINE_FAULTS, |best| best.share.min(LINE_FAULTS));
+    core::iter::successors(Some(1.0), |bit| Some(bit * STEP)).take_while(|bit| *bit < MIN_BIT).any(|bit| {
+        let found = Quality::of(tried, bit, format);
+        found.fits() && found.share <= max_share
+    })
 }
 
 #[derive(PartialEq)]
@@ -316,13 +327,17 @@ fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
     rates.into_iter().map(|(.., rate)| rate).collect()
 }
 
-fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
-    let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
-    let pulses = tried.iter().zip(tried.iter().skip(1));
+/// Length of the shortest pulse; up to a twentieth of the pulses may be shorter glitches.
+fn shortest_pulse(edges: &[Edge]) -> Option<f64> {
+    let pulses = edges.iter().zip(edges.iter().skip(1));
     let mut lengths: Vec<u64> = pulses.map(|(from, to)| to.at.saturating_sub(from.at)).collect();
     lengths.sort_unstable();
-    // Up to a twentieth of the pulses may be glitches.
-    let shortest = *lengths.get(lengths.len() / 20)? as f64;
+    lengths.get(lengths.len() / 20).map(|length| *length as f64)
+}
+
+fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
+    let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
+    let shortest = shortest_pulse(tried)?;
     let mut bit = (shortest / 10.0).max(MIN_BIT);
     let mut all = Vec::new();
     while bit <= shortest * 1.35 + 1.5 {
@@ -352,8 +367,8 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     best.fits().then_some(best)
 }
 
-/// Whether a channel is a serial line by what it does, and whether it is inverted: low when idle. Its first level is the
-/// opposite of its first edge's. A channel whose active pulses all have one length is none: those are steps.
+/// Detects a serial line by its edges; returns whether it is inverted (low when idle). A channel whose active pulses
+/// all have one length carries steps.
 #[must_use]
 pub fn looks_like_a_line(edges: &[Edge]) -> Option<bool> {
     if edges.len() <= LINE_PULSES {

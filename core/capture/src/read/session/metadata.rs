@@ -2,8 +2,8 @@
 
 use crate::{
     read::{
-        decimal::{Decimal, power_of_ten, whole},
-        sigrok::parse_rate,
+        decimal::{Decimal, whole},
+        sample_rate::{parse_rate, period},
     },
     timebase::Timebase,
 };
@@ -18,7 +18,7 @@ pub(super) struct Metadata {
     pub(super) unitsize: usize,
     /// Bit of a sample, and the channel's name.
     pub(super) probes: Vec<(usize, String)>,
-    pub(super) analogue: Vec<String>,
+    pub(super) analog: Vec<String>,
 }
 
 impl Metadata {
@@ -31,7 +31,7 @@ impl Metadata {
             capturefile: "logic-1".into(),
             unitsize: 1,
             probes: Vec::new(),
-            analogue: Vec::new(),
+            analog: Vec::new(),
         };
         for line in text.lines().map(str::trim) {
             if line.starts_with("[device") {
@@ -69,8 +69,8 @@ impl Metadata {
                     if self.probes.len() < MAX_NAMES {
                         self.probes.push((bit, value.into()));
                     }
-                } else if numbered("analog").is_some() && self.analogue.len() < MAX_NAMES {
-                    self.analogue.push(value.into());
+                } else if numbered("analog").is_some() && self.analog.len() < MAX_NAMES {
+                    self.analog.push(value.into());
                 }
                 return false;
             }
@@ -79,7 +79,6 @@ impl Metadata {
     }
 
     pub(super) fn timebase(&self) -> Option<Timebase> {
-        let rate = self.rate?;
-        Timebase::new(power_of_ten(rate.places)?.try_into().ok()?, rate.mantissa.try_into().ok()?)
+        self.rate.and_then(period)
     }
 }

@@ -24,7 +24,7 @@ pub(super) struct SampleStream<'a> {
     max_samples: u64,
     /// Packed bytes, and unpacked bytes since the last call of `watch`.
     packed: u64,
-    untold: u64,
+    unreported: u64,
 }
 
 impl<'a> SampleStream<'a> {
@@ -50,9 +50,20 @@ impl<'a> SampleStream<'a> {
         if bits.is_empty() {
             return Err("the session has no logic channels; record STEP and DIR as logic channels".into());
         }
-        let max_samples = (recorder.most() as u64).saturating_mul(MAX_IDLE);
+        let max_samples = (recorder.max_rows() as u64).saturating_mul(MAX_IDLE);
         let (last, partial) = (Vec::new(), Vec::new());
-        Ok(Self { recorder, watch, unit, bits, last, partial, samples: 0, max_samples, packed: 0, untold: 0 })
+        Ok(Self {
+            recorder,
+            watch,
+            unit,
+            bits,
+            last,
+            partial,
+            samples: 0,
+            max_samples,
+            packed: 0,
+            unreported: 0,
+        })
     }
 
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<(), String> {
@@ -112,11 +123,11 @@ impl<'a> SampleStream<'a> {
     }
 
     fn tell(&mut self, bytes: u64) -> Result<(), String> {
-        self.untold += bytes;
-        if self.untold < WATCH_EVERY {
+        self.unreported += bytes;
+        if self.unreported < WATCH_EVERY {
             return Ok(());
         }
-        self.untold = 0;
+        self.unreported = 0;
         if (self.watch)(self.packed) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
     }
 

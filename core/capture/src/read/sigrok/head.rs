@@ -4,14 +4,18 @@ use crate::{
     read::{
         decimal::{Decimal, power_of_ten, whole},
         fields::{Fields, separator},
+        sample_rate::{SampleRate, period},
         times::TimeUnit,
     },
     timebase::Timebase,
 };
 
+#[derive(Default)]
 pub(in crate::read) struct Head {
     names: Vec<String>,
-    rate: Option<Decimal>,
+    rate: SampleRate,
+    /// Number of the current line.
+    pub(super) line: u64,
     labels: Vec<String>,
     separator: Option<u8>,
 }
@@ -20,7 +24,7 @@ pub(super) enum Kind {
     Time,
     Trigger,
     Level(String),
-    Analogue(String),
+    Analog(String),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,10 +43,6 @@ pub(super) enum RowClock {
 }
 
 impl Head {
-    pub(super) const fn new() -> Self {
-        Self { names: Vec::new(), rate: None, labels: Vec::new(), separator: None }
-    }
-
     /// Returns false for a row of samples.
     pub(super) fn take(&mut self, line: &[u8]) -> Result<bool, String> {
         let text = String::from_utf8_lossy(line);
@@ -51,11 +51,7 @@ impl Head {
             if let Some(rate) =
                 text.strip_prefix("Samplerate:").or_else(|| text.strip_prefix("META samplerate:"))
             {
-                let rate = parse_rate(rate.trim());
-                if self.rate.is_some() && rate != self.rate {
-                    return Err("the head gives two sample rates; export again".into());
-                }
-                self.rate = rate;
+                self.rate.give(rate.trim(), self.line)?;
             } else if let Some((_, names)) =
                 text.strip_prefix("Channels (").and_then(|text| text.split_once("):"))
             {
@@ -101,7 +97,7 @@ impl Head {
             } else if at + 1 == count && (label(at) == Some("Trigger") || named > 0 && at - start >= named) {
                 Kind::Trigger
             } else if units && label(at) != Some("logic") || !is_level(at) {
-                Kind::Analogue(channel(at))
+                Kind::Analog(channel(at))
             } else {
                 Kind::Level(channel(at))
             }
@@ -128,7 +124,7 @@ impl Head {
     }
 
     pub(super) fn rate_hz(&self) -> Option<u64> {
-        self.rate.and_then(Decimal::whole).and_then(|rate| u64::try_from(rate).ok())
+        self.rate.get().and_then(Decimal::whole).and_then(|rate| u64::try_from(rate).ok())
     }
 
     pub(super) fn timebase(&self, clock: RowClock) -> Option<Timebase> {
@@ -140,23 +136,8 @@ impl Head {
                 _ => None,
             };
         }
-        let rate = self.rate?;
-        Timebase::new(unit(rate.places)?, u64::try_from(rate.mantissa).ok()?)
+        self.rate.get().and_then(period)
     }
-}
-
-/// `24 MHz`, `1.000000007 GHz`, `1000000`: a rate in Hz.
-pub(in crate::read) fn parse_rate(text: &str) -> Option<Decimal> {
-    let end = text.rfind(|letter: char| letter.is_ascii_digit()).map_or(0, |last| last + 1);
-    let (number, unit) = text.split_at(end);
-    let exponent = match unit.trim().to_lowercase().as_str() {
-        "" | "hz" => 0,
-        "khz" | "k" => 3,
-        "mhz" | "m" => 6,
-        "ghz" | "g" => 9,
-        _ => return None,
-    };
-    Decimal::parse(number.trim().as_bytes())?.shifted(exponent).filter(|rate| rate.mantissa > 0)
 }
 
 /// Comments, and output of sigrok-cli in the same file: `META samplerate: 1000000`, `A0: -10.00 V DC`.
@@ -167,10 +148,10 @@ pub(in crate::read) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"META ")
         || line.windows(9).any(|text| text == b"libsigrok")
         || matches!(line, [b';' | b'#' | b'%' | b'/' | b'!' | b'*', ..]) && !is_row(line)
-        || is_analogue_value(line)
+        || is_analog_value(line)
 }
 
-fn is_analogue_value(line: &[u8]) -> bool {
+fn is_analog_value(line: &[u8]) -> bool {
     let mut words = line.split(|byte| *byte == b' ');
     words.next().is_some_and(|name| name.ends_with(b":") && name.len() > 1)
         && words.next().is_some_and(|value| Decimal::parse(value).is_some())

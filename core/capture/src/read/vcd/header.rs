@@ -123,7 +123,7 @@ impl Header {
 
     pub(super) fn enter(&mut self) -> Result<(), String> {
         if self.scopes.len() >= MAX_DEPTH {
-            return Err(format!("more than {MAX_DEPTH} scopes in scopes"));
+            return Err(format!("more than {MAX_DEPTH} nested scopes"));
         }
         let name = self.words().nth(1).map(|name| String::from_utf8_lossy(name).into_owned());
         self.scopes.push(self.path.len());
@@ -167,13 +167,13 @@ impl Header {
         // For a wide vector, only as many bits as can be read, and the requested ones.
         let all = size.min(MAX_CHANNELS as u32);
         let last = base.rsplit('.').next().unwrap_or_default();
-        let asked = |wanted: &String| {
+        let requested = |wanted: &String| {
             let (vector, index) = wanted.strip_suffix(']')?.rsplit_once('[')?;
             let bit = index.parse::<i64>().ok()?.checked_sub(first)?.checked_mul(step)?;
             let is_this = vector == base || vector.eq_ignore_ascii_case(last);
             u32::try_from(bit).ok().filter(|bit| is_this && (all..size).contains(bit))
         };
-        let mut more: Vec<u32> = recorder.wanted.iter().filter_map(asked).collect();
+        let mut more: Vec<u32> = recorder.wanted.iter().filter_map(requested).collect();
         more.sort_unstable();
         more.dedup();
         recorder.more_beyond(u64::from(size - all) - more.len() as u64);

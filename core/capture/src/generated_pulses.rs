@@ -1,4 +1,4 @@
-//! Makes STEP and DIR from other recorded signals: both edges of STEP, CW and CCW pulses, or an encoder.
+//! Generates STEP and DIR from other recorded signals: both edges of STEP, CW and CCW pulses, or an encoder.
 //!
 //! ```text
 //! DEDGE  _____/-----------\______     CW    __/-\__/-\____________     A  __/-----\_____/--
@@ -7,13 +7,13 @@
 //!                                     DIR   ------------\________     DIR high where A leads
 //! ```
 //!
-//! DIR changes in the cycle in which STEP rises. Of both edges and of an encoder a pulse has no width of its own.
+//! DIR changes in the cycle in which STEP rises. Pulses from both edges or from an encoder have no recorded width.
 
 use crate::channel_map::{ChannelMap, Entry, Input, PulseSource};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
 #[derive(Clone, Debug)]
-pub(crate) struct MadePulses {
+pub(crate) struct GeneratedPulses {
     motors: Vec<Motor>,
     dirs: u64,
     signals: u64,
@@ -40,7 +40,7 @@ struct Motor {
     before: (bool, bool),
 }
 
-impl MadePulses {
+impl GeneratedPulses {
     pub(crate) fn new(map: &ChannelMap) -> Option<Self> {
         let motor = |motor: u8| {
             let source = map.pulses(motor);
