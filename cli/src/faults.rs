@@ -214,7 +214,7 @@ const ROWS: &[Row] = &[
     ("replies sent", false, |tally| tally.replies),
     ("  lost or damaged", false, |tally| tally.replies_lost),
     ("crashes of the host", false, |tally| tally.crashes),
-    ("ticks commanded", true, |tally| tally.ordered),
+    ("ticks commanded", true, |tally| tally.commanded),
     ("  executed", true, |tally| tally.executed),
     ("  not reached: host gave up", false, |tally| tally.unreached),
     ("  missing", true, |tally| tally.missing),

@@ -23,7 +23,7 @@ use stepscope_core::{
     },
     peripheral::units::Instant,
     scenario::Source,
-    sim::power_cut::{PowerCuts, Tally, Wear, least_hold_up, tally, wear, with_memory},
+    sim::power_cut::{PowerCuts, Tally, Wear, min_hold_up, tally, wear, with_memory},
 };
 
 /// Parts of the cuts; each starts its run again.
@@ -162,7 +162,7 @@ fn least(
             }
         }
     };
-    let enough = least_hold_up(checked, most_hold_up(checked), losses);
+    let enough = min_hold_up(checked, most_hold_up(checked), losses);
     failed.map_or(Ok(enough), Err)
 }
 

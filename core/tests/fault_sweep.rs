@@ -25,8 +25,8 @@ fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
     assert_eq!((tally.seeds, tally.wrong_seeds, tally.is_wrong()), (300, 0, false), "{tally:?}");
     // A host that may repeat gets there, but where no byte does; and it gives up for no other reason.
     assert_eq!((tally.given_up_in_reach, tally.stuck, tally.cut), (0, 0, 0), "{tally:?}");
-    assert_eq!(tally.executed + tally.unreached, tally.ordered, "{tally:?}");
-    assert_eq!(tally.ordered % 300, 0);
+    assert_eq!(tally.executed + tally.unreached, tally.commanded, "{tally:?}");
+    assert_eq!(tally.commanded % 300, 0);
     // The faults bite, all of them.
     for count in [
         tally.repeated,
@@ -65,7 +65,7 @@ fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
     };
     for protocol in [Protocol::Raw, Protocol::Framed] {
         let tally = quiet(protocol);
-        assert!(!tally.is_wrong() && tally.executed == tally.ordered && tally.repeated == 0, "{tally:?}");
+        assert!(!tally.is_wrong() && tally.executed == tally.commanded && tally.repeated == 0, "{tally:?}");
     }
 }
 
@@ -93,7 +93,7 @@ fn several_controllers_and_a_line_held_low_cost_repetitions_and_no_step() {
     let base = Scenario::from_json(json).expect("reads");
     let tally = run(&FaultSweep::new(base).expect("no problems"), 60);
     assert!(!tally.is_wrong(), "{tally:?}");
-    assert_eq!((tally.given_up_in_reach, tally.stuck, tally.ordered), (0, 0, 60 * (7 + 6)), "{tally:?}");
+    assert_eq!((tally.given_up_in_reach, tally.stuck, tally.commanded), (0, 0, 60 * (7 + 6)), "{tally:?}");
     assert!(tally.repeated > 0 && tally.crashes > 0, "{tally:?}");
 }
 

@@ -84,7 +84,7 @@ fn wait_until(due_ns: u64, watch: StopWatch, wire: &mut Wire) -> Result<bool, Fa
 
 fn print(report: &RawReport, lost: Option<&str>, as_json: bool) -> Result<(), Failure> {
     if as_json {
-        let RawReport { packets, sent, late, stood, stood_count, stopped } = report;
+        let RawReport { packets, sent, late, standstills, standstill_count, stopped } = report;
         let row = json!({
             "protocol": "raw",
             "outcome": "not verified",
@@ -95,9 +95,9 @@ fn print(report: &RawReport, lost: Option<&str>, as_json: bool) -> Result<(), Fa
             "late_median_ms": late.within_ms(50),
             "late_99_percent_ms": late.within_ms(99),
             "late_worst_ms": late.worst_ms(),
-            "stood_before_ticks": stood_count,
+            "stood_before_ticks": standstill_count,
         });
-        let named = stood.iter().map(|tick| json!({ "tick": tick }));
+        let named = standstills.iter().map(|tick| json!({ "tick": tick }));
         return Tables::of("send").with("send", [row]).with("stood_before", named).print();
     }
     let mut out = terminal::out();

@@ -182,7 +182,7 @@ impl Sender {
                 Received::Bytes(count) => {
                     let now = self.now();
                     let bytes = wire.without_echo(buffer.get(..count).unwrap_or_default());
-                    bytes.into_iter().for_each(|byte| self.host.hear(byte, now));
+                    bytes.into_iter().for_each(|byte| self.host.receive(byte, now));
                 }
                 Received::Gone | Received::Ended => {
                     return Err(Failure::LostPort("the other end closed the connection".to_owned()));

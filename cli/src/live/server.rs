@@ -220,7 +220,7 @@ impl Server {
 
     /// Whether the session has ended: for a panel, when all input is processed.
     fn is_over(&self) -> bool {
-        let is_last = || self.session.is_at_rest() || self.session.jogs_without_end();
+        let is_last = || self.session.is_idle() || self.session.jogs_without_end();
         self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
@@ -256,7 +256,7 @@ impl Server {
                 (self.deadline().min(Instant(now.0.saturating_add(MAX_ROUND))), Duration::ZERO)
             }
             Pacing::Max if self.watch.elapsed().saturating_sub(silent_since) < THINKING => (now, THINKING),
-            Pacing::Max if !self.session.is_at_rest() => (Instant(now.0 + MAX_ROUND), Duration::ZERO),
+            Pacing::Max if !self.session.is_idle() => (Instant(now.0 + MAX_ROUND), Duration::ZERO),
             Pacing::Max => (now, IDLE_WAIT),
         };
         if to > now {
@@ -312,7 +312,7 @@ impl Server {
         }
         write!(out, "{summary}")?;
         if self.panel.is_none() {
-            writeln!(out, "bytes_heard {}", session.heard())?;
+            writeln!(out, "bytes_heard {}", session.received())?;
         }
         if self.late.count() > 0 {
             writeln!(out, "replies {} late{}", self.late.count(), self.late)?;

@@ -1,5 +1,5 @@
-//! What each controller is to do, and how the host sends it (DESIGN A9): ticks from motions or
-//! packets, a schedule of them on a raw line, a job each for the host of a framed line.
+//! The commands of each controller and how the host sends them (DESIGN A9): ticks from motions or packets, scheduled on a
+//! raw line, or a job per controller on a framed line.
 
 use crate::{
     hosts::framed_host::{FramedHost, Job},
@@ -28,7 +28,7 @@ use stepscope_scenario::{
 
 /// Maximum bytes of all controllers' ticks together.
 const MAX_BYTES: usize = 8_000_000;
-/// Bit times of an exchange without its bytes: the turnaround of the reply, and the pause after it.
+/// Bit times of an exchange besides its bytes: the turnaround of the reply, and the pause after it.
 const EXCHANGE_BITS: u128 = 11 + 10;
 /// Loads are counted in thousandths of a bit time.
 const PART_OF_BIT: u128 = 1000;
@@ -92,7 +92,7 @@ pub(super) fn controller_plans(
                 }
                 debug_assert!(
                     ticks.len().is_multiple_of(config.channels().into()),
-                    "a tick has a byte a channel"
+                    "a tick has one byte per channel"
                 );
                 controllers.push(ControllerPlan { config: config.clone(), plans, ticks: ticks.into() });
             }
@@ -102,7 +102,7 @@ pub(super) fn controller_plans(
             let cause = ValueError::TooMuch {
                 given: total as f64,
                 most: MAX_BYTES as f64,
-                of: "orders of all channels",
+                of: "commands of all channels",
             };
             problems.push(Problem::new("controllers", cause));
             break;
@@ -164,7 +164,7 @@ fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
     }
 }
 
-/// What the host sends without waiting for replies, and what noise forces on the line meanwhile.
+/// What the host sends without waiting for replies, and the levels that noise forces.
 pub(super) fn schedule(
     checked: &CheckedScenario,
     controllers: &[ControllerPlan],
@@ -265,8 +265,7 @@ pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
     }
 }
 
-/// The part of the line's time that is taken while all controllers move; `None` where no ticks are sent.
-/// Errors: above 1, with the rate that is needed.
+/// The line's load while all controllers move, 0 to 1; `None` without ticks. Errors: above 1, with the required rate.
 pub(super) fn line_load<'a>(checked: &'a CheckedScenario) -> Result<Option<f64>, Problem> {
     let Some(first) = checked.configs.first() else { return Ok(None) };
     if !checked.source.is_ticks() {
@@ -293,7 +292,7 @@ pub(super) fn line_load<'a>(checked: &'a CheckedScenario) -> Result<Option<f64>,
     Ok(Some(cycles as f64 / tick as f64))
 }
 
-/// Bit times, in thousandths, of one tick with its share of the frame around it and of the reply.
+/// Thousandths of a bit time per tick, with its share of frame and reply.
 fn frame_bits(checked: &CheckedScenario, config: &Config) -> u128 {
     let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];

@@ -1,4 +1,4 @@
-//! What a run runs: controllers on a serial line, lists of segments, or controllers without a line.
+//! The edge generators of a run: controllers on a serial line, lists of segments, or controllers without a line.
 
 use crate::line::bus::Bus;
 use alloc::boxed::Box;
@@ -19,10 +19,10 @@ pub(crate) enum Generator {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Controllers {
-    /// Stays before cycle 0 where something else generates the edges.
+    /// Stays before cycle 0 if something else generates the edges.
     pub(crate) bus: Bus,
     pub(crate) generator: Generator,
-    /// First cycle that is not run; without it the run ends when nothing can change any more.
+    /// First cycle that is not run; without it the run ends when no further change is possible.
     pub(crate) end: Option<Instant>,
 }
 
@@ -51,8 +51,8 @@ impl Controllers {
         }
     }
 
-    /// Goes on to cycle `end`, with a sink per controller, until a sink pauses; with [`Instant::NEVER`] until nothing can
-    /// change any more.
+    /// Runs to cycle `end`, with a sink per controller, until a sink pauses; with [`Instant::NEVER`] until no further change
+    /// is possible.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         match &mut self.generator {
             Generator::Bus => self.bus.run(end, sinks),
@@ -69,7 +69,6 @@ impl Controllers {
         }
     }
 
-    /// Position counters of the first controller, or of what generates the edges in its place.
     pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
         match &self.generator {
             Generator::Bus => self.bus.first().positions(),
@@ -88,10 +87,10 @@ impl Controllers {
 }
 
 impl Controllers {
-    /// At rest, the cycle after the last change; the last edge was in `last`.
-    pub(crate) fn rests_from(&self, last: Instant) -> Option<Instant> {
+    /// When idle, the cycle after the last change; the last edge was in `last`.
+    pub(crate) fn idle_from(&self, last: Instant) -> Option<Instant> {
         self.at_rest().then(|| match &self.generator {
-            Generator::Bus => self.bus.rests_from(),
+            Generator::Bus => self.bus.idle_from(),
             Generator::Segments(_) => last.next(),
             Generator::StandAlone(machine) => machine.rests_from(),
         })

@@ -1,10 +1,8 @@
-//! What a run costs at most, before it starts: from the host's bytes, what is forced on the line,
-//! and what the receiver can make of both.
+//! The maximum cost of a run, known before it starts (DESIGN A4).
 //!
-//! Each byte that is heard begins with a fall of the line, and the next one no earlier than
-//! floor(B/2) + 9*B + 1 cycles later (DESIGN A4). So a receiver hears what is sent only if nothing
-//! is forced and its samples lie in their bits; otherwise one byte can become several, and a forced
-//! level can begin one of its own.
+//! Each received byte begins with a fall of the line, and the next one no earlier than floor(B/2) + 9*B + 1 cycles later.
+//! A receiver gets the sent bytes only if no level is forced and its samples lie in their bits; otherwise one byte can
+//! become several, and a forced level can begin another.
 
 use crate::controller_plan::{ControllerPlan, job, pulses};
 use stepscope_peripheral::{
@@ -23,7 +21,7 @@ use stepscope_scenario::{CheckedScenario, Noise, Source};
 /// Maximum edges of a byte on the line, and how many of them fall.
 const MAX_EDGES_A_BYTE: u64 = 10;
 const MAX_FALLS_A_BYTE: u64 = 5;
-/// Where the last of them can be: the start of data bit 7.
+/// The last possible fall: the start of data bit 7.
 const LAST_FALL_BIT: u64 = 8;
 
 /// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
@@ -31,14 +29,13 @@ const LONGEST_REST_BITS: u64 = 60;
 
 const FRAME_OVERHEAD: u64 = 13;
 
-/// Maximum cost of a run, known before it starts. Where a host waits for replies it is an estimate.
+/// Maximum cost of a run; an estimate if the host waits for replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Cost {
     pub records: u64,
     pub sends: u64,
     pub bytes: u64,
-    /// Cycle by which nothing can change any more, or the run's given end.
+    /// Cycle after which no change is possible, or the given end.
     pub end_cycle: u64,
     /// Steps of the grids of all plants, each times its motors; 0 without a plant.
     pub motor_steps: u64,
@@ -51,8 +48,6 @@ pub const BUDGET_MOTOR_STEPS: u64 = 40_000_000;
 pub const BUDGET_RECORDS: u64 = 4_000_000;
 
 impl Cost {
-    /// Whether it needs a confirmation.
-    #[must_use]
     pub const fn is_over_budget(&self) -> bool {
         self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
     }
@@ -114,7 +109,7 @@ struct Sends {
     count: u64,
     bytes: u64,
     reply_bytes: u64,
-    /// When it is over, unless a schedule says so.
+    /// The end, unless a schedule gives it.
     end_cycle: u64,
 }
 
@@ -128,8 +123,8 @@ impl Sends {
         Self { count: schedule.len() as u64, bytes, reply_bytes: replies * longest, end_cycle: 0 }
     }
 
-    /// Ticks, and STATUS and POSITIONS before and after them. On a noisy line each frame may be repeated, and a host
-    /// that crashes opens every controller again: an estimate, not a bound.
+    /// Ticks, and STATUS and POSITIONS before and after them. Noise repeats frames, and a crashed host opens every
+    /// controller again: an estimate, not a bound.
     fn framed(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
         let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
@@ -161,47 +156,47 @@ const fn longest_reply(config: &Config) -> u64 {
 
 fn tick_records(checked: &CheckedScenario, plan: &ControllerPlan, schedule: &Schedule) -> u64 {
     let config = plan.config();
-    if checked.waits_for_replies() || comes_as_ordered(checked, config) {
+    if checked.waits_for_replies() || arrives_as_scheduled(checked, config) {
         if let Source::Packets(_) = &checked.source
             && config.protocol() == Protocol::Raw
             && checked.configs.len() > 1
         {
             // Any packet may address any controller.
-            let most = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
-            return records_of(config, most) + schedule.total_bytes() as u64;
+            let max = schedule.iter().map(|send| pulses(send.bytes)).sum::<u64>();
+            return records_of(config, max) + schedule.total_bytes() as u64;
         }
         return plan.each_tick().map(|tick| records_of(config, pulses(tick))).sum();
     }
-    let most = u64::from(config.slots()) * u64::from(config.channels());
-    most_ticks(checked, config, schedule) * records_of(config, most)
+    let max = u64::from(config.slots()) * u64::from(config.channels());
+    max_ticks(checked, config, schedule) * records_of(config, max)
 }
 
-fn comes_as_ordered(checked: &CheckedScenario, config: &Config) -> bool {
+fn arrives_as_scheduled(checked: &CheckedScenario, config: &Config) -> bool {
     checked.source.is_ticks() && is_faithful(checked, config)
 }
 
 fn is_faithful(checked: &CheckedScenario, config: &Config) -> bool {
-    checked.forced.is_empty() && checked.noise == Noise::default() && hears(config, checked.baud)
+    checked.forced.is_empty() && checked.noise == Noise::default() && gets_all_bits(config, checked.baud)
 }
 
-fn most_ticks(checked: &CheckedScenario, config: &Config, schedule: &Schedule) -> u64 {
-    let heard = if is_faithful(checked, config) {
+fn max_ticks(checked: &CheckedScenario, config: &Config, schedule: &Schedule) -> u64 {
+    let received = if is_faithful(checked, config) {
         schedule.total_bytes() as u64
     } else {
-        let sent: u64 = schedule.iter().map(|send| most_heard(checked, config, send.bytes.len())).sum();
+        let sent: u64 = schedule.iter().map(|send| max_received(checked, config, send.bytes.len())).sum();
         sent + checked.forced.len() as u64
     };
-    heard / config.packet_len() as u64
+    received / config.packet_len() as u64
 }
 
 /// Whether each sample lies in its own bit, and the receiver is armed before the next byte.
-fn hears(config: &Config, baud: u32) -> bool {
+fn gets_all_bits(config: &Config, baud: u32) -> bool {
     let (bit, sent) = (config.bit().0, BitTimes::new(config.clock_hz(), baud));
     (0..BYTE_BITS).all(|k| (sent.bit(k)..sent.bit(k + 1)).contains(&Cycles(bit / 2 + k * bit)))
 }
 
-/// Maximum bytes heard when so many are sent back to back.
-fn most_heard(checked: &CheckedScenario, config: &Config, bytes: usize) -> u64 {
+/// Maximum received bytes when `bytes` are sent back to back.
+fn max_received(checked: &CheckedScenario, config: &Config, bytes: usize) -> u64 {
     let (bytes, bit) = (bytes as u64, config.bit().0);
     let Some(before) = bytes.checked_sub(1) else { return 0 };
     let Cycles(last_fall) =
@@ -220,8 +215,7 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
     }
 }
 
-/// A cycle by which everything has been sent, and a late byte, the ticks that run and wait, or a reply and the gap
-/// have passed.
+/// A cycle by which everything is sent, and a late byte, the running and queued ticks, or a reply and the gap are over.
 fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[ControllerPlan]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
     let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
@@ -234,10 +228,10 @@ fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[Con
         let late = if is_faithful(checked, config) { 0 } else { BYTE_BITS * config.bit().0 };
         let ticks_end = if checked.waits_for_replies() {
             sent + late + config.tick().0
-        } else if comes_as_ordered(checked, config) {
-            ordered_end(schedule, checked, controllers.len(), plan)
+        } else if arrives_as_scheduled(checked, config) {
+            scheduled_end(schedule, checked, controllers.len(), plan)
         } else {
-            let ticks = most_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1);
+            let ticks = max_ticks(checked, config, schedule).min(u64::from(config.queue_depth()) + 1);
             sent + late + ticks * config.tick().0
         };
         let is_framed = config.protocol() == Protocol::Framed;
@@ -248,9 +242,8 @@ fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[Con
     controllers.iter().map(end).max().unwrap_or(sent) + 1
 }
 
-/// The end of a controller's last tick if each packet is heard as it was sent. A late packet delays all ticks after
-/// it.
-fn ordered_end(
+/// The end of a controller's last tick if each packet arrives as sent. A late packet delays all later ticks.
+fn scheduled_end(
     schedule: &Schedule,
     checked: &CheckedScenario,
     controllers: usize,
@@ -263,10 +256,10 @@ fn ordered_end(
         Source::Packets(_) if controllers > 1 => (schedule.len(), controllers as u64),
         _ => (plan.each_tick().len(), 1),
     };
-    let most_waiting = u64::from(config.queue_depth()) + 1;
+    let max_waiting = u64::from(config.queue_depth()) + 1;
     schedule.iter().take(turns).fold(0, |end, send| {
-        let heard = send.start.0 + line_time(send.bytes.len() as u64, config.clock_hz(), checked.baud);
-        (end.max(heard) + each * tick).min(heard + most_waiting * tick)
+        let received = send.start.0 + line_time(send.bytes.len() as u64, config.clock_hz(), checked.baud);
+        (end.max(received) + each * tick).min(received + max_waiting * tick)
     })
 }
 
@@ -284,16 +277,19 @@ mod tests {
     }
 
     #[test]
-    fn a_receiver_at_the_senders_rate_hears_what_is_sent() {
+    fn a_receiver_at_the_senders_rate_gets_all_bytes() {
         for clock_hz in [21, 1000, 1603, 16_000_000] {
             for baud in (1..clock_hz / 10).step_by(1 + clock_hz as usize / 3000) {
-                assert!(config(clock_hz, baud, baud).is_none_or(|c| hears(&c, baud)), "{clock_hz} {baud}");
+                assert!(
+                    config(clock_hz, baud, baud).is_none_or(|c| gets_all_bits(&c, baud)),
+                    "{clock_hz} {baud}"
+                );
             }
         }
         // 16 cycles a bit; a receiver's 15 and 17 take a sample in the wrong bit.
         for (receiver_baud, expected) in [(100, true), (97, true), (107, false), (95, false)] {
             let config = config(1600, 100, receiver_baud).expect("holds");
-            assert_eq!(hears(&config, 100), expected, "{receiver_baud}");
+            assert_eq!(gets_all_bits(&config, 100), expected, "{receiver_baud}");
         }
     }
 
@@ -323,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_script_that_asks_for_positions_is_answered_within_its_cost() {
+    fn replies_to_a_script_are_within_its_cost() {
         for channels in [1, 2, 16] {
             let json = format!(
                 r#"{{"bus":{{"channels":{channels},"boot_cycles":0}},"line":{{"protocol":"framed"}},
@@ -339,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn each_forced_level_may_be_heard_as_a_byte() {
+    fn each_forced_level_may_become_a_byte() {
         // A low of half a bit on an idle line is the byte ff: 127 steps, 255 records.
         let glitch = |k: u64| Glitch { start_cycle: 1 + k * 2000, length_cycles: 80, level: 0 };
         let mut scenario =

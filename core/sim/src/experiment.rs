@@ -1,4 +1,4 @@
-//! From a scenario to its trace: the whole line in one call.
+//! A validated scenario and its runs.
 
 use crate::plant::behind::PlantsBehind;
 use crate::{
@@ -29,7 +29,7 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 /// Maximum grid steps of a run, of all motors together.
 const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 
-/// A validated scenario with its motions planned and its packets encoded.
+/// A validated scenario with planned motions and encoded packets.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     checked: CheckedScenario,
@@ -43,15 +43,21 @@ pub struct Experiment {
     cost: Cost,
 }
 
+fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Result<(), Vec<Problem>> {
+    if given <= max {
+        return Ok(());
+    }
+    let cause = ValueError::TooMuch { given: given as f64, most: max as f64, of };
+    Err(alloc::vec![Problem::new(path, cause)])
+}
+
 impl Experiment {
-    /// Validates a scenario and prepares its run.
-    /// Errors: every problem, each with its path.
+    /// Validates a scenario and prepares its run. Errors: every problem, each with its path.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
         let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
         let plans = controller_plan::plans(scenario);
-        // The plant has reported these already.
-        let is_new = |problem: &Problem| problems.iter().all(|told: &Problem| told.path != problem.path);
+        let is_new = |problem: &Problem| problems.iter().all(|known: &Problem| known.path != problem.path);
         let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
         let plans = plans.map_err(|found| problems.extend(found)).ok();
         let Some(mut checked) = checked else { return Err(problems) };
@@ -59,8 +65,8 @@ impl Experiment {
         let Some(plans) = plans else { return Err(problems) };
         let controllers = match controller_plan::controller_plans(&checked, plans) {
             Ok(controllers) if problems.is_empty() => controllers,
-            judged => {
-                problems.extend(judged.err().unwrap_or_default());
+            validated => {
+                problems.extend(validated.err().unwrap_or_default());
                 return Err(problems);
             }
         };
@@ -76,56 +82,40 @@ impl Experiment {
             Some(stand_alone) => Cost::of_stand_alone(stand_alone, checked.run)?,
             None => cost,
         };
-        if cost.bytes > MAX_LINE_BYTES {
-            let (given, most) = (cost.bytes as f64, MAX_LINE_BYTES as f64);
-            let cause = ValueError::TooMuch { given, most, of: "bytes of all frames and their repetitions" };
-            return Err(alloc::vec![Problem::new("source", cause)]);
-        }
         let cost = cost.with_plants(&checked);
-        if cost.motor_steps > MAX_MOTOR_STEPS {
-            let (given, most) = (cost.motor_steps as f64, MAX_MOTOR_STEPS as f64);
-            let cause = ValueError::TooMuch { given, most, of: "motor-steps of the plant" };
-            return Err(alloc::vec![Problem::new("plant.step_cycles", cause)]);
-        }
-        if cost.end_cycle > END_OF_TIME {
-            let cause =
-                ValueError::TooMuch { given: cost.end_cycle as f64, most: END_OF_TIME as f64, of: "cycles" };
-            return Err(alloc::vec![Problem::new("source", cause)]);
-        }
+        check_cost("source", cost.bytes, MAX_LINE_BYTES, "bytes of all frames and their repetitions")?;
+        check_cost("plant.step_cycles", cost.motor_steps, MAX_MOTOR_STEPS, "motor-steps of the plant")?;
+        check_cost("source", cost.end_cycle, END_OF_TIME, "cycles")?;
         let line_load = line_load.flatten().filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
         Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
-    /// Reads, validates and prepares a scenario.
-    /// Errors: every problem of types and numbers.
+    /// Reads, validates and prepares a scenario. Errors: every problem of types and numbers.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
         let (scenario, unread) = Scenario::from_json_lenient(text);
         Self::of_lenient(&scenario, unread)
     }
 
-    /// Validates a scenario some of whose fields could not be read: they have their defaults, and rules that join
-    /// several fields wait.
-    /// Errors: `unread` and what else is wrong.
+    /// Validates a scenario with unreadable fields: they have their defaults, and rules about several fields wait.
+    /// Errors: `unread` and all other problems.
     pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
-        let judged = Self::new(scenario);
+        let validated = Self::new(scenario);
         if unread.is_empty() {
-            return judged;
+            return validated;
         }
         let mut problems = unread.clone();
-        problems.extend(judged.err().unwrap_or_default().into_iter().filter(|problem| {
+        problems.extend(validated.err().unwrap_or_default().into_iter().filter(|problem| {
             !problem.cause.joins_fields() && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
         }));
         Err(problems)
     }
 
     /// Number of controllers on the line, 1 to 32.
-    #[must_use]
     pub fn controllers(&self) -> usize {
         self.controllers.len()
     }
 
     /// The configuration of the first controller.
-    #[must_use]
     pub fn config(&self) -> &Config {
         self.first().config()
     }
@@ -136,44 +126,37 @@ impl Experiment {
     }
 
     /// The host's rate.
-    #[must_use]
     pub const fn baud(&self) -> u32 {
         self.checked.baud
     }
 
     /// The plan of each axis of the first controller; empty where the source is no motion.
-    #[must_use]
     pub fn plans(&self) -> &[AxisPlan] {
         self.first().plans()
     }
 
     /// The plan of each axis of controller `index`.
-    #[must_use]
     pub fn plans_of(&self, index: usize) -> &[AxisPlan] {
         self.controllers.get(index).map_or(&[], ControllerPlan::plans)
     }
 
     /// The ticks of controller `index`, one byte per channel, tick after tick; empty for a line script.
-    #[must_use]
     pub fn ticks_of(&self, index: usize) -> &[u8] {
         self.controllers.get(index).map_or(&[], ControllerPlan::ticks)
     }
 
-    /// How far the host has come with controller `index`; `None` where nobody waits for replies or it has no ticks.
-    #[must_use]
+    /// The host's progress with controller `index`; `None` without ticks or if the host does not wait for replies.
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
         run.host()?.progress().nth(self.job(index)?)
     }
 
-    /// Ticks that controller `index` has acknowledged; `None` as [`Self::host_progress`].
-    #[must_use]
+    /// Ticks acknowledged by controller `index`; `None` as [`Self::host_progress`].
     pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
         run.host()?.acknowledged().nth(self.job(index)?)
     }
 
-    /// The host's conversation for a real line, from cycle `start` of its own clock on, with an opening tick; `None`
-    /// where nobody waits for replies.
-    #[must_use]
+    /// The host's conversation for a real line from cycle `start` on, with an opening tick; `None` if the host does not
+    /// wait for replies.
     pub fn conversation(&self, start: Instant) -> Option<Conversation> {
         let bit = Config::bit_of(self.config().clock_hz(), self.baud());
         let jobs = || controller_plan::jobs(&self.controllers);
@@ -182,7 +165,6 @@ impl Experiment {
     }
 
     /// The index of controller `index` among those that have ticks.
-    #[must_use]
     pub fn job(&self, index: usize) -> Option<usize> {
         self.controllers.get(index).filter(|plan| plan.has_ticks())?;
         Some(self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count())
@@ -192,27 +174,22 @@ impl Experiment {
         &self.controllers[0]
     }
 
-    /// What the host sends without waiting for replies; for a framed host see [`Run::schedule`].
-    #[must_use]
+    /// The sends of a host that does not wait for replies; for a framed host see [`Run::schedule`].
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
     /// The segment lists; `None` where ticks run the scenario.
-    #[must_use]
     pub fn segments(&self) -> Option<&CheckedSegments> {
         self.segments.as_deref()
     }
 
     /// Whether a run never ends because a jog button of a stand-alone controller stays pressed.
-    #[must_use]
     pub fn jogs_without_end(&self) -> bool {
         let has_end = self.checked.run.is_some() || self.cost.end_cycle < END_OF_TIME;
         !has_end && self.stand_alone().is_some_and(crate::stand_alone::jogs_without_end)
     }
 
-    /// The stand-alone controllers.
-    #[must_use]
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::CheckedSetup> {
         self.checked.stand_alone.as_ref()
     }
@@ -227,21 +204,16 @@ impl Experiment {
         }
     }
 
-    /// The maximum cost of a run.
-    #[must_use]
     pub const fn cost(&self) -> Cost {
         self.cost
     }
 
-    /// The part of the line's time that is taken while all controllers move, 0..=1; `None` where nothing paced is
-    /// sent.
-    #[must_use]
+    /// The line's load while all controllers move, 0..=1; `None` without paced packets.
     pub const fn line_load(&self) -> Option<f64> {
         self.line_load
     }
 
     /// A run before cycle 0.
-    #[must_use]
     pub fn start(&self) -> Run {
         let CheckedScenario { baud, forced, run, .. } = &self.checked;
         let clock_hz = self.config().clock_hz();
@@ -262,8 +234,6 @@ impl Experiment {
         if tests { Device::with_self_test(config) } else { Device::new(config) }
     }
 
-    /// The plants behind the controllers.
-    #[must_use]
     pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
         self.checked.plants.as_ref()
     }
@@ -274,12 +244,12 @@ impl Experiment {
             .then(|| controller_plan::framed_host(&self.checked, &self.controllers))
     }
 
-    /// Runs everything at the fast speed; `sink` takes the trace of the first controller.
+    /// Runs to the end; `sink` takes the trace of the first controller.
     pub fn run(&self, sink: &mut impl Sink) -> Run {
         self.run_each(slice::from_mut(sink))
     }
 
-    /// As [`Self::run`], with a sink per controller; those without one run too.
+    /// As [`Self::run`], with a sink per controller; controllers without a sink run too.
     pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
         let mut sinks: Vec<_> = sinks.iter_mut().map(Unpaused).collect();
@@ -289,7 +259,7 @@ impl Experiment {
         run
     }
 
-    /// Runs everything clock by clock: slow, the reference of the fast speed.
+    /// Runs to the end clock by clock: slow, the reference of [`Self::run`].
     pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
         self.run_each_clock_by_clock(slice::from_mut(sink))
     }
@@ -328,7 +298,7 @@ mod tests {
                 r#"{"line":{"baud":1200},"source":{"motion":{"axes":[{"moves":[{"constant":{"speed":{"steps_s":100000}}}]}]}}}"#,
                 &["line.baud", "source.motion.axes[0]"],
             ),
-            // Packets of two bytes are not judged by the default of a field that cannot be read.
+            // Packets of two bytes are not validated by the default of a field that cannot be read.
             (
                 r#"{"bus":{"channels":"2"},"source":{"packets":{"packets":["8001","0180"]}}}"#,
                 &["bus.channels"],
@@ -346,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn many_entries_of_the_wrong_type_are_judged_in_few_readings() {
+    fn many_wrong_types_are_reported_in_few_readings() {
         let json = alloc::format!(
             r#"{{"source":{{"motion":{{"axes":[{{"moves":[{}5]}}]}}}}}}"#,
             "{},".repeat(11_000)
@@ -358,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_run_goes_to_its_end_whatever_its_sink_asks_for() {
+    fn a_whole_run_ignores_pauses_of_its_sink() {
         #[derive(Default)]
         struct Pausing(Vec<Record>);
 

@@ -12,6 +12,7 @@
 //! assert_eq!(run.device().positions()[0], 3200);
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

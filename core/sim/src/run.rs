@@ -1,4 +1,4 @@
-//! A run under way: its state, and going on.
+//! A run in progress.
 
 use crate::plant::behind::{Behind, PlantsBehind};
 use crate::{
@@ -16,7 +16,6 @@ use stepscope_peripheral::{
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::END_OF_TIME;
 
-/// A run under way.
 #[derive(Clone, Debug)]
 pub struct Run {
     pub(crate) controllers: Controllers,
@@ -24,8 +23,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// The first controller; where no line runs, one before cycle 0.
-    #[must_use]
+    /// The first controller; without a line, one before cycle 0.
     pub fn device(&self) -> &Device {
         self.controllers.bus.first()
     }
@@ -35,33 +33,27 @@ impl Run {
         self.controllers.bus.devices()
     }
 
-    /// The host of a framed line; `None` where nobody waits for replies.
-    #[must_use]
+    /// The host of a framed line; `None` if it does not wait for replies.
     pub const fn host(&self) -> Option<&FramedHost> {
         self.controllers.bus.host()
     }
 
-    /// What the host has sent and will send, as far as it is known.
-    #[must_use]
+    /// What the host has sent and, as far as known, will send.
     pub fn schedule(&self) -> &Schedule {
         self.controllers.bus.line().schedule()
     }
 
-    /// The levels that have been and will be forced on the line, rising in time. With [`Self::schedule`] they replay
-    /// the run.
-    #[must_use]
+    /// The forced levels of the whole run, rising in time. With [`Self::schedule`] they replay the run.
     pub fn forced(&self) -> &[ForcedLevel] {
         self.controllers.bus.line().forced()
     }
 
-    /// Position counters of the first controller, or of what runs in its place.
-    #[must_use]
+    /// Position counters of the first controller or its replacement.
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.controllers.positions()
     }
 
     /// The stand-alone controllers; `None` where a line or segments run the scenario.
-    #[must_use]
     pub fn stand_alone(&self) -> Option<&stepscope_controller::StandAlone> {
         match &self.controllers.generator {
             Generator::StandAlone(machine) => Some(machine),
@@ -77,19 +69,15 @@ impl Run {
     }
 
     /// Faults of the first controller, or of the segment engine.
-    #[must_use]
     pub fn faults(&self) -> Faults {
         self.controllers.faults()
     }
 
     /// Ticks of the first controller that have ended.
-    #[must_use]
     pub fn ticks_done(&self) -> u32 {
         self.device().ticks_done()
     }
 
-    /// Cycles that have been run.
-    #[must_use]
     pub fn cycles(&self) -> Cycles {
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
@@ -97,8 +85,6 @@ impl Run {
         Cycles(self.controllers.reached().0)
     }
 
-    /// Whether the run is over.
-    #[must_use]
     pub fn is_done(&self) -> bool {
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
@@ -106,12 +92,12 @@ impl Run {
         self.controllers.are_done()
     }
 
-    /// Runs until the first controller has made `records` more or to the end; true at the end.
+    /// Runs until the first controller has written `records` more or to the end; true at the end.
     pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
         self.advance_each(records, slice::from_mut(sink))
     }
 
-    /// Runs until one controller has made `records` more, with a sink per controller; true at the end.
+    /// Runs until one controller has written `records` more, with a sink per controller; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
         if self.plants.is_some() {
             return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
@@ -122,7 +108,7 @@ impl Run {
         self.is_done()
     }
 
-    /// Lets the run continue where nothing can change any more.
+    /// Lets the run continue when it is idle.
     pub(crate) const fn without_end(&mut self) {
         self.controllers.end = Some(Instant(END_OF_TIME));
     }
@@ -140,12 +126,12 @@ impl Run {
         self.controllers.bus.line_mut()
     }
 
-    /// Whether nothing changes without further input.
-    pub(crate) fn is_at_rest(&self) -> bool {
+    /// Whether nothing changes without input.
+    pub(crate) fn is_idle(&self) -> bool {
         self.controllers.at_rest()
     }
 
-    /// Runs to a cycle, or until a controller has made so many records more, with a sink and an observer per
+    /// Runs to a cycle, or until a controller has written that many records more, with a sink and an observer per
     /// controller; true at the end. Does nothing without plants.
     pub fn advance_observed<S: Sink, O: Observer>(
         &mut self,
@@ -167,32 +153,25 @@ impl Run {
         self.plants.as_ref()?.behind.get(controller)
     }
 
-    /// The plant behind a controller.
-    #[must_use]
     pub fn plant(&self, controller: usize) -> Option<&Plant> {
         self.behind(controller).map(|behind| &behind.plant)
     }
 
     /// Settling time per channel found by the self-test, in cycles; empty before the end of the boot.
-    #[must_use]
     pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
         self.behind(controller).map_or(&[], |behind| &behind.found)
     }
 
     /// Cycle of the last overload of a controller.
-    #[must_use]
     pub fn overload(&self, controller: usize) -> Option<u64> {
         self.behind(controller)?.overload_at
     }
 
-    /// What each plant has measured so far.
-    #[must_use]
     pub fn results(&self) -> Vec<PlantResult> {
         let all = (0..).map_while(|index| self.behind(index));
         all.map(|behind| behind.measures.result(&behind.plant)).collect()
     }
 
-    /// Runs one cycle, with a sink per controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
         if self.plants.is_some() {
             return self.clock_observed::<_, ()>(sinks, &mut []);

@@ -1,4 +1,4 @@
-//! What runs of stand-alone controllers cost, and what they came to (CONTROLLER.md).
+//! Cost and summary of runs of stand-alone controllers (CONTROLLER.md).
 
 use crate::{BUDGET_RECORDS, Cost};
 use alloc::{format, vec, vec::Vec};
@@ -11,8 +11,7 @@ use stepscope_peripheral::{
 use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 
 impl Cost {
-    /// Tries the run up to the budget: it has no closed form.
-    /// Errors: too many groups begin.
+    /// Tries the run up to the budget: it has no closed form. Errors: too many groups begin.
     pub(crate) fn of_stand_alone(
         controllers: &CheckedSetup,
         run: Option<Cycles>,
@@ -25,7 +24,7 @@ impl Cost {
             let path = format!("source.standalone[{}].groups", work.controller);
             return Err(vec![Problem::new(path, Cause::Work(work))]);
         }
-        // A trial that was given up does not show the end.
+        // An aborted trial does not show the end.
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
         let end_cycle = match run {
             Some(Cycles(run)) => run,
@@ -36,7 +35,7 @@ impl Cost {
     }
 }
 
-/// Whether the run comes to a jog without end.
+/// Whether the run reaches an endless jog.
 pub(crate) fn jogs_without_end(controllers: &CheckedSetup) -> bool {
     let mut tried = StandAlone::new(controllers);
     tried.run_events(Instant::NEVER, MAX_TRIED_EVENTS, &mut Counted(0));
@@ -60,7 +59,6 @@ impl Sink for Counted {
 
 /// All stand-alone controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct StandAloneSummary {
     pub panels: Vec<PanelSummary>,
     pub digest: u64,
@@ -68,17 +66,15 @@ pub struct StandAloneSummary {
 }
 
 /// Ignored presses listed one by one.
-const MAX_TOLD: usize = 20;
+const MAX_LISTED: usize = 20;
 
-/// A stand-alone controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct PanelSummary {
     pub state: State,
     pub alarm: Alarm,
     /// Trust: 0 LOST, 1 HELD, 2 SURE.
     pub trust: u8,
-    /// Where it believes to be, in steps.
+    /// Its own position, in steps.
     pub position: i32,
     /// Distance of the axis from that position, in steps.
     pub axis_error: i64,
@@ -126,7 +122,7 @@ impl fmt::Display for StandAloneSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, panel) in self.panels.iter().enumerate() {
             writeln!(f, "panel {index} {panel}")?;
-            for Press { cycle, button, state } in panel.ignored.iter().take(MAX_TOLD) {
+            for Press { cycle, button, state } in panel.ignored.iter().take(MAX_LISTED) {
                 writeln!(
                     f,
                     "press {index} {} in cycle {} did nothing in {}",

@@ -1,6 +1,6 @@
-//! What a run came to, in short: the one summary that the command, the golden cases and the page show.
+//! The summary of a run for the command, the golden cases and the page.
 //!
-//! Its text is a line a fact, each with a name of its own:
+//! Its text has one line per fact:
 //!
 //! ```text
 //! cycles 6401602
@@ -32,24 +32,22 @@ use stepscope_peripheral::{
 
 /// A run so far.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Summary {
     /// Whether the line speaks the framed protocol.
     pub framed: bool,
     pub cycles: Cycles,
     pub clock_hz: u32,
-    /// The part of the line's time that is taken while all controllers move.
+    /// The line's load while all controllers move.
     pub line_load: Option<f64>,
     /// Counts of a host that waits for replies.
     pub host: Option<Counts>,
     pub controllers: Vec<ControllerSummary>,
-    /// Where a line or segments run the scenario, `None`.
+    /// `None` with a line or segments.
     pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
 /// One controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ControllerSummary {
     pub address: Option<u8>,
     pub channels: u8,
@@ -66,7 +64,6 @@ pub struct ControllerSummary {
 
 /// The host's job with one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct JobSummary {
     pub ticks: usize,
     pub acknowledged: u32,
@@ -74,7 +71,7 @@ pub struct JobSummary {
 }
 
 impl Summary {
-    /// From a run and the digest of each trace, in the order of the scenario.
+    /// `digests` of the traces are in the order of the scenario.
     #[must_use]
     pub fn new<'a>(
         experiment: &Experiment,
@@ -97,7 +94,7 @@ impl Summary {
         }
     }
 
-    /// The summary of one controller, if there is such a one.
+    /// The summary of one controller, if it exists.
     #[must_use]
     pub fn only(mut self, controller: usize) -> Self {
         self.controllers = self.controllers.into_iter().skip(controller).take(1).collect();
@@ -112,7 +109,7 @@ impl ControllerSummary {
         config: &Config,
         digest: &Digest,
     ) -> Self {
-        // Where segments run, no device moves.
+        // With segments, no device moves.
         let positions = if index == 0 { run.positions() } else { device.positions() };
         let channels = usize::from(config.channels());
         let job = experiment.host_progress(run, index).map(|progress| JobSummary {

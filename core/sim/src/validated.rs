@@ -1,4 +1,4 @@
-//! A scenario that is read, validated and planned once per edit. The run and every request of the study use the result.
+//! A scenario that is read, validated and planned once per edit, for the run and the study.
 
 use crate::Experiment;
 use alloc::{rc::Rc, vec::Vec};
@@ -16,7 +16,6 @@ pub struct ValidatedScenario {
 
 /// An axis with its plan and its bus.
 #[derive(Clone, Copy, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct SelectedAxis<'a> {
     pub scenario: &'a Scenario,
     /// The bus of the controller that the axis belongs to.
@@ -38,32 +37,25 @@ impl ValidatedScenario {
         Self { scenario: Rc::new(scenario), unread: unread.into(), result }
     }
 
-    /// The scenario, as far as it could be read.
-    #[must_use]
     pub const fn scenario(&self) -> &Rc<Scenario> {
         &self.scenario
     }
 
     /// The problems of fields that could not be read.
-    #[must_use]
     pub fn unread(&self) -> &[Problem] {
         &self.unread
     }
 
-    /// The experiment.
     /// Errors: every problem of the scenario, each with its path.
     pub fn experiment(&self) -> Result<&Rc<Experiment>, &[Problem]> {
         self.result.as_ref().map_err(|problems| &**problems)
     }
 
-    /// Every problem of the scenario.
-    #[must_use]
     pub fn problems(&self) -> &[Problem] {
         self.result.as_ref().err().map_or(&[], |problems| &**problems)
     }
 
-    /// An axis of a controller; `None` where there is none or the scenario has problems.
-    #[must_use]
+    /// `None` if there is no such axis or the scenario has problems.
     pub fn axis(&self, controller: usize, axis: usize) -> Option<SelectedAxis<'_>> {
         let plan = self.experiment().ok()?.plans_of(controller).get(axis)?;
         let scenario = &*self.scenario;
@@ -78,7 +70,7 @@ impl From<Scenario> for ValidatedScenario {
     }
 }
 
-/// The bus of a controller; `None` where there is no such controller.
+/// `None` if there is no such controller.
 #[must_use]
 pub fn bus_of(scenario: &Scenario, controller: usize) -> Option<&Bus> {
     match controller.checked_sub(1) {
@@ -87,7 +79,7 @@ pub fn bus_of(scenario: &Scenario, controller: usize) -> Option<&Bus> {
     }
 }
 
-/// The axes of a controller; empty where the source is no motion.
+/// Empty if the source is not a motion.
 #[must_use]
 pub fn axes_of(scenario: &Scenario, controller: usize) -> &[Axis] {
     match (&scenario.source, controller.checked_sub(1)) {
@@ -105,26 +97,26 @@ mod tests {
     use stepscope_peripheral::trace::Digest;
 
     #[test]
-    fn a_run_and_every_question_take_the_one_reading_and_the_one_plan() {
+    fn a_scenario_is_read_and_planned_once() {
         let json = r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"dwell":{}}]}]}}}"#;
-        let judged = ValidatedScenario::from_json(json);
-        let experiment = judged.experiment().expect("no problems");
+        let validated = ValidatedScenario::from_json(json);
+        let experiment = validated.experiment().expect("no problems");
         let mut digest = Digest::default();
         experiment.run(&mut digest);
         for axis in 0..2 {
-            let selected = judged.axis(0, axis).expect("it is there");
+            let selected = validated.axis(0, axis).expect("it is there");
             assert!(core::ptr::eq(selected.plan, &experiment.plans()[axis]));
             assert_eq!(selected.axis.moves.len(), selected.plan.moves().len());
         }
-        assert!(judged.axis(0, 2).is_none() && judged.axis(1, 0).is_none());
+        assert!(validated.axis(0, 2).is_none() && validated.axis(1, 0).is_none());
         assert!(digest.records() > 1);
     }
 
     #[test]
     fn a_scenario_with_problems_has_no_experiment_and_no_axis() {
-        let judged = ValidatedScenario::from_json(r#"{"title":"kept","bus":{"slots":0}}"#);
-        assert_eq!(judged.problems().len(), 1);
-        assert_eq!(judged.scenario().title, "kept");
-        assert!(judged.experiment().is_err() && judged.axis(0, 0).is_none());
+        let validated = ValidatedScenario::from_json(r#"{"title":"kept","bus":{"slots":0}}"#);
+        assert_eq!(validated.problems().len(), 1);
+        assert_eq!(validated.scenario().title, "kept");
+        assert!(validated.experiment().is_err() && validated.axis(0, 0).is_none());
     }
 }

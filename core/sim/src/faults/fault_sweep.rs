@@ -4,16 +4,7 @@
 //! seed -> a scenario: the base's commands, drawn noise and receiver rates -> a run -> a tally
 //! ```
 //!
-//! A seed's scenario is complete: every run of it has the same faults and the same result.
-//! The sum of tallies does not depend on the order in which seeds are run.
-//!
-//! ```
-//! use stepscope_peripheral::config::Protocol;
-//! use stepscope_sim::fault_sweep::FaultSweep;
-//!
-//! let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it orders ticks");
-//! assert_eq!(sweep.run(3), sweep.run(3)); // a seed is a run
-//! ```
+//! Every run of a seed has the same faults and the same result. The sum of tallies does not depend on the order of seeds.
 
 mod align;
 mod tally;
@@ -33,31 +24,28 @@ use stepscope_peripheral::config::{Bus, Protocol};
 use stepscope_scenario::{Line, Motion, Noise, Problem, Scenario, Source, ValueError};
 use watch::Watch;
 
-/// Maximum noise rates, in the order of the fields. At these a frame of 30 bytes and its reply still pass once in ten
-/// tries.
+/// Maximum noise rates, in the order of the fields: a frame of 30 bytes and its reply still pass once in ten attempts.
 const MAX_PPM: [u64; KINDS] = [5_000, 20_000, 20_000, 20_000, 500_000, 200_000];
 const KINDS: usize = 6;
-/// Rates go down from the maximum by so many powers of two.
+/// Rates are the maximum divided by up to 2^OCTAVES.
 const OCTAVES: u64 = 6;
 
-/// Within so many thousandths of the host's rate, receivers hear bytes.
+/// Deviation from the host's rate, in thousandths, up to which receivers get all bytes.
 pub const IN_REACH: u64 = 40;
 /// From 52 on no frame gets through.
 const OUT_OF_REACH: u64 = 60;
 
-/// Runs of the same commands under faults drawn from a seed.
 #[derive(Clone, Debug)]
 pub struct FaultSweep {
     base: Scenario,
 }
 
 impl FaultSweep {
-    /// Takes the scenario; a seed replaces its noise and its receiver rates.
-    /// Errors: every problem of the scenario, and a source without ticks.
+    /// A seed replaces the noise and the receiver rates of `base`. Errors: every problem, and a source without ticks.
     pub fn new(base: Scenario) -> Result<Self, Vec<Problem>> {
         let experiment = Experiment::new(&base)?;
         if (0..experiment.controllers()).all(|index| experiment.ticks_of(index).is_empty()) {
-            let detail = "faults need ticks to go wrong; give a source of kind motion or packets";
+            let detail = "the scenario has no ticks to disturb; use a source of kind motion or packets";
             return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
         }
         Ok(Self { base })
@@ -85,19 +73,17 @@ impl FaultSweep {
     }
 
     /// The scenario of a seed.
-    #[must_use]
     pub fn scenario(&self, seed: u32) -> Scenario {
         // Noise uses the numbers below 2^32 itself.
         let mut random = Random::new(1 << 32 | u64::from(seed));
         let draw = random.below(10) as usize;
         let is_mixture = draw > KINDS;
-        let mut rate = |kind: usize, most: u64| {
+        let mut rate = |kind: usize, max: u64| {
             let chosen = if is_mixture { random.below(2) == 0 } else { draw == kind };
-            let most = if is_mixture { most / 2 } else { most };
-            if chosen { most.max(1) >> random.below(OCTAVES) } else { 0 }
+            let max = if is_mixture { max / 2 } else { max };
+            if chosen { max.max(1) >> random.below(OCTAVES) } else { 0 }
         };
-        let rates: Vec<u32> =
-            MAX_PPM.iter().enumerate().map(|(kind, &most)| rate(kind, most) as u32).collect();
+        let rates: Vec<u32> = MAX_PPM.iter().enumerate().map(|(kind, &max)| rate(kind, max) as u32).collect();
         let rate = |kind: usize| rates.get(kind).copied().unwrap_or(0);
         let mut scenario = self.base.clone();
         scenario.title = format!("{} seed {seed}", scenario.title).trim_start().chars().take(120).collect();
@@ -121,8 +107,7 @@ impl FaultSweep {
         scenario
     }
 
-    /// Runs a seed's scenario.
-    /// Errors: a receiver rate whose bits are too short.
+    /// Runs a seed's scenario. Errors: a receiver rate with too short bits.
     pub fn run(&self, seed: u32) -> Result<Tally, Vec<Problem>> {
         let scenario = self.scenario(seed);
         let experiment = Experiment::new(&scenario)?;
@@ -133,8 +118,8 @@ impl FaultSweep {
 }
 
 fn off(baud: u32, random: &mut Random) -> u32 {
-    let most = if random.below(8) == 0 { OUT_OF_REACH } else { IN_REACH };
-    let thousandths = 1000 - most + random.below(2 * most + 1);
+    let max = if random.below(8) == 0 { OUT_OF_REACH } else { IN_REACH };
+    let thousandths = 1000 - max + random.below(2 * max + 1);
     (u64::from(baud) * thousandths / 1000) as u32
 }
 
@@ -149,18 +134,18 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
     let mut tally = Tally { seeds: 1, ..Tally::default() };
     for (index, (watch, config)) in watches.iter().zip(experiment.configs()).enumerate() {
         let channels = usize::from(config.channels());
-        let ordered = experiment.ticks_of(index);
+        let commanded = experiment.ticks_of(index);
         let executed = watch.executed(channels);
         watch.count(&mut tally);
-        tally.ordered += (ordered.len() / channels) as u64;
+        tally.commanded += (commanded.len() / channels) as u64;
         tally.executed += (executed.len() / channels) as u64;
         // A framed host has a job per controller; on a raw line everything is sent.
         let reached = experiment.host_progress(run, index);
         let due = match reached {
-            None | Some(Progress::Done) => ordered,
-            Some(_) => ordered.get(..executed.len()).unwrap_or(ordered),
+            None | Some(Progress::Done) => commanded,
+            Some(_) => commanded.get(..executed.len()).unwrap_or(commanded),
         };
-        tally.unreached += ((ordered.len() - due.len()) / channels) as u64;
+        tally.unreached += ((commanded.len() - due.len()) / channels) as u64;
         match reached {
             Some(Progress::GivenUp(reason)) => tally.give_up(reason, in_reach(scenario)),
             Some(Progress::Done) | None => {}
@@ -176,4 +161,16 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
     }
     tally.wrong_seeds = u64::from(tally.is_wrong());
     tally
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_seed_is_always_the_same_run() {
+        use crate::fault_sweep::FaultSweep;
+        use stepscope_peripheral::config::Protocol;
+
+        let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it orders ticks");
+        assert_eq!(sweep.run(3), sweep.run(3)); // a seed is a run
+    }
 }

@@ -1,4 +1,4 @@
-//! Power cuts: what a stand-alone controller knows of its position after the power failed in any cycle (CONTROLLER.md G7).
+//! Power cuts: the position of a stand-alone controller after a power failure in any cycle (CONTROLLER.md G7).
 //!
 //! ```text
 //! run ────────────┬─────────────┬──────────┬───────── the scenario's run, uninterrupted
@@ -6,21 +6,7 @@
 //!                 └─ POWER_LOSS ─ OFF ─ power back ─ memory read: known, known to be lost, or silently wrong
 //! ```
 //!
-//! Each cut is a copy of the run, so it costs only what happens after it.
-//!
-//! ```
-//! use stepscope_peripheral::units::Instant;
-//! use stepscope_sim::{Experiment, power_cut::{PowerCuts, tally}};
-//!
-//! let json = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "memory": { "byte_write_cycles": 100,
-//!     "hold_up_cycles": 1699 }, "debounce_cycles": 0, "max_speed_hz": 5000, "groups": [ { "move": { "length": 100 } } ],
-//!     "inputs": [ { "cycle": 5000, "input": "start" } ] } ] } }"#;
-//! let experiment = Experiment::from_json(json).expect("no problems");
-//! let end = Instant(experiment.cost().end_cycle);
-//! let cuts = PowerCuts::of(experiment.stand_alone().expect("a controller"), end, 2000, 1);
-//! let found = tally(cuts.checked(), cuts.cycles());
-//! assert_eq!((found.cuts, found.lost, found.wrong), (cuts.cycles().len() as u64, 0, 0));
-//! ```
+//! Each cut is a copy of the run, so only the cycles after it are computed.
 
 use alloc::{collections::BTreeSet, vec::Vec};
 use rand_xoshiro::{
@@ -34,9 +20,8 @@ use stepscope_controller::{
 };
 use stepscope_peripheral::units::Instant;
 
-/// What is known of the position after a cut.
+/// The position after a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Outcome {
     Known,
     /// Not trusted, but trusted before the cut.
@@ -51,7 +36,6 @@ pub enum Outcome {
 
 /// Outcomes of all cuts and controllers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Tally {
     pub cuts: u64,
     pub known: u64,
@@ -104,8 +88,8 @@ pub struct PowerCuts {
 }
 
 impl PowerCuts {
-    /// At most `count` cycles of a run that ends before `end`: all of them if they are few; else seeded ones, half of
-    /// them anywhere, half while a record is written.
+    /// Up to `count` cycles of a run that ends before `end`: all, or random ones, half of them anywhere, half while a record
+    /// is written.
     #[must_use]
     pub fn of(checked: &CheckedSetup, end: Instant, count: usize, seed: u64) -> Self {
         let (length, writes) = writes(checked, end);
@@ -131,20 +115,16 @@ impl PowerCuts {
         Self { checked: checked.clone(), cycles, length }
     }
 
-    /// The cycles, rising.
-    #[must_use]
+    /// Rising.
     pub fn cycles(&self) -> &[u64] {
         &self.cycles
     }
 
     /// Cycles of the run.
-    #[must_use]
     pub const fn length(&self) -> u64 {
         self.length
     }
 
-    /// The controllers.
-    #[must_use]
     pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
@@ -160,16 +140,16 @@ pub fn with_memory(checked: &CheckedSetup, policy: Policy, hold_up_cycles: u64) 
     setup.check().unwrap_or_else(|_| checked.clone())
 }
 
-/// The minimum hold-up with which cuts lose no more positions than with `most` of it, with the policy `power_loss`;
-/// `losses` counts the losses of a setup.
-pub fn least_hold_up(checked: &CheckedSetup, most: u64, mut losses: impl FnMut(&CheckedSetup) -> u64) -> u64 {
+/// The minimum hold-up that loses no more positions than `max` with the policy `power_loss`; `losses` counts the losses
+/// of a setup.
+pub fn min_hold_up(checked: &CheckedSetup, max: u64, mut losses: impl FnMut(&CheckedSetup) -> u64) -> u64 {
     let mut lost = |hold_up| losses(&with_memory(checked, Policy::PowerLoss, hold_up));
-    // What a jump beyond the start-stop range loses, no buffer saves.
-    let least = lost(most);
-    let (mut low, mut enough) = (0, most);
+    // A jump beyond the start-stop range loses steps with any hold-up.
+    let min = lost(max);
+    let (mut low, mut enough) = (0, max);
     while low < enough {
         let middle = low + (enough - low) / 2;
-        if lost(middle) > least { low = middle + 1 } else { enough = middle }
+        if lost(middle) > min { low = middle + 1 } else { enough = middle }
     }
     enough
 }
@@ -191,14 +171,14 @@ pub fn tally(checked: &CheckedSetup, cycles: &[u64]) -> Tally {
 /// Byte times until a new zero is saved: a record that is being written, and its own.
 const OLD_ZERO_BYTES: u64 = 34;
 
-/// What is true of a controller's position.
+/// A controller's true position.
 #[derive(Clone, Copy, Debug)]
 struct Truth {
     /// The bus's position counter where the position is 0.
     zero: i32,
-    /// The same before zero was set last, and when that was.
+    /// The zero before the last one was set, and when.
     before: (i32, u64),
-    /// Whether the controller trusted its position when it last had one.
+    /// Whether the controller trusted its last position.
     known: bool,
 }
 
@@ -233,8 +213,7 @@ impl Watched {
         }
     }
 
-    /// Follows the true zero. A position that is read from memory counts as true only if it was: a wrong position
-    /// stays wrong.
+    /// Follows the true zero. A position read from memory counts as true only if it was: a wrong one stays wrong.
     fn watch(&mut self) {
         let (steps, now) = (self.run.positions(), self.run.now().0);
         for (index, (truth, was_down)) in self.truth.iter_mut().zip(&mut self.down).enumerate() {
@@ -254,8 +233,7 @@ impl Watched {
         }
     }
 
-    /// Cuts the power in the next cycle, restores it when all is off, and compares what each controller reads from
-    /// its memory.
+    /// Cuts the power in the next cycle, restores it when all is off, and compares the positions read from memory.
     fn cut(mut self) -> Vec<Outcome> {
         let Self { run, truth, .. } = &mut self;
         run.drop_inputs();
@@ -264,7 +242,7 @@ impl Watched {
         // The power may be off already.
         let _ = run.enter(at, 0, power(false));
         run.run(Instant(at.0 + 1), &mut ());
-        // A step of this very cycle still counts.
+        // A step of this cycle still counts.
         let steps = run.positions();
         run.run(Instant::NEVER, &mut ());
         let _ = run.enter(run.now(), 0, power(true));
@@ -311,12 +289,12 @@ fn writes(checked: &CheckedSetup, end: Instant) -> (u64, Vec<(u64, u64)>) {
     (run.now().0, found.into_iter().collect())
 }
 
-fn within(spans: &[(u64, u64)], mut place: u64) -> u64 {
+fn within(spans: &[(u64, u64)], mut offset: u64) -> u64 {
     for &(begun, end) in spans {
-        if place < end - begun {
-            return begun + place;
+        if offset < end - begun {
+            return begun + offset;
         }
-        place -= end - begun;
+        offset -= end - begun;
     }
     1
 }
@@ -327,7 +305,6 @@ fn drop_panels(run: &mut StandAlone) {
     }
 }
 
-/// Wear of the memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {
     /// Writes of the most worn cell per power cycle.
@@ -336,8 +313,8 @@ pub struct Wear {
     pub life_power_cycles: Option<u64>,
 }
 
-/// The wear of controller `index`: its run up to `end` with a cut there, `cycles` times in a row, each with the
-/// memory that the run before left.
+/// The wear of controller `index`: its run up to `end` with a cut there, `cycles` times, each with the memory of the
+/// run before.
 #[must_use]
 pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
     let mut setup = checked.setup();
@@ -357,8 +334,29 @@ pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, end
             parameters.memory.initial = Initial::Bytes(run.memory(one).to_vec());
         }
     }
-    let most = totals.into_iter().max().unwrap_or(0);
-    let writes_a_cycle = most as f64 / f64::from(cycles.max(1));
-    let life = (most > 0).then(|| u64::from(endurance) * u64::from(cycles) / most);
+    let max = totals.into_iter().max().unwrap_or(0);
+    let writes_a_cycle = max as f64 / f64::from(cycles.max(1));
+    let life = (max > 0).then(|| u64::from(endurance) * u64::from(cycles) / max);
     Wear { writes_a_cycle, life_power_cycles: life }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn each_cut_of_a_run_has_an_outcome() {
+        use crate::{
+            Experiment,
+            power_cut::{PowerCuts, tally},
+        };
+        use stepscope_peripheral::units::Instant;
+
+        let json = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "memory": { "byte_write_cycles": 100,
+            "hold_up_cycles": 1699 }, "debounce_cycles": 0, "max_speed_hz": 5000, "groups": [ { "move": { "length": 100 } } ],
+            "inputs": [ { "cycle": 5000, "input": "start" } ] } ] } }"#;
+        let experiment = Experiment::from_json(json).expect("no problems");
+        let end = Instant(experiment.cost().end_cycle);
+        let cuts = PowerCuts::of(experiment.stand_alone().expect("a controller"), end, 2000, 1);
+        let found = tally(cuts.checked(), cuts.cycles());
+        assert_eq!((found.cuts, found.lost, found.wrong), (cuts.cycles().len() as u64, 0, 0));
+    }
 }

@@ -9,17 +9,6 @@
 //!
 //! [`Conversation`] implements the policy in bytes and cycles, for real lines too. This file puts it on the simulated line, with
 //! its noise.
-//!
-//! ```
-//! use stepscope_peripheral::signal::Record;
-//! use stepscope_sim::{Experiment, framed_host::Progress};
-//!
-//! // The default motion over the framed protocol: opened, filled, confirmed.
-//! let framed = r#"{ "line": { "protocol": "framed" } }"#;
-//! let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
-//! let host = run.host().expect("a framed line has one");
-//! assert!(host.progress().all(|progress| progress == Progress::Done));
-//! ```
 
 mod conversation;
 mod peer;
@@ -48,7 +37,6 @@ struct Sending {
     crashes: bool,
 }
 
-/// The host.
 #[derive(Clone, Debug)]
 pub struct FramedHost {
     clock_hz: u32,
@@ -57,7 +45,7 @@ pub struct FramedHost {
     conversation: Conversation,
     sending: Option<Sending>,
     receiver: Receiver,
-    heard: bool,
+    received: bool,
     noise: Option<Noise>,
     last: Instant,
 }
@@ -79,19 +67,16 @@ impl FramedHost {
             conversation: Conversation::new(jobs, settings, bit, start),
             sending: None,
             receiver: Receiver::new(bit),
-            heard: true,
+            received: true,
             noise,
             last: Instant::RESET,
         }
     }
 
-    /// Its side of the protocol.
-    #[must_use]
     pub const fn conversation(&self) -> &Conversation {
         &self.conversation
     }
 
-    /// Progress per controller.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.conversation.progress()
     }
@@ -101,51 +86,43 @@ impl FramedHost {
         self.conversation.acknowledged()
     }
 
-    /// What it has counted.
-    #[must_use]
     pub const fn counts(&self) -> Counts {
         self.conversation.counts()
     }
 
-    /// Whether it has finished.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.conversation.is_over()
     }
 
     /// The last cycle in which it did something.
-    #[must_use]
     pub const fn last_active(&self) -> Instant {
         self.last
     }
 
-    /// Whether it is sending in cycle `now`: then it hears nothing.
-    #[must_use]
+    /// Whether it is sending in cycle `now`; then it receives nothing.
     pub fn is_sending(&self, now: Instant) -> bool {
         self.sending.is_some_and(|sending| now < sending.end)
     }
 
-    /// Next cycle after `now` in which it acts while it hears the same level; [`Instant::NEVER`] when it has
-    /// finished.
-    #[must_use]
+    /// Next cycle after `now` in which it acts while the level is constant; [`Instant::NEVER`] when it has finished.
     pub fn deadline(&self, now: Instant) -> Instant {
         match self.sending {
             Some(Sending { end, .. }) => end,
             None if self.conversation.is_waiting() => {
-                self.conversation.deadline().min(self.receiver.deadline(now, self.heard))
+                self.conversation.deadline().min(self.receiver.deadline(now, self.received))
             }
             None => self.conversation.deadline(),
         }
     }
 
-    /// Cycle `now`, in which it hears `level`.
+    /// Cycle `now`, in which it receives `level`.
     pub fn clock(&mut self, now: Instant, level: bool, line: &mut Line) {
-        self.heard = level;
+        self.received = level;
         if self.conversation.is_waiting()
             && let Some(RxEvent::Byte(byte)) = self.receiver.clock(now, level)
         {
             self.last = now;
-            self.hear(byte, now);
+            self.receive(byte, now);
         }
         if let Some(Sending { end, crashes }) = self.sending {
             if end <= now {
@@ -184,11 +161,11 @@ impl FramedHost {
         }
     }
 
-    fn hear(&mut self, byte: u8, now: Instant) {
+    fn receive(&mut self, byte: u8, now: Instant) {
         let Self { conversation, noise, .. } = self;
-        let heard = noise.as_mut().map_or_else(|| vec![byte], |noise| noise.hear(byte));
-        for byte in heard {
-            conversation.hear_unless(byte, now, || noise.as_mut().is_some_and(Noise::misses));
+        let received = noise.as_mut().map_or_else(|| vec![byte], |noise| noise.receive(byte));
+        for byte in received {
+            conversation.receive_unless(byte, now, || noise.as_mut().is_some_and(Noise::misses));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Hosts: who sends, simulated and real.
+//! Hosts of simulated and real lines.
 
 pub mod framed_host;
 pub mod raw_host;

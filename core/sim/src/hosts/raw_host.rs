@@ -4,24 +4,8 @@
 //! packet j is due at t0 + (its cycle - the first one's)/clock_hz - lead*M*Ts/clock_hz, or at once where that is before t0
 //! ```
 //!
-//! A late packet goes at once. The lead is how late a write may be before the queue runs dry. Times come in as nanoseconds since t0.
-//!
-//! ```
-//! use stepscope_scenario::Scenario;
-//! use stepscope_sim::{Experiment, raw_host::RawHost};
-//!
-//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "raw" } }"#).expect("reads");
-//! let experiment = Experiment::new(&scenario).expect("it has no problems");
-//! let mut host = RawHost::new(&experiment, 2).expect("the queue holds them");
-//! let mut now_ns = 0;
-//! while let Some(due_ns) = host.due_ns() {
-//!     now_ns = now_ns.max(due_ns);
-//!     assert!(host.packet(now_ns).is_some());
-//!     host.written(now_ns);
-//! }
-//! let report = host.report(false);
-//! assert_eq!((report.sent, report.stood_count, report.late.worst_ms()), (report.packets, 0, 0.0));
-//! ```
+//! A late packet is sent at once. The lead is the maximum delay of a write before the queue runs dry. Times are
+//! nanoseconds since t0.
 
 use crate::{Experiment, lateness::Lateness};
 use alloc::{
@@ -39,12 +23,11 @@ use stepscope_peripheral::{
 const MAX_NAMED: usize = 10;
 const MAX_DEPTH: u64 = u8::MAX as u64;
 
-/// Why packets cannot be sent so.
+/// Why packets cannot be paced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum NotPaced {
     Nothing,
-    /// A queue of so many places takes fewer packets ahead.
+    /// The queue takes fewer packets ahead.
     Overflow {
         depth: u8,
     },
@@ -65,7 +48,7 @@ impl fmt::Display for NotPaced {
         match *self {
             Self::Nothing => out.write_str("the scenario sends nothing"),
             Self::Overflow { depth } => {
-                write!(out, "the queue has {depth} places; give less, so that none overflows")
+                write!(out, "the queue has {depth} entries; use fewer, so that none overflows")
             }
             Self::Short { slack_ns, tick_ns, depth } => {
                 let needed = slack_ns.div_ceil(tick_ns.max(1));
@@ -90,7 +73,7 @@ impl fmt::Display for NotPaced {
     }
 }
 
-/// A model of the controller's queue: a tick begins when its packet has arrived and the one before has ended.
+/// Model of the controller's queue: a tick begins when its packet has arrived and the tick before has ended.
 #[derive(Clone, Copy, Debug)]
 struct QueueModel {
     tick_ns: u64,
@@ -99,16 +82,15 @@ struct QueueModel {
 }
 
 impl QueueModel {
-    /// Sends a packet that takes `takes_ns`; returns whether the motor stood before its tick.
+    /// Sends a packet that takes `takes_ns`; returns whether the motor stopped before its tick.
     fn packet(&mut self, at_ns: u64, takes_ns: u64) -> bool {
         self.free_ns = self.free_ns.max(at_ns) + takes_ns;
-        let stood = self.end_ns.is_some_and(|end| end < self.free_ns);
+        let standstills = self.end_ns.is_some_and(|end| end < self.free_ns);
         self.end_ns = Some(self.end_ns.unwrap_or(0).max(self.free_ns) + self.tick_ns);
-        stood
+        standstills
     }
 }
 
-/// The host of a raw line.
 #[derive(Clone, Debug)]
 pub struct RawHost {
     schedule: Schedule,
@@ -119,13 +101,12 @@ pub struct RawHost {
     queue: QueueModel,
     sent: usize,
     late: Lateness,
-    stood: Vec<usize>,
-    stood_count: u64,
+    standstills: Vec<usize>,
+    standstill_count: u64,
 }
 
 impl RawHost {
-    /// Paces an experiment's packets, the first `lead` of them ahead.
-    /// Errors: nothing to send, or a queue that is too short.
+    /// Paces an experiment's packets, the first `lead` of them ahead. Errors: nothing to send, or too short a queue.
     pub fn new(experiment: &Experiment, lead: u8) -> Result<Self, NotPaced> {
         let depth = depth(experiment);
         if lead > 0 && lead >= depth {
@@ -144,14 +125,13 @@ impl RawHost {
             queue: QueueModel { tick_ns, free_ns: 0, end_ns: None },
             sent: 0,
             late: Lateness::default(),
-            stood: Vec::new(),
-            stood_count: 0,
+            standstills: Vec::new(),
+            standstill_count: 0,
         })
     }
 
-    /// As [`Self::new`] with the smallest lead of at least `slack_ns`, because after a stop the controller runs all
-    /// of it.
-    /// Errors: nothing to send, or a queue that is too short.
+    /// As [`Self::new`] with the minimum lead of at least `slack_ns`: after a stop the controller still runs all of it.
+    /// Errors: nothing to send, or too short a queue.
     pub fn with_slack(experiment: &Experiment, slack_ns: u64) -> Result<Self, NotPaced> {
         if experiment.schedule().is_empty() {
             return Err(NotPaced::Nothing);
@@ -164,60 +144,53 @@ impl RawHost {
     }
 
     /// Packets sent ahead.
-    #[must_use]
     pub const fn lead(&self) -> u8 {
         self.lead
     }
 
-    /// How late a write may be before the queue runs dry.
-    #[must_use]
+    /// Maximum delay of a write before the queue runs dry.
     pub fn slack_ns(&self) -> u64 {
         u64::from(self.lead) * self.queue.tick_ns
     }
 
     /// When the next packet is due; `None` when all are sent.
-    #[must_use]
     pub fn due_ns(&self) -> Option<u64> {
         let next = self.schedule.get(self.sent)?;
         Some(nanos((next.start - self.first).0, self.clock_hz).saturating_sub(self.slack_ns()))
     }
 
     /// The next packet, if it is due.
-    #[must_use]
     pub fn packet(&self, now_ns: u64) -> Option<&[u8]> {
         self.due_ns().filter(|&due| due <= now_ns)?;
         self.schedule.get(self.sent).map(|next| next.bytes)
     }
 
-    /// The next packet was written.
     pub fn written(&mut self, at_ns: u64) {
         let (Some(due), Some(packet)) = (self.due_ns(), self.schedule.get(self.sent)) else { return };
         self.late.add(at_ns.saturating_sub(due));
         let takes = line_time(packet.bytes.len() as u64, self.clock_hz, self.baud);
         if self.queue.packet(at_ns, nanos(takes, self.clock_hz)) {
-            self.stood_count += 1;
-            if self.stood.len() < MAX_NAMED {
-                self.stood.push(self.sent);
+            self.standstill_count += 1;
+            if self.standstills.len() < MAX_NAMED {
+                self.standstills.push(self.sent);
             }
         }
         self.sent += 1;
     }
 
-    /// How long the controller has ticks left, by the model of its queue.
-    #[must_use]
+    /// Time until the controller's queue is empty, by the model.
     pub fn left_ns(&self, now_ns: u64) -> u64 {
         self.queue.end_ns.unwrap_or(0).saturating_sub(now_ns)
     }
 
-    /// What is known now; `stopped`: the host was stopped.
-    #[must_use]
+    /// `stopped`: the host was stopped.
     pub fn report(&self, stopped: bool) -> RawReport {
         RawReport {
             packets: self.schedule.len(),
             sent: self.sent,
             late: self.late,
-            stood: self.stood.clone(),
-            stood_count: self.stood_count,
+            standstills: self.standstills.clone(),
+            standstill_count: self.standstill_count,
             stopped,
         }
     }
@@ -227,7 +200,7 @@ fn depth(experiment: &Experiment) -> u8 {
     experiment.configs().map(stepscope_peripheral::config::Config::queue_depth).min().unwrap_or(0)
 }
 
-/// Rounded up: a reported stop must have happened.
+/// Rounded up: a reported standstill must have happened.
 fn tick_ns(experiment: &Experiment) -> u64 {
     let config = experiment.config();
     let ns = (u128::from(config.tick().0) * 1_000_000_000).div_ceil(config.clock_hz().max(1).into());
@@ -238,22 +211,19 @@ fn nanos(cycles: u64, clock_hz: u32) -> u64 {
     (u128::from(cycles) * 1_000_000_000 / u128::from(clock_hz)) as u64
 }
 
-/// What became of raw packets. They are not answered, so nothing is confirmed.
+/// The outcome of raw packets. They have no replies, so nothing is confirmed.
 #[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct RawReport {
     pub packets: usize,
     pub sent: usize,
     pub late: Lateness,
-    /// The first ticks before which the motor must have stood.
-    pub stood: Vec<usize>,
-    pub stood_count: u64,
+    /// The first ticks before which the motor must have stopped.
+    pub standstills: Vec<usize>,
+    pub standstill_count: u64,
     pub stopped: bool,
 }
 
 impl RawReport {
-    /// Progress in one line.
-    #[must_use]
     pub fn standing(&self) -> String {
         format!("{} of {} packets, late{}", self.sent, self.packets, self.late)
     }
@@ -261,20 +231,21 @@ impl RawReport {
 
 impl fmt::Display for RawReport {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { packets, sent, late, stood, stood_count, stopped } = self;
+        let Self { packets, sent, late, standstills, standstill_count, stopped } = self;
         writeln!(out, "sent {sent} of {packets} packets; not verified: raw packets are not answered")?;
-        let (half, most) = (late.within_ms(50), late.within_ms(99));
-        writeln!(out, "late median <={half} ms, 99 % <={most} ms, worst {:.2} ms", late.worst_ms())?;
-        if *stood_count > 0 {
-            let named: Vec<String> = stood.iter().map(ToString::to_string).collect();
-            let more = if *stood_count > named.len() as u64 { " …" } else { "" };
-            writeln!(out, "the motor must have stood before {stood_count} ticks: {}{more}", named.join(" "))?;
-        }
-        if *stopped {
+        let (half, percent99) = (late.within_ms(50), late.within_ms(99));
+        writeln!(out, "late median <={half} ms, 99 % <={percent99} ms, worst {:.2} ms", late.worst_ms())?;
+        if *standstill_count > 0 {
+            let named: Vec<String> = standstills.iter().map(ToString::to_string).collect();
+            let more = if *standstill_count > named.len() as u64 { " …" } else { "" };
             writeln!(
                 out,
-                "stopped sending: what the controller has queued runs on, for a raw line has no STOP"
+                "the motor must have stopped before {standstill_count} ticks: {}{more}",
+                named.join(" ")
             )?;
+        }
+        if *stopped {
+            writeln!(out, "stopped sending: queued packets still run, because a raw line has no STOP")?;
         }
         Ok(())
     }
@@ -321,11 +292,13 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_stands_before_a_tick_whose_packet_comes_after_the_end_of_the_one_before() {
+    fn a_late_packet_stops_the_motor() {
         let mut model = QueueModel { tick_ns: 100, free_ns: 0, end_ns: None };
         // Written at, and whether the motor stood; a packet takes 10.
-        for (at, stood) in [(0, false), (100, false), (190, false), (301, true), (302, false), (2000, true)] {
-            assert_eq!(model.packet(at, 10), stood, "{at}");
+        for (at, standstills) in
+            [(0, false), (100, false), (190, false), (301, true), (302, false), (2000, true)]
+        {
+            assert_eq!(model.packet(at, 10), standstills, "{at}");
         }
     }
 
@@ -343,12 +316,12 @@ mod tests {
             assert_eq!((host.due_ns(), host.packet(u64::MAX)), (None, None));
             // The last tick begins when its packet is there or the one before is over; a byte takes 87 us.
             assert_eq!(host.left_ns(50 * MS) / 1000, 86, "{lead}");
-            assert_eq!(host.report(false).stood, Vec::<usize>::new());
+            assert_eq!(host.report(false).standstills, Vec::<usize>::new());
         }
     }
 
     #[test]
-    fn a_motor_never_stands_where_each_packet_is_on_time_also_if_a_tick_is_no_whole_number_of_nanoseconds() {
+    fn punctual_packets_never_stop_the_motor() {
         for clock_hz in [16_000_000, 7_372_800, 7_000_000, 11_059_200] {
             let mut scenario = scenario(1, 4);
             scenario.clock_hz = clock_hz;
@@ -358,13 +331,13 @@ mod tests {
                 while let Some(due) = host.due_ns() {
                     host.written(due);
                 }
-                assert_eq!(host.report(false).stood, Vec::<usize>::new(), "{clock_hz} {lead}");
+                assert_eq!(host.report(false).standstills, Vec::<usize>::new(), "{clock_hz} {lead}");
             }
         }
     }
 
     #[test]
-    fn what_is_late_is_told_with_the_ticks_before_which_the_motor_stood() {
+    fn late_packets_are_reported_with_the_stopped_ticks() {
         let mut host = RawHost::new(&experiment(10, 4), 0).expect("it needs no queue");
         for at in [0, 10_000_000, 41_000_000, 41_000_000] {
             host.written(at);
@@ -373,13 +346,13 @@ mod tests {
             host.report(true).to_string(),
             "sent 4 of 5 packets; not verified: raw packets are not answered\n\
              late median <=0.1 ms, 99 % <=50 ms, worst 21.00 ms\n\
-             the motor must have stood before 1 ticks: 2\n\
-             stopped sending: what the controller has queued runs on, for a raw line has no STOP\n"
+             the motor must have standstills before 1 ticks: 2\n\
+             stopped sending: queued packets still run, because a raw line has no STOP\n"
         );
     }
 
     #[test]
-    fn the_ticks_before_which_it_says_that_the_motor_stood_are_those_of_the_device() {
+    fn reported_standstills_are_those_of_the_device() {
         for lead in [0, 1, 3] {
             for late_ms in [[0; 5], [3, 0, 25, 0, 0], [0, 41, 0, 0, 0], [0, 0, 12, 0, 31], [0, 0, 0, 0, 90]] {
                 let mut host = RawHost::new(&experiment(10, 5), lead).expect("the queue takes it");
@@ -395,15 +368,15 @@ mod tests {
                 device.advance(Instant(10_000_000), core::slice::from_mut(&mut ticks));
                 assert_eq!((ticks.starts.len(), ticks.ends.len()), (5, 5));
                 let pairs = ticks.starts.iter().skip(1).zip(&ticks.ends);
-                let stood = pairs.enumerate().filter(|(_, (start, end))| start > end);
-                let stood: Vec<usize> = stood.map(|(index, _)| index + 1).collect();
-                assert_eq!(host.report(false).stood, stood, "{lead} {late_ms:?}");
+                let standstills = pairs.enumerate().filter(|(_, (start, end))| start > end);
+                let standstills: Vec<usize> = standstills.map(|(index, _)| index + 1).collect();
+                assert_eq!(host.report(false).standstills, standstills, "{lead} {late_ms:?}");
             }
         }
     }
 
     #[test]
-    fn a_lead_is_as_long_as_asked_for_or_refused_with_what_to_change() {
+    fn a_lead_is_as_long_as_requested_or_refused() {
         const SLACK_NS: u64 = 200_000_000;
         for (tick_ms, depth, lead) in [(10, 21, 20), (10, 255, 20), (30, 16, 7), (200, 2, 1), (255, 2, 1)] {
             let host = RawHost::with_slack(&experiment(tick_ms, depth), SLACK_NS).expect("it is long enough");
@@ -424,8 +397,8 @@ mod tests {
             (100, 1, "2 ticks of 100 ms ahead, and the queue of 1 takes 0, 0 ms; give a queue of 3"),
         ] {
             let refused = RawHost::with_slack(&experiment(tick_ms, depth), SLACK_NS).err();
-            let told = refused.expect("the queue is too short").to_string();
-            assert_eq!(told, format!("a lead of 200 ms is {why}"));
+            let text = refused.expect("the queue is too short").to_string();
+            assert_eq!(text, format!("a lead of 200 ms is {why}"));
         }
         // No queue could be so deep.
         let refused = NotPaced::Short { slack_ns: SLACK_NS, tick_ns: 62_500, depth: 16 };
@@ -439,5 +412,23 @@ mod tests {
             Scenario::from_json(r#"{ "source": { "packets": { "packets": [] } } }"#).expect("reads");
         let nothing = Experiment::new(&nothing).expect("it has no problems");
         assert_eq!(RawHost::new(&nothing, 0).err(), Some(NotPaced::Nothing));
+    }
+
+    #[test]
+    fn packets_are_sent_when_they_are_due() {
+        use crate::{Experiment, raw_host::RawHost};
+        use stepscope_scenario::Scenario;
+
+        let scenario = Scenario::from_json(r#"{ "line": { "protocol": "raw" } }"#).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("it has no problems");
+        let mut host = RawHost::new(&experiment, 2).expect("the queue holds them");
+        let mut now_ns = 0;
+        while let Some(due_ns) = host.due_ns() {
+            now_ns = now_ns.max(due_ns);
+            assert!(host.packet(now_ns).is_some());
+            host.written(now_ns);
+        }
+        let report = host.report(false);
+        assert_eq!((report.sent, report.standstill_count, report.late.worst_ms()), (report.packets, 0, 0.0));
     }
 }

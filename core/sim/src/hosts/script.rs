@@ -1,11 +1,10 @@
-//! What was done to the line in a run, as a scenario of its own, which gives the same traces without
-//! host, noise and motion (DESIGN A9).
+//! Replays a run's line as a scenario with the same traces, without host, noise and motion (DESIGN A9).
 
 use crate::{Experiment, Run};
 use stepscope_scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend, Source};
 
-/// The scenario with what was sent and forced as its source, or with its segment lists. Stand-alone controllers have
-/// no line and keep their source. The result may have more forced levels than are valid.
+/// The scenario with the sent bytes and forced levels as its source, or with its segment lists. Stand-alone controllers
+/// keep their source. The result may have more forced levels than are valid.
 #[must_use]
 pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
     if run.stand_alone().is_some() {
@@ -33,7 +32,7 @@ pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> S
     replayed(scenario, LineScript { sends })
 }
 
-/// A scenario with a script as its source, without noise: what noise did is in the bytes.
+/// A scenario with a script as its source, without noise, whose effect is in the bytes.
 #[must_use]
 pub fn replayed(mut scenario: Scenario, script: LineScript) -> Scenario {
     scenario.source = Source::Line(script);

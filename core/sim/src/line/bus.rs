@@ -1,11 +1,10 @@
-//! The controllers of a line, with each other and the host (DESIGN A6, A9).
+//! The controllers and the host of a line (DESIGN A6, A9).
 //!
-//! A controller hears the AND of what the host and all other controllers send, and 1 while it sends itself; the host hears
-//! the controllers while it is not sending. A forced level is heard by all.
+//! A controller receives the AND of what the host and all other controllers send, and 1 while it sends; the host receives
+//! the controllers while it is not sending. All receive a forced level.
 //!
-//! The run goes from window to window. Within a window no sender changes its level, so each controller runs
-//! through it alone. A window ends where the host or a forced level changes, where a controller may begin or go on to drive,
-//! or where the host acts.
+//! A run is a sequence of windows in which no sender changes its level, so each controller runs separately. A window ends
+//! where the host or a forced level changes, where a controller may begin or continue to drive, or where the host acts.
 
 use crate::hosts::framed_host::FramedHost;
 use alloc::vec::Vec;
@@ -16,7 +15,6 @@ use stepscope_peripheral::{
     wire::Line,
 };
 
-/// A line with all that is on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Bus {
     line: Line,
@@ -29,11 +27,11 @@ pub(crate) struct Bus {
     until: Instant,
 }
 
-/// A controller and what it hears of the others.
+/// A controller and the level that it receives.
 #[derive(Clone, Debug)]
 struct Node {
     device: Device,
-    /// TX in the window's first cycle, `None` while it does not drive, and what it hears then.
+    /// TX in the window's first cycle; `None` while it does not drive.
     drives: Option<bool>,
     hears: bool,
     collides: bool,
@@ -86,17 +84,17 @@ impl Bus {
     }
 
     /// The cycle after the last event.
-    pub(crate) fn rests_from(&self) -> Instant {
+    pub(crate) fn idle_from(&self) -> Instant {
         let device = self.devices().map(Device::last_active).max();
         let host = self.host.as_ref().map(FramedHost::last_active);
         device.max(host).unwrap_or(Instant::RESET).next()
     }
 
-    /// Enters cycle `self.start`: what each controller hears in it, and what the host does.
+    /// Enters cycle `self.start`: what each controller receives, and what the host does.
     fn enter(&mut self, sinks: &mut [impl Sink]) {
         let Self { line, host, nodes, start, .. } = self;
         let now = *start;
-        // After a rest there may be several changes that nobody heard.
+        // After an idle time there may be several changes that no one received.
         while line.next_change() <= now {
             line.change();
         }
@@ -128,7 +126,7 @@ impl Bus {
         driven.fold(self.line.next_change().min(host).min(end), Instant::min)
     }
 
-    /// Runs to cycle `end`, or with [`Instant::NEVER`] until nothing can change any more, with a sink per controller;
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until no further change is possible, with a sink per controller;
     /// stops early when a sink pauses.
     pub(crate) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.start < end {
@@ -149,7 +147,7 @@ impl Bus {
             self.start = self.until;
         }
         if end == Instant::NEVER && self.is_over() {
-            let now = self.rests_from();
+            let now = self.idle_from();
             self.nodes.iter_mut().for_each(|node| node.device.finish(now));
             (self.start, self.until) = (now, Instant::NEVER);
         }

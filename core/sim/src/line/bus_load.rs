@@ -1,10 +1,9 @@
-//! Whether the line can carry what is sent for a tick (DESIGN A9).
+//! Checks that the line can carry the bytes of a tick (DESIGN A9).
 
 use stepscope_peripheral::config::max_baud;
 use stepscope_scenario::Cause;
 
-/// Checks that one tick's bytes, `bits` bit times at `baud`, fit in its cycles.
-/// Errors: the line is too slow, with the rate that is needed.
+/// Checks that a tick's bytes, `bits` bit times at `baud`, fit in its cycles. Errors: the required rate.
 pub(crate) fn carries(
     packet_cycles: u128,
     bits: u128,
@@ -16,7 +15,7 @@ pub(crate) fn carries(
     if packet_cycles <= tick {
         return Ok(());
     }
-    // A number that does not fit is beyond every line, so the message need not be exact.
+    // A saturated number exceeds every line, so the message need not be exact.
     let saturated = |value: u128| u64::try_from(value).unwrap_or(u64::MAX);
     let (packet_cycles, needed_baud) =
         (saturated(packet_cycles), saturated((bits * u128::from(clock_hz)).div_ceil(tick)));

@@ -1,4 +1,4 @@
-//! The serial line of a run: what is on it, whether it can carry what is sent, and its noise (DESIGN A9).
+//! The serial line of a run: its nodes, its load and its noise (DESIGN A9).
 
 pub(crate) mod bus;
 pub(crate) mod bus_load;

@@ -1,22 +1,7 @@
-//! Random faults of the line and of the host, from a seed: the same seed, the same faults.
+//! Random faults of the line and of the host; a seed always gives the same faults.
 //!
-//! Bits are flipped, bytes are lost or duplicated, levels are forced, replies are not heard, and
-//! the host crashes within a frame. Which, is decided frame by frame in the order of sending.
-//!
-//! ```
-//! use stepscope_peripheral::units::Instant;
-//! use stepscope_scenario::Noise as Rates;
-//! use stepscope_sim::noise::Noise;
-//!
-//! let rates = Rates { seed: 7, flipped_bits_ppm: 100_000, ..Rates::default() };
-//! let spoiled = |rates: &Rates| {
-//!     let mut noise = Noise::new(rates, 16_000_000, 115_200).expect("there are faults");
-//!     noise.send(Instant(1), &[0; 32]).bytes
-//! };
-//! assert_ne!(spoiled(&rates), [0; 32]);
-//! assert_eq!(spoiled(&rates), spoiled(&rates)); // from the same seed the same faults
-//! assert!(Noise::new(&Rates::default(), 16_000_000, 115_200).is_none());
-//! ```
+//! Bits are flipped, bytes lost or duplicated, levels forced, replies missed, and the host crashes within a frame. Faults
+//! are drawn frame by frame in the order of sending.
 
 use alloc::vec::Vec;
 use rand_xoshiro::{
@@ -46,7 +31,6 @@ impl Random {
     }
 }
 
-/// A noisy line, as it goes on.
 #[derive(Clone, Debug)]
 pub struct Noise {
     rates: Rates,
@@ -55,13 +39,12 @@ pub struct Noise {
     baud: u32,
 }
 
-/// What noise makes of a send.
+/// A send with noise.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct CorruptedSend {
     pub bytes: Vec<u8>,
     pub forced: Option<ForcedLevel>,
-    /// Whether the host crashed; `bytes` are those sent before.
+    /// Whether the host crashed after sending `bytes`.
     pub crashes: bool,
 }
 
@@ -92,11 +75,11 @@ impl Noise {
         }
     }
 
-    /// A byte that the host hears.
-    pub fn hear(&mut self, byte: u8) -> Vec<u8> {
-        let mut heard = Vec::new();
-        self.byte(byte, &mut heard);
-        heard
+    /// A byte that the host receives.
+    pub fn receive(&mut self, byte: u8) -> Vec<u8> {
+        let mut received = Vec::new();
+        self.byte(byte, &mut received);
+        received
     }
 
     /// Whether the host misses a reply.
@@ -104,7 +87,7 @@ impl Noise {
         self.happens(self.rates.lost_replies_ppm)
     }
 
-    /// What becomes of bytes that the host sends from `start` on.
+    /// Bytes that the host sends from `start` on.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) -> CorruptedSend {
         let mut spoiled = Vec::with_capacity(bytes.len());
         for &byte in bytes {
@@ -119,7 +102,7 @@ impl Noise {
         CorruptedSend { bytes: spoiled, forced, crashes }
     }
 
-    /// A forced level of one cycle to two bit times within so many bytes.
+    /// A forced level of one cycle to two bit times within `bytes` bytes.
     fn glitch(&mut self, start: Instant, bytes: u64) -> ForcedLevel {
         let room = line_time(bytes.max(1), self.clock_hz, self.baud);
         let Cycles(longest) = BitTimes::new(self.clock_hz, self.baud).bit(2);
@@ -129,7 +112,7 @@ impl Noise {
         ForcedLevel { start, end, level: self.random.below(2) == 1 }
     }
 
-    /// What becomes of a schedule. A send still ends before the next one.
+    /// A schedule with noise. A send still ends before the next one.
     #[must_use]
     pub fn schedule(mut self, schedule: &Schedule) -> (Schedule, Vec<ForcedLevel>) {
         let (mut noisy, mut all_forced) = (Schedule::default(), Vec::new());
@@ -157,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn without_rates_there_is_no_noise_and_with_them_the_seed_says_which() {
+    fn the_seed_determines_the_noise() {
         assert!(Noise::new(&Rates { seed: 7, ..Rates::default() }, 16_000_000, 115_200).is_none());
         let rates = |seed| Rates { seed, flipped_bits_ppm: 100_000, ..Rates::default() };
         let spoil = |seed| noise(rates(seed)).send(Instant(1), &[0; 64]).bytes;
@@ -193,5 +176,21 @@ mod tests {
         let sent: Vec<&[u8]> = noisy.iter().map(|send| send.bytes).collect();
         assert_eq!(sent, [&[1, 1][..], &[3, 3, 4, 4]]);
         assert_eq!(forced, []);
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_faults() {
+        use crate::noise::Noise;
+        use stepscope_peripheral::units::Instant;
+        use stepscope_scenario::Noise as Rates;
+
+        let rates = Rates { seed: 7, flipped_bits_ppm: 100_000, ..Rates::default() };
+        let spoiled = |rates: &Rates| {
+            let mut noise = Noise::new(rates, 16_000_000, 115_200).expect("there are faults");
+            noise.send(Instant(1), &[0; 32]).bytes
+        };
+        assert_ne!(spoiled(&rates), [0; 32]);
+        assert_eq!(spoiled(&rates), spoiled(&rates)); // from the same seed the same faults
+        assert!(Noise::new(&Rates::default(), 16_000_000, 115_200).is_none());
     }
 }

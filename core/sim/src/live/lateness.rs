@@ -1,19 +1,10 @@
-//! How late something was against the wall clock (LIVE H2, H3), as a histogram with few bars.
-//!
-//! ```
-//! use stepscope_sim::lateness::Lateness;
-//!
-//! let mut late = Lateness::default();
-//! [80_000, 120_000, 7_300_000].into_iter().for_each(|ns| late.add(ns));
-//! assert_eq!((late.within_ms(50), late.within_ms(99), late.worst_ms()), (0.25, 10.0, 7.3));
-//! ```
+//! Delays relative to the wall clock as a histogram (LIVE H2, H3).
 
 use core::fmt;
 
 /// Upper ends of the bars in microseconds; the last bar has no end.
 const BARS_US: [u64; 9] = [100, 250, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000];
 
-/// A histogram of delays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lateness {
     bars: [u64; BARS_US.len() + 1],
@@ -21,7 +12,6 @@ pub struct Lateness {
 }
 
 impl Lateness {
-    /// Adds a delay.
     pub fn add(&mut self, late_ns: u64) {
         let bar = BARS_US.iter().position(|&end| late_ns <= 1000 * end).unwrap_or(BARS_US.len());
         if let Some(count) = self.bars.get_mut(bar) {
@@ -30,20 +20,16 @@ impl Lateness {
         self.worst_ns = self.worst_ns.max(late_ns);
     }
 
-    /// Number of delays.
-    #[must_use]
     pub fn count(&self) -> u64 {
         self.bars.iter().sum()
     }
 
-    /// The worst, in ms.
-    #[must_use]
+    /// The maximum in ms.
     pub const fn worst_ms(&self) -> f64 {
         self.worst_ns as f64 / 1e6
     }
 
-    /// The end of the bar, in ms, that holds `percent` of all, or the worst.
-    #[must_use]
+    /// The end in ms of the bar with `percent` of all, or the maximum.
     pub fn within_ms(&self, percent: u64) -> f64 {
         let wanted = (self.count() * percent).div_ceil(100);
         let mut sum = 0;
@@ -88,5 +74,14 @@ mod tests {
         }
         assert_eq!(late.to_string(), " <=0.1ms:2 <=0.25ms:1 <=2ms:1 later:1 worst:60.00ms");
         assert_eq!([40, 60, 80, 100].map(|percent| late.within_ms(percent)), [0.1, 0.25, 2.0, 60.0]);
+    }
+
+    #[test]
+    fn delays_are_counted_by_bars() {
+        use crate::lateness::Lateness;
+
+        let mut late = Lateness::default();
+        [80_000, 120_000, 7_300_000].into_iter().for_each(|ns| late.add(ns));
+        assert_eq!((late.within_ms(50), late.within_ms(99), late.worst_ms()), (0.25, 10.0, 7.3));
     }
 }

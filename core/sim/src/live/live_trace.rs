@@ -1,15 +1,4 @@
-//! The last records of a session that goes on and on, and how its positions went (LIVE H4).
-//!
-//! ```
-//! use stepscope_peripheral::{signal::{Levels, Record, Sink}, units::Instant};
-//! use stepscope_sim::live_trace::LiveTrace;
-//!
-//! let mut trace = LiveTrace::new(1000);
-//! // A step to the right in cycle 10.
-//! trace.record(Record { cycle: Instant(10), levels: Levels(1 | 1 << Levels::DIR_SHIFT) });
-//! let curve = trace.positions(&[1], (Instant(0), Instant(20)), 3);
-//! assert_eq!(curve.channels, [[0, 1, 1]]);
-//! ```
+//! The last records of an endless session, and its positions (LIVE H4).
 
 use alloc::{collections::VecDeque, vec, vec::Vec};
 use stepscope_peripheral::{
@@ -20,9 +9,9 @@ use stepscope_peripheral::{
 /// A ring of records.
 #[derive(Clone, Debug)]
 pub struct LiveTrace {
-    /// Invariant: at most `most`, rising in time.
+    /// Invariant: at most `max`, rising in time.
     records: VecDeque<Record>,
-    most: usize,
+    max: usize,
     /// The levels before the first record, and whether older ones were dropped.
     before: Levels,
     is_cut: bool,
@@ -30,7 +19,6 @@ pub struct LiveTrace {
 
 /// Positions at regular times.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct PositionCurve {
     /// Later than requested where the ring begins later.
     pub from: Instant,
@@ -39,26 +27,21 @@ pub struct PositionCurve {
 }
 
 impl LiveTrace {
-    /// A ring of `most` records, at least one.
+    /// A ring of `max` records, at least one.
     #[must_use]
-    pub fn new(most: usize) -> Self {
-        Self { records: VecDeque::new(), most: most.max(1), before: Levels::RESET, is_cut: false }
+    pub fn new(max: usize) -> Self {
+        Self { records: VecDeque::new(), max: max.max(1), before: Levels::RESET, is_cut: false }
     }
 
-    /// How many there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.records.len()
     }
 
-    /// Whether nothing has been recorded.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
     }
 
     /// `points` positions per channel in a window of time; `now` are those after the last record.
-    #[must_use]
     pub fn positions(&self, now: &[i32], (from, to): (Instant, Instant), points: usize) -> PositionCurve {
         let oldest = self.records.front().filter(|_| self.is_cut).map_or(from, |first| first.cycle);
         let from = from.max(oldest).min(to);
@@ -74,8 +57,8 @@ impl LiveTrace {
                 undo(&mut at, before, record.levels);
             }
             for (channel, position) in channels.iter_mut().zip(&at) {
-                if let Some(place) = channel.get_mut(point) {
-                    *place = *position;
+                if let Some(value) = channel.get_mut(point) {
+                    *value = *position;
                 }
             }
         }
@@ -95,7 +78,7 @@ fn undo(positions: &mut [i32], before: Levels, levels: Levels) {
 
 impl Sink for LiveTrace {
     fn record(&mut self, record: Record) {
-        if self.records.len() == self.most
+        if self.records.len() == self.max
             && let Some(first) = self.records.pop_front()
         {
             self.before = first.levels;
@@ -115,9 +98,9 @@ mod tests {
         "source": { "packets": { "packets": ["8503", "0082", "0a81"] } }, "run_cycles": 400000 }"#;
 
     /// A trace of a run, the same in a ring, and the positions at its end.
-    fn run(most: usize) -> (Vec<Record>, LiveTrace, Vec<i32>) {
+    fn run(max: usize) -> (Vec<Record>, LiveTrace, Vec<i32>) {
         let experiment = Experiment::new(&Scenario::from_json(TWO).expect("reads")).expect("no problems");
-        let (mut all, mut ring) = (Vec::new(), LiveTrace::new(most));
+        let (mut all, mut ring) = (Vec::new(), LiveTrace::new(max));
         let run = experiment.run(&mut (&mut all, &mut ring));
         let positions = run.positions()[..2].to_vec();
         (all, ring, positions)
@@ -140,29 +123,44 @@ mod tests {
 
     #[test]
     fn positions_counted_back_from_the_end_are_those_counted_from_the_beginning() {
-        for most in [1_000_000, 30] {
-            let (all, ring, now) = run(most);
-            assert!(all.len() > 60 && ring.len() == all.len().min(most), "{}", all.len());
+        for max in [1_000_000, 30] {
+            let (all, ring, now) = run(max);
+            assert!(all.len() > 60 && ring.len() == all.len().min(max), "{}", all.len());
             assert_ne!(now, [0, 0]);
             let end = all.last().expect("it has some").cycle;
             let curve = ring.positions(&now, (Instant(0), end), 101);
             let oldest = all[all.len() - ring.len()].cycle;
-            assert_eq!(curve.from, if most < all.len() { oldest } else { Instant(0) });
+            assert_eq!(curve.from, if max < all.len() { oldest } else { Instant(0) });
             for point in 0..=100 {
                 let time = curve.from.0 + (end.0 - curve.from.0) * point / 100;
                 let found: Vec<i32> = curve.channels.iter().map(|line| line[point as usize]).collect();
-                assert_eq!(found, counted(&all, time), "{most}: {time}");
+                assert_eq!(found, counted(&all, time), "{max}: {time}");
             }
         }
     }
 
     #[test]
-    fn a_window_of_no_length_and_one_behind_everything_hold_the_last_position() {
+    fn empty_and_late_windows_have_the_last_position() {
         let (_, ring, now) = run(10);
         for window in [(Instant(u64::MAX), Instant(u64::MAX)), (Instant(1 << 40), Instant(1 << 41))] {
             let curve = ring.positions(&now, window, 2);
             assert_eq!(curve.channels, [[now[0]; 2], [now[1]; 2]], "{window:?}");
         }
         assert!(LiveTrace::new(0).positions(&[], (Instant(0), Instant(9)), 0).channels.is_empty());
+    }
+
+    #[test]
+    fn the_ring_drops_the_oldest_records() {
+        use crate::live_trace::LiveTrace;
+        use stepscope_peripheral::{
+            signal::{Levels, Record, Sink},
+            units::Instant,
+        };
+
+        let mut trace = LiveTrace::new(1000);
+        // A step to the right in cycle 10.
+        trace.record(Record { cycle: Instant(10), levels: Levels(1 | 1 << Levels::DIR_SHIFT) });
+        let curve = trace.positions(&[1], (Instant(0), Instant(20)), 3);
+        assert_eq!(curve.channels, [[0, 1, 1]]);
     }
 }

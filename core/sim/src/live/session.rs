@@ -1,30 +1,14 @@
 //! A session: a scenario's controllers on a line that an external host drives (LIVE H1, H5).
 //!
 //! ```text
-//! bytes, as they are read ── receive ──┐
+//! bytes read from a port  ── receive ──┐
 //! the clock's cycle       ── advance ──┼── the model ── take_replies: bytes, each with the cycle in which it has left
 //!                                      └── recording: a scenario that replays the session
 //! ```
 //!
-//! Time comes in as a cycle, so the same bytes in the same cycles are the same session. A byte read at cycle N joins the last send
-//! if its place there is beyond N; else it begins a send at N + 1. Stand-alone controllers have buttons in place of a line
-//! ([`Session::enter`]).
-//!
-//! ```
-//! use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
-//! use stepscope_scenario::Scenario;
-//! use stepscope_sim::session::Session;
-//!
-//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
-//! let mut session = Session::new(&scenario).expect("it has no problems");
-//! let nobody: &mut [Vec<Record>] = &mut [];
-//! session.advance(Instant(5000), nobody);
-//! session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model stands behind cycle 5000
-//! session.advance(Instant(50_000), nobody);
-//! let reply: Vec<u8> = session.take_replies().map(|reply| reply.byte).collect();
-//! assert_eq!(reply.len(), 17);
-//! session.recording().verify().expect("run again it has the same digest");
-//! ```
+//! Time is given in cycles, so the same bytes in the same cycles are the same session. A byte read at cycle N joins the last
+//! send if its position there is after N; otherwise it begins a send at N + 1. Stand-alone controllers have buttons instead of
+//! a line ([`Session::enter`]).
 
 mod clock;
 mod input;
@@ -62,12 +46,11 @@ pub const MAX_RECORDED_SENDS: u64 = 400_000;
 /// Bit times after a frame in which its reply has begun: 11, and a margin for other clocks.
 const REPLY_BEGINS_BITS: u64 = 30;
 
-/// Ends a frame that is not whole: a byte that makes it fail its check, and the delimiter.
+/// Ends an incomplete frame: a byte that makes its CRC fail, and the delimiter.
 const SPOILED_END: [u8; 2] = [0xff, 0];
 
 /// A byte of a controller's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ReplyByte {
     pub controller: usize,
     /// First cycle after its stop bit.
@@ -87,14 +70,14 @@ pub struct Session {
     reply_times: Vec<BitTimes>,
     /// Start of the last send, and its bytes.
     last_send: Option<(Instant, u64)>,
-    heard: u64,
-    /// Whether the last byte received is inside of a frame.
+    received: u64,
+    /// Whether the last received byte is within a frame.
     in_frame: bool,
     replies: VecDeque<ReplyByte>,
     /// Replies that begin earlier are for a host that has disconnected.
     replies_from: Instant,
     digests: Vec<Digest>,
-    /// What was recorded until the limit.
+    /// The recording up to its limit.
     cut: Option<Rc<Recording>>,
     presses: panel::Presses,
 }
@@ -114,8 +97,8 @@ fn blank(scenario: &Scenario) -> Scenario {
 }
 
 impl Session {
-    /// Starts the controllers of a scenario. Its sends, presses, length, host and noise are left out.
-    /// Errors: every problem of the scenario, and segments, which have no line.
+    /// Starts the controllers of a scenario and ignores its sends, presses, length, host and noise. Errors: every problem, and
+    /// segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         if scenario.source.runs_segments() {
             let detail = "segments run a controller by itself, and nothing is on the line; choose ticks, packets or a line script";
@@ -135,7 +118,7 @@ impl Session {
                 .map(|config| BitTimes::new(clock_hz, config.reply_baud()))
                 .collect(),
             last_send: None,
-            heard: 0,
+            received: 0,
             in_frame: false,
             replies: VecDeque::new(),
             replies_from: Instant::RESET,
@@ -149,80 +132,63 @@ impl Session {
     }
 
     /// Controllers and line, without sends.
-    #[must_use]
     pub fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
-    /// The controllers as they are now.
-    #[must_use]
     pub const fn run(&self) -> &Run {
         &self.run
     }
 
     /// The last cycle that was run.
-    #[must_use]
     pub fn now(&self) -> Instant {
         Instant(self.run.cycles().0.saturating_sub(1))
     }
 
-    /// Number of bytes received.
-    #[must_use]
-    pub const fn heard(&self) -> u64 {
-        self.heard
+    pub const fn received(&self) -> u64 {
+        self.received
     }
 
-    /// The digest of each trace so far.
-    #[must_use]
     pub fn digests(&self) -> &[Digest] {
         &self.digests
     }
 
-    /// Whether nothing changes without further input, and no reply waits.
-    #[must_use]
-    pub fn is_at_rest(&self) -> bool {
-        if !self.presses.are_done() {
-            return false;
-        }
-        self.run.is_at_rest() && self.replies.is_empty()
+    /// Whether nothing changes without input, and no reply waits.
+    pub fn is_idle(&self) -> bool {
+        self.presses.are_done() && self.run.is_idle() && self.replies.is_empty()
     }
 
     /// Whether a stand-alone controller jogs without end.
-    #[must_use]
     pub fn jogs_without_end(&self) -> bool {
         self.presses.are_done() && self.run.stand_alone().is_some_and(StandAlone::jogs_without_end)
     }
 
-    /// Whether bytes or replies are on the line.
-    #[must_use]
     pub fn is_busy(&self) -> bool {
         self.deadline() != Instant::NEVER
     }
 
-    /// The next cycle worth running to: a reply's byte has left, or everything received has been heard;
-    /// [`Instant::NEVER`] where nothing is on the line.
-    #[must_use]
+    /// The next cycle to run to: a reply's byte has left, or all received bytes are on the line; [`Instant::NEVER`] if the line
+    /// is idle.
     pub fn deadline(&self) -> Instant {
         self.deadline_of_round(Cycles(0))
     }
 
     /// As [`Self::deadline`], but with all bytes of replies that leave within `round` of the first, so that fewer
     /// rounds are needed.
-    #[must_use]
     pub fn deadline_of_round(&self, round: Cycles) -> Instant {
         let now = self.now();
         let ends = || self.replies.iter().map(|reply| reply.end);
         let together = |first: Instant| ends().take_while(|&end| end <= first + round).last();
         let reply = ends().next().and_then(together).map_or(Instant::NEVER, |end| end.max(now.next()));
-        let heard = self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
-        heard.filter(|&heard| heard > now).map_or(reply, |heard| heard.min(reply))
+        let received =
+            self.last_send.map(|(start, bytes)| start + self.times.byte(bytes) + self.times.bit(1));
+        received.filter(|&received| received > now).map_or(reply, |received| received.min(reply))
     }
 
-    /// How many of `most` bytes begin on the line by cycle `until` if they are received now.
-    #[must_use]
-    pub fn fits_until(&self, until: Instant, most: usize) -> usize {
+    /// How many of `max` bytes begin on the line by cycle `until` if they are received now.
+    pub fn fits_until(&self, until: Instant, max: usize) -> usize {
         let (start, sent) = self.joined_send().unwrap_or((self.now().next(), 0));
-        (0..most).take_while(|&byte| start + self.times.byte(sent + byte as u64) <= until).count()
+        (0..max).take_while(|&byte| start + self.times.byte(sent + byte as u64) <= until).count()
     }
 
     /// The last send, if a byte that is received now joins it.
@@ -231,8 +197,8 @@ impl Session {
         self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next)
     }
 
-    /// The host disconnects. Replies to what it has sent are dropped, so that the next host does not get them. A frame that it
-    /// did not finish is spoiled and ended, so that it neither runs nor swallows the next host's first frame.
+    /// The host disconnects. Replies to it are dropped, so that the next host does not get them. Its unfinished frame is ended
+    /// as invalid, so that it neither runs nor includes the next host's first frame.
     pub fn hang_up(&mut self) {
         if self.in_frame {
             self.receive(&SPOILED_END);
@@ -253,11 +219,11 @@ impl Session {
         let joins = self.joined_send();
         if self.cut.is_none() {
             let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
-            if self.heard + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
+            if self.received + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
                 self.cut_recording();
             }
         }
-        self.heard += count;
+        self.received += count;
         self.in_frame =
             self.blank.line.protocol == Protocol::Framed && bytes.last().is_some_and(|byte| *byte != 0);
         let line = self.run.line_mut();
@@ -273,10 +239,8 @@ impl Session {
         }
     }
 
-    /// A change at the panel of stand-alone controllers that comes while the model stands behind [`Self::now`]; gives its cycle:
-    /// the next one, or where the same input changes there the one after it. It cancels a level of that
-    /// input that was still to come.
-    /// Errors: what a script would be refused for, and that a line has no buttons.
+    /// Enters a change at the panel of a stand-alone controller after [`Self::now`] and returns its cycle: the next one in which
+    /// that input has no change yet. It cancels a later level of that input. Errors: those of a script, and a session with a line.
     pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
         if self.cut.is_none() && !self.presses.has_room() {
             self.cut_recording();
@@ -288,8 +252,7 @@ impl Session {
         self.presses.enter(machine, controller, change)
     }
 
-    /// The same for a level that lasts `held`, unless the input changes before.
-    /// Errors: those of [`Self::enter`].
+    /// As [`Self::enter`], for a level that lasts `held`, unless the input changes before.
     pub fn enter_for(
         &mut self,
         controller: usize,
@@ -306,7 +269,7 @@ impl Session {
         self.cut = Some(Rc::new(self.recording_to_now()));
     }
 
-    /// Runs up to and with cycle `to`, with a sink per controller; nothing comes after the end of time.
+    /// Runs up to and including cycle `to`, with a sink per controller.
     pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
         while let Some(due) = self.presses.due(to) {
             self.run_on(Instant(due.0.saturating_sub(1)), sinks);
@@ -341,21 +304,18 @@ impl Session {
         replies.extend(answers.into_iter().flatten());
     }
 
-    /// The bytes of replies that have left, in order, each once.
+    /// The bytes of replies that have left, in order; each is returned once.
     pub fn take_replies(&mut self) -> impl Iterator<Item = ReplyByte> {
         let now = self.now();
         let gone = self.replies.iter().take_while(|reply| reply.end <= now).count();
         self.replies.drain(..gone)
     }
 
-    /// Whether everything received is recorded.
-    #[must_use]
     pub const fn records_all(&self) -> bool {
         self.cut.is_none()
     }
 
-    /// The session so far as a scenario, as far as it is recorded.
-    #[must_use]
+    /// The recorded session so far, as a scenario.
     pub fn recording(&self) -> Recording {
         self.cut.as_ref().map_or_else(|| self.recording_to_now(), |cut| Recording::clone(cut))
     }
@@ -416,9 +376,7 @@ impl<S: Sink> Sink for Tap<'_, S> {
     }
 }
 
-/// A session as a scenario.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Recording {
     /// The same controllers and line, with the received bytes as the source.
     pub scenario: Scenario,
@@ -432,11 +390,9 @@ fn panel_digest(run: &Run) -> Option<u64> {
 
 /// Why a recording does not replay the session.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum NotTheSession {
-    /// It cannot be run.
     Refused(Vec<Problem>),
-    /// A controller does something else.
+    /// A controller has another trace.
     Differs {
         controller: usize,
         session: u64,
@@ -464,8 +420,7 @@ impl fmt::Display for NotTheSession {
 }
 
 impl Recording {
-    /// Runs it and compares the digests.
-    /// Errors: the first difference.
+    /// Runs it and compares the digests. Errors: the first difference.
     pub fn verify(&self) -> Result<(), NotTheSession> {
         let experiment = Experiment::new(&self.scenario).map_err(NotTheSession::Refused)?;
         let mut replay = vec![Digest::default(); experiment.controllers()];

@@ -1,21 +1,5 @@
-//! `NAME.session.json`, beside a session's recording: what was of the wall clock (LIVE H5). The recording itself is a scenario,
-//! whose unknown fields are refused.
-//!
-//! ```
-//! use stepscope_peripheral::units::Instant;
-//! use stepscope_scenario::Scenario;
-//! use stepscope_sim::{session::{Pace, ReplyByte, Session, SessionClock}, session_times::SessionTimes};
-//!
-//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
-//! let mut session = Session::new(&scenario).expect("it has no problems");
-//! let clock = SessionClock::new(16_000_000, Pace::REAL_TIME, 50_000_000);
-//! let mut times = SessionTimes::new(1_790_000_000_000, "1".into(), 50, true);
-//! session.receive(&[0]);
-//! times.chunk(120_000, session.now(), 1);
-//! times.reply(&ReplyByte { controller: 0, end: Instant(48_000), byte: 0 }, 3_100_000, 100_000);
-//! let text = times.to_json(&clock, &session.recording(), session.records_all());
-//! assert!(text.contains(r#""started_unix_ms": 1790000000000"#));
-//! ```
+//! `NAME.session.json`, next to a session's recording: wall-clock times (LIVE H5). The recording itself is a scenario, which
+//! refuses unknown fields.
 
 use crate::live::session::{Recording, ReplyByte, SessionClock};
 use alloc::{format, string::String, vec::Vec};
@@ -79,7 +63,7 @@ struct StretchesOf {
 }
 
 impl SessionTimes {
-    /// A session that began so many ms after 1970; `pace` is `max` without pacing; rows are kept only if `keeps`.
+    /// A session that began `started_unix_ms` after 1970; `pace` is `max` without pacing; rows are stored only if `keeps`.
     #[must_use]
     pub const fn new(started_unix_ms: u64, pace: String, lag_ms: u64, keeps: bool) -> Self {
         Self { started_unix_ms, pace, lag_ms, keeps, chunks: Vec::new(), replies: Vec::new(), left_out: 0 }
@@ -107,7 +91,6 @@ impl SessionTimes {
     }
 
     /// The whole file. `records_all`: whether the recording has the whole session.
-    #[must_use]
     pub fn to_json(&self, clock: &SessionClock, recording: &Recording, records_all: bool) -> String {
         let stretches = clock.setbacks();
         let digest = |digest: &u64| format!("{digest:016x}");
@@ -136,7 +119,7 @@ mod tests {
     use stepscope_scenario::Scenario;
 
     #[test]
-    fn a_session_that_is_not_recorded_keeps_no_rows_and_one_that_is_a_bounded_number() {
+    fn rows_are_stored_only_for_recordings_and_bounded() {
         for (keeps, kept, left_out) in [(false, 0, 0), (true, MAX_ROWS, 3)] {
             let mut times = SessionTimes::new(0, "1".into(), 50, keeps);
             for index in 0..MAX_ROWS as u64 + 3 {
@@ -147,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_tells_when_it_began_what_was_set_back_and_each_chunk_and_reply() {
+    fn the_file_has_start_setbacks_chunks_and_replies() {
         let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
         let session = Session::new(&scenario).expect("it has no problems");
         let mut clock = SessionClock::new(1_000_000, Pace::REAL_TIME, 0);
@@ -172,5 +155,25 @@ mod tests {
             "rows_left_out": 0,
         });
         assert_eq!(file, expected);
+    }
+
+    #[test]
+    fn times_of_a_session_are_json() {
+        use crate::{
+            session::{Pace, ReplyByte, Session, SessionClock},
+            session_times::SessionTimes,
+        };
+        use stepscope_peripheral::units::Instant;
+        use stepscope_scenario::Scenario;
+
+        let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+        let mut session = Session::new(&scenario).expect("it has no problems");
+        let clock = SessionClock::new(16_000_000, Pace::REAL_TIME, 50_000_000);
+        let mut times = SessionTimes::new(1_790_000_000_000, "1".into(), 50, true);
+        session.receive(&[0]);
+        times.chunk(120_000, session.now(), 1);
+        times.reply(&ReplyByte { controller: 0, end: Instant(48_000), byte: 0 }, 3_100_000, 100_000);
+        let text = times.to_json(&clock, &session.recording(), session.records_all());
+        assert!(text.contains(r#""started_unix_ms": 1790000000000"#));
     }
 }

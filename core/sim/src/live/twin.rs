@@ -1,29 +1,12 @@
-//! The model next to a real device: it gets each frame that the device gets, and its replies are compared (LIVE H4).
+//! The model next to a real device: it gets the same frames, and its replies are compared (LIVE H4).
 //!
 //! ```text
-//! host ── frame ──┬── the device ── its reply, heard ──┐
+//! host ── frame ──┬── the device ── its reply ─────────┐
 //!                 └── the model ─── its reply ─────────┴── the first difference, and both delays
 //! ```
 //!
-//! The device may have run before: sequence numbers, ticks, positions and faults are compared relative to the start. Ticks done
-//! while one moves depend on exact cycles and are not compared. The model has no plant.
-//!
-//! ```
-//! use stepscope_peripheral::units::Instant;
-//! use stepscope_scenario::Scenario;
-//! use stepscope_sim::{Experiment, twin::Twin};
-//!
-//! let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
-//! let experiment = Experiment::new(&scenario).expect("it has no problems");
-//! let mut host = experiment.conversation(Instant::RESET).expect("a framed host waits for replies");
-//! let mut twin = Twin::new(&scenario).expect("it has no problems");
-//!
-//! let now = host.deadline();
-//! let opening = host.poll(now).expect("it asks how the device is");
-//! let known = *host.known().next().expect("there is one controller").1;
-//! twin.send(&opening, now, (experiment.config().channels(), &known));
-//! assert!(twin.answer().is_some_and(|answer| answer.reply.answer.is_ok()));
-//! ```
+//! The device may have run before: sequence numbers, ticks, positions and faults are compared relative to the start. Ticks
+//! done during a motion depend on exact cycles and are not compared. The model has no plant.
 
 use crate::{
     framed_host::Known,
@@ -48,13 +31,11 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::{Problem, Scenario};
 
-/// Maximum cycles that the model may need to come to rest.
+/// Maximum cycles until the model is idle.
 const MAX_REST: u64 = 20_000_000_000;
 const REST_ROUND: u64 = 1_000_000;
 
-/// The reply of a device or of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Answer {
     pub reply: Reply,
     pub positions: Option<Positions>,
@@ -64,24 +45,22 @@ pub struct Answer {
 
 /// First reported status and positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Opened {
+struct Opening {
     status: Option<Status>,
     positions: Option<Positions>,
 }
 
-/// The model of a line's controllers.
 #[derive(Clone)]
 pub struct Twin {
     session: Session,
     ahead: Cycles,
     deframers: Vec<Deframer>,
-    opened: Vec<Opened>,
+    opening: Vec<Opening>,
     sent_end: Instant,
 }
 
 impl Twin {
-    /// Resets the controllers and waits until they are idle.
-    /// Errors: every problem of the scenario, and segments, which have no line.
+    /// Resets the controllers and waits until they are idle. Errors: every problem, and segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut session = Session::new(&Scenario { plant: None, ..scenario.clone() })?;
         rest(&mut session);
@@ -92,14 +71,14 @@ impl Twin {
             session,
             ahead,
             deframers,
-            opened: vec![Opened::default(); controllers],
+            opening: vec![Opening::default(); controllers],
             sent_end: Instant(0),
         })
     }
 
-    /// The host sends a frame from cycle `now` on; `device` is what it knows of the addressed device.
+    /// The host sends a frame from cycle `now` on; `device` is its state of the addressed device.
     pub fn send(&mut self, bytes: &[u8], now: Instant, (channels, device): (u8, &Known)) {
-        let bytes = renumbered(bytes, device.opened.map_or(0, |opened| opened.expected_seq), channels);
+        let bytes = renumbered(bytes, device.opening.map_or(0, |opening| opening.expected_seq), channels);
         self.advance(now);
         self.session.take_replies().for_each(drop);
         self.deframers.fill_with(Deframer::default);
@@ -132,76 +111,78 @@ impl Twin {
         answer
     }
 
-    /// The first difference of a device's answer from the model's, in words.
+    /// The first difference of a device's reply from the model's.
     pub fn difference(
         &mut self,
         controller: usize,
-        (told, device): (&Answer, &Known),
+        (reported, device): (&Answer, &Known),
         model: &Answer,
     ) -> Option<String> {
-        let own = self.opened.get_mut(controller)?;
-        let (status, model_status) = (told.reply.status, model.reply.status);
-        let rests = |status: Status| status.state == State::Ready;
-        if own.status.is_none() && device.opened.is_some() && rests(model_status) {
+        let own = self.opening.get_mut(controller)?;
+        let (status, model_status) = (reported.reply.status, model.reply.status);
+        let is_ready = |status: Status| status.state == State::Ready;
+        if own.status.is_none() && device.opening.is_some() && is_ready(model_status) {
             own.status = Some(model_status);
         }
-        if own.positions.is_none() && device.opened_at.is_some() {
+        if own.positions.is_none() && device.opening_positions.is_some() {
             own.positions = model.positions;
         }
         let name = |answer: Result<Kind, _>| match answer {
             Ok(kind) => format!("ACK {}", kind.name()),
             Err(reason) => format!("NAK {}", stepscope_peripheral::protocol::Reason::name(reason)),
         };
-        if told.reply.answer != model.reply.answer {
-            let (told, model) = (name(told.reply.answer), name(model.reply.answer));
-            return Some(format!("it answers {told}, the model {model}"));
+        if reported.reply.answer != model.reply.answer {
+            let (reported, model) = (name(reported.reply.answer), name(model.reply.answer));
+            return Some(format!("it replies {reported}, the model {model}"));
         }
         if (status.state == State::Stopped) != (model_status.state == State::Stopped) {
             return Some(format!("it is {}, the model {}", status.state.name(), model_status.state.name()));
         }
-        let (opened, own_opened) = (device.opened?, own.status?);
-        let seqs = [(status, opened), (model_status, own_opened)]
-            .map(|(now, opened)| now.expected_seq.wrapping_sub(opened.expected_seq));
+        let (opening, own_opening) = (device.opening?, own.status?);
+        let seqs = [(status, opening), (model_status, own_opening)]
+            .map(|(now, opening)| now.expected_seq.wrapping_sub(opening.expected_seq));
         if seqs[0] != seqs[1] {
-            let [told, model] = seqs;
+            let [reported, model] = seqs;
             return Some(format!(
-                "it has taken {told} frames of ticks since it was opened, the model {model}, modulo 256"
+                "it has accepted {reported} frames of ticks since the start, the model {model}, modulo 256"
             ));
         }
-        let faults = [status.faults & !opened.faults, model_status.faults & !own_opened.faults];
+        let faults = [status.faults & !opening.faults, model_status.faults & !own_opening.faults];
         if faults[0] != faults[1] {
-            let [told, model] = faults.map(names);
-            return Some(format!("its new faults are {told}, the model's {model}"));
+            let [reported, model] = faults.map(names);
+            return Some(format!("its new faults are {reported}, the model's {model}"));
         }
-        if !(rests(status) && rests(model_status)) {
+        if !(is_ready(status) && is_ready(model_status)) {
             return None;
         }
-        let done = [(status, opened), (model_status, own_opened)]
-            .map(|(now, opened)| now.ticks_done.wrapping_sub(opened.ticks_done));
+        let done = [(status, opening), (model_status, own_opening)]
+            .map(|(now, opening)| now.ticks_done.wrapping_sub(opening.ticks_done));
         if done[0] != done[1] {
-            let [told, model] = done;
-            return Some(format!("at rest it has done {told} ticks since it was opened, the model {model}"));
+            let [reported, model] = done;
+            return Some(format!("idle, it has done {reported} ticks since the start, the model {model}"));
         }
-        let went = |now: Option<Positions>, opened: Option<Positions>| went(now?, opened?);
-        let told = went(told.positions, device.opened_at)?;
+        let went = |now: Option<Positions>, opening: Option<Positions>| went(now?, opening?);
+        let reported = went(reported.positions, device.opening_positions)?;
         let model = went(model.positions, own.positions)?;
-        let (channel, (told, model)) =
-            told.iter().zip(&model).enumerate().find(|(_, (told, model))| told != model)?;
-        Some(format!("at rest channel {channel} went {told} steps since it was opened, the model's {model}"))
+        let (channel, (reported, model)) =
+            reported.iter().zip(&model).enumerate().find(|(_, (reported, model))| reported != model)?;
+        Some(format!(
+            "idle, channel {channel} has moved {reported} steps since the start, the model's {model}"
+        ))
     }
 
     /// The idle controller of the model: its status, ticks and steps per channel since the start.
     pub fn end(&mut self, controller: usize) -> Option<(Status, u32, Vec<i32>)> {
         rest(&mut self.session);
-        let opened = self.opened.get(controller)?;
+        let opening = self.opening.get(controller)?;
         let device = self.session.run().devices().nth(controller)?;
         let status = device.status()?;
         let channels = usize::from(self.session.experiment().configs().nth(controller)?.channels());
-        let began = opened.positions;
+        let began = opening.positions;
         let began = began.as_ref().map_or(&[][..], Positions::as_slice).iter().chain(core::iter::repeat(&0));
         let positions = device.positions();
         let went = positions.iter().take(channels).zip(began).map(|(now, began)| now.wrapping_sub(*began));
-        let done = status.ticks_done.wrapping_sub(opened.status.map_or(0, |opened| opened.ticks_done));
+        let done = status.ticks_done.wrapping_sub(opening.status.map_or(0, |opening| opening.ticks_done));
         Some((status, done, went.collect()))
     }
 }
@@ -220,7 +201,7 @@ fn went(now: Positions, began: Positions) -> Option<Vec<i32>> {
 /// Waits until nothing changes, for a bounded time.
 fn rest(session: &mut Session) {
     let end = session.now().0.saturating_add(MAX_REST);
-    while !session.is_at_rest() && session.now().0 < end {
+    while !session.is_idle() && session.now().0 < end {
         session.advance::<Digest>(Instant(session.now().0 + REST_ROUND), &mut []);
         session.take_replies().for_each(drop);
     }
@@ -236,7 +217,7 @@ fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
             && let Some(ticks) = Ticks::parse(body, channels)
         {
             let body = Ticks::emit(ticks.seq.wrapping_sub(offset), channels, ticks.commands());
-            // Leading delimiters end what was left of a broken frame.
+            // Leading delimiters end a broken frame.
             let mut bytes: Vec<u8> = bytes.iter().copied().take_while(|&byte| byte == 0).collect();
             bytes.extend(emit(address, kind, &body));
             made = Some(bytes);
@@ -274,14 +255,14 @@ mod tests {
                 device.receive(&bytes);
                 let takes = line_time(bytes.len() as u64, experiment.config().clock_hz(), experiment.baud());
                 host.sent(now + Cycles(takes));
-                hear(&mut host, &mut device, &mut deframer, |host, mut told| {
+                deliver(&mut host, &mut device, &mut deframer, |host, mut reported| {
                     let model = twin.answer().expect("the model answers");
                     if stream == before {
-                        spoil(number, &mut told.reply);
+                        spoil(number, &mut reported.reply);
                         number += 1;
                         let known = *host.known().next().expect("one job").1;
-                        assert_eq!(model.delay, told.delay, "reply {number}");
-                        found.extend(twin.difference(0, (&told, &known), &model));
+                        assert_eq!(model.delay, reported.delay, "reply {number}");
+                        found.extend(twin.difference(0, (&reported, &known), &model));
                     }
                 });
             }
@@ -294,18 +275,18 @@ mod tests {
     }
 
     /// Hears the reply of a device to the frame that it was sent.
-    fn hear(
+    fn deliver(
         host: &mut Conversation,
         device: &mut Session,
         deframer: &mut Deframer,
-        mut told: impl FnMut(&Conversation, Answer),
+        mut reported: impl FnMut(&Conversation, Answer),
     ) {
         let sent_end = device.now().next();
         while device.is_busy() {
             device.advance::<Digest>(device.deadline(), &mut []);
             let replies: Vec<ReplyByte> = device.take_replies().collect();
             for ReplyByte { end, byte, .. } in replies {
-                host.hear(byte, end);
+                host.receive(byte, end);
                 if let Some(Deframed::Frame(frame)) = deframer.byte(byte) {
                     let reply = Reply::parse(frame).expect("a reply");
                     let frame_bytes =
@@ -314,7 +295,7 @@ mod tests {
                     let clock_hz = experiment.config().clock_hz();
                     let takes = line_time(frame_bytes as u64, clock_hz, experiment.baud());
                     let delay = Cycles(end.0 - sent_end.0 - takes);
-                    told(host, Answer { reply, positions: frame.positions(), delay });
+                    reported(host, Answer { reply, positions: frame.positions(), delay });
                 }
             }
         }
@@ -354,5 +335,23 @@ mod tests {
             assert_eq!(found.len(), 1, "{expected}: {found:?}");
             assert!(found[0].contains(expected), "{found:?}");
         }
+    }
+
+    #[test]
+    fn the_model_replies_as_a_device() {
+        use crate::{Experiment, twin::Twin};
+        use stepscope_peripheral::units::Instant;
+        use stepscope_scenario::Scenario;
+
+        let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+        let experiment = Experiment::new(&scenario).expect("it has no problems");
+        let mut host = experiment.conversation(Instant::RESET).expect("a framed host waits for replies");
+        let mut twin = Twin::new(&scenario).expect("it has no problems");
+
+        let now = host.deadline();
+        let opening = host.poll(now).expect("it asks how the device is");
+        let known = *host.known().next().expect("there is one controller").1;
+        twin.send(&opening, now, (experiment.config().channels(), &known));
+        assert!(twin.answer().is_some_and(|answer| answer.reply.answer.is_ok()));
     }
 }

@@ -1,7 +1,7 @@
-//! The plants behind the controllers of a run, and their one way back (PLANT F7).
+//! The plants behind the controllers of a run, and their feedback (PLANT F7).
 //!
-//! A plant follows its controller's edges. Where a protection watches the supply current the run stops after each cycle of a
-//! conversion, so that an overload acts last in that very cycle; a self-test's result is in force at the end of the boot.
+//! A plant follows its controller's edges. With a protection, the run stops after each cycle of a conversion, so that an
+//! overload acts last in that cycle; the result of a self-test applies at the end of the boot.
 
 use crate::controllers::Controllers;
 use alloc::vec::Vec;
@@ -22,8 +22,8 @@ use stepscope_scenario::Plants;
 pub(crate) struct PlantsBehind {
     pub(crate) behind: Vec<Behind>,
     tail: Cycles,
-    /// Where a run without a given end came to rest; an overload may wake it.
-    rests_from: Option<Instant>,
+    /// When a run without a given end became idle; an overload may wake it.
+    idle_from: Option<Instant>,
     pub(crate) ended: Option<Instant>,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Behind {
     pub(crate) overload_at: Option<u64>,
 }
 
-/// Collects what acts back on the controller.
+/// Collects feedback to the controller.
 #[derive(Clone, Debug, Default)]
 struct Watch {
     overload: Option<u64>,
@@ -178,7 +178,7 @@ impl PlantsBehind {
                 overload_at: None,
             })
         });
-        Self { behind: behind.collect(), tail: plants.tail, rests_from: None, ended: None }
+        Self { behind: behind.collect(), tail: plants.tail, idle_from: None, ended: None }
     }
 
     fn wired<'a, S, O>(&'a mut self, sinks: &'a mut [S], observers: &'a mut [O]) -> Vec<Wired<'a, S, O>> {
@@ -198,7 +198,7 @@ impl PlantsBehind {
         let mut made = 0;
         while self.ended.is_none() && run.reached() < target && made < records {
             let now = run.reached();
-            // A run without a given end checks now and then whether it is at rest.
+            // A run without a given end checks now and then whether it is idle.
             let portion = target.min(Instant(now.0.saturating_add(PORTION)));
             let stops = self.behind.iter().map(|behind| behind.next_stop(now));
             let stop = stops.chain(run.end).fold(portion, Instant::min);
@@ -218,12 +218,11 @@ impl PlantsBehind {
     ) {
         let mut wired = self.wired(sinks, observers);
         run.clock(&mut wired);
-        let rests_from = self.rests_from.unwrap_or_else(|| run.reached());
-        self.after(run, Some(rests_from), sinks, observers);
+        let idle_from = self.idle_from.unwrap_or_else(|| run.reached());
+        self.after(run, Some(idle_from), sinks, observers);
     }
 
-    /// Lets the plants act last in the cycle just run, and finds the end. `seen`: clock by clock, the cycle in which
-    /// rest was first detected.
+    /// Lets the plants act last in the cycle just run, and finds the end. `seen`: clock by clock, the first idle cycle.
     fn after(
         &mut self,
         run: &mut Controllers,
@@ -232,12 +231,12 @@ impl PlantsBehind {
         observers: &mut [impl Observer],
     ) {
         let now = run.reached();
-        let rests = |this: &Self, run: &Controllers| {
+        let idle = |this: &Self, run: &Controllers| {
             let last = this.behind.iter().map(|behind| behind.last).max().unwrap_or(Instant::RESET);
-            let rests_from = run.rests_from(last);
-            if seen.is_some() { rests_from.and(seen) } else { rests_from }
+            let idle_from = run.idle_from(last);
+            if seen.is_some() { idle_from.and(seen) } else { idle_from }
         };
-        self.rests_from = rests(self, run);
+        self.idle_from = idle(self, run);
         let end = self.end(run);
         // More cycles were run than needed.
         let is_past = end.is_some_and(|end| end < now);
@@ -245,17 +244,17 @@ impl PlantsBehind {
             for (index, mut wired) in self.wired(sinks, observers).into_iter().enumerate() {
                 wired.act(run, index, Instant(now.0 - 1));
             }
-            self.rests_from = rests(self, run);
+            self.idle_from = idle(self, run);
         }
-        let is_end = end == Some(now) && (run.end.is_some() || rests(self, run).is_some());
+        let is_end = end == Some(now) && (run.end.is_some() || idle(self, run).is_some());
         if let Some(end) = end.filter(|_| is_past || is_end) {
             self.wired(sinks, observers).iter_mut().for_each(|wired| wired.advance(end.0));
             self.ended = Some(end);
         }
     }
 
-    /// The given end; else the rest, not before the end of a boot with a self-test and the tail after the last fall
-    /// of a STEP.
+    /// The given end; otherwise the idle cycle, but not before the end of a boot with a self-test and the tail after the
+    /// last fall of STEP.
     fn end(&self, run: &Controllers) -> Option<Instant> {
         if let Some(end) = run.end {
             return Some(end);
@@ -263,7 +262,7 @@ impl PlantsBehind {
         let boot = self.behind.iter().filter_map(|behind| behind.boot).max();
         let fall = self.behind.iter().filter_map(|behind| behind.last_fall).max();
         let after = [boot, fall.map(|fall| fall + self.tail)].into_iter().flatten().max();
-        self.rests_from.map(|own| after.map_or(own, |after| own.max(after)))
+        self.idle_from.map(|own| after.map_or(own, |after| own.max(after)))
     }
 }
 

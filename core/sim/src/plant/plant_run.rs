@@ -1,18 +1,6 @@
-//! A run whose plants are looked at: what they measure, point by point where somebody wants to see it.
+//! A run with access to its plants, point by point.
 //!
-//! Every run of a scenario with plants drives them; this one also hands out what they do.
-//!
-//! ```
-//! use stepscope_sim::{Experiment, plant_run::PlantRun};
-//!
-//! // One full turn by the default motion, with the default motor behind the bus.
-//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("it has a plant");
-//! run.finish();
-//! let result = &run.results()[0];
-//! assert_eq!(result.motors[0].lost, 0);
-//! assert!((result.motors[0].state.x - 200.0).abs() < 0.1);
-//! ```
+//! Every run of a scenario with plants drives them; this one also reports their points.
 
 use crate::{Experiment, Run};
 use alloc::vec::Vec;
@@ -49,7 +37,6 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
     }
 
     /// The first cycle that has not been run.
-    #[must_use]
     pub fn now(&self) -> Instant {
         Instant(self.run.cycles().0)
     }
@@ -60,12 +47,12 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
         self.sinks.into_iter().zip(self.observers).collect()
     }
 
-    /// Runs everything.
+    /// Runs to the end.
     pub fn finish(&mut self) {
         while !self.advance(Cycles(1 << 32)) {}
     }
 
-    /// Runs everything clock by clock.
+    /// Runs to the end clock by clock.
     pub fn finish_clock_by_clock(&mut self) {
         while !self.run.is_done() {
             self.run.clock_observed(&mut self.sinks, &mut self.observers);
@@ -84,5 +71,21 @@ impl<S, O> Deref for PlantRun<S, O> {
 
     fn deref(&self) -> &Run {
         &self.run
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_plant_is_observed_point_by_point() {
+        use crate::{Experiment, plant_run::PlantRun};
+
+        // One full turn by the default motion, with the default motor behind the bus.
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("it has a plant");
+        run.finish();
+        let result = &run.results()[0];
+        assert_eq!(result.motors[0].lost, 0);
+        assert!((result.motors[0].state.x - 200.0).abs() < 0.1);
     }
 }

@@ -187,7 +187,7 @@ impl LiveDevice {
         object(&SessionState {
             seconds: to.0 as f64 / f64::from(clock_hz),
             curves_from: from.0 as f64 / f64::from(clock_hz),
-            received: session.heard(),
+            received: session.received(),
             replies: *replies,
             latest_ms: *latest_ns as f64 / 1e6,
             set_backs: setbacks.count,

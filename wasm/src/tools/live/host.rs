@@ -215,7 +215,7 @@ impl LiveHost {
                 Some(Deframed::Frame(frame)) => Reply::parse(frame).map(|reply| (reply, frame.positions())),
                 _ => None,
             };
-            self.host.hear(byte, now);
+            self.host.receive(byte, now);
             if let Some((reply, positions)) = frame {
                 // Otherwise the reply belongs to an earlier frame.
                 if !self.host.is_waiting()
@@ -268,19 +268,19 @@ impl LiveHost {
     pub fn report(&mut self, lost: Option<String>) -> Result<JsValue, JsError> {
         let report = Report::new(&self.experiment, &mut self.host, self.stopped);
         let ends = report.rows.iter().map(|row| {
-            let Known { opened, started, last, positions, opened_at, .. } = row.known;
+            let Known { opening, started, last, positions, opening_positions, .. } = row.known;
             let count = |status: Option<Status>| status.map_or(0, |status| status.ticks_done);
             // The model also has the opening ticks.
-            let opening_ticks = started.map_or(0, |_| count(started).wrapping_sub(count(opened)));
+            let opening_ticks = started.map_or(0, |_| count(started).wrapping_sub(count(opening)));
             let device = last.map(|last| End {
                 state: last.state.name(),
                 ticks_done: row.known.ticks_done(),
-                went: opened_at.zip(positions).map(|(began, now)| {
+                went: opening_positions.zip(positions).map(|(began, now)| {
                     let pairs = now.as_slice().iter().zip(began.as_slice());
                     pairs.map(|(now, began)| now.wrapping_sub(*began)).collect()
                 }),
             });
-            let model = opened.and(self.twin.end(row.controller)).map(|(status, done, went)| End {
+            let model = opening.and(self.twin.end(row.controller)).map(|(status, done, went)| End {
                 state: status.state.name(),
                 ticks_done: Some(done.wrapping_sub(opening_ticks)),
                 went: Some(went),

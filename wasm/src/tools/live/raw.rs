@@ -118,12 +118,12 @@ impl LiveRawHost {
     /// The report ([`FinalReport`]).
     pub fn report(&self, stopped: bool, ms: f64) -> Result<JsValue, JsError> {
         let report = self.host.report(stopped);
-        let RawReport { sent, packets, stood_count, .. } = report;
+        let RawReport { sent, packets, standstill_count, .. } = report;
         object(&FinalReport {
             text: report.to_string(),
             sent,
             packets,
-            stood: stood_count,
+            stood: standstill_count,
             left_ms: self.host.left_ns(nanos(ms)) as f64 / 1e6,
         })
     }

@@ -5,7 +5,7 @@
 
 use stepscope_peripheral::{signal::MAX_CHANNELS, wire::packet::ChannelCommand};
 
-/// Two lists agree again after so many equal ticks.
+/// Equal ticks after which two lists agree again.
 const SAME: usize = 3;
 /// Maximum ticks to search for that.
 const FAR: usize = 64;
@@ -16,60 +16,61 @@ pub(super) struct Alignment {
     pub(super) wrong: u64,
     /// Executed but not commanded, or executed twice.
     pub(super) extra: u64,
-    /// Ordered and not executed.
+    /// Commanded but not executed.
     pub(super) missing: u64,
     pub(super) wrong_steps: u64,
     pub(super) missing_steps: u64,
 }
 
 impl Alignment {
-    pub(super) fn of(ordered: &[u8], executed: &[u8], channels: usize) -> Self {
+    pub(super) fn of(commanded: &[u8], executed: &[u8], channels: usize) -> Self {
         let mut found = Self::default();
-        let (mut ordered, mut executed) = (ordered, executed);
-        while !(ordered.is_empty() && executed.is_empty()) {
-            let same = ordered
+        let (mut commanded, mut executed) = (commanded, executed);
+        while !(commanded.is_empty() && executed.is_empty()) {
+            let same = commanded
                 .chunks(channels)
                 .zip(executed.chunks(channels))
-                .take_while(|(ordered, executed)| ordered == executed);
+                .take_while(|(commanded, executed)| commanded == executed);
             let same = channels * same.count();
-            (ordered, executed) = (rest(ordered, same), rest(executed, same));
-            let (left, put) = difference(ordered, executed, channels);
-            found.take(part(ordered, left * channels), part(executed, put * channels), channels);
-            (ordered, executed) = (rest(ordered, left * channels), rest(executed, put * channels));
+            (commanded, executed) = (rest(commanded, same), rest(executed, same));
+            let (left, put) = difference(commanded, executed, channels);
+            found.take(part(commanded, left * channels), part(executed, put * channels), channels);
+            (commanded, executed) = (rest(commanded, left * channels), rest(executed, put * channels));
         }
         found
     }
 
-    fn take(&mut self, ordered: &[u8], executed: &[u8], channels: usize) {
-        let both = ordered.len().min(executed.len());
+    fn take(&mut self, commanded: &[u8], executed: &[u8], channels: usize) {
+        let both = commanded.len().min(executed.len());
         self.wrong += (both / channels) as u64;
-        self.missing += ((ordered.len() - both) / channels) as u64;
+        self.missing += ((commanded.len() - both) / channels) as u64;
         self.extra += ((executed.len() - both) / channels) as u64;
-        self.missing_steps += rest(ordered, both).iter().map(|&byte| steps(byte).unsigned_abs()).sum::<u64>();
+        self.missing_steps +=
+            rest(commanded, both).iter().map(|&byte| steps(byte).unsigned_abs()).sum::<u64>();
         self.wrong_steps += rest(executed, both).iter().map(|&byte| steps(byte).unsigned_abs()).sum::<u64>();
-        let pairs = ordered.iter().zip(executed);
+        let pairs = commanded.iter().zip(executed);
         self.wrong_steps += pairs.map(|(&one, &other)| steps(one).abs_diff(steps(other))).sum::<u64>();
     }
 }
 
 /// The smallest number of ticks of both lists after which they agree.
-fn difference(ordered: &[u8], executed: &[u8], channels: usize) -> (usize, usize) {
-    let (most_left, most_put) = (ordered.len() / channels, executed.len() / channels);
+fn difference(commanded: &[u8], executed: &[u8], channels: usize) -> (usize, usize) {
+    let (max_left, max_put) = (commanded.len() / channels, executed.len() / channels);
     let agree = |left: usize, put: usize| {
-        let one = rest(ordered, left * channels).chunks(channels).take(SAME);
+        let one = rest(commanded, left * channels).chunks(channels).take(SAME);
         one.eq(rest(executed, put * channels).chunks(channels).take(SAME))
     };
     let splits = |sum: usize| (0..=sum).map(move |left| (left, sum - left));
     (0..=FAR)
         .flat_map(splits)
-        .find(|&(left, put)| left <= most_left && put <= most_put && agree(left, put))
-        .unwrap_or((most_left.min(FAR), most_put.min(FAR)))
+        .find(|&(left, put)| left <= max_left && put <= max_put && agree(left, put))
+        .unwrap_or((max_left.min(FAR), max_put.min(FAR)))
 }
 
 /// Distance of positions from the sums of the ticks, in steps of all channels.
-pub(super) fn distance(ordered: &[u8], channels: usize, positions: &[i32; MAX_CHANNELS]) -> u64 {
+pub(super) fn distance(commanded: &[u8], channels: usize, positions: &[i32; MAX_CHANNELS]) -> u64 {
     let mut expected = [0_i64; MAX_CHANNELS];
-    for tick in ordered.chunks(channels) {
+    for tick in commanded.chunks(channels) {
         expected.iter_mut().zip(tick).for_each(|(sum, &byte)| *sum += steps(byte));
     }
     expected.iter().zip(positions).map(|(one, &other)| one.abs_diff(other.into())).sum()
@@ -107,17 +108,17 @@ mod tests {
             (&[], &[9, 9], [0, 2, 0, 18, 0]),
             (&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[2, 3, 4, 0x85, 6, 7, 8, 9, 9], [1, 1, 1, 19, 1]),
         ];
-        for (ordered, executed, expected) in rows {
-            let found = Alignment::of(ordered, executed, 1);
+        for (commanded, executed, expected) in rows {
+            let found = Alignment::of(commanded, executed, 1);
             let found = [found.wrong, found.extra, found.missing, found.wrong_steps, found.missing_steps];
-            assert_eq!(found, *expected, "{ordered:?} {executed:?}");
+            assert_eq!(found, *expected, "{commanded:?} {executed:?}");
         }
     }
 
     #[test]
     fn lists_that_never_agree_come_to_an_end() {
-        let ordered = [1; 1000];
-        let found = Alignment::of(&ordered, &[2; 700], 2);
+        let commanded = [1; 1000];
+        let found = Alignment::of(&commanded, &[2; 700], 2);
         assert_eq!((found.wrong, found.extra, found.missing), (350, 0, 150));
     }
 

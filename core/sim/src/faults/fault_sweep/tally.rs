@@ -1,4 +1,4 @@
-//! What the runs of a fault sweep came to, in numbers that add up.
+//! Counts of a fault sweep, which can be added.
 
 use crate::faults::fault_sweep::align::Alignment;
 use crate::hosts::framed_host::{Counts, GivenUp};
@@ -6,7 +6,7 @@ use core::ops::AddAssign;
 
 macro_rules! tally {
     ($($(#[doc = $doc:literal])+ $field:ident,)+) => {
-        /// Counts over the runs of some seeds.
+        /// Counts over several seeds.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Tally {
             $($(#[doc = $doc])+ pub $field: u64,)+
@@ -23,11 +23,11 @@ macro_rules! tally {
 tally! {
     /// Seeds that were run.
     seeds,
-    /// Seeds that executed a tick that was not commanded, or lost one that the host holds for done.
+    /// Seeds with an uncommanded executed tick, or a lost one that the host counts as done.
     wrong_seeds,
     /// Controllers that did not answer.
     given_up,
-    /// Those whose receivers all have rates at which bytes are heard.
+    /// Of these, those whose receivers all have rates in reach.
     given_up_in_reach,
     /// Controllers given up for another reason.
     stuck,
@@ -45,7 +45,7 @@ tally! {
     short,
     /// Frames with a byte too many (OVERLONG).
     overlong,
-    /// Bytes without a stop bit (FRAMING).
+    /// Framing errors (FRAMING).
     framing,
     /// Frames and packets that were whole and refused.
     refused,
@@ -56,7 +56,7 @@ tally! {
     /// Replies that the host did not get whole.
     replies_lost,
     /// Ticks commanded.
-    ordered,
+    commanded,
     /// Ticks executed.
     executed,
     /// Ticks that the host did not send, because it gave up or the run ended.
@@ -65,7 +65,7 @@ tally! {
     wrong,
     /// Ticks executed twice, or never commanded.
     duplicated,
-    /// Ticks lost, of those that the host holds for done; on a raw line, of all.
+    /// Lost ticks, of those that the host counts as done; on a raw line, of all.
     missing,
     /// Steps by which wrong ticks differ, and those of duplicated ticks.
     wrong_steps,
@@ -76,8 +76,7 @@ tally! {
 }
 
 impl Tally {
-    /// Whether a wrong tick was executed, or one was lost that the host holds for done.
-    #[must_use]
+    /// Whether a wrong tick was executed, or one was lost that the host counts as done.
     pub const fn is_wrong(&self) -> bool {
         self.wrong + self.duplicated + self.missing + self.position_error > 0
     }

@@ -1,4 +1,4 @@
-//! What a controller is seen to do in a fault sweep's run.
+//! Observes a controller in a fault sweep's run.
 
 use crate::faults::fault_sweep::Tally;
 use alloc::vec::Vec;
@@ -29,7 +29,7 @@ impl Sink for Watch {
 
     fn event(&mut self, _: Instant, event: Event) {
         let counted = &mut self.counted;
-        let place = match event {
+        let count = match event {
             Event::TickStart { commands } => return self.ticks.push(commands),
             Event::FramingError { .. } => &mut counted.framing,
             Event::Frame(FrameOutcome::BadCrc { .. }) => &mut counted.bad_check,
@@ -43,6 +43,6 @@ impl Sink for Watch {
             Event::Reply { .. } => &mut counted.replies,
             _ => return,
         };
-        *place += 1;
+        *count += 1;
     }
 }

@@ -1,38 +1,12 @@
-//! What the host of a framed line sends and when, in bytes and cycles (DESIGN A6, A9).
+//! The host's protocol on a framed line, in bytes and cycles (DESIGN A6, A9).
 //!
 //! ```text
-//! poll ── a frame ── sent ── hear, byte by byte ── a reply ── ten bit times ── poll
+//! poll ── a frame ── sent ── receive, byte by byte ── a reply ── ten bit times ── poll
 //!                      └── time-out ── ten bit times ── poll: the same frame, after a delimiter
 //! ```
 //!
-//! Without line, port and clock: the caller polls at the [`deadline`](Conversation::deadline), sends the frame, and reports when its
-//! last stop bit has left and what is heard. Simulation, command and page share it.
-//!
-//! ```
-//! use stepscope_peripheral::{protocol::{Kind, Reply, State, Status}, signal::Positions, units::{Cycles, Instant}};
-//! use stepscope_scenario::Host;
-//! use stepscope_sim::framed_host::{Conversation, Job, Progress};
-//!
-//! // One tick without steps, for a controller that answers at once.
-//! let job = Job { address: 0, channels: 1, tick: Cycles(100), queue_depth: 16, commands: [0x80].into() };
-//! let mut host = Conversation::new(vec![job], &Host::default(), Cycles(16), Instant(1));
-//! let (mut seq, mut asked) = (0, Vec::new());
-//! while !host.is_over() {
-//!     let now = host.deadline();
-//!     let Some(frame) = host.poll(now) else { continue };
-//!     host.sent(now + Cycles(160 * frame.len() as u64));
-//!     let kind = [Kind::Status, Kind::Positions, Kind::Ticks, Kind::Status, Kind::Positions][asked.len()];
-//!     seq += u8::from(kind == Kind::Ticks);
-//!     let status =
-//!         Status { state: State::Ready, free: 16, expected_seq: seq, faults: 0, ticks_done: seq.into() };
-//!     let positions = (kind == Kind::Positions).then(|| Positions::new(&[7]).expect("one channel"));
-//!     for byte in (Reply { address: 0, answer: Ok(kind), status }).emit(positions.as_ref()) {
-//!         host.hear(byte, now + Cycles(9000));
-//!     }
-//!     asked.push(kind);
-//! }
-//! assert_eq!(host.progress().next(), Some(Progress::Done));
-//! ```
+//! It has no line, port or clock: the caller polls at the [`deadline`](Conversation::deadline), sends the frame, and
+//! reports its last stop bit and the received bytes. Simulation, command and page share it.
 
 use super::peer::{GivenUp, Job, Known, Peer, Progress};
 use alloc::vec::Vec;
@@ -54,9 +28,8 @@ const _: () = assert!(TIMEOUT_BITS > 11 + BYTE_BITS * NAK_LEN as u64);
 /// No exchange begins later, so that the longest wait ends before [`END_OF_TIME`].
 const LAST_BEGIN: u64 = END_OF_TIME - (1 << 46);
 
-/// What the host counted.
+/// The host's counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Counts {
     pub frames: u64,
     pub repeated: u64,
@@ -90,7 +63,7 @@ pub struct Conversation {
     attempts: u8,
     pub(super) peers: Vec<Peer>,
     phase: Phase,
-    /// Ten bit times after the last exchange.
+    /// When the line is free: ten bit times after the last exchange.
     quiet_from: Instant,
     deframer: Deframer,
     counts: Counts,
@@ -120,15 +93,14 @@ impl Conversation {
         self
     }
 
-    /// For a real line: each job begins with a tick without steps that the controller has to confirm. From then on a
-    /// reset shows in its sequence number and its count of ticks.
+    /// For a real line: each job begins with a tick without steps that the controller must confirm. After that, a reset
+    /// shows in its sequence number and its count of ticks.
     #[must_use]
     pub fn with_opening_tick(mut self) -> Self {
         self.peers.iter_mut().for_each(|peer| peer.opening_tick = true);
         self
     }
 
-    /// Progress per controller.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.peers.iter().map(|peer| peer.progress)
     }
@@ -153,26 +125,19 @@ impl Conversation {
         self.peers.get_mut(job).map_or_else(Vec::new, |peer| peer.sums(ticks))
     }
 
-    /// What it has counted.
-    #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Whether it has finished.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.phase == Phase::Over
     }
 
-    /// Whether it waits for a reply.
-    #[must_use]
     pub const fn is_waiting(&self) -> bool {
         matches!(self.phase, Phase::Waiting { .. })
     }
 
     /// The job whose frame is being sent or waits for its reply, and the frame's kind.
-    #[must_use]
     pub const fn under_way(&self) -> Option<(usize, Kind)> {
         match self.phase {
             Phase::Sending(exchange) | Phase::Waiting { exchange, .. } => {
@@ -182,9 +147,8 @@ impl Conversation {
         }
     }
 
-    /// The cycle in which to call [`Self::poll`] if nothing is heard before; [`Instant::NEVER`] while a frame is sent
+    /// The cycle in which to call [`Self::poll`] if nothing is received before; [`Instant::NEVER`] while a frame is sent
     /// and at the end.
-    #[must_use]
     pub const fn deadline(&self) -> Instant {
         match self.phase {
             Phase::Pausing { until } | Phase::Waiting { until, .. } => until,
@@ -216,17 +180,17 @@ impl Conversation {
     }
 
     pub(super) fn timeout_of(&self, kind: Kind, channels: u8) -> Cycles {
-        let further = (reply_len(kind, channels) - NAK_LEN) as u64;
-        Cycles(self.timeout.0 + BYTE_BITS * further * self.bit.0)
+        let additional = (reply_len(kind, channels) - NAK_LEN) as u64;
+        Cycles(self.timeout.0 + BYTE_BITS * additional * self.bit.0)
     }
 
-    /// A byte was heard in cycle `now`.
-    pub fn hear(&mut self, byte: u8, now: Instant) {
-        self.hear_unless(byte, now, || false);
+    /// A byte was received in cycle `now`.
+    pub fn receive(&mut self, byte: u8, now: Instant) {
+        self.receive_unless(byte, now, || false);
     }
 
-    /// As [`Self::hear`]; a reply is dropped where `misses`.
-    pub(super) fn hear_unless(&mut self, byte: u8, now: Instant, misses: impl FnOnce() -> bool) {
+    /// As [`Self::receive`]; a reply is dropped where `misses`.
+    pub(super) fn receive_unless(&mut self, byte: u8, now: Instant, misses: impl FnOnce() -> bool) {
         let Phase::Waiting { exchange: Exchange { peer: index, kind, ticks }, .. } = self.phase else {
             return;
         };
@@ -255,8 +219,8 @@ impl Conversation {
         }
     }
 
-    /// Stops: the pending exchange ends, then every unfinished controller gets STOP until it acknowledges it, STATUS
-    /// and POSITIONS.
+    /// Stops: after the pending exchange every unfinished controller gets STOP until it acknowledges it, then STATUS and
+    /// POSITIONS.
     pub fn stop(&mut self, now: Instant) {
         self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.stop(now));
         if let Phase::Pausing { .. } = self.phase {
@@ -264,7 +228,7 @@ impl Conversation {
         }
     }
 
-    /// A host that crashed keeps only its ticks and where it began.
+    /// A crashed host restarts with its ticks and its start.
     pub(super) fn crash(&mut self, now: Instant) {
         self.counts.crashes += 1;
         // A reply of the maximum length may be on the line.
@@ -324,5 +288,46 @@ impl Conversation {
         self.counts.frames += 1;
         self.phase = Phase::Sending(Exchange { peer: index, kind, ticks });
         Some(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_job_of_one_tick_is_done() {
+        use crate::framed_host::{Conversation, Job, Progress};
+        use stepscope_peripheral::{
+            protocol::{Kind, Reply, State, Status},
+            signal::Positions,
+            units::{Cycles, Instant},
+        };
+        use stepscope_scenario::Host;
+
+        // One tick without steps, for a controller that answers at once.
+        let job =
+            Job { address: 0, channels: 1, tick: Cycles(100), queue_depth: 16, commands: [0x80].into() };
+        let mut host = Conversation::new(vec![job], &Host::default(), Cycles(16), Instant(1));
+        let (mut seq, mut asked) = (0, Vec::new());
+        while !host.is_over() {
+            let now = host.deadline();
+            let Some(frame) = host.poll(now) else { continue };
+            host.sent(now + Cycles(160 * frame.len() as u64));
+            let kind =
+                [Kind::Status, Kind::Positions, Kind::Ticks, Kind::Status, Kind::Positions][asked.len()];
+            seq += u8::from(kind == Kind::Ticks);
+            let status = Status {
+                state: State::Ready,
+                free: 16,
+                expected_seq: seq,
+                faults: 0,
+                ticks_done: seq.into(),
+            };
+            let positions = (kind == Kind::Positions).then(|| Positions::new(&[7]).expect("one channel"));
+            for byte in (Reply { address: 0, answer: Ok(kind), status }).emit(positions.as_ref()) {
+                host.receive(byte, now + Cycles(9000));
+            }
+            asked.push(kind);
+        }
+        assert_eq!(host.progress().next(), Some(Progress::Done));
     }
 }

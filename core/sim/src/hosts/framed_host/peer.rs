@@ -1,5 +1,4 @@
-//! A controller as the host of a framed line knows it: its job, how far it is, and what follows from
-//! its replies.
+//! The host's state of one controller on a framed line: its job, its progress, and what its replies change.
 
 use super::tick_sums::TickSums;
 use alloc::{rc::Rc, vec::Vec};
@@ -10,9 +9,7 @@ use stepscope_peripheral::wire::frame::{self, Kind, Reason, State, Status};
 use stepscope_peripheral::wire::packet::MAX_STEPS;
 use stepscope_scenario::Host as Settings;
 
-/// The job of one controller.
 #[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Job {
     pub address: u8,
     /// Its channels: the bytes of a tick.
@@ -24,20 +21,17 @@ pub struct Job {
 }
 
 impl Job {
-    /// How many ticks.
-    #[must_use]
     pub fn ticks(&self) -> u32 {
         (self.commands.len() / usize::from(self.channels.max(1))) as u32
     }
 
     /// Maximum ticks per frame: half of the queue, so that the other half runs meanwhile.
-    #[must_use]
     pub fn ticks_per_frame(&self, settings: &Settings) -> u8 {
         settings.ticks_per_frame.min(frame::MAX_TICKS).min(self.queue_depth / 2).max(1)
     }
 }
 
-/// How far the host has come with one controller.
+/// The host's progress with one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// Reads the sequence number and the ticks done.
@@ -54,7 +48,7 @@ pub enum Progress {
     Verifying,
     /// Every tick was done, and the positions confirm it.
     Done,
-    /// Every tick was done by the controller's own count; it does not know POSITIONS.
+    /// Every tick was done by the controller's own count; it does not support POSITIONS.
     Counted,
     /// Sends STOP until it is acknowledged, then STATUS and POSITIONS.
     Stopping,
@@ -64,13 +58,12 @@ pub enum Progress {
 
 /// Why the host gave up on a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum GivenUp {
     /// No answer to any attempt.
     NoReply,
     Stopped,
     Refused(Reason),
-    /// It is idle and has done fewer ticks than it acknowledged.
+    /// Idle, with fewer ticks done than acknowledged.
     TicksMissing,
     /// Its positions are not the sums of its ticks.
     Displaced {
@@ -79,22 +72,20 @@ pub enum GivenUp {
         ticks: u32,
         /// The sums of these ticks.
         expected: i32,
-        told: i32,
+        reported: i32,
     },
     /// It has done more ticks than were commanded: it was reset, or another host drives it.
     OtherTicks {
         /// Its count since the first tick, wrapping.
         done: u32,
-        ordered: u32,
+        commanded: u32,
     },
     /// Its sequence number or its count of ticks went back.
     Reset,
     /// It has another number of channels than the ticks.
     OtherChannels {
-        /// Channels of the ticks.
         expected: u8,
-        /// Channels it reports.
-        told: u8,
+        reported: u8,
     },
     /// The host was stopped, and the controller has acknowledged STOP.
     Interrupted,
@@ -103,7 +94,6 @@ pub enum GivenUp {
 }
 
 impl Progress {
-    /// Its name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -128,25 +118,22 @@ impl fmt::Display for GivenUp {
             Self::Stopped => f.write_str("it is stopped"),
             Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
             Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
-            Self::Displaced { channel, ticks, expected, told } => {
+            Self::Displaced { channel, ticks, expected, reported } => {
                 let s = if *ticks == 1 { "" } else { "s" };
-                write!(
-                    f,
-                    "after {ticks} tick{s} channel {channel} stands at {told}, and its ticks lead to {expected}"
-                )
+                write!(f, "after {ticks} tick{s} channel {channel} is at {reported} instead of {expected}")
             }
-            Self::OtherTicks { done, ordered } => {
+            Self::OtherTicks { done, commanded } => {
                 write!(
                     f,
-                    "it counts {done} ticks since it was opened, and {ordered} were ordered: it was reset, or another host drives it"
+                    "it counts {done} ticks since the start, and {commanded} were commanded: it was reset, or another host drives it"
                 )
             }
             Self::Reset => f.write_str("it was reset during the job, or another host drives it"),
-            Self::OtherChannels { expected, told } => {
-                write!(f, "it tells positions of {told} channels, and its ticks are for {expected}")
+            Self::OtherChannels { expected, reported } => {
+                write!(f, "it reports positions of {reported} channels, and its ticks are for {expected}")
             }
-            Self::Interrupted => f.write_str("its host was told to stop"),
-            Self::OutOfTime => f.write_str("the longest time of a run is over"),
+            Self::Interrupted => f.write_str("its host was stopped"),
+            Self::OutOfTime => f.write_str("the maximum length of a run is over"),
         }
     }
 }
@@ -155,23 +142,22 @@ impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::GivenUp(why) => write!(f, "given up: {why}"),
-            Self::Counted => f.write_str("done by its count of ticks; it does not tell its positions"),
+            Self::Counted => f.write_str("done by its count of ticks; it does not report its positions"),
             progress => f.write_str(progress.name()),
         }
     }
 }
 
-/// What a controller has reported.
+/// The reports of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Known {
-    pub opened: Option<Status>,
+    pub opening: Option<Status>,
     /// Its status after the opening tick of a real line.
     pub started: Option<Status>,
     pub last: Option<Status>,
     /// Ticks of the job that it has done, by the last plausible reply.
     done: Option<u32>,
-    pub opened_at: Option<Positions>,
+    pub opening_positions: Option<Positions>,
     pub positions: Option<Positions>,
     pub hides_positions: bool,
     pub stop_acknowledged: bool,
@@ -179,13 +165,12 @@ pub struct Known {
 
 impl Known {
     /// Ticks of the job that the controller reported as done; after a reset, those reported before.
-    #[must_use]
     pub const fn ticks_done(&self) -> Option<u32> {
         self.done
     }
 
     fn counted(&self, status: Status) -> Option<u32> {
-        let began = self.started.or(self.opened)?;
+        let began = self.started.or(self.opening)?;
         Some(status.ticks_done.wrapping_sub(began.ticks_done))
     }
 }
@@ -194,9 +179,9 @@ impl Known {
 pub(super) struct Peer {
     pub(super) job: Job,
     sums: TickSums,
-    pub(super) most: u32,
+    pub(super) max: u32,
     pub(super) progress: Progress,
-    /// While it is stopped: the frame that is due.
+    /// While it stops: the frame that is due.
     stop_stage: Kind,
     pub(super) known: Known,
     /// Invariant: at most the ticks of the job.
@@ -220,7 +205,7 @@ pub(super) struct Peer {
 impl Peer {
     pub(super) fn new(job: Job, settings: &Settings, start: Instant) -> Self {
         Self {
-            most: job.ticks_per_frame(settings).into(),
+            max: job.ticks_per_frame(settings).into(),
             sums: TickSums::new(Rc::clone(&job.commands), job.channels),
             progress: Progress::Opening,
             stop_stage: Kind::Stop,
@@ -257,7 +242,7 @@ impl Peer {
     /// The frame that is due: its kind and number of ticks.
     pub(super) fn due(&self) -> (Kind, u32) {
         match self.progress {
-            Progress::Filling => (Kind::Ticks, self.most.min(self.free).min(self.left()).max(1)),
+            Progress::Filling => (Kind::Ticks, self.max.min(self.free).min(self.left()).max(1)),
             // The opening tick.
             Progress::Starting if !self.awaits_opening_tick => (Kind::Ticks, 0),
             Progress::Locating | Progress::Verifying => (Kind::Positions, 0),
@@ -317,7 +302,7 @@ impl Peer {
             }
         }
         let before = self.known.done;
-        let counted = self.told(status);
+        let counted = self.note_status(status);
         if self.progress == Progress::Stopping {
             self.after_stop(kind);
             return Cycles(0);
@@ -351,17 +336,18 @@ impl Peer {
                 self.progress = if verified { Progress::Verifying } else { Progress::Counted };
             }
             Progress::Confirming if ready => {
-                let (done, ordered) = (counted.unwrap_or(0), self.job.ticks());
-                let other = GivenUp::OtherTicks { done, ordered };
-                self.progress = Progress::GivenUp(if done < ordered { GivenUp::TicksMissing } else { other });
+                let (done, commanded) = (counted.unwrap_or(0), self.job.ticks());
+                let other = GivenUp::OtherTicks { done, commanded };
+                self.progress =
+                    Progress::GivenUp(if done < commanded { GivenUp::TicksMissing } else { other });
             }
             Progress::Verifying if ready && self.is_where_it_was(status) => {
                 self.progress = self.located(positions).map_or(Progress::Done, Progress::GivenUp);
             }
-            // Another host moves it: open or confirm it again when it is idle.
+            // Another host moves it: open or confirm again when idle.
             Progress::Locating => {
                 self.progress = Progress::Opening;
-                if self.known.opened_at.is_none() {
+                if self.known.opening_positions.is_none() {
                     self.forget();
                 }
                 return self.job.tick;
@@ -380,17 +366,17 @@ impl Peer {
 
     /// The controller is idle: finds its sequence number and the first tick that is not done.
     fn open(&mut self, status: Status) {
-        let base = self.known.opened.get_or_insert(status).ticks_done;
-        let (known, ordered) = (self.acknowledged, self.job.ticks());
+        let base = self.known.opening.get_or_insert(status).ticks_done;
+        let (known, commanded) = (self.acknowledged, self.job.ticks());
         let done = status.ticks_done.wrapping_sub(base);
-        self.acknowledged = done.min(ordered);
+        self.acknowledged = done.min(commanded);
         if self.acknowledged > known {
             self.since_progress = 0;
         }
         self.seq = status.expected_seq;
         self.known.done = Some(self.acknowledged);
         self.progress = match self.known.hides_positions {
-            _ if done > ordered => Progress::GivenUp(GivenUp::OtherTicks { done, ordered }),
+            _ if done > commanded => Progress::GivenUp(GivenUp::OtherTicks { done, commanded }),
             true => self.first_stage(),
             false => Progress::Locating,
         };
@@ -402,7 +388,7 @@ impl Peer {
 
     /// Whether it has done the opening ticks and nothing else.
     fn did_opening_ticks(&self, status: Status) -> bool {
-        let done = self.known.opened.map(|opened| status.ticks_done.wrapping_sub(opened.ticks_done));
+        let done = self.known.opening.map(|opening| status.ticks_done.wrapping_sub(opening.ticks_done));
         done == Some(self.opening_ticks) && status.expected_seq == self.seq
     }
 
@@ -419,19 +405,19 @@ impl Peer {
     /// Starts over; nothing of the job has been sent.
     fn forget(&mut self) {
         self.progress = Progress::Opening;
-        (self.known.opened, self.known.opened_at, self.known.done) = (None, None, None);
+        (self.known.opening, self.known.opening_positions, self.known.done) = (None, None, None);
         (self.acknowledged, self.opening_ticks, self.awaits_opening_tick) = (0, 0, false);
     }
 
-    /// Takes note of a status; returns its count of ticks since the first one.
-    fn told(&mut self, status: Status) -> Option<u32> {
+    /// Stores a status; returns its count of ticks since the first one.
+    fn note_status(&mut self, status: Status) -> Option<u32> {
         self.known.last = Some(status);
         let counted = self.known.counted(status);
         // Then the last ticks may have been taken without the host's knowledge.
         let knows_less = matches!(self.progress, Progress::Opening | Progress::Stopping);
-        let most = if knows_less { self.job.ticks() } else { self.acknowledged };
+        let max = if knows_less { self.job.ticks() } else { self.acknowledged };
         let can_be = knows_less || status.expected_seq == self.seq;
-        if can_be && counted.is_some_and(|counted| counted <= most) {
+        if can_be && counted.is_some_and(|counted| counted <= max) {
             self.known.done = counted;
         }
         counted
@@ -442,19 +428,19 @@ impl Peer {
     }
 
     /// Compares positions with the sums of the acknowledged ticks. The first ones are the start.
-    fn located(&mut self, told: Option<Positions>) -> Option<GivenUp> {
-        let told = told?;
-        let (expected, told_channels) = (self.job.channels, told.as_slice().len() as u8);
-        if told_channels != expected {
-            return Some(GivenUp::OtherChannels { expected, told: told_channels });
+    fn located(&mut self, reported: Option<Positions>) -> Option<GivenUp> {
+        let reported = reported?;
+        let (expected, reported_channels) = (self.job.channels, reported.as_slice().len() as u8);
+        if reported_channels != expected {
+            return Some(GivenUp::OtherChannels { expected, reported: reported_channels });
         }
-        self.known.opened_at.get_or_insert(told);
+        self.known.opening_positions.get_or_insert(reported);
         let ticks = self.acknowledged;
         let expected = self.expected(ticks)?;
-        let mut channels = (0..).zip(told.as_slice().iter().zip(expected));
+        let mut channels = (0..).zip(reported.as_slice().iter().zip(expected));
         channels
-            .find(|(_, (told, expected))| **told != *expected)
-            .map(|(channel, (&told, expected))| GivenUp::Displaced { channel, ticks, expected, told })
+            .find(|(_, (reported, expected))| **reported != *expected)
+            .map(|(channel, (&reported, expected))| GivenUp::Displaced { channel, ticks, expected, reported })
     }
 
     pub(super) fn sums(&mut self, ticks: u32) -> Vec<i32> {
@@ -462,7 +448,7 @@ impl Peer {
     }
 
     pub(super) fn expected(&mut self, ticks: u32) -> Option<Vec<i32>> {
-        let began = self.known.opened_at?;
+        let began = self.known.opening_positions?;
         let sums = self.sums.after(ticks).iter();
         Some(began.as_slice().iter().zip(sums).map(|(began, sum)| began.wrapping_add(*sum)).collect())
     }
@@ -494,7 +480,7 @@ impl Peer {
             let waiting = self.queued(self.free);
             return Cycles(waiting.0 + self.job.tick.0);
         }
-        let wanted = self.most.min(self.left());
+        let wanted = self.max.min(self.left());
         let missing = wanted.saturating_sub(self.free);
         self.free = self.free.max(wanted);
         Cycles(u64::from(missing) * self.job.tick.0)
@@ -502,7 +488,7 @@ impl Peer {
 
     /// Takes a refusal; returns the time until the next frame.
     pub(super) fn refused(&mut self, kind: Kind, reason: Reason, status: Status) -> Cycles {
-        self.told(status);
+        self.note_status(status);
         let unknown = kind == Kind::Positions && reason == Reason::UnknownKind;
         self.known.hides_positions |= unknown;
         match (self.progress, reason) {

@@ -1,5 +1,5 @@
-//! What is known of each controller at the end of a conversation, and what is not (LIVE H3). The command and the page say it in
-//! these words; "done" is nothing that a controller has not told.
+//! The report at the end of a conversation, for the command and the page (LIVE H3). "Done" is only what a controller has
+//! confirmed.
 
 use super::{Conversation, Counts, Known, Progress};
 use crate::Experiment;
@@ -25,18 +25,15 @@ pub fn for_real_line(mut scenario: Scenario) -> Scenario {
     scenario
 }
 
-/// What is known of one controller.
 #[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct ReportRow {
     pub controller: usize,
     pub address: u8,
     pub ticks: u32,
     pub acknowledged: u32,
     pub progress: Progress,
-    /// Sums of the ticks that it reports as done.
     pub expected: Option<Vec<i32>>,
-    /// Distance of these ticks, and with the next one, which STOP may have cut anywhere.
+    /// Travel of these ticks, and with the next one, which STOP may have interrupted anywhere.
     pub bounds: Option<(Vec<i32>, Vec<i32>)>,
     pub done: Option<u32>,
     pub known: Known,
@@ -45,15 +42,13 @@ pub struct ReportRow {
 
 impl ReportRow {
     /// Fault flags that are new since the start.
-    #[must_use]
     pub fn new_faults(&self) -> Vec<String> {
         let bits = |status: Option<Status>| status.map_or(0, |status| status.faults);
-        let new = bits(self.known.last) & !bits(self.known.opened);
+        let new = bits(self.known.last) & !bits(self.known.opening);
         Faults::from_bits(new).names().map(|name| name.to_string()).collect()
     }
 
-    /// Why the job is not known to be done; `None` where it is.
-    #[must_use]
+    /// Why the job is not confirmed; `None` if it is.
     pub fn doubt(&self) -> Option<String> {
         let faults = self.new_faults();
         let controller = self.controller;
@@ -80,30 +75,30 @@ impl fmt::Display for ReportRow {
         writeln!(out, "controller {controller} address {address}: {progress}")?;
         match done {
             Some(done) => write!(out, "  ticks {done} of {ticks} done, {acknowledged} acknowledged")?,
-            None => write!(out, "  ticks {ticks}, none sent: it was never opened")?,
+            None => write!(out, "  ticks {ticks}, none sent: the job never started")?,
         }
         let counted = matches!(progress, Progress::Done | Progress::Counted);
         if !counted && done.is_none_or(|done| done < *ticks) {
-            write!(out, "; tick {} is the first not known to be done", done.unwrap_or(0))?;
+            write!(out, "; tick {} is the first that is not confirmed", done.unwrap_or(0))?;
         }
         writeln!(out)?;
         match (&known.positions, &self.expected) {
-            (Some(told), _) if *progress == Progress::Done => {
-                writeln!(out, "  positions {}: the sums of the ticks", list(told.as_slice()))?;
+            (Some(reported), _) if *progress == Progress::Done => {
+                writeln!(out, "  positions {}: the sums of the ticks", list(reported.as_slice()))?;
             }
-            (Some(told), Some(expected)) if known.stop_acknowledged => {
-                let (told, expected) = (list(told.as_slice()), list(expected));
-                writeln!(out, "  positions {told}; the ticks that are done lead to {expected}")?;
+            (Some(reported), Some(expected)) if known.stop_acknowledged => {
+                let (reported, expected) = (list(reported.as_slice()), list(expected));
+                writeln!(out, "  positions {reported}; expected after the ticks that are done: {expected}")?;
             }
-            (Some(told), _) => {
-                writeln!(out, "  positions {} when they were told last", list(told.as_slice()))?
+            (Some(reported), _) => {
+                writeln!(out, "  positions {} as last reported", list(reported.as_slice()))?
             }
             (None, _) if known.hides_positions => {
-                writeln!(out, "  it does not know POSITIONS: how far its motors went is not told")?;
-                if let Some((least, most)) = self.bounds.as_ref().filter(|_| known.stop_acknowledged) {
-                    let (least, most) = (list(least), list(most));
-                    let cut = "with all of the one that STOP cut short";
-                    writeln!(out, "  by the ticks that are done they went {least}, {cut} {most}")?;
+                writeln!(out, "  it does not support POSITIONS, so the distance is not confirmed")?;
+                if let Some((min, max)) = self.bounds.as_ref().filter(|_| known.stop_acknowledged) {
+                    let (min, max) = (list(min), list(max));
+                    let cut = "and with the tick that STOP interrupted";
+                    writeln!(out, "  the ticks that are done moved the motors by {min}, {cut} {max}")?;
                 }
             }
             _ => {}
@@ -122,23 +117,22 @@ impl fmt::Display for ReportRow {
     }
 }
 
-/// What is known of all controllers with a job.
 #[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Report {
     pub rows: Vec<ReportRow>,
     pub counts: Counts,
 }
 
 impl Report {
-    /// From a conversation as it stands; `stopped`: the host was stopped.
+    /// `stopped`: the host was stopped.
     pub fn new(experiment: &Experiment, host: &mut Conversation, stopped: bool) -> Self {
         let mut rows = Vec::new();
         for controller in 0..experiment.controllers() {
             let Some(job) = experiment.job(controller) else { continue };
-            let told = host.known().nth(job).map(|(told, known)| (told.address, told.ticks(), *known));
+            let reported =
+                host.known().nth(job).map(|(reported, known)| (reported.address, reported.ticks(), *known));
             let ends = host.progress().nth(job).zip(host.acknowledged().nth(job));
-            let (Some((address, ticks, known)), Some((progress, acknowledged))) = (told, ends) else {
+            let (Some((address, ticks, known)), Some((progress, acknowledged))) = (reported, ends) else {
                 continue;
             };
             let done = known.ticks_done().map(|done| done.min(ticks));
@@ -161,8 +155,7 @@ impl Report {
         Self { rows, counts: host.counts() }
     }
 
-    /// The first doubt of a controller; `None` where all jobs are done.
-    #[must_use]
+    /// The first doubt of a controller; `None` if all jobs are done.
     pub fn doubt(&self) -> Option<String> {
         self.rows.iter().find_map(ReportRow::doubt)
     }
@@ -181,9 +174,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// How far a conversation is.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Standing {
     pub progress: Vec<Progress>,
     pub accepted: u64,
@@ -193,7 +184,6 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Of a conversation now.
     #[must_use]
     pub fn new(host: &Conversation) -> Self {
         let (mut done, mut ticks) = (0, 0);

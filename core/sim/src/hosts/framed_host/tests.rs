@@ -148,7 +148,7 @@ fn a_bit_that_is_turned_over_costs_a_repetition_and_no_step() {
 }
 
 #[test]
-fn a_host_that_dies_within_a_frame_goes_on_with_the_tick_that_is_due() {
+fn a_crashed_host_continues_with_the_next_tick() {
     each_byte(|frame, byte| {
         for sent in [byte, byte + 1] {
             let counts =
@@ -189,7 +189,7 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
         host.sent(Instant(8));
         let status = Status { state: State::Moving, free: 14, expected_seq, faults: 0, ticks_done: 0 };
         for byte in (Reply { address: 0, answer: Ok(Kind::Ticks), status }).emit(None) {
-            host.hear(byte, Instant(9));
+            host.receive(byte, Instant(9));
         }
         assert_eq!(host.acknowledged().next(), Some(acknowledged), "seq {expected_seq}");
         assert_eq!(host.counts().replies, u64::from(acknowledged > 0));
@@ -197,7 +197,7 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
 }
 
 #[test]
-fn a_controller_that_never_answers_is_given_up_and_has_done_what_it_heard() {
+fn a_controller_without_replies_executes_what_it_receives() {
     for silent_from in 0..6 {
         let heard =
             |index: usize, bytes: &[u8]| if index < silent_from { bytes.to_vec() } else { Vec::new() };
@@ -209,7 +209,7 @@ fn a_controller_that_never_answers_is_given_up_and_has_done_what_it_heard() {
 }
 
 /// A controller of two channels that does at once what it is told.
-struct Told {
+struct Reported {
     seq: u8,
     ticks_done: u32,
     positions: Vec<i32>,
@@ -219,17 +219,18 @@ struct Told {
 /// Runs the job with a controller that answers at once, but for what `falsify` makes of it: its answer, or silence. Gives
 /// the kinds that were asked, and where the host ended.
 fn converse(
-    falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Told) -> Option<Result<Kind, Reason>>,
+    falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Reported) -> Option<Result<Kind, Reason>>,
 ) -> (Vec<Kind>, Progress, Known) {
-    let told = Told { seq: 7, ticks_done: 1000, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
-    converse_with(told, false, falsify)
+    let reported =
+        Reported { seq: 7, ticks_done: 1000, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+    converse_with(reported, false, falsify)
 }
 
 /// The same with a controller that has run before, and on request with an opening tick.
 fn converse_with(
-    mut told: Told,
+    mut reported: Reported,
     opening_tick: bool,
-    mut falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Told) -> Option<Result<Kind, Reason>>,
+    mut falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Reported) -> Option<Result<Kind, Reason>>,
 ) -> (Vec<Kind>, Progress, Known) {
     let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
     let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
@@ -248,20 +249,20 @@ fn converse_with(
             Some(Deframed::Frame(Frame { kind, body, .. })) => {
                 let kind = Kind::parse(kind).expect("it is one of the contract's");
                 if let Some(ticks) = Ticks::parse(body, 2).filter(|_| kind == Kind::Ticks) {
-                    if ticks.seq != told.seq {
-                        refused = ticks.seq != told.seq.wrapping_sub(1);
+                    if ticks.seq != reported.seq {
+                        refused = ticks.seq != reported.seq.wrapping_sub(1);
                         return Some(kind);
                     }
-                    told.seq = told.seq.wrapping_add(1);
-                    told.ticks_done = told.ticks_done.wrapping_add(ticks.count() as u32);
+                    reported.seq = reported.seq.wrapping_add(1);
+                    reported.ticks_done = reported.ticks_done.wrapping_add(ticks.count() as u32);
                     let orders = ticks.commands().chunks(2).flat_map(|tick| tick.iter().zip(0..));
                     for (&byte, channel) in orders {
                         let steps = i32::from(byte & 0x7f) * if byte & 0x80 == 0 { -1 } else { 1 };
-                        told.positions[channel] = told.positions[channel].wrapping_add(steps);
+                        reported.positions[channel] = reported.positions[channel].wrapping_add(steps);
                     }
                 }
                 if kind == Kind::Stop {
-                    told.state = State::Stopped;
+                    reported.state = State::Stopped;
                 }
                 Some(kind)
             }
@@ -269,17 +270,17 @@ fn converse_with(
         });
         let kind = kind.expect("a frame");
         asked.push(kind);
-        let Some(answer) = falsify(&mut host, asked.len() - 1, kind, &mut told) else { continue };
+        let Some(answer) = falsify(&mut host, asked.len() - 1, kind, &mut reported) else { continue };
         let answer = if refused { Err(Reason::BadSeq) } else { answer };
-        let Told { seq: expected_seq, ticks_done, state, .. } = told;
+        let Reported { seq: expected_seq, ticks_done, state, .. } = reported;
         let status = Status { state, free: 16, expected_seq, faults: 0, ticks_done };
         let positions =
-            (answer == Ok(Kind::Positions)).then(|| Positions::new(&told.positions).expect("some"));
+            (answer == Ok(Kind::Positions)).then(|| Positions::new(&reported.positions).expect("some"));
         now += Cycles(100);
         (Reply { address: 0, answer, status })
             .emit(positions.as_ref())
             .iter()
-            .for_each(|&byte| host.hear(byte, now));
+            .for_each(|&byte| host.receive(byte, now));
     }
     let known = *host.known().next().expect("one job").1;
     (asked, host.progress().next().expect("one job"), known)
@@ -294,29 +295,26 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
     // 1 + 3 + 2 to the right; 2, 4 and 1 to the left, through the end of 32 bits.
     assert_eq!(known.positions.expect("told").as_slice(), [3, i32::MAX - 7]);
     assert_eq!(
-        (known.opened_at.expect("told").as_slice(), known.ticks_done()),
+        (known.opening_positions.expect("told").as_slice(), known.ticks_done()),
         (&[-3, i32::MAX][..], Some(4))
     );
 
     // One step more on the second channel, at the end.
-    let (_, progress, _) = converse(|_, index, kind, told| {
-        told.positions[1] += i32::from(index == 4);
+    let (_, progress, _) = converse(|_, index, kind, reported| {
+        reported.positions[1] += i32::from(index == 4);
         Some(Ok(kind))
     });
-    let (channel, ticks, told) = (1, 4, i32::MAX - 6);
-    let displaced = GivenUp::Displaced { channel, ticks, expected: told - 1, told };
+    let (channel, ticks, reported) = (1, 4, i32::MAX - 6);
+    let displaced = GivenUp::Displaced { channel, ticks, expected: reported - 1, reported };
     assert_eq!(progress, Progress::GivenUp(displaced));
-    assert_eq!(
-        displaced.to_string(),
-        "after 4 ticks channel 1 stands at 2147483641, and its ticks lead to 2147483640"
-    );
+    assert_eq!(displaced.to_string(), "after 4 ticks channel 1 is at 2147483641 instead of 2147483640");
 
     // Another device than the ticks are for gets none.
-    let (asked, progress, _) = converse(|_, _, kind, told| {
-        told.positions = alloc::vec![0; 3];
+    let (asked, progress, _) = converse(|_, _, kind, reported| {
+        reported.positions = alloc::vec![0; 3];
         Some(Ok(kind))
     });
-    let other = GivenUp::OtherChannels { expected: 2, told: 3 };
+    let other = GivenUp::OtherChannels { expected: 2, reported: 3 };
     assert_eq!((asked.as_slice(), progress), (&[Status, Positions][..], Progress::GivenUp(other)));
 
     // One that does not know POSITIONS is asked once, and counted.
@@ -326,16 +324,16 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
     assert!(known.hides_positions && known.positions.is_none());
 
     // One that was reset, or is driven by another host too.
-    let (_, progress, _) = converse(|_, index, kind, told| {
-        told.ticks_done += u32::from(index == 3);
+    let (_, progress, _) = converse(|_, index, kind, reported| {
+        reported.ticks_done += u32::from(index == 3);
         Some(Ok(kind))
     });
-    assert_eq!(progress, Progress::GivenUp(GivenUp::OtherTicks { done: 5, ordered: 4 }));
+    assert_eq!(progress, Progress::GivenUp(GivenUp::OtherTicks { done: 5, commanded: 4 }));
 
     // Somebody moves it while it is looked at: it is opened once more.
-    let (asked, progress, _) = converse(|_, index, kind, told| {
-        told.state = if index == 1 { State::Moving } else { State::Ready };
-        told.ticks_done += u32::from(index == 2);
+    let (asked, progress, _) = converse(|_, index, kind, reported| {
+        reported.state = if index == 1 { State::Moving } else { State::Ready };
+        reported.ticks_done += u32::from(index == 2);
         Some(Ok(kind))
     });
     assert_eq!(asked, [[Status, Positions].as_slice(), &whole].concat());
@@ -383,8 +381,9 @@ fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_ever
     let counts = [0, 1, 1000, u32::MAX - 4, u32::MAX - 1, u32::MAX];
     for (seq, ticks_done) in numbers.into_iter().flat_map(|seq| counts.map(|count| (seq, count))) {
         let what = alloc::format!("seq {seq} ticks {ticks_done}");
-        let told = || Told { seq, ticks_done, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
-        let (asked, progress, known) = converse_with(told(), true, |_, _, kind, _| Some(Ok(kind)));
+        let reported =
+            || Reported { seq, ticks_done, positions: alloc::vec![-3, i32::MAX], state: State::Ready };
+        let (asked, progress, known) = converse_with(reported(), true, |_, _, kind, _| Some(Ok(kind)));
         assert_eq!(progress, Progress::Done, "{what}");
         assert_eq!(
             (known.ticks_done(), known.positions.expect("told").as_slice()),
@@ -401,17 +400,21 @@ fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_ever
         {
             for heard in [true, false] {
                 let mut steps = alloc::vec![0_i64; 2];
-                let mut before = told().positions;
-                let (_, progress, _) = converse_with(told(), true, |_, index, kind, told| {
-                    for ((steps, now), before) in steps.iter_mut().zip(&told.positions).zip(&before) {
+                let mut before = reported().positions;
+                let (_, progress, _) = converse_with(reported(), true, |_, index, kind, reported| {
+                    for ((steps, now), before) in steps.iter_mut().zip(&reported.positions).zip(&before) {
                         *steps += i64::from(now.wrapping_sub(*before));
                     }
                     let is_reset = index == first || index == again;
                     if is_reset {
-                        *told =
-                            Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+                        *reported = Reported {
+                            seq: 0,
+                            ticks_done: 0,
+                            positions: alloc::vec![0; 2],
+                            state: State::Ready,
+                        };
                     }
-                    before = told.positions.clone();
+                    before = reported.positions.clone();
                     (heard || !is_reset).then_some(Ok(kind))
                 });
                 let right = steps == [6, -7];
@@ -426,14 +429,26 @@ fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_ever
 
 #[test]
 fn after_a_reset_the_report_has_the_ticks_that_were_reported_before() {
-    let told = Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
-    let (_, progress, known) = converse_with(told, true, |_, index, kind, told| {
+    let reported = Reported { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+    let (_, progress, known) = converse_with(reported, true, |_, index, kind, reported| {
         if index == 4 {
-            *told = Told { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
+            *reported = Reported { seq: 0, ticks_done: 0, positions: alloc::vec![0; 2], state: State::Ready };
             return None;
         }
         Some(Ok(kind))
     });
     assert_eq!((progress, known.ticks_done()), (Progress::GivenUp(GivenUp::Reset), Some(0)));
     assert_eq!(GivenUp::Reset.to_string(), "it was reset during the job, or another host drives it");
+}
+
+#[test]
+fn a_framed_job_is_done() {
+    use crate::{Experiment, framed_host::Progress};
+    use stepscope_peripheral::signal::Record;
+
+    // The default motion over the framed protocol: opened, filled, confirmed.
+    let framed = r#"{ "line": { "protocol": "framed" } }"#;
+    let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
+    let host = run.host().expect("a framed line has one");
+    assert!(host.progress().all(|progress| progress == Progress::Done));
 }

@@ -1,10 +1,10 @@
-//! Where ticks lead: the sums of their steps, channel by channel, modulo 2^32 as position counters have them (DESIGN A3).
+//! The sums of ticks' steps per channel, modulo 2^32 like position counters (DESIGN A3).
 
 use alloc::rc::Rc;
 use stepscope_peripheral::signal::MAX_CHANNELS;
 use stepscope_peripheral::wire::packet::ChannelCommand;
 
-/// The sums of the first ticks of a job. They are kept, so that each tick is added once.
+/// The sums of the first ticks of a job, stored so that each tick is added once.
 #[derive(Clone, Debug)]
 pub(super) struct TickSums {
     commands: Rc<[u8]>,
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_are_summed_to_the_right_and_to_the_left_of_as_many_ticks_as_are_asked_for() {
+    fn steps_are_summed_over_the_requested_ticks() {
         let mut sums = TickSums::new([0x85, 0x02, 0x03, 0x81, 0xff, 0x7f].into(), 2);
         for (ticks, expected) in [(0, [0, 0]), (2, [2, -1]), (3, [129, -128]), (1, [5, -2])] {
             assert_eq!(sums.after(ticks), expected, "{ticks}");

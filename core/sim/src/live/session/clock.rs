@@ -1,19 +1,7 @@
-//! The clock of a session (LIVE H1): from monotonic time to cycles, and back where the machine could not keep up.
+//! The clock of a session: from monotonic time to cycles, set back when the machine does not keep up (LIVE H1).
 //!
 //! ```text
-//! cycle(t) = floor(t*clock_hz*pace) - what it was set back by
-//! ```
-//!
-//! ```
-//! use stepscope_peripheral::units::{Cycles, Instant};
-//! use stepscope_sim::session::{Pace, SessionClock};
-//!
-//! // 1 MHz in real time, up to 50 ms late.
-//! let mut clock = SessionClock::new(1_000_000, Pace::REAL_TIME, 50_000_000);
-//! assert_eq!(clock.target(2_000_000, Instant(0)), Instant(2000));
-//! // 200 ms later nothing has been run: 150 of them are left out.
-//! assert_eq!(clock.target(202_000_000, Instant(2000)), Instant(52_000));
-//! assert_eq!((clock.setbacks().count, clock.setbacks().cycles), (1, Cycles(150_000)));
+//! cycle(t) = floor(t*clock_hz*pace) - cycles that it was set back
 //! ```
 
 use core::{fmt, str::FromStr};
@@ -27,10 +15,9 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// As time goes.
     pub const REAL_TIME: Self = Self { millionths: 1_000_000 };
 
-    /// In millionths of real time; `None` where that is not 0.001 to 100.
+    /// In millionths of real time; `None` outside 0.001 to 100.
     #[must_use]
     pub fn new(millionths: u64) -> Option<Self> {
         (1000..=100_000_000).contains(&millionths).then_some(Self { millionths })
@@ -53,16 +40,12 @@ impl fmt::Display for Pace {
     }
 }
 
-/// How often and how far the clock was set back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say it")]
 pub struct Setbacks {
-    /// How often the machine did not keep up.
     pub count: u64,
     pub cycles: Cycles,
 }
 
-/// The clock.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
     clock_hz: u32,
@@ -85,8 +68,7 @@ impl SessionClock {
         u64::try_from(cycles / 1_000_000_000_000_000).unwrap_or(u64::MAX)
     }
 
-    /// Nanoseconds that so many cycles of the model take, rounded up.
-    #[must_use]
+    /// Nanoseconds that cycles of the model take, rounded up.
     pub fn nanos(&self, cycles: Cycles) -> u64 {
         let rate = u128::from(self.clock_hz.max(1)) * u128::from(self.pace.millionths);
         let ns = (u128::from(cycles.0) * 1_000_000_000_000_000).div_ceil(rate);
@@ -94,7 +76,6 @@ impl SessionClock {
     }
 
     /// Delay of an event behind its cycle.
-    #[must_use]
     pub fn late_ns(&self, elapsed_ns: u64, cycle: Instant) -> u64 {
         elapsed_ns.saturating_sub(self.nanos(Cycles(cycle.0 + self.setbacks.cycles.0)))
     }
@@ -112,8 +93,6 @@ impl SessionClock {
         Instant(now - excess)
     }
 
-    /// Where it was set back so far.
-    #[must_use]
     pub const fn setbacks(&self) -> Setbacks {
         self.setbacks
     }
@@ -143,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn set_backs_in_a_row_are_one_stretch_and_the_clock_never_goes_backwards() {
+    fn consecutive_setbacks_are_one_and_the_clock_never_runs_backward() {
         let mut clock = SessionClock::new(1000, Pace::REAL_TIME, 10_000_000);
         let mut reached = Instant(0);
         // Milliseconds, how far the model comes, stretches and their cycles afterwards.
@@ -153,5 +132,18 @@ mod tests {
             reached = target;
             assert_eq!(clock.setbacks(), Setbacks { count, cycles: Cycles(cycles) }, "{ms}");
         }
+    }
+
+    #[test]
+    fn a_late_clock_is_set_back() {
+        use crate::session::{Pace, SessionClock};
+        use stepscope_peripheral::units::{Cycles, Instant};
+
+        // 1 MHz in real time, up to 50 ms late.
+        let mut clock = SessionClock::new(1_000_000, Pace::REAL_TIME, 50_000_000);
+        assert_eq!(clock.target(2_000_000, Instant(0)), Instant(2000));
+        // 200 ms later nothing has been run: 150 of them are left out.
+        assert_eq!(clock.target(202_000_000, Instant(2000)), Instant(52_000));
+        assert_eq!((clock.setbacks().count, clock.setbacks().cycles), (1, Cycles(150_000)));
     }
 }

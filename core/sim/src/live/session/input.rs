@@ -1,5 +1,4 @@
-//! What a host has sent and the line has not taken yet (LIVE H1): a bounded buffer. While it is full nothing more is read, so that
-//! input waits in the system, and then the host does.
+//! A bounded buffer of bytes that wait for the line (LIVE H1). While it is full, nothing is read, so the host waits.
 
 use super::Session;
 use alloc::{collections::VecDeque, vec::Vec};
@@ -18,7 +17,7 @@ use stepscope_peripheral::units::Instant;
 /// // A byte takes 1389 cycles at 115200 baud.
 /// let until = session.now() + stepscope_peripheral::units::Cycles(10_000);
 /// input.feed(&mut session, until);
-/// assert_eq!((session.heard(), input.len()), (8, Input::CAPACITY - 8));
+/// assert_eq!((session.received(), input.len()), (8, Input::CAPACITY - 8));
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Input {
@@ -30,20 +29,14 @@ impl Input {
     /// Maximum number of bytes that wait: 1.4 s of a line at 115200 baud.
     pub const CAPACITY: usize = 16 << 10;
 
-    /// Free bytes.
-    #[must_use]
     pub fn room(&self) -> usize {
         Self::CAPACITY.saturating_sub(self.bytes.len())
     }
 
-    /// Waiting bytes.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether no byte waits.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -55,8 +48,8 @@ impl Input {
         count
     }
 
-    /// Hands over the bytes that begin on the line by cycle `until`. Called before each [`Session::advance`], it
-    /// leaves every byte in the cycle it would have if the session had received it at once.
+    /// Hands over the bytes that begin on the line by cycle `until`. If called before each [`Session::advance`], every byte
+    /// has the cycle that it would have if it had been received at once.
     pub fn feed(&mut self, session: &mut Session, until: Instant) {
         let count = session.fits_until(until, self.bytes.len());
         if count > 0 {

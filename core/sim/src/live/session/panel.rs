@@ -1,7 +1,7 @@
-//! Sessions of stand-alone controllers: there is no line, and somebody presses their buttons (LIVE H1, H2, H5).
+//! Sessions of stand-alone controllers: buttons instead of a line (LIVE H1, H2, H5).
 //!
 //! ```text
-//! behind cycle N:  enter start 1 ──> N + 1   a further change of start ──> N + 2
+//! behind cycle N:  enter start 1 ──> N + 1   another change of start ──> N + 2
 //! for 100 ms:      …  1 at N + 1, 0 at N + 1 + 100 ms, unless start changes before
 //! ```
 
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_comes_in_the_next_cycle_and_a_further_one_of_the_same_input_after_it() {
+    fn changes_of_an_input_take_consecutive_cycles() {
         let mut session = session(QUICK);
         to(&mut session, 99);
         for (signal, level, cycle) in [
@@ -154,13 +154,13 @@ mod tests {
     }
 
     #[test]
-    fn a_press_for_a_time_ends_in_its_cycle_whatever_rounds_there_are_unless_it_changes_before() {
+    fn a_timed_press_ends_in_its_cycle_unless_changed() {
         for round in [1, 7, 100_000] {
             let mut session = session(QUICK);
             to(&mut session, 99);
             let pressed = session.enter_for(0, (Signal::JogPlus, true), Cycles(3000));
             assert_eq!(pressed, Ok(Instant(100)));
-            assert!(!session.is_at_rest(), "it is to be let go");
+            assert!(!session.is_idle(), "it is to be let go");
             while session.now() < Instant(20_000) {
                 let next = session.now().0 + round;
                 to(&mut session, next.min(20_000));
@@ -188,7 +188,7 @@ mod tests {
         assert!(why.contains("limit_min") && why.contains("axis"), "{why}");
         assert_eq!(driven.enter(1, Change::Push(2)), Err(NotEntered::NoController));
         driven.receive(&[1, 2, 3]);
-        assert_eq!(driven.heard(), 0, "there is no line");
+        assert_eq!(driven.received(), 0, "there is no line");
         assert_eq!(session("{}").enter(0, switch), Err(NotEntered::NoController));
     }
 
@@ -201,7 +201,7 @@ mod tests {
         let mut session = session(&json);
         to(&mut session, 5000);
         assert_eq!(session.run().positions()[0], 0);
-        assert!(session.is_at_rest());
+        assert!(session.is_idle());
     }
 
     #[test]
@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_whose_panels_show_something_else_is_not_the_session() {
+    fn a_recording_with_other_panels_fails() {
         let mut session = session(QUICK);
         to(&mut session, 99);
         let _ = session.enter(0, Change::Level(Signal::Debug, true));

@@ -21,7 +21,7 @@ fn sends(session: &Session) -> Vec<(u64, usize)> {
 const SLOW: &str = r#"{ "clock_hz": 1155, "line": { "baud": 100 }, "bus": { "boot_cycles": 0 } }"#;
 
 #[test]
-fn a_byte_joins_the_last_send_while_its_place_there_is_to_come() {
+fn a_byte_joins_the_last_send_if_its_time_is_in_the_future() {
     // Model's cycle, bytes received, sends afterwards. A byte takes 115.5 cycles.
     type Row = (u64, usize, &'static [(u64, usize)]);
     let rows: [Row; 6] = [
@@ -44,11 +44,11 @@ fn a_byte_joins_the_last_send_while_its_place_there_is_to_come() {
 }
 
 #[test]
-fn what_the_scenario_sends_how_long_and_how_badly_is_left_out_and_segments_have_no_line() {
+fn a_session_ignores_sends_length_and_noise() {
     let json = r#"{ "line": { "protocol": "framed", "noise": { "lost_bytes_ppm": 1000000 }, "host": { "attempts": 3 },
         "glitches": [ { "start_cycle": 9, "length_cycles": 2, "level": 0 } ] }, "run_cycles": 70 }"#;
     let mut session = session(json);
-    assert_eq!((session.now(), session.deadline(), session.heard()), (Instant(0), Instant::NEVER, 0));
+    assert_eq!((session.now(), session.deadline(), session.received()), (Instant(0), Instant::NEVER, 0));
     session.advance::<Digest>(Instant(999), &mut []);
     let Recording { scenario, .. } = session.recording();
     let plain = Scenario::from_json(json).expect("reads");
@@ -61,7 +61,7 @@ fn what_the_scenario_sends_how_long_and_how_badly_is_left_out_and_segments_have_
 }
 
 #[test]
-fn what_is_forced_while_all_rest_and_nobody_hears_it_is_past_when_bytes_come() {
+fn forced_levels_on_an_idle_line_have_passed_before_bytes() {
     for protocol in ["raw", "framed"] {
         let json = format!(
             r#"{{ "line": {{ "protocol": "{protocol}", "glitches": [
@@ -72,7 +72,7 @@ fn what_is_forced_while_all_rest_and_nobody_hears_it_is_past_when_bytes_come() {
         session.advance::<Digest>(Instant(300_000), &mut []);
         session.receive(&[0x55, 0x33]);
         session.advance::<Digest>(Instant(400_000), &mut []);
-        assert!(session.heard() == 2 && session.run().cycles().0 == 400_001, "{protocol}");
+        assert!(session.received() == 2 && session.run().cycles().0 == 400_001, "{protocol}");
         session.recording().verify().expect("the same");
     }
 }
@@ -100,7 +100,7 @@ fn a_reply_leaves_with_its_stop_bit_and_not_before() {
 }
 
 #[test]
-fn bytes_of_a_reply_that_leave_within_a_round_are_waited_for_together_and_the_last_one_is_punctual() {
+fn bytes_of_a_reply_within_a_round_are_awaited_together() {
     let json = r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#;
     // A byte takes 160 cycles: round, rounds of a reply of 17 bytes.
     for (round, expected) in [(0, 17), (159, 17), (160, 9), (500, 5), (100_000, 1)] {
@@ -161,7 +161,7 @@ fn random_chunk(random: &mut Random) -> Vec<u8> {
 }
 
 #[test]
-fn random_bytes_in_random_cycles_are_the_same_run_again_whatever_rounds_they_came_in() {
+fn random_sessions_are_replayed_exactly() {
     let (mut replies, mut faults) = (0, Faults::default().bits());
     for seed in 0..400 {
         let mut random = Random::new(seed);
@@ -208,7 +208,7 @@ fn beyond_its_limit_a_session_goes_on_and_the_recording_ends_before_it() {
     let recording = session.recording();
     assert_eq!(recording.scenario.run_cycles, Some(at.0 + 1));
     recording.verify().expect("the same");
-    assert_eq!(session.heard(), (4 << 20) + 2);
+    assert_eq!(session.received(), (4 << 20) + 2);
 }
 
 /// Ticks that a controller begins.
@@ -264,7 +264,7 @@ fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
             stopped = true;
         }
         while to_host.front().is_some_and(|&(at, _)| at <= now) {
-            to_host.pop_front().into_iter().for_each(|(_, byte)| host.hear(byte, Instant(now)));
+            to_host.pop_front().into_iter().for_each(|(_, byte)| host.receive(byte, Instant(now)));
         }
         while host.deadline() <= Instant(now) {
             if let Some(bytes) = host.poll(Instant(now)) {
@@ -293,15 +293,15 @@ fn seeds() -> u64 {
 }
 
 #[test]
-fn over_a_bad_wire_no_tick_is_wrong_doubled_or_lost_or_it_is_said() {
+fn on_a_bad_line_every_wrong_tick_is_reported() {
     let mut done = 0;
     for seed in 0..seeds() {
-        let (progress, ordered, executed, acknowledged) = over_a_bad_wire(seed, false);
+        let (progress, commanded, executed, acknowledged) = over_a_bad_wire(seed, false);
         // Whatever became of it: what was executed is the beginning of what was ordered.
-        assert!(ordered.starts_with(&executed), "seed {seed}: {progress}");
+        assert!(commanded.starts_with(&executed), "seed {seed}: {progress}");
         assert!(executed.len() >= 2 * acknowledged as usize, "seed {seed}: {progress}");
         match progress {
-            Progress::Done => assert_eq!(executed, ordered, "seed {seed}"),
+            Progress::Done => assert_eq!(executed, commanded, "seed {seed}"),
             // Where hardly a frame comes through.
             other => assert_eq!(other, Progress::GivenUp(GivenUp::NoReply), "seed {seed}"),
         }
@@ -311,10 +311,10 @@ fn over_a_bad_wire_no_tick_is_wrong_doubled_or_lost_or_it_is_said() {
 }
 
 #[test]
-fn a_stop_over_a_bad_wire_is_acknowledged_and_what_was_executed_is_a_beginning() {
+fn a_stop_on_a_bad_line_leaves_the_first_ticks() {
     for seed in 0..seeds() / 4 {
-        let (progress, ordered, executed, _) = over_a_bad_wire(seed, true);
-        assert!(ordered.starts_with(&executed), "seed {seed}: {progress}");
+        let (progress, commanded, executed, _) = over_a_bad_wire(seed, true);
+        assert!(commanded.starts_with(&executed), "seed {seed}: {progress}");
         let ended =
             matches!(progress, Progress::Done | Progress::GivenUp(GivenUp::Interrupted | GivenUp::NoReply));
         assert!(ended, "seed {seed}: {progress}");
@@ -346,7 +346,7 @@ fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u
         device.advance(now, &mut executed);
         let replies: Vec<u8> = device.take_replies().map(|reply| reply.byte).collect();
         let passed = back.min(replies.len());
-        replies[..passed].iter().for_each(|&byte| host.hear(byte, now));
+        replies[..passed].iter().for_each(|&byte| host.receive(byte, now));
         cut |= passed < replies.len();
         back -= passed;
     }
@@ -359,15 +359,15 @@ fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u
 }
 
 #[test]
-fn a_connection_that_is_cut_at_any_byte_leaves_a_beginning_and_no_word_of_more() {
+fn a_connection_cut_at_any_byte_leaves_the_first_ticks() {
     let mut cuts = 0;
     for bytes in 0..200 {
         for (to_device, to_host) in [(bytes, usize::MAX), (usize::MAX, bytes)] {
-            let (progress, done, ordered, executed, cut) = cut_after(to_device, to_host);
-            assert!(ordered.starts_with(&executed), "{to_device} {to_host}");
+            let (progress, done, commanded, executed, cut) = cut_after(to_device, to_host);
+            assert!(commanded.starts_with(&executed), "{to_device} {to_host}");
             assert!(2 * done as usize <= executed.len(), "{to_device} {to_host}");
             assert_eq!(progress == Progress::Done, !cut, "{to_device} {to_host}: {progress}");
-            assert!(cut || executed == ordered, "{to_device} {to_host}");
+            assert!(cut || executed == commanded, "{to_device} {to_host}");
             cuts += u32::from(cut);
         }
     }
@@ -407,7 +407,7 @@ fn with_resets(resets: &[u64], opening_tick: bool, restarts_with: u64) -> (Progr
             pulses[0].high = 0;
         }
         device.advance(Instant(now.saturating_sub(powered)), &mut pulses);
-        device.take_replies().for_each(|reply| host.hear(reply.byte, Instant(now)));
+        device.take_replies().for_each(|reply| host.receive(reply.byte, Instant(now)));
         let next = host.deadline().min(Instant(now + 37)).0.max(now + 1);
         now = coming.front().map_or(next, |&(at, _)| next.min(at.max(now + 1)));
         assert!(now < 100_000_000, "the host never ends");
@@ -436,7 +436,7 @@ impl Sink for Pulses {
 }
 
 #[test]
-fn a_device_that_is_reset_at_any_time_is_never_done_unless_all_steps_were_made_once() {
+fn a_reset_device_is_done_only_after_all_steps() {
     let (progress, right, end) = with_resets(&[], true, 0);
     assert_eq!((progress, right), (Progress::Done, true));
     let (mut done, mut wrong_without) = (0, 0);
@@ -485,7 +485,7 @@ fn bytes_that_wait_for_the_line_are_in_the_same_cycles_as_if_they_had_been_recei
 }
 
 #[test]
-fn a_flood_is_taken_at_the_rate_of_the_line_and_what_is_kept_of_it_is_bounded() {
+fn a_flood_is_read_at_the_rate_of_the_line() {
     for protocol in ["raw", "framed"] {
         let json =
             format!(r#"{{ "clock_hz": 1000000, "line": {{ "baud": 50000, "protocol": "{protocol}" }} }}"#);
@@ -501,10 +501,10 @@ fn a_flood_is_taken_at_the_rate_of_the_line_and_what_is_kept_of_it_is_bounded() 
             input.feed(&mut session, to);
             session.advance::<Digest>(to, &mut []);
             session.take_replies().for_each(drop);
-            assert!(session.heard() <= session.now().0 / 200 + 1, "{protocol}");
+            assert!(session.received() <= session.now().0 / 200 + 1, "{protocol}");
         }
-        assert_eq!(session.heard() + input.len() as u64, read);
-        assert!(session.heard() >= 249_999, "{protocol}: {}", session.heard());
+        assert_eq!(session.received() + input.len() as u64, read);
+        assert!(session.received() >= 249_999, "{protocol}: {}", session.received());
         assert!(session.records_all());
         // Once there is no more room in the recording, nothing is kept of a send without an end.
         session.cut_recording();
@@ -523,7 +523,7 @@ fn a_flood_is_taken_at_the_rate_of_the_line_and_what_is_kept_of_it_is_bounded() 
 }
 
 #[test]
-fn the_first_frame_of_a_host_is_not_taken_for_the_rest_of_the_frame_before() {
+fn the_first_frame_of_a_host_is_separate_from_the_last_host() {
     let status = frame::emit(0, 4, &[]);
     let json = |protocol| {
         format!(
@@ -539,7 +539,7 @@ fn the_first_frame_of_a_host_is_not_taken_for_the_rest_of_the_frame_before() {
         session.hang_up();
         let is_ended = unfinished.last().is_none_or(|byte| *byte == 0);
         let sent = unfinished.len() as u64 + if is_ended { 0 } else { 2 };
-        assert_eq!(session.heard(), sent);
+        assert_eq!(session.received(), sent);
         session.receive(&status);
         session.advance::<Digest>(Instant(160 * (sent + 100)), &mut []);
         assert_eq!(session.take_replies().count(), 17, "{unfinished:?}");
@@ -549,11 +549,11 @@ fn the_first_frame_of_a_host_is_not_taken_for_the_rest_of_the_frame_before() {
     let mut session = session(&json("raw"));
     session.receive(&[1]);
     session.hang_up();
-    assert_eq!(session.heard(), 1);
+    assert_eq!(session.received(), 1);
 }
 
 #[test]
-fn a_host_never_hears_a_reply_to_the_host_before_it() {
+fn a_host_never_gets_replies_of_the_last_host() {
     let json =
         r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" }, "bus": { "boot_cycles": 0 } }"#;
     let status = frame::emit(0, 4, &[]);
@@ -576,4 +576,21 @@ fn a_host_never_hears_a_reply_to_the_host_before_it() {
         let earliest = begins + Cycles(160 * status.len() as u64);
         assert!(replies.iter().all(|reply| reply.end > earliest), "{hangs_up}");
     }
+}
+
+#[test]
+fn a_session_replays_the_same_bytes() {
+    use crate::session::Session;
+    use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
+    use stepscope_scenario::Scenario;
+
+    let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("reads");
+    let mut session = Session::new(&scenario).expect("it has no problems");
+    let nobody: &mut [Vec<Record>] = &mut [];
+    session.advance(Instant(5000), nobody);
+    session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model stands behind cycle 5000
+    session.advance(Instant(50_000), nobody);
+    let reply: Vec<u8> = session.take_replies().map(|reply| reply.byte).collect();
+    assert_eq!(reply.len(), 17);
+    session.recording().verify().expect("run again it has the same digest");
 }
