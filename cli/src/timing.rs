@@ -151,7 +151,7 @@ impl Options {
 
 pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tables {
     let rule = |result: &RuleResult| {
-        let least = result.least.as_ref();
+        let least = result.shortest.as_ref();
         let required = (result.nanos > 0).then_some(result.nanos);
         let spare = required.and_then(|required| Some(unit.over(least?.measured, required).nanos()));
         json!({
@@ -252,7 +252,7 @@ fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, Stri
     let none = || "-".to_owned();
     let is_limited = result.nanos > 0;
     let required = if is_limited { result.nanos.to_string() } else { none() };
-    let Some(least) = result.least else { return (required, none(), none(), none(), none()) };
+    let Some(least) = result.shortest else { return (required, none(), none(), none(), none()) };
     let spare = unit.over(least.measured, result.nanos);
     (
         required,

@@ -192,7 +192,7 @@ $scope module b $end $var wire 1 % D $end $upscope $end $enddefinitions $end
 
 #[test]
 fn what_a_file_does_not_tell_is_asked_for() {
-    let rate = "the file does not say how long a sample lasts; give the sample rate, in Hz";
+    let rate = "the file has no sample rate; give the sample rate in Hz";
     asks(&[
         (LEVELS, &[], 2, rate),
         (LEVELS, &["--sample-rate", "1000"], 0, ""),
@@ -206,7 +206,7 @@ fn what_a_file_does_not_tell_is_asked_for() {
             "0 700000000\n5 700000001\nff 700000000\n",
             &[],
             2,
-            "the file does not say how long a cycle lasts; give the clock as the sample rate, in Hz",
+            "the file has no clock; give the clock as the sample rate in Hz",
         ),
         ("81 05\n", &[], 2, "the bytes have no times; give the bit rate"),
         ("81 05\n", &["--baud", "115200"], 0, ""),
@@ -231,7 +231,7 @@ fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
     ] {
         let (code, out, err) = stepscope(&["capture", "-"], bytes);
         assert_eq!((code, err.as_str()), (Some(0), ""));
-        let told = format!("{baud} baud is assumed from the times of its bytes: give it\n");
+        let told = format!("{baud} baud is assumed from the times of its bytes; set the right rate\n");
         assert!(out.contains(&told) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
         let (_, out, _) = stepscope(&["capture", "-", "--baud", "250000"], bytes);
         assert!(!out.contains("note") && out.contains("\nRX: 250000 baud, "), "{out}");
@@ -254,7 +254,7 @@ fn a_map_that_cannot_be_is_told() {
         ),
         (DUMP, &["--map", "STEP0=STEP,DIR0=STEP"], 2, "channel a.STEP is STEP0 already"),
         (DUMP, &["--map", "STEP0=#0,STEP0=#1"], 2, "STEP0 has two channels"),
-        (DUMP, &["--map", ""], 2, "nothing says which channel is which signal"),
+        (DUMP, &["--map", ""], 2, "no channel has a known signal"),
     ]);
 }
 

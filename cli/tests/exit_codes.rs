@@ -248,7 +248,7 @@ fn an_analysis_of_four_thousand_million_steps_is_refused_with_numbers() {
         let (code, out, err) = stepscope(arguments, long);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}");
         assert!(
-            err.starts_with("-: 4294967295 steps; up to 24000000 are analyzed: "),
+            err.starts_with("-: 4294967295 steps, and up to 24000000 can be analyzed; "),
             "{arguments:?}: {err}"
         );
     }

@@ -76,7 +76,7 @@ fn a_file_gives_the_orders_and_its_problems_end_with_2() {
     assert_eq!((code, row(&table, "ticks commanded")), (Some(0), vec![20 * 5, 20 * 4]));
     for (name, json, says) in [
         ("typo.json", r#"{ "bus": { "slots": "many" } }"#, "bus.slots: "),
-        ("script.json", r#"{ "source": { "line": {} } }"#, "source: faults need ticks to go wrong"),
+        ("script.json", r#"{ "source": { "line": {} } }"#, "source: the scenario has no ticks to disturb"),
     ] {
         let (code, out, err) = stepscope(&["faults", &file(name, json)]);
         assert_eq!((code, out.as_str()), (Some(2), ""));

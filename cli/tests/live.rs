@@ -191,7 +191,7 @@ fn a_port_that_is_lost_ends_with_4_and_what_is_known() {
         server.signal(Signal::KILL);
         let (code, out, err) = ended(sender.wait_with_output().expect("it ends"));
         assert_eq!(code, Some(4), "{place:?} {out}{err}");
-        assert!(out.contains("is the first not known to be done"), "{out}{err}");
+        assert!(out.contains("is the first that is not confirmed"), "{out}{err}");
         assert!(err.contains("the port was lost"), "{err}");
     }
     let _ = fs::remove_file(&link);
@@ -283,7 +283,7 @@ fn a_device_that_does_not_tell_its_positions_is_counted_and_not_said_to_be_done(
     let device = thread::spawn(move || old_device(&listener));
     let (code, out, err) = send(&file("old.json", FEW), &port, &[]);
     assert_eq!(code, Some(3), "{out}");
-    assert!(out.contains("done by its count of ticks; it does not tell its positions"), "{out}");
+    assert!(out.contains("done by its count of ticks; it does not report its positions"), "{out}");
     assert!(out.contains("ticks 4 of 4 done") && err.contains("does not tell its positions"), "{out}{err}");
     device.join().expect("it ends");
 }
@@ -302,7 +302,7 @@ fn a_device_that_is_silent_or_says_nonsense_is_given_up() {
         });
         let (code, out, err) = send(&file("silent.json", FEW), &port, &["--slack", "5"]);
         assert_eq!(code, Some(3), "{out}{err}");
-        assert!(out.contains("given up: no reply") && out.contains("it was never opened"), "{out}");
+        assert!(out.contains("given up: no reply") && out.contains("the job never started"), "{out}");
         device.join().expect("it ends");
     }
 }

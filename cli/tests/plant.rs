@@ -81,8 +81,9 @@ fn a_grid_that_is_too_coarse_for_what_the_rotor_does_is_a_warning() {
     let json = r#"{"plant":{},"source":{"motion":{"axes":[{"motor":{"sine_torque_mn_m":1000000,"sine_per_turn":1000}}]}}}"#;
     let (code, out, err) = stepscope(&["plant", "-"], json);
     assert_eq!((code, err.as_str()), (Some(0), ""));
-    let warning = out.lines().find(|line| line.starts_with("  warning: the rotor goes ")).expect("a warning");
-    assert!(warning.ends_with("the result says nothing; give a smaller step_cycles than 80"), "{warning}");
+    let warning =
+        out.lines().find(|line| line.starts_with("  warning: the rotor moves ")).expect("a warning");
+    assert!(warning.ends_with("the result is meaningless; use a smaller step_cycles than 80"), "{warning}");
     let (_, out, _) = stepscope(&["plant", "song-2021-stall"], "");
     assert!(!out.contains("warning"), "{out}");
 }

@@ -166,7 +166,7 @@ fn a_table_without_a_line_is_refused() {
         ("a,b\n1,2\n", "no column of lengths; use a first row"),
         ("length_mm\n1\n", "no column steps; use a first row"),
         ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
-        ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; measure at least one of another length"),
+        ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; add a pair with another length"),
         (
             "length_mm,steps\n1e-200,1\n2e-200,2\n",
             "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12",

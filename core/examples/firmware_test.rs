@@ -1,4 +1,4 @@
-//! A test of firmware: the same code that would drive the chip, on the model of the peripheral.
+//! Tests firmware: the code for the chip runs on the model of the peripheral.
 //!
 //! `cargo run -p stepscope-core --example firmware_test`
 
@@ -13,8 +13,8 @@ use stepscope_core::{
     registers::{RegisterBus, control, orders, push, result, status, ticks_done},
 };
 
-/// The firmware: a ramp of ticks on channel 0, 1 step in the first, 8 in the eighth. It knows registers, and nothing else;
-/// on a chip `bus` would be two volatile accesses.
+/// The firmware: a ramp of ticks on channel 0, from 1 step in the first to 8 in the eighth. It only uses registers; on a
+/// chip `bus` makes volatile accesses.
 fn ramp(bus: &mut impl RegisterBus) {
     while status::STATE.of(bus.read(status::OFFSET)) == status::STATE_BUSY {} // the self-test after reset
     for steps in 1..=8 {
@@ -27,14 +27,14 @@ fn ramp(bus: &mut impl RegisterBus) {
 }
 
 fn main() -> Result<(), Vec<ConfigProblem>> {
-    // The peripheral as built: a tick is 100 slots of 320 cycles, 2 ms at 16 MHz.
+    // Default peripheral: a tick has 100 slots of 320 cycles, 2 ms at 16 MHz.
     let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default())?;
-    // Its trace goes into a list of records; an access takes 8 cycles.
+    // The trace is a list of records; an access takes 8 cycles.
     let mut bus = ModelBus::new(&config, Cycles(8), Vec::<Record>::new());
     ramp(&mut bus);
     bus.wait(Cycles(1));
 
-    // What the firmware did is now known to the cycle.
+    // The trace has every edge with its cycle.
     assert_eq!(bus.device().positions()[0], 36);
     assert!(
         !bus.sink()

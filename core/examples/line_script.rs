@@ -1,12 +1,12 @@
-//! A recorded or hand-made serial line: bytes at cycles, one of them broken, and what the controller did with each packet.
+//! Replays a serial line from a script: bytes at cycles, one of them broken, and the outcome of each packet.
 //!
 //! `cargo run -p stepscope-core --example line_script`
 
 use stepscope_core::inspect::trace::stored_run::Recording;
 use stepscope_core::{scenario::Problem, sim::Experiment};
 
-/// Two channels, so two bytes a packet: bit 7 is the direction, the rest the steps. A byte takes 1388 cycles at 115200
-/// baud and 16 MHz; the glitch holds the line low over a stop bit of the second packet.
+/// Two channels, so two bytes per packet: bit 7 is the direction, the other bits are the steps. A byte takes 1388 cycles
+/// at 115200 baud and 16 MHz; the glitch holds the line low during a stop bit of the second packet.
 const SCENARIO: &str = r#"{
     "title": "three packets, the second one broken",
     "bus": { "channels": 2 },
@@ -26,7 +26,7 @@ fn main() -> Result<(), Vec<Problem>> {
     for (index, row) in recording.packets.rows().iter().enumerate() {
         println!("cycle {:6}: {:02x?} {}", row.start.0, recording.packets.bytes(index), row.outcome);
     }
-    // The first goes 5 right and 3 left, the third 5 and 3 to the right; of the second nothing moves.
+    // The first packet moves 5 right and 3 left, the third 5 and 3 right; the second is dropped.
     assert_eq!(run.positions()[..2], [10, 0]);
     println!("digest {:016x}", recording.digest.value());
     Ok(())

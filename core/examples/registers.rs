@@ -1,4 +1,4 @@
-//! The register map as data: a table of all registers, each with what the model reads as after reset.
+//! Prints the register map with the values after reset.
 //!
 //! `cargo run -p stepscope-core --example registers`
 

@@ -1,4 +1,4 @@
-//! A generator that runs a move by itself: a ramp up, a plateau and a ramp down as three segments.
+//! Runs a move as three segments: a ramp up, a plateau and a ramp down.
 //!
 //! `cargo run -p stepscope-core --example segment_list`
 
@@ -11,13 +11,13 @@ use stepscope_core::peripheral::{
     units::{Cycles, Instant},
 };
 
-/// Cycles as the segments have them: in 1/65536.
+/// Cycles in units of 1/65536, as in segments.
 const fn cycles(whole: i64) -> i64 {
     whole << 16
 }
 
 fn main() -> Result<(), Vec<Refused>> {
-    // Each step comes `interval` after the one before it; `add` makes the next interval shorter or longer.
+    // Each step comes `interval` after the one before; `add` changes the next interval.
     let steps_of = |count, interval: i64, add| Segment::Steps {
         count,
         interval: interval.unsigned_abs(),
@@ -31,7 +31,7 @@ fn main() -> Result<(), Vec<Refused>> {
     ];
     let list = SegmentList { start: Instant(1), segments };
 
-    // Every rule is checked before anything runs: no pulse meets another, no time leaves its 64 bits.
+    // All rules are checked before the run: pulses do not overlap, and times fit in 64 bits.
     let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
     let lists = CheckedSegments::new(pulse, vec![list], 1)?;
 

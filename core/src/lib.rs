@@ -1,15 +1,14 @@
 //! Stepscope: a cycle-exact model of a stepper-motion peripheral, with motion planning, experiments and analysis.
 //!
-//! Use it to run an **experiment** (a motion, a host, a serial line, controllers) and analyze its edges, spectrum or
-//! timing, or to test **firmware** written for the register map. Both give the same edges, bit for bit, on a PC, in a
-//! browser and on a microcontroller.
+//! An **experiment** (a motion, a host, a serial line, controllers) gives the same edges, bit for bit, on a PC, in a browser
+//! and on a microcontroller.
 //!
-//! # From a scenario to a digest
+//! # Run a scenario
 //!
 //! A scenario is JSON; every field has a default. The digest identifies its trace.
 //!
 //! ```
-//! # #[cfg(feature = "sim")] {
+//! # #[cfg(feature = "inspect")] {
 //! use stepscope_core::inspect::trace::stored_run::Recording;
 //! use stepscope_core::{peripheral::trace::steps, sim::Experiment};
 //!
@@ -19,8 +18,7 @@
 //!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#,
 //! )
 //! .expect("it has no problems");
-//!
-//! let mut recording = Recording::default(); // any Sink: a digest alone, a file, a check
+//! let mut recording = Recording::default(); // or any Sink: a digest, a file, a check
 //! let run = experiment.run(&mut recording);
 //!
 //! assert_eq!(run.positions()[0], 3200);
@@ -33,10 +31,41 @@
 //! # }
 //! ```
 //!
-//! # A firmware's test
+//! # Compute step times
+//!
+//! ```
+//! # #[cfg(feature = "sim")] {
+//! # use stepscope_core::sim::Experiment;
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let cycles: Vec<u64> = experiment.plans()[0].due_steps(16_000_000).map(|step| step.cycle).collect();
+//! assert_eq!(cycles.len(), 3200);
+//! # }
+//! ```
+//!
+//! # Compare your own edges with a plan
+//!
+//! ```
+//! # #[cfg(all(feature = "inspect", feature = "std"))] {
+//! use stepscope_core::inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
+//! # use stepscope_core::{inspect::trace::stored_run::Recording, peripheral::trace::steps, sim::Experiment};
+//! # let mut recording = Recording::default();
+//! # Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+//! # let plan = steps(&recording.trace, 0);
+//! # let mut own = plan.clone();
+//! # own.remove(2000);
+//! let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };
+//! let found = Alignment::of(side(&own), side(&plan), None).expect("both have steps");
+//! let compared = found.comparison(Tolerance::ZERO);
+//! assert_eq!((compared.missing, compared.extra), (1, 0)); // one step is lost
+//! # }
+//! ```
+//!
+//! `capture` reads your own edges from files of logic analyzers.
+//!
+//! # Test firmware
 //!
 //! Firmware reaches the peripheral through a [`RegisterBus`](registers::RegisterBus): volatile accesses on a chip, a
-//! [`ModelBus`](peripheral::device::ModelBus) in its tests. No feature is needed for this.
+//! [`ModelBus`](peripheral::device::ModelBus) in its tests. No feature is required.
 //!
 //! ```
 //! use stepscope_core::{
@@ -58,8 +87,7 @@
 //! assert_eq!(bus.device().positions()[0], 5);
 //! ```
 //!
-//! The [`Device`](peripheral::device::Device) below the bus advances by one cycle (`clock`) or by edges (`run`), with the
-//! same trace. `examples/` has four short programs: `firmware_test`, `line_script`, `segment_list` and `registers`.
+//! `examples/` has four short programs: `firmware_test`, `line_script`, `segment_list` and `registers`.
 //!
 //! # Crates
 //!

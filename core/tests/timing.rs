@@ -124,7 +124,7 @@ proptest! {
             }
             let of_rule = times.iter().filter(|time| time.1 == *rule);
             let least = of_rule.min_by_key(|time| time.3).map(|time| (time.0, time.2, time.3));
-            prop_assert_eq!(result.least.map(|least| (least.channel, least.at.0, least.measured.0)), least);
+            prop_assert_eq!(result.shortest.map(|least| (least.channel, least.at.0, least.measured.0)), least);
         }
     }
 }

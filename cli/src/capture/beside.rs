@@ -16,7 +16,7 @@ use stepscope_core::{
 pub(super) struct Beside {
     pub(super) recorded: Events,
     pub(super) model: Events,
-    pub(super) found: events::Beside,
+    pub(super) found: events::EventComparison,
     pub(super) within: Tolerance,
 }
 
@@ -39,7 +39,7 @@ impl Beside {
         let model = Events::of_records(&run.trace, clock_hz, kind, arguments.channel, baud);
         let cycle = Tolerance::cycle(recorded.clock_hz, clock_hz);
         let within = arguments.within_us.map_or(cycle, |given| given.0);
-        let found = recorded.beside(&model, arguments.align, within).ok_or_else(|| {
+        let found = recorded.compare(&model, arguments.align, within).ok_or_else(|| {
             let (what, one) = (kind.plural(), kind.singular());
             let (channel, own, planned) = (arguments.channel, recorded.len(), model.len());
             arguments.wrong(match arguments.align {

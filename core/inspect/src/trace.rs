@@ -10,7 +10,6 @@
 //! ```
 
 pub mod changes;
-pub mod columns;
 pub mod diff;
 pub mod drivers;
 pub mod edges;

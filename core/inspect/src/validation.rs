@@ -1,16 +1,4 @@
 //! Validation of a scenario before it runs: problems, derived numbers and cost.
-//!
-//! ```
-//! use stepscope_inspect::validation::Validation;
-//! use stepscope_sim::ValidatedScenario;
-//!
-//! let validation = Validation::of(&ValidatedScenario::from_json("{}"));
-//! assert_eq!(validation.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
-//!
-//! let validation = Validation::of(&ValidatedScenario::from_json(r#"{ "bus": { "slots": 0 } }"#));
-//! assert_eq!(validation.problems[0].path, "bus.slots");
-//! assert!(validation.cost.is_none()); // what does not run costs nothing
-//! ```
 
 pub mod remedies;
 
@@ -62,7 +50,7 @@ pub struct DerivedController {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedAxis {
-    /// From its first to its last position.
+    /// From the first to the last position.
     pub steps: i64,
     pub duration_s: f64,
     pub peak_speed_steps_s: f64,
@@ -78,7 +66,7 @@ pub struct DerivedMove {
     pub duration_s: f64,
     pub steps: i64,
     pub detail: String,
-    /// What the axis' motor cannot do; empty where torque suffices.
+    /// Empty if the torque suffices.
     pub warning: String,
 }
 
@@ -123,13 +111,13 @@ impl RunCost {
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {
             format!(
-                "{} motor-steps of the plant: more than the {} that run unasked",
+                "{} motor-steps of the plant: more than the {} that run without confirmation",
                 grouped(cost.motor_steps as f64),
                 grouped(BUDGET_MOTOR_STEPS as f64)
             )
         } else if cost.is_over_budget() {
             format!(
-                "up to {} edges and {} packets: more than the {} edges that run unasked",
+                "up to {} edges and {} packets: more than the {} edges that run without confirmation",
                 grouped(cost.records as f64),
                 grouped(cost.sends as f64),
                 grouped(BUDGET_RECORDS as f64)
@@ -195,5 +183,21 @@ impl DerivedAxis {
             step_deg: axis.mechanics.step_deg(),
             moves: plan.moves().iter().map(planned).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_scenario_is_validated() {
+        use crate::validation::Validation;
+        use stepscope_sim::ValidatedScenario;
+
+        let validation = Validation::of(&ValidatedScenario::from_json("{}"));
+        assert_eq!(validation.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
+
+        let validation = Validation::of(&ValidatedScenario::from_json(r#"{ "bus": { "slots": 0 } }"#));
+        assert_eq!(validation.problems[0].path, "bus.slots");
+        assert!(validation.cost.is_none()); // what does not run costs nothing
     }
 }

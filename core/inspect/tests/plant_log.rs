@@ -37,7 +37,7 @@ fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>,
             std::slice::from_mut(&mut recording),
             &mut [(&mut log, &mut points)],
         );
-        log.keep(run.plant(0).expect("a plant"), recording.trace.len());
+        log.snapshot(run.plant(0).expect("a plant"), recording.trace.len());
         if done {
             return (log, recording, points.0, run.cycles().0);
         }

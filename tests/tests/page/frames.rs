@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use stepscope_core::inspect::trace::columns::columns;
+use stepscope_core::inspect::trace::changes::Changes;
 
 use crate::{
     bench::in_browser,
@@ -44,7 +44,10 @@ const READ: &str = "
 /// What the row must look like by the levels of its columns: a bar where it was high and low, a line where it was
 /// one of them, and an edge in the first column of another level.
 fn expected(known: &Known, bit: u32, window: (u64, u64), count: usize) -> Row {
-    let found = columns(&known.recording.trace, window.0, window.1, count);
+    let trace = &known.recording.trace;
+    let mut changes = Changes::default();
+    changes.extend(trace);
+    let found = changes.columns(trace, window.0, window.1, count, 0);
     let level = |words: &[u64], i: usize| words[i] >> bit & 1 == 1;
     let mut row = Row { top: String::new(), middle: String::new(), bottom: String::new() };
     for i in 0..count {

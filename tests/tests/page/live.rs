@@ -125,7 +125,7 @@ fn stop_in_the_middle_is_confirmed_and_reported() -> Result<()> {
         page.until(ENDED).await?;
         page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
         let report: String = page.eval(REPORT).await?;
-        for part in ["STOP is acknowledged", "state STOPPED", "is the first not known to be done"] {
+        for part in ["STOP is acknowledged", "state STOPPED", "is the first that is not confirmed"] {
             ensure!(report.contains(part), "{part} is not in\n{report}");
         }
         // Also where nothing is sent: to a device that somebody else may have left moving.
@@ -165,7 +165,7 @@ fn a_silent_device_is_given_up_and_told() -> Result<()> {
         page.until(ENDED).await?;
         page.until(&format!("{SAID} === 'Not verified: controller 0: given up: no reply.'")).await?;
         let report: String = page.eval(REPORT).await?;
-        ensure!(report.contains("none sent: it was never opened"), "{report}");
+        ensure!(report.contains("none sent: the job never started"), "{report}");
         page.click("#live-stop").await?;
         page.until("peer.closed === 2").await?;
         page.until(&format!("{SAID}.startsWith('STOP is not confirmed')")).await
@@ -183,7 +183,7 @@ fn a_lost_port_ends_the_stream_and_is_told_with_what_is_known() -> Result<()> {
         let lost = "Not verified: the port is lost: The device has been lost.";
         page.until_equal(SAID, &json!(lost)).await?;
         let report: String = page.eval(REPORT).await?;
-        ensure!(report.contains("is the first not known to be done"), "{report}");
+        ensure!(report.contains("is the first that is not confirmed"), "{report}");
         Ok(())
     })
 }

@@ -68,7 +68,7 @@ fn raw_packets_go_with_their_lead_and_the_device_does_them_but_nothing_is_called
         }
         // What the page says of the lateness it says of the motor, too.
         assert_eq!(
-            report.contains("the motor must have stood before"),
+            report.contains("the motor must have stopped before"),
             said.contains("The motor stopped before")
         );
         // The motion of the model, packet by packet, whenever they came.
@@ -102,7 +102,7 @@ fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Res
         ensure!((21..packets as u32).contains(&sent), "{said}");
         ensure!(said.contains("a raw line has no STOP, and the device still executes its queue"), "{said}");
         let report: String = page.eval(REPORT).await?;
-        ensure!(report.contains("stopped sending: what the controller has queued runs on"), "{report}");
+        ensure!(report.contains("stopped sending: queued packets still run"), "{report}");
         // What was sent is done, and no more.
         page.until(&format!("{PEER}.ticks_done === {sent}")).await?;
         let ticks = known.experiment.ticks_of(0).get(..sent as usize).unwrap_or_default();

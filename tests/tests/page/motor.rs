@@ -126,7 +126,7 @@ fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
         ensure!(found[..2] == [rate(start), rate(pull)], "{found:?}");
         // The patent's figures: a settling time that can be taken, and the ratio of both ways.
         let slot = known.experiment.config().tick().0 / u64::from(known.experiment.config().slots());
-        let reached = settling(&setup, 0, slot, SHARE).expect("a plant").reached.expect("it settles");
+        let reached = settling(&setup, 0, slot, SHARE).expect("a plant").0.reached.expect("it settles");
         let text: String = page.eval("document.getElementById('study-motor').textContent").await?;
         ensure!(text.contains(&format!("{reached} cycles")) && text.contains("times less"), "{text}");
         page.click("#study-motor [aria-label^='Use as settling time']").await?;

@@ -15,7 +15,7 @@ use stepscope_core::{
         motion::curves::Actual,
         recording::{
             differences::Difference,
-            events::{Beside, Events},
+            events::{EventComparison, Events},
             loaded_capture::{LoadedCapture, LoadedPart, Part},
             open_options::{OpenError, OpenOptions},
             packets::{LinePacket, Packets},
@@ -233,7 +233,7 @@ impl CaptureFile {
     ) -> Self {
         let pieces = Pieces { read: read_piece, at: 0, size: size.max(0.0) as u64 };
         let mut report = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
-        let limits = Limits { most: most as usize };
+        let limits = Limits { max_rows: most as usize };
         let channels = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
         let wanted = Wanted { channels, base: base.and_then(|name| name.parse().ok()) };
         let input = BufReader::with_capacity(PIECE, pieces);
@@ -405,7 +405,7 @@ impl CaptureFile {
         Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).at_s(aligned)
     }
 
-    /// Comparison with a run, aligned by that step or byte: the core's [`Beside`], and in `rows` the first differences as
+    /// Comparison with a run, aligned by that step or byte: the core's [`EventComparison`], and in `rows` the first differences as
     /// text with their times.
     pub fn comparison(
         &self,
@@ -424,9 +424,9 @@ impl CaptureFile {
         struct Comparison {
             rows: Vec<Row>,
             #[serde(flatten)]
-            beside: Beside,
+            beside: EventComparison,
         }
-        let rows = |found: &Beside| {
+        let rows = |found: &EventComparison| {
             let listed = found.differences.listed.iter();
             let row = |difference: &Difference| Row {
                 text: difference.to_text(found.kind),
@@ -440,8 +440,8 @@ impl CaptureFile {
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
             let within = Tolerance::cycle(own.clock_hz, model.clock_hz);
             // If the recording lacks that step, the first common one is aligned.
-            let aligned = own.beside(&model, Some(aligned), within);
-            let mut found = aligned.or_else(|| own.beside(&model, None, within))?;
+            let aligned = own.compare(&model, Some(aligned), within);
+            let mut found = aligned.or_else(|| own.compare(&model, None, within))?;
             found.differences.listed.truncate(MAX_DIFFERENCES);
             Some(Comparison { rows: rows(&found), beside: found })
         });

@@ -13,7 +13,7 @@ use stepscope_core::{
         plant::{
             log::{CycleWindow, PlantLog},
             motors::{DRIVES, MOTORS},
-            outcome::settling_with,
+            outcome::settling,
             report::PlantReport,
         },
         trace::stored_run::{RECORDS_PER_CHECK, check_records},
@@ -145,7 +145,7 @@ impl ValidatedScenario {
         let experiment = self.0.experiment().map_err(listed)?;
         let config = crate::scenario::config(experiment, controller);
         let slot = (config.tick().0 / u64::from(config.slots())).max(u64::from(config.clock_hz()) / 500);
-        let (found, samples) = settling_with(&setup, 0, slot, SHARE).map_err(refused)?;
+        let (found, samples) = settling(&setup, 0, slot, SHARE).map_err(refused)?;
         let hz = f64::from(config.clock_hz());
         let result = Object::new();
         let cycles = |cycles: Option<u64>| cycles.map(|cycles| cycles as f64);

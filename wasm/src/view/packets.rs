@@ -120,7 +120,7 @@ impl Simulation {
 
     /// Raised fault flags in the order of their bits: `[{name, times, cycle, row}]`, with their first cycle and row.
     pub fn fault_places(&self) -> Result<JsValue, JsError> {
-        object(&self.table().fault_places())
+        object(&self.table().first_faults())
     }
 
     /// Rows on the line in a range of cycles: `{rows, more}`; no rows above `limit`.

@@ -207,7 +207,7 @@ impl Simulation {
         }
         for (index, one) in self.recordings.iter_mut().enumerate() {
             if let (Some(log), Some(plant)) = (&mut one.plant, self.run.plant(index)) {
-                log.keep(plant, one.recording.trace.len());
+                log.snapshot(plant, one.recording.trace.len());
             }
         }
         if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {

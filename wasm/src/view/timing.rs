@@ -117,7 +117,7 @@ fn rule_row(result: &RuleResult, channels: usize) -> RuleRow {
         rule: result.rule.name(),
         required_ns: result.nanos,
         required_cycles: result.required.0,
-        least: result.least.map(|least| LeastRow {
+        least: result.shortest.map(|least| LeastRow {
             measured_cycles: least.measured.0,
             cycle: least.at.0,
             channel: least.channel,

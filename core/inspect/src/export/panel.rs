@@ -1,15 +1,4 @@
 //! Panels of controllers without a serial line, as CSV rows and as signals of a dump (CONTROLLER.md G8).
-//!
-//! ```
-//! use stepscope_inspect::export::panel::write_panel_row;
-//! use stepscope_controller::panel::{PanelRecord, Word};
-//! use stepscope_peripheral::units::Instant;
-//!
-//! let record = PanelRecord { cycle: Instant(1600), word: Word(2 | 2 << 8), position: 565, display: 10 };
-//! let mut row = String::new();
-//! write_panel_row(&mut row, 0, record, 16_000_000).expect("a string takes it");
-//! assert_eq!(row, "0,1600,0.0001,514,565,10,READY,,SURE,0,0,0\n");
-//! ```
 
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
@@ -57,7 +46,7 @@ const SHOWN: [(What, &str, u32); 6] = [
     (What::Loop, "loop", 16),
 ];
 
-/// The signals of all panels: what each shows, and the raw levels of the inputs in use.
+/// The signals of all panels, and the raw levels of the inputs in use.
 #[derive(Clone, Debug)]
 pub struct PanelSignals {
     signals: Vec<PanelSignal>,
@@ -128,7 +117,7 @@ impl PanelSignals {
 }
 
 impl PanelSignal {
-    /// The level as tables show it: states, alarms and trust by name.
+    /// The level as text: states, alarms and trust by name.
     pub fn text(&self) -> String {
         let word = |shift: u32| Word(self.value << shift);
         match self.what {
@@ -137,5 +126,20 @@ impl PanelSignal {
             What::Trust => trust_name(word(8).trust()).into(),
             _ => format!("{}", self.value),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_panel_is_a_row_of_each_record() {
+        use crate::export::panel::write_panel_row;
+        use stepscope_controller::panel::{PanelRecord, Word};
+        use stepscope_peripheral::units::Instant;
+
+        let record = PanelRecord { cycle: Instant(1600), word: Word(2 | 2 << 8), position: 565, display: 10 };
+        let mut row = String::new();
+        write_panel_row(&mut row, 0, record, 16_000_000).expect("a string takes it");
+        assert_eq!(row, "0,1600,0.0001,514,565,10,READY,,SURE,0,0,0\n");
     }
 }

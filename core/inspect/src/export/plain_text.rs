@@ -1,4 +1,4 @@
-//! Detects characters of a name or title that are not safe to show.
+//! Detects unsafe characters in a name or title.
 //!
 //! ```
 //! use stepscope_inspect::export::plain_text::is_unsafe;

@@ -2,21 +2,6 @@
 //!
 //! Three arrays `NAME_interval`, `NAME_count` and `NAME_add` take exactly the bytes of their numbers on every
 //! machine. A comment at the head of the file explains them.
-//!
-//! ```
-//! use stepscope_inspect::export::source_code::{Language, Source, is_name};
-//! use stepscope_motion::{moves::Axis, plan_axis, step_tables::{EntryFormat, Form, stored}};
-//! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
-//!
-//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
-//! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
-//! let table = stored(&plan, Form::Exact, EntryFormat::Q16, pulse, 16_000_000).expect("it fits");
-//! assert!(is_name("axis_0"));
-//! let source = Source { name: "axis_0", title: "one turn", clock_hz: 16_000_000, table: &table };
-//! let mut text = String::new();
-//! source.write(Language::C, &mut text).expect("a string takes it");
-//! assert!(text.contains("#define AXIS_0_STEPS 3200ull"));
-//! ```
 
 use crate::export::plain_text::is_unsafe;
 use alloc::{format, string::String, vec::Vec};
@@ -46,15 +31,15 @@ pub enum Language {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'s> {
-    /// An identifier such as `axis_0`; see [`is_name`].
+    /// See [`is_name`].
     pub name: &'s str,
     pub title: &'s str,
     pub clock_hz: u32,
     pub table: &'s Stored,
 }
 
-/// Whether a name is an identifier in every language: lowercase letters, digits and underscores, at most 32, starting
-/// with a letter. A digit or underscore is required, so that it is no keyword.
+/// Whether a name is an identifier in every language: up to 32 lowercase letters, digits and underscores, starting with
+/// a letter. A digit or underscore is required, so that it is not a keyword.
 pub fn is_name(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     name.starts_with(|c: char| c.is_ascii_lowercase())
@@ -165,7 +150,7 @@ impl Source<'_> {
     pub fn warnings(&self, language: Language) -> Vec<String> {
         let format = self.table.format;
         let entries = self.table.entries.len() as u64;
-        let (most, who) = match language {
+        let (max_bytes, who) = match language {
             Language::Avr => (MAX_AVR_BYTES, "avr-gcc takes"),
             Language::C => (MAX_C_BYTES, "a compiler need take"),
             Language::Rust | Language::Csv => return Vec::new(),
@@ -175,9 +160,9 @@ impl Source<'_> {
         let mut warnings = Vec::new();
         for column in Column::ALL {
             let bytes = entries * u64::from(column.bits(&format) / 8);
-            if bytes > most {
+            if bytes > max_bytes {
                 warnings.push(format!(
-                    "{}_{} has {bytes} bytes, and {who} at most {most} in an array: {remedy}",
+                    "{}_{} has {bytes} bytes, and {who} at most {max_bytes} in an array: {remedy}",
                     self.name,
                     column.name()
                 ));
@@ -226,12 +211,12 @@ impl Source<'_> {
                 17..=32 => "l",
                 _ => "ll",
             };
-            let least = -1_i64 << (bits - 1);
+            let min = -1_i64 << (bits - 1);
             self.numbers(out, |out, entry| match column {
                 Column::Interval => write!(out, "{}u{suffix}", entry.interval),
                 Column::Count => write!(out, "{}u{suffix}", entry.count),
                 // The minimum of a type has no literal.
-                Column::Add if entry.add == least => write!(out, "{}{suffix} - 1", entry.add + 1),
+                Column::Add if entry.add == min => write!(out, "{}{suffix} - 1", entry.add + 1),
                 Column::Add => write!(out, "{}{suffix}", entry.add),
             })?;
             writeln!(out, "}};")?;
@@ -380,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn the_comment_says_how_wide_the_running_numbers_come() {
+    fn the_comment_gives_the_width_of_the_variables() {
         // 3 steps after 10, 15 and 20 cycles, and a wait of 100: 145 cycles.
         let entries = vec![
             Entry { interval: 10 << 16, count: 3, add: 5 << 16 },
@@ -400,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn an_array_that_is_too_long_is_told_with_its_bytes() {
+    fn too_long_an_array_is_a_warning() {
         let entry = Entry { interval: 1, count: 1, add: 0 };
         let warnings = |entries: usize, language| {
             let table = table(vec![entry; entries], EntryFormat::Q16);
@@ -421,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn a_title_cannot_end_the_comment_that_it_stands_in() {
+    fn a_title_cannot_end_its_comment() {
         for title in ["*/ int main", "two\nlines", "back\\", "\u{2028}"] {
             let c = written(Vec::new(), title, Language::C);
             assert_eq!(c.matches("*/").count(), 1, "{c}");
@@ -461,5 +446,25 @@ mod tests {
         ] {
             assert_eq!(is_name(name), expected, "{name}");
         }
+    }
+
+    #[test]
+    fn a_table_is_three_arrays() {
+        use crate::export::source_code::{Language, Source, is_name};
+        use stepscope_motion::{
+            moves::Axis,
+            plan_axis,
+            step_tables::{EntryFormat, Form, stored},
+        };
+        use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
+
+        let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+        let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
+        let table = stored(&plan, Form::Exact, EntryFormat::Q16, pulse, 16_000_000).expect("it fits");
+        assert!(is_name("axis_0"));
+        let source = Source { name: "axis_0", title: "one turn", clock_hz: 16_000_000, table: &table };
+        let mut text = String::new();
+        source.write(Language::C, &mut text).expect("a string takes it");
+        assert!(text.contains("#define AXIS_0_STEPS 3200ull"));
     }
 }

@@ -1,15 +1,4 @@
 //! Step times of an axis or a run as firmware tables, with their cost and source code (DESIGN B8).
-//!
-//! ```
-//! use stepscope_inspect::export::step_tables::StepTables;
-//! use stepscope_sim::ValidatedScenario;
-//!
-//! let validated = ValidatedScenario::from_json("{}");
-//! let tables = StepTables::new(validated.axis(0, 0).expect("one axis")).expect("its pulses fit");
-//! let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
-//! assert_eq!((exact.steps, compressed.steps), (3200, 3200));
-//! assert!(compressed.bytes < exact.bytes / 4);
-//! ```
 
 use crate::export::source_code::{Language, Source, headline};
 use alloc::{
@@ -41,7 +30,7 @@ pub struct StepTables<'a> {
 #[derive(Clone, Debug)]
 enum Steps<'a> {
     Planned(&'a AxisPlan),
-    Made(Vec<ScheduledStep>),
+    Actual(Vec<ScheduledStep>),
 }
 
 /// Steps of a trace, from cycle 1 on.
@@ -59,7 +48,7 @@ pub struct TableCost {
     pub steps: u64,
     pub entries: usize,
     pub bytes: u64,
-    /// Bytes in the format of the paper on the motion.
+    /// Bytes in the paper's own format.
     pub document_bytes: Option<u64>,
     pub largest_s: f64,
     pub rms_s: f64,
@@ -77,9 +66,9 @@ impl<'a> StepTables<'a> {
         Self::with(selected.scenario, selected.bus, Steps::Planned(selected.plan))
     }
 
-    /// Steps without a plan, in cycles of the scenario's clock. Fails if the bus cannot run segments.
+    /// Steps without a plan, in cycles of the scenario's clock; fails if the bus cannot run segments.
     pub fn of_steps(scenario: &'a Scenario, bus: &Bus, steps: &[Step]) -> Result<Self, Vec<Problem>> {
-        Self::with(scenario, bus, Steps::Made(scheduled(steps)))
+        Self::with(scenario, bus, Steps::Actual(scheduled(steps)))
     }
 
     fn with(scenario: &'a Scenario, bus: &Bus, steps: Steps<'a>) -> Result<Self, Vec<Problem>> {
@@ -100,7 +89,7 @@ impl<'a> StepTables<'a> {
         let format = format.unwrap_or(EntryFormat::Q16);
         let stored = match &self.steps {
             Steps::Planned(plan) => stored(plan, form, format, self.pulse, clock_hz),
-            Steps::Made(steps) => stored_steps(steps, form, format, self.pulse),
+            Steps::Actual(steps) => stored_steps(steps, form, format, self.pulse),
         };
         stored.map_err(|cause| cause.to_string())
     }
@@ -120,7 +109,7 @@ impl<'a> StepTables<'a> {
             Err(why) => {
                 let steps = match &self.steps {
                     Steps::Planned(plan) => plan.step_count(),
-                    Steps::Made(steps) => steps.len() as u64,
+                    Steps::Actual(steps) => steps.len() as u64,
                 };
                 TableCost { steps, why: Some(why), ..TableCost::default() }
             }
@@ -158,15 +147,15 @@ mod tests {
     use stepscope_sim::ValidatedScenario;
 
     #[test]
-    fn the_steps_of_a_run_are_kept_as_their_plan_is_but_have_no_documents_table() {
+    fn steps_of_a_run_have_the_tables_of_their_plan_except_the_papers() {
         let validated =
             ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
         let experiment = validated.experiment().expect("no problems");
         let mut recording = Recording::default();
         experiment.run(&mut recording);
-        let made = steps(&recording.trace, 0);
+        let actual = steps(&recording.trace, 0);
         let scenario = validated.scenario();
-        let of_run = StepTables::of_steps(scenario, &scenario.bus, &made).expect("its pulses fit");
+        let of_run = StepTables::of_steps(scenario, &scenario.bus, &actual).expect("its pulses fit");
         let of_plan = StepTables::new(validated.axis(0, 0).expect("one axis")).expect("its pulses fit");
         for (form, widths) in [("exact", "ticks"), ("compressed", "q16")] {
             let [run, plan] = [&of_run, &of_plan].map(|tables| tables.cost(form, widths, 25.0));
@@ -178,5 +167,17 @@ mod tests {
         assert!(none.steps == 3200 && none.why.is_some_and(|why| why.contains("no table of its own")));
         let source = of_run.source(0, ("compressed", "q16", 25.0), "c").expect("a table");
         assert!(source.contains("axis_0"), "{source}");
+    }
+
+    #[test]
+    fn a_table_costs_bytes_and_has_an_error() {
+        use crate::export::step_tables::StepTables;
+        use stepscope_sim::ValidatedScenario;
+
+        let validated = ValidatedScenario::from_json("{}");
+        let tables = StepTables::new(validated.axis(0, 0).expect("one axis")).expect("its pulses fit");
+        let (exact, compressed) = (tables.cost("exact", "q16", 0.0), tables.cost("compressed", "q16", 25.0));
+        assert_eq!((exact.steps, compressed.steps), (3200, 3200));
+        assert!(compressed.bytes < exact.bytes / 4);
     }
 }

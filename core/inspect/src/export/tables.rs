@@ -1,14 +1,4 @@
 //! A run as CSV (RFC 4180): one row per record, tick or segment. Packets are in [`crate::packets::packet_table`].
-//!
-//! ```
-//! use stepscope_inspect::export::tables::{write_edges_head, write_edges_row};
-//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
-//!
-//! let mut table = String::new();
-//! write_edges_head(&mut table, 1).expect("a string takes it");
-//! write_edges_row(&mut table, Record { cycle: Instant(16), levels: Levels::RESET }, 16_000_000, 1).expect("as above");
-//! assert_eq!(table, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n16,0.000001,0,0,1,1,1,0\n");
-//! ```
 
 use crate::packets::log::LoggedTick;
 use core::fmt::{self, Write};
@@ -20,7 +10,7 @@ use stepscope_peripheral::{
     wire::packet::ChannelCommand,
 };
 
-/// The header of [`write_edges_row`] for so many channels.
+/// The header of [`write_edges_row`].
 pub fn write_edges_head(out: &mut impl Write, channels: u8) -> fmt::Result {
     out.write_str("cycle,time_s")?;
     for bit in shown_signals(channels) {
@@ -86,5 +76,20 @@ mod tests {
         let record = Record { cycle: Instant(24), levels: Levels(0x7_0001_0001) };
         write_edges_row(&mut text, record, 16_000_000, 1).expect("a string takes it");
         assert_eq!(text, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n24,0.0000015,1,1,1,1,1,0\n");
+    }
+
+    #[test]
+    fn edges_are_rows_below_a_head() {
+        use crate::export::tables::{write_edges_head, write_edges_row};
+        use stepscope_peripheral::{
+            signal::{Levels, Record},
+            units::Instant,
+        };
+
+        let mut table = String::new();
+        write_edges_head(&mut table, 1).expect("a string takes it");
+        write_edges_row(&mut table, Record { cycle: Instant(16), levels: Levels::RESET }, 16_000_000, 1)
+            .expect("as above");
+        assert_eq!(table, "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n16,0.000001,0,0,1,1,1,0\n");
     }
 }

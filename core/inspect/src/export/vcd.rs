@@ -2,19 +2,6 @@
 //!
 //! Cycle c is at c*10^9/clock_hz ns, rounded half up; the clock is in a comment at the head, so that `cycle =
 //! round(t*clock_hz)` restores it exactly.
-//!
-//! ```
-//! use stepscope_inspect::export::vcd::VcdWriter;
-//! use stepscope_sim::Experiment;
-//!
-//! let experiment = Experiment::from_json("{}").expect("the default motion");
-//! let mut file = Vec::new();
-//! let mut writer = VcdWriter::new(&mut file, experiment.config().clock_hz(), 1).expect("memory takes it");
-//! let run = experiment.run(&mut writer);
-//! writer.finish(run.cycles().0).expect("memory takes it");
-//! let head = "$timescale 1 ns $end\n$comment\n    clock 16000000 Hz; cycle = round(t*clock)\n$end\n";
-//! assert!(file.starts_with(head.as_bytes()));
-//! ```
 
 use std::{fmt, io, str::FromStr};
 use stepscope_peripheral::signal::{Levels, Record, Sink, name};
@@ -97,7 +84,7 @@ impl fmt::Display for TooCoarse {
         let Self { given, clock_hz, coarsest } = self;
         write!(
             f,
-            "a timescale of {given} is longer than a cycle of {clock_hz} Hz, so edges of two cycles could fall together; give at most {coarsest}"
+            "a timescale of {given} is longer than a cycle of {clock_hz} Hz, so edges of two cycles could share a time; use at most {coarsest}"
         )
     }
 }
@@ -125,7 +112,7 @@ impl<W: io::Write> VcdWriter<W> {
 
     /// A dump in another unit; fails with [`TooCoarse`] if cycles would share a time.
     pub fn with_timescale(out: W, timescale: Timescale, clock_hz: u32, channels: u8) -> io::Result<Self> {
-        Self::with_analogue(out, timescale, clock_hz, channels, &[])
+        Self::with_analog(out, timescale, clock_hz, channels, &[])
     }
 
     pub fn with_words<'n>(
@@ -139,7 +126,7 @@ impl<W: io::Write> VcdWriter<W> {
     }
 
     /// Adds real variables of these names.
-    pub fn with_analogue(
+    pub fn with_analog(
         out: W,
         timescale: Timescale,
         clock_hz: u32,
@@ -176,34 +163,18 @@ impl<W: io::Write> VcdWriter<W> {
         let words = words.collect::<io::Result<_>>()?;
         out.upscope()?;
         out.enddefinitions()?;
-        Ok(Self {
-            out,
-            timescale,
-            clock_hz,
-            signals,
-            levels: None,
-            reals,
-            words,
-            stamped: None,
-            result: Ok(()),
-        })
+        Ok(Self { reals, words, ..Self::empty(out, timescale, clock_hz, signals) })
+    }
+
+    fn empty(out: Writer<W>, timescale: Timescale, clock_hz: u32, signals: Vec<(u32, IdCode)>) -> Self {
+        let (reals, words) = (Vec::new(), Vec::new());
+        Self { out, timescale, clock_hz, signals, levels: None, reals, words, stamped: None, result: Ok(()) }
     }
 
     /// Continues a file in ns after `levels`, so that it can be written in pieces.
     pub fn resume(out: W, clock_hz: u32, channels: u8, levels: Levels) -> io::Result<Self> {
         let VcdWriter { signals, timescale, clock_hz, .. } = VcdWriter::new(io::sink(), clock_hz, channels)?;
-        let (out, reals, words) = (Writer::new(out), Vec::new(), Vec::new());
-        Ok(Self {
-            out,
-            timescale,
-            clock_hz,
-            signals,
-            levels: Some(levels),
-            reals,
-            words,
-            stamped: None,
-            result: Ok(()),
-        })
+        Ok(Self { levels: Some(levels), ..Self::empty(Writer::new(out), timescale, clock_hz, signals) })
     }
 
     pub fn pause(mut self) -> io::Result<()> {
@@ -243,13 +214,13 @@ impl<W: io::Write> VcdWriter<W> {
     }
 
     /// Writes the real variables, in the order of their names; cycles rise across all writes.
-    pub fn analogue(&mut self, cycle: u64, values: &[f64]) {
+    pub fn analog(&mut self, cycle: u64, values: &[f64]) {
         if self.result.is_ok() {
-            self.result = self.write_analogue(cycle, values);
+            self.result = self.write_analog(cycle, values);
         }
     }
 
-    fn write_analogue(&mut self, cycle: u64, values: &[f64]) -> io::Result<()> {
+    fn write_analog(&mut self, cycle: u64, values: &[f64]) -> io::Result<()> {
         self.time(cycle)?;
         for (&value, (code, before)) in values.iter().zip(&mut self.reals) {
             if before.replace(value.to_bits()) != Some(value.to_bits()) {
@@ -402,17 +373,32 @@ mod tests {
             let found = given.parse::<Timescale>().ok().map(|scale| scale.to_string());
             assert_eq!(found.as_deref(), expected, "{given}");
         }
-        let told = |scale: &str, clock_hz| {
+        let scaled = |scale: &str, clock_hz| {
             let scale: Timescale = scale.parse().expect("a timescale");
             scale.of_clock(clock_hz).map_err(|error| error.to_string())
         };
-        assert!(told("10 ns", 100_000_000).is_ok() && told("10 ns", 100_000_001).is_err());
+        assert!(scaled("10 ns", 100_000_000).is_ok() && scaled("10 ns", 100_000_001).is_err());
         assert_eq!(
-            told("1us", 16_000_000),
-            Err("a timescale of 1 us is longer than a cycle of 16000000 Hz, so edges of two cycles could fall together; give at most 10 ns".into())
+            scaled("1us", 16_000_000),
+            Err("a timescale of 1 us is longer than a cycle of 16000000 Hz, so edges of two cycles could share a time; use at most 10 ns".into())
         );
         let late =
             VcdWriter::new(io::sink(), 11, 1).expect("it fits the clock").finish(9_000_000_000_000_000);
         assert!(late.is_err_and(|error| error.to_string().contains("give a coarser timescale")));
+    }
+
+    #[test]
+    fn a_dump_of_a_run_has_its_edges() {
+        use crate::export::vcd::VcdWriter;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut file = Vec::new();
+        let mut writer =
+            VcdWriter::new(&mut file, experiment.config().clock_hz(), 1).expect("memory takes it");
+        let run = experiment.run(&mut writer);
+        writer.finish(run.cycles().0).expect("memory takes it");
+        let head = "$timescale 1 ns $end\n$comment\n    clock 16000000 Hz; cycle = round(t*clock)\n$end\n";
+        assert!(file.starts_with(head.as_bytes()));
     }
 }

@@ -1,23 +1,7 @@
-//! The motion that the pulses of one channel make.
+//! The actual motion of one channel's pulses (DESIGN A8, B1).
 //!
-//! With ticks the speed is steps per tick; with segments it is 1/interval per step; for recorded pulses it is taken
-//! from step to step. Step 1 of a constant rate is due after half an interval (DESIGN B1), so a first interval counts
-//! as no faster than the next one.
-//!
-//! ```
-//! use stepscope_inspect::motion::actual_motion::Pulses;
-//!
-//! // Of a run of the default motion: 3200 steps in 0.4 s.
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
-//! # let made = steps(&recording.trace, 0);
-//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-//! let start_s = pulses.zero() as f64 / pulses.hz();
-//! assert!((pulses.speed_at(start_s + 0.2) - 16_000.0).abs() < 500.0); // half-way, as fast as it gets
-//! assert_eq!(pulses.position_at(start_s + 0.5), 3200);
-//! ```
+//! With ticks the speed is steps per tick; with segments and recorded pulses it is 1/interval per step. Step 1 of a
+//! constant rate is due after half an interval, so a first interval counts as no faster than the next one.
 
 use crate::motion::step_acceleration;
 use crate::packets::log::{LoggedTick, PacketLog};
@@ -30,7 +14,7 @@ use stepscope_peripheral::{
 };
 
 #[derive(Clone, Copy, Debug)]
-enum Order<'a> {
+enum Source<'a> {
     Ticks(&'a PacketLog, Cycles),
     Segments(&'a SegmentList),
     Recorded,
@@ -40,7 +24,7 @@ enum Order<'a> {
 pub struct Pulses<'a> {
     pub channel: u8,
     pub steps: &'a [Step],
-    order: Order<'a>,
+    source: Source<'a>,
     clock_hz: u32,
 }
 
@@ -61,16 +45,16 @@ impl<'a> Pulses<'a> {
         segments: Option<&'a SegmentList>,
         config: &Config,
     ) -> Self {
-        let order = match segments {
-            Some(list) => Order::Segments(list),
-            None => Order::Ticks(log, config.tick()),
+        let source = match segments {
+            Some(list) => Source::Segments(list),
+            None => Source::Ticks(log, config.tick()),
         };
-        Self { channel, steps, order, clock_hz: config.clock_hz() }
+        Self { channel, steps, source, clock_hz: config.clock_hz() }
     }
 
     /// Recorded steps in cycles of `clock_hz`, with the speed from step to step.
     pub const fn recorded(channel: u8, steps: &'a [Step], clock_hz: u32) -> Self {
-        Self { channel, steps, order: Order::Recorded, clock_hz }
+        Self { channel, steps, source: Source::Recorded, clock_hz }
     }
 
     pub const fn clock_hz(&self) -> u32 {
@@ -83,18 +67,18 @@ impl<'a> Pulses<'a> {
 
     #[cfg(feature = "std")]
     pub(crate) const fn tick(&self) -> Option<Cycles> {
-        match self.order {
-            Order::Ticks(_, length) => Some(length),
-            Order::Segments(_) | Order::Recorded => None,
+        match self.source {
+            Source::Ticks(_, length) => Some(length),
+            Source::Segments(_) | Source::Recorded => None,
         }
     }
 
     /// The cycle of the motion's time 0: the start of the segment list or of the first tick, otherwise 0.
     pub fn zero(&self) -> u64 {
-        match self.order {
-            Order::Ticks(log, _) => log.ticks().first().map_or(0, |tick| tick.start.0),
-            Order::Segments(list) => list.start.0,
-            Order::Recorded => 0,
+        match self.source {
+            Source::Ticks(log, _) => log.ticks().first().map_or(0, |tick| tick.start.0),
+            Source::Segments(list) => list.start.0,
+            Source::Recorded => 0,
         }
     }
 
@@ -110,7 +94,7 @@ impl<'a> Pulses<'a> {
 
     pub fn speed_at(&self, time_s: f64) -> f64 {
         let mut speed = 0.0;
-        // An interval that begins now counts, one that ends now does not.
+        // Includes an interval that begins now, not one that ends now.
         self.rates(time_s, time_s, &mut |rate| {
             if rate.from_s <= time_s && time_s < rate.to_s {
                 speed = rate.speed;
@@ -140,12 +124,12 @@ impl<'a> Pulses<'a> {
         step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())
     }
 
-    /// Calls `each` for every constant speed within `from_s..=to_s`; gaps are at rest.
+    /// Calls `each` for every constant speed within `from_s..=to_s`; between them the speed is 0.
     pub fn rates(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(Rate)) {
-        match self.order {
-            Order::Ticks(log, length) => self.orders((log, length), from_s, to_s, each),
-            Order::Segments(list) => self.intervals(list, from_s, to_s, each),
-            Order::Recorded => self.step_to_step(from_s, to_s, each),
+        match self.source {
+            Source::Ticks(log, length) => self.tick_rates((log, length), from_s, to_s, each),
+            Source::Segments(list) => self.intervals(list, from_s, to_s, each),
+            Source::Recorded => self.step_to_step(from_s, to_s, each),
         }
     }
 
@@ -169,7 +153,7 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    fn orders(
+    fn tick_rates(
         &self,
         (log, length): (&PacketLog, Cycles),
         from_s: f64,
@@ -183,10 +167,10 @@ impl<'a> Pulses<'a> {
         let ticks = log.ticks();
         let first = ticks.partition_point(|tick| end(tick) < from_s);
         for tick in ticks.iter().skip(first).take_while(|tick| start(tick) <= to_s) {
-            let order =
+            let command =
                 ChannelCommand::parse(tick.commands.get(usize::from(self.channel)).copied().unwrap_or(0));
-            let speed = f64::from(order.steps) * hz / length.0 as f64;
-            let speed = if order.right { speed } else { 0.0 - speed };
+            let speed = f64::from(command.steps) * hz / length.0 as f64;
+            let speed = if command.right { speed } else { 0.0 - speed };
             each(Rate { from_s: start(tick), to_s: end(tick), speed });
         }
     }
@@ -196,7 +180,7 @@ impl<'a> Pulses<'a> {
         let seconds = |next: i128| next as f64 / one / hz;
         let mut next = i128::from(list.start.0) << FRACTION_BITS;
         let mut follows = false;
-        for (place, segment) in list.segments.iter().enumerate() {
+        for (index, segment) in list.segments.iter().enumerate() {
             if seconds(next) > to_s {
                 break;
             }
@@ -206,7 +190,7 @@ impl<'a> Pulses<'a> {
                     follows &= dwell == 0;
                 }
                 Segment::Steps { count, interval, add, right } => {
-                    // A8: the next step after k steps of this segment.
+                    // The next step after k steps of this segment.
                     let start = next;
                     let after = |k: u32| {
                         let (k, add) = (i128::from(k), i128::from(add));
@@ -222,7 +206,7 @@ impl<'a> Pulses<'a> {
                         let mut whole = end - begin;
                         if k == 0 && !follows {
                             let second =
-                                if count > 1 { Some(after(2) - end) } else { interval_after(list, place) };
+                                if count > 1 { Some(after(2) - end) } else { interval_after(list, index) };
                             whole = whole.max(second.unwrap_or(whole));
                         }
                         let speed = hz * one / whole as f64;
@@ -237,8 +221,8 @@ impl<'a> Pulses<'a> {
 }
 
 /// The interval to a step that follows the segment without a dwell.
-fn interval_after(list: &SegmentList, place: usize) -> Option<i128> {
-    match list.segments.get(place + 1)? {
+fn interval_after(list: &SegmentList, index: usize) -> Option<i128> {
+    match list.segments.get(index + 1)? {
         Segment::Steps { count: 1.., interval, .. } => Some(i128::from(*interval)),
         _ => None,
     }
@@ -322,5 +306,23 @@ mod tests {
             [0.000_9, 0.001, 0.001_4, 0.001_5, 0.002].map(|at| pulses.speed_at(at)),
             [0.0, speed, speed, 0.0, 0.0]
         );
+    }
+
+    #[test]
+    fn the_speed_of_pulses_is_that_of_the_motion() {
+        use crate::motion::actual_motion::Pulses;
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::trace::steps;
+        use stepscope_sim::Experiment;
+
+        // Of a run of the default motion: 3200 steps in 0.4 s.
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let made = steps(&recording.trace, 0);
+        let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
+        let start_s = pulses.zero() as f64 / pulses.hz();
+        assert!((pulses.speed_at(start_s + 0.2) - 16_000.0).abs() < 500.0); // half-way, as fast as it gets
+        assert_eq!(pulses.position_at(start_s + 0.5), 3200);
     }
 }

@@ -1,8 +1,8 @@
 //! The time window of a spectrum: whole periods, or a whole motion.
 //!
-//! Pulses of a move run from the tick in which it starts to the tick in which it ends, so some lie outside the
-//! window; whole periods earlier or later they are the motion that repeats. In a tick shared by two moves, the pulses
-//! of the earlier move come first, and opposite steps cancel. Segments time each step, so nothing cancels there.
+//! Pulses of a move run from the tick in which it starts to the tick in which it ends, so some lie outside the window; they
+//! are moved by whole periods. In a tick shared by two moves, the pulses of the earlier move come first, and opposite
+//! steps cancel. Segments time each step, so nothing cancels.
 
 use crate::motion::actual_motion::Pulses;
 use alloc::vec::Vec;
@@ -36,8 +36,8 @@ impl AnalysisWindow {
         (window.period_s > 0.0).then_some(window)
     }
 
-    /// For steps without a plan: whole periods from the first turn on where they oscillate evenly, otherwise all
-    /// steps. `None` if that takes no time.
+    /// For steps without a plan: whole periods from the first reversal on if they oscillate evenly, otherwise all steps.
+    /// `None` if that takes no time.
     pub fn of_steps(steps: &[Step], hz: f64) -> Option<Self> {
         let seconds = |cycles: u64| cycles as f64 / hz;
         let (first, last) = (steps.first()?.cycle, steps.last()?.cycle);
@@ -58,7 +58,7 @@ impl AnalysisWindow {
                     periodic: true,
                 }
             });
-        // Each turn is one period after the one before the last.
+        // Each reversal is one period after the second last one.
         let even = |window: &Self| {
             let pairs = turns.iter().zip(turns.iter().skip(2));
             pairs
@@ -91,14 +91,14 @@ impl AnalysisWindow {
     pub fn pulses_of(&self, plan: &AxisPlan, run: &Pulses<'_>) -> Vec<(f64, i8)> {
         let zero = run.zero();
         let pulse = |(index, step): (usize, &Step)| {
-            let way = Step::direction(run.steps, index).signum() as i8;
-            Some((step.cycle.checked_sub(zero)?, way))
+            let direction = Step::direction(run.steps, index).signum() as i8;
+            Some((step.cycle.checked_sub(zero)?, direction))
         };
         let pulses: Vec<(u64, i8)> = run.steps.iter().enumerate().filter_map(pulse).collect();
         let Some(tick) = run.tick() else {
             let hz = run.hz();
             let own = self.own_steps(plan, &pulses).iter();
-            return own.map(|&(cycle, way)| (cycle as f64 / hz, way)).collect();
+            return own.map(|&(cycle, direction)| (cycle as f64 / hz, direction)).collect();
         };
         self.own_pulses(plan, TickClock::new(tick.0, run.clock_hz()), &pulses)
     }
@@ -122,28 +122,22 @@ impl AnalysisWindow {
         let (first, last) = (ticks.ticks_until(self.start_s) - 1, ticks.ticks_until(end_s) - 1);
         let (begin, end) = (plan.steps_due(self.start_s), plan.steps_due(end_s));
         let due_by_end = |tick: u64| ticks.due_by_end(plan, tick);
-        let place = |tick: u64| pulses.partition_point(|(cycle, _)| cycle / ticks.tick_cycles() < tick);
-        let within = |from: u64, to: u64| pulses.get(place(from)..place(to)).unwrap_or_default();
-        let going = |way: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == way.signum();
+        let index_at = |tick: u64| pulses.partition_point(|(cycle, _)| cycle / ticks.tick_cycles() < tick);
+        let within = |from: u64, to: u64| pulses.get(index_at(from)..index_at(to)).unwrap_or_default();
+        let going = |direction: i64| move |pulse: &&(u64, i8)| i64::from(pulse.1) == direction.signum();
         let mut own: Vec<&(u64, i8)> = Vec::new();
         if first == last {
             own.extend(within(first, first + 1));
         } else {
-            let asked = due_by_end(first) - begin;
+            let due = due_by_end(first) - begin;
             own.extend(
-                within(first, first + 1)
-                    .iter()
-                    .rev()
-                    .filter(going(asked))
-                    .take(asked.unsigned_abs() as usize),
+                within(first, first + 1).iter().rev().filter(going(due)).take(due.unsigned_abs() as usize),
             );
             own.extend(within(first + 1, last));
-            let asked = end - due_by_end(last - 1);
-            own.extend(
-                within(last, last + 1).iter().filter(going(asked)).take(asked.unsigned_abs() as usize),
-            );
+            let due = end - due_by_end(last - 1);
+            own.extend(within(last, last + 1).iter().filter(going(due)).take(due.unsigned_abs() as usize));
         }
-        own.into_iter().map(|&(cycle, way)| (ticks.seconds(cycle), way)).collect()
+        own.into_iter().map(|&(cycle, direction)| (ticks.seconds(cycle), direction)).collect()
     }
 }
 
@@ -152,11 +146,11 @@ pub(crate) fn sampled(plan: &AxisPlan, window: &AnalysisWindow, points: usize) -
     let points = points.clamp(16, MAX_POINTS);
     let at = |part: f64| plan.position(window.start_s + window.length_s() * part);
     let first = at(0.0);
-    let way = if window.periodic { 0.0 } else { at(1.0) - first };
+    let direction = if window.periodic { 0.0 } else { at(1.0) - first };
     (0..points)
         .map(|i| {
             let part = i as f64 / points as f64;
-            at(part) - first - way * part
+            at(part) - first - direction * part
         })
         .collect()
 }

@@ -1,18 +1,9 @@
 //! Steps per unit of length by least squares over measured pairs (DESIGN B3, Zhang 2012).
 //!
 //! ```text
-//! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin, the document's
-//! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; beside it: an offset
-//!                                                                   tells of backlash or a misplaced zero
-//! ```
-//!
-//! ```
-//! use stepscope_inspect::motion::calibration::{BadPairs, Calibration, Pair};
-//!
-//! let measured = [(10.0, 801.0), (20.0, 1601.0), (40.0, 3201.0)].map(|(length, steps)| Pair { length, steps });
-//! let fit = Calibration::of(&measured).expect("they have a line").with_offset;
-//! assert_eq!((fit.steps_per_unit.round(), fit.offset_steps.round()), (80.0, 1.0)); // one step of backlash
-//! assert_eq!(Calibration::of(&measured[..1]), Err(BadPairs::TooFew { given: 1 }));
+//! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin, as in Zhang 2012
+//! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; an offset indicates
+//! backlash or a misplaced zero
 //! ```
 
 use alloc::vec::Vec;
@@ -20,9 +11,9 @@ use core::fmt;
 
 /// Maximum magnitude, and 1/minimum: sums of squares stay finite and above 0.
 const MAX_MAGNITUDE: f64 = 1e12;
-const LEAST: f64 = 1e-12;
+const MIN_MAGNITUDE: f64 = 1e-12;
 
-/// A measured length in any unit, and the steps that made it.
+/// A measured length in any unit, and its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     pub length: f64,
@@ -92,7 +83,7 @@ impl fmt::Display for BadPairs {
         match self {
             Self::TooFew { given } => write!(
                 f,
-                "{given} pair{} of length and steps; give at least 2, of different lengths",
+                "{given} pair{} of length and steps; give at least 2, with different lengths",
                 if *given == 1 { "" } else { "s" }
             ),
             Self::Number { index, pair } => write!(
@@ -103,11 +94,11 @@ impl fmt::Display for BadPairs {
                 pair.steps
             ),
             Self::OneLength { length } => {
-                write!(f, "all pairs have length {length}; measure at least one of another length")
+                write!(f, "all pairs have length {length}; add a pair with another length")
             }
             Self::NotRising { steps_per_unit } => write!(
                 f,
-                "{steps_per_unit:?} steps a unit: more length should come with more steps; give both the same sign, and check the columns"
+                "{steps_per_unit:?} steps per unit: steps must increase with length; give both the same sign and check the order of the columns"
             ),
         }
     }
@@ -121,7 +112,7 @@ impl Calibration {
         if pairs.len() < 2 {
             return Err(BadPairs::TooFew { given: pairs.len() });
         }
-        let good = |value: f64| value == 0.0 || (LEAST..=MAX_MAGNITUDE).contains(&libm::fabs(value));
+        let good = |value: f64| value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&libm::fabs(value));
         if let Some((index, pair)) =
             pairs.iter().enumerate().find(|(_, pair)| !good(pair.length) || !good(pair.steps))
         {
@@ -144,10 +135,10 @@ impl Calibration {
         };
         let mean = |of: fn(&Pair) -> f64| pairs.iter().map(of).sum::<f64>() / pairs.len() as f64;
         let (length_mean, steps_mean) = (mean(|pair| pair.length), mean(|pair| pair.steps));
-        let (through, beside) = (slope(0.0, 0.0)?, slope(length_mean, steps_mean)?);
+        let (through, free) = (slope(0.0, 0.0)?, slope(length_mean, steps_mean)?);
         Ok(Self {
             through_origin: Fit::new(pairs, through, 0.0),
-            with_offset: Fit::new(pairs, beside, steps_mean - beside * length_mean),
+            with_offset: Fit::new(pairs, free, steps_mean - free * length_mean),
         })
     }
 }
@@ -191,7 +182,7 @@ mod tests {
 
     /// A least-squares line has a smaller sum of squares than its neighbours.
     #[test]
-    fn no_line_beside_it_is_better() {
+    fn no_other_line_is_better() {
         let given: Vec<Pair> = (1..40)
             .map(|i| Pair {
                 length: f64::from(i * i % 37),
@@ -223,8 +214,8 @@ mod tests {
     #[test]
     fn pairs_without_a_line_are_refused_with_their_numbers() {
         let rows: [(&[(f64, f64)], &str); 8] = [
-            (&[], "0 pairs of length and steps; give at least 2, of different lengths"),
-            (&[(1.0, 2.0)], "1 pair of length and steps; give at least 2, of different lengths"),
+            (&[], "0 pairs of length and steps; give at least 2, with different lengths"),
+            (&[(1.0, 2.0)], "1 pair of length and steps; give at least 2, with different lengths"),
             (
                 &[(1.0, 2.0), (f64::NAN, 2.0)],
                 "pair 2 has length NaN and 2.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
@@ -241,16 +232,27 @@ mod tests {
             (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; measure at least one of another length"),
             (
                 &[(1.0, -2.0), (2.0, -4.0)],
-                "-2.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+                "-2.0 steps per unit: steps must increase with length; give both the same sign and check the order of the columns",
             ),
             (
                 &[(1.0, 5.0), (2.0, 5.0)],
-                "0.0 steps a unit: more length should come with more steps; give both the same sign, and check the columns",
+                "0.0 steps per unit: steps must increase with length; give both the same sign and check the order of the columns",
             ),
         ];
         for (given, expected) in rows {
             let found = Calibration::of(&pairs(given)).err().map(|error| error.to_string());
             assert_eq!(found.as_deref(), Some(expected), "{given:?}");
         }
+    }
+
+    #[test]
+    fn steps_per_mm_of_measured_lengths() {
+        use crate::motion::calibration::{BadPairs, Calibration, Pair};
+
+        let measured =
+            [(10.0, 801.0), (20.0, 1601.0), (40.0, 3201.0)].map(|(length, steps)| Pair { length, steps });
+        let fit = Calibration::of(&measured).expect("they have a line").with_offset;
+        assert_eq!((fit.steps_per_unit.round(), fit.offset_steps.round()), (80.0, 1.0)); // one step of backlash
+        assert_eq!(Calibration::of(&measured[..1]), Err(BadPairs::TooFew { given: 1 }));
     }
 }

@@ -1,6 +1,6 @@
-//! Compares what each kind of motion costs for the same steps, time and ramps (DESIGN B4).
+//! Compares the cost of each kind of motion for the same steps, time and ramps (DESIGN B3, B4).
 //!
-//! Kinds with other parameters get them from n, t_i and t_s; v is the speed of the plateau:
+//! Other parameters follow from n, t_i and t_s (Zhang 2012); v is the speed of the plateau:
 //!
 //! ```text
 //! trapezoid      v = (n - t_s*v_0)/(t_i - t_s),  a = (v - v_0)/t_s
@@ -12,16 +12,6 @@
 //!
 //! Rates of a table or staircase are whole numbers, so the move ends early or late. Peaks include the jumps at start
 //! and end.
-//!
-//! ```
-//! use stepscope_inspect::motion::comparison::{Request, compare};
-//!
-//! // The same way in the same time, by every kind of motion.
-//! let rows = compare(&Request::new(3200, 0.4, 0.1));
-//! let accelerations = rows.iter().filter_map(|row| row.cost.as_ref().ok()).map(|cost| cost.peaks.acceleration);
-//! assert!(accelerations.into_iter().all(|acceleration| acceleration >= 0.0));
-//! assert_eq!(rows.len(), 12);
-//! ```
 
 use crate::motion::torque::{Demand, Machine, Moment};
 use alloc::{vec, vec::Vec};
@@ -36,7 +26,7 @@ use stepscope_motion::{
     plan_axis,
 };
 
-/// Acceleration of a staircase's first level in steps/s^2; others are multiples (B3).
+/// Acceleration of a staircase's first level in steps/s^2; the others are multiples.
 const LEVEL_STEPS_S2: f64 = 1000.0;
 const LEVELS: u8 = 5;
 
@@ -78,16 +68,16 @@ impl Request {
 
     /// The request for move `index` of an axis; `None` if it ends where it begins.
     pub fn of(axis: &Axis, plan: &AxisPlan, index: usize, ramp_s: f64) -> Option<Self> {
-        let (asked, planned) = (axis.moves.get(index)?, plan.moves().get(index)?);
+        let (requested, planned) = (axis.moves.get(index)?, plan.moves().get(index)?);
         let steps = planned.profile.steps();
-        let duration_s = asked.requested_s().unwrap_or_else(|| planned.profile.duration_s());
+        let duration_s = requested.requested_s().unwrap_or_else(|| planned.profile.duration_s());
         let request = Self {
             mechanics: axis.mechanics.clone(),
             motor: axis.motor.clone(),
             ..Self::new(steps, duration_s, ramp_s)
         };
         let speed = |speed: &Speed| speed.in_steps(&axis.mechanics).unwrap_or(request.start_speed);
-        let request = match asked {
+        let request = match requested {
             Move::Cosine(Cosine { slice_s, .. }) => Self { slice_s: *slice_s, ..request },
             Move::Ramps(Ramps { sigmoid_range, time_constants, .. }) => {
                 Self { sigmoid_range: *sigmoid_range, time_constants: *time_constants, ..request }
@@ -288,7 +278,7 @@ mod tests {
     /// 6400 steps in 0.4 s with ramps of 0.1 s: f_max = 64000/3 but for slices and the exponential, whose area
     /// is 1/(1 - e^-4) - 1/4; the numbers of f_max/t_s and f_max/t_s^2 by a calculator.
     #[test]
-    fn the_documents_move_costs_what_a_calculator_says() {
+    fn the_papers_move_has_the_calculated_cost() {
         let rows = [
             // rate, acceleration, jerk, jump of acceleration
             [21_333.333_333_333, 335_103.216_382_91, 10_527_578.027_829, 0.0],
@@ -329,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_cannot_be_says_so_in_its_row() {
+    fn an_impossible_candidate_has_its_problems() {
         let rows = compare(&Request::new(100, 0.4, 0.2));
         let wrong: Vec<_> = rows.iter().filter(|row| row.cost.is_err()).map(|row| row.candidate).collect();
         assert_eq!(wrong, [Candidate::Cosine(CosineMethod::Sliced)]);
@@ -342,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_makes_the_steps_in_the_time_with_the_ramps_but_for_whole_rates() {
+    fn every_kind_has_the_requested_steps_time_and_ramps() {
         let request = Request::new(-6400, 4.0, 1.0);
         let rows = compare(&request);
         for row in &rows {
@@ -355,8 +345,8 @@ mod tests {
                 Candidate::Trapezoid(TrapezoidMethod::Table),
                 Candidate::Staircase,
             ];
-            let most = if whole_rates.contains(&row.candidate) { 0.25 } else { 1e-12 };
-            assert!(cost.time_error.abs() <= most, "{:?}: {cost:?}", row.candidate);
+            let max = if whole_rates.contains(&row.candidate) { 0.25 } else { 1e-12 };
+            assert!(cost.time_error.abs() <= max, "{:?}: {cost:?}", row.candidate);
             assert_eq!(cost.torque, None, "there is no motor");
         }
         let peak = |index: usize| rows[index].cost.as_ref().unwrap().peaks;
@@ -371,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_is_asked_for_torque_and_one_that_has_too_little_is_told() {
+    fn too_little_torque_is_reported() {
         let with = |motor: Motor| compare(&Request { motor: Some(motor), ..Request::new(3200, 0.4, 0.1) });
         let torque =
             |row: &Row| row.cost.as_ref().ok().and_then(|cost| cost.torque).expect("there is a motor");
@@ -396,5 +386,17 @@ mod tests {
             (2000, 500.0, plan.duration_s())
         );
         assert_eq!(Request::of(&axis, &plan, 1, 0.05), None, "there is no second move");
+    }
+
+    #[test]
+    fn each_kind_of_motion_has_a_cost() {
+        use crate::motion::comparison::{Request, compare};
+
+        // The same way in the same time, by every kind of motion.
+        let rows = compare(&Request::new(3200, 0.4, 0.1));
+        let accelerations =
+            rows.iter().filter_map(|row| row.cost.as_ref().ok()).map(|cost| cost.peaks.acceleration);
+        assert!(accelerations.into_iter().all(|acceleration| acceleration >= 0.0));
+        assert_eq!(rows.len(), 12);
     }
 }

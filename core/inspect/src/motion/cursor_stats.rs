@@ -2,17 +2,6 @@
 //!
 //! Both are integrals over the curves, not over pixel columns: three-point Gauss-Legendre between breakpoints for the
 //! ideal motion, sums of rectangles for the pulses.
-//!
-//! ```
-//! use stepscope_inspect::motion::cursor_stats::ideal;
-//! use stepscope_motion::{moves::Axis, plan_axis};
-//!
-//! // Between two cursors that hold the whole of one turn in 0.4 s.
-//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
-//! let stats = ideal(&plan, 0.0, 0.0, 0.4);
-//! assert!((stats.speed.mean - 8000.0).abs() < 1.0);
-//! assert!(stats.speed.rms > stats.speed.mean);
-//! ```
 
 use crate::motion::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};
@@ -28,7 +17,7 @@ pub struct Moments {
 pub struct CursorStats {
     pub position: Moments,
     pub speed: Moments,
-    /// `None` for pulses ([`actual_acceleration`] estimates it).
+    /// `None` for pulses.
     pub acceleration: Option<Moments>,
 }
 
@@ -73,16 +62,16 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStat
 pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
     let (mut position, mut since_s) = (Sums::default(), from_s);
-    let mut place = pulses.position_at(from_s);
+    let mut held = pulses.position_at(from_s);
     for step in pulses.steps.iter().skip(pulses.steps_until(from_s)) {
         let at_s = step.cycle as f64 / hz;
         if at_s >= to_s {
             break;
         }
-        position.add(f64::from(place), at_s - since_s);
-        (since_s, place) = (at_s, step.position);
+        position.add(f64::from(held), at_s - since_s);
+        (since_s, held) = (at_s, step.position);
     }
-    position.add(f64::from(place), to_s - since_s);
+    position.add(f64::from(held), to_s - since_s);
     let mut speed = Sums::default();
     pulses.rates(from_s, to_s, &mut |rate| {
         let seconds = libm::fmin(rate.to_s, to_s) - libm::fmax(rate.from_s, from_s);
@@ -149,7 +138,7 @@ mod tests {
     ];
 
     #[test]
-    fn means_of_both_curves_are_those_of_a_million_looks() {
+    fn means_equal_those_of_a_million_samples() {
         for moves in MOTIONS {
             let ran = run(&alloc::format!(r#"{{"motion":{{"axes":[{{"moves":[{moves}]}}]}}}}"#));
             let plan = &ran.experiment.plans()[0];
@@ -236,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn segments_have_the_speed_of_their_intervals_and_none_in_a_dwell() {
+    fn segments_have_the_speed_of_their_intervals() {
         let ran = run(r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},
             {"dwell":{"length_q16":5242880000}},{"steps":{"count":10,"interval_q16":524288000,"dir":0}}]}]}}"#);
         let pulses = Pulses::of_run(
@@ -257,5 +246,17 @@ mod tests {
                 pulses.speed_at(time_s)
             );
         }
+    }
+
+    #[test]
+    fn statistics_between_two_cursors() {
+        use crate::motion::cursor_stats::ideal;
+        use stepscope_motion::{moves::Axis, plan_axis};
+
+        // Between two cursors that hold the whole of one turn in 0.4 s.
+        let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+        let stats = ideal(&plan, 0.0, 0.0, 0.4);
+        assert!((stats.speed.mean - 8000.0).abs() < 1.0);
+        assert!(stats.speed.rms > stats.speed.mean);
     }
 }

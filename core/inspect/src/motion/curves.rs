@@ -1,14 +1,4 @@
 //! Position, speed and acceleration as minimum and maximum per pixel column, for the ideal motion and for the pulses.
-//!
-//! ```
-//! use stepscope_inspect::motion::curves::{Window, ideal};
-//! use stepscope_motion::{moves::Axis, plan_axis};
-//!
-//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
-//! let curves = ideal(&plan, 0.0, Window { start_s: 0.0, end_s: 0.4, columns: 4 });
-//! let top = curves.speed.max.iter().fold(0.0, |top: f64, speed| top.max(*speed));
-//! assert_eq!(top, 16_000.0); // no column leaves a peak out
-//! ```
 
 use crate::motion::actual_motion::Pulses;
 use alloc::{vec, vec::Vec};
@@ -182,7 +172,7 @@ fn follow(plan: &AxisPlan, zero_s: f64, interval: Interval, column_s: f64, line:
 
 fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) -> [[f64; 2]; 3] {
     let mut found = [[f64::NAN; 2]; 3];
-    let mut look = |interval: Interval| {
+    let mut follow = |interval: Interval| {
         // Just inside: at a breakpoint itself the value may be that of the other side.
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         for t in [interval.from_s + inset, interval.to_s - inset] {
@@ -198,11 +188,11 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) 
         count += 1;
         last = Some(interval);
         if count <= MAX_INTERVALS || count % 16 == 0 {
-            look(interval);
+            follow(interval);
         }
     });
     if let Some(last) = last {
-        look(last);
+        follow(last);
     }
     found
 }

@@ -32,8 +32,8 @@ pub(crate) fn sums(pulses: impl Iterator<Item = (f64, f64)>, order: usize) -> Ve
     let mut sums = vec![Complex { re: 0.0, im: 0.0 }; order];
     let mut line = vec![Complex { re: 0.0, im: 0.0 }; points];
     for moment in (0..MOMENTS).rev() {
-        for (place, cell) in line.iter_mut().zip(&cells) {
-            *place = Complex { re: cell.get(moment).copied().unwrap_or(0.0), im: 0.0 };
+        for (point, cell) in line.iter_mut().zip(&cells) {
+            *point = Complex { re: cell.get(moment).copied().unwrap_or(0.0), im: 0.0 };
         }
         transform.process(&mut line);
         for (k, (sum, term)) in (1_u32..).zip(sums.iter_mut().zip(line.iter().skip(1))) {
@@ -49,14 +49,14 @@ pub(crate) fn sums(pulses: impl Iterator<Item = (f64, f64)>, order: usize) -> Ve
 fn moments(pulses: impl Iterator<Item = (f64, f64)>, points: usize) -> Vec<[f64; MOMENTS]> {
     let mut cells = vec![[0.0; MOMENTS]; points];
     for (x, direction) in pulses {
-        let place = (x - libm::floor(x)) * points as f64;
-        let nearest = libm::floor(place + 0.5);
+        let point = (x - libm::floor(x)) * points as f64;
+        let nearest = libm::floor(point + 0.5);
         // The last half cell of a period belongs to its first cell.
         if let Some(cell) = cells.get_mut(nearest as usize % points) {
             let mut weight = direction;
             for moment in cell {
                 *moment += weight;
-                weight *= place - nearest;
+                weight *= point - nearest;
             }
         }
     }

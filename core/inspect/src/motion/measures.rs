@@ -1,31 +1,15 @@
-//! Measures of a run: ideal curve, scheduled steps and pulses, each compared with the one before.
+//! Measures of a run: ideal curve, scheduled steps and pulses, each compared with the one before (DESIGN B1).
 //!
 //! ```text
-//! ideal   s(t)                                             DESIGN B1
+//! ideal   s(t)
 //!   | step quantisation: whole steps at whole cycles       `steps`   ideal against steps
 //! steps   cycle = floor(t*clock_hz + 1/2)
 //!   | tick quantisation, the queue and the link            `ticks`   steps against pulses
 //! pulses  rising STEP edges of the run                     `pulses`  ideal against pulses
 //! ```
 //!
-//! Times start with the first tick or the segment list, and a comparison ends when all has come to rest. Areas and
-//! means are integrals of the curves.
-//!
-//! ```
-//! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps;
-//! # use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
-//! # let made = steps(&recording.trace, 0);
-//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
-//! assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
-//! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
-//! ```
+//! Times start with the first tick or the segment list; a comparison ends when all motion has ended. Areas and means are
+//! integrals of the curves.
 
 mod curve_metrics;
 mod pulse_errors;
@@ -39,7 +23,7 @@ use crate::motion::{
 };
 use alloc::vec::Vec;
 use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
-use pulse_errors::{due_steps, placed};
+use pulse_errors::{by_position, due_steps};
 use serde::Serialize;
 use stepscope_motion::ValueError;
 use stepscope_motion::{AxisPlan, Breakpoints, Profile, curves::SineSegments, moves::Axis};
@@ -65,9 +49,9 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
     pub length_s: f64,
-    /// Quantization to steps: the ideal curve against B1's steps.
+    /// Quantization to steps: the ideal curve compared with scheduled steps.
     pub steps: CurveMetrics,
-    /// Quantization to ticks, queue and link: those steps against the pulses.
+    /// Quantization to ticks, queue and link: scheduled steps compared with pulses.
     pub ticks: CurveMetrics,
     pub pulses: CurveMetrics,
     pub step_errors: PulseErrors,
@@ -75,7 +59,7 @@ pub struct Measures {
     pub counts: Counts,
     pub peaks: Extremes,
     pub duration: Duration,
-    /// The first sine by segments: its polyline against the exact sine.
+    /// The first sine by segments: its polyline compared with the exact sine.
     pub sine: Option<SineMeasures>,
 }
 
@@ -95,7 +79,7 @@ pub struct Extremes {
     pub jerk_steps_s3: f64,
     pub speed_jump_steps_s: f64,
     pub acceleration_jump_steps_s2: f64,
-    /// Maximum speed that starts or ends at rest without a ramp. A turn is a stop and a start.
+    /// Maximum speed that starts or ends at standstill without a ramp. A reversal is a stop and a start.
     pub start_stop_steps_s: f64,
 }
 
@@ -111,7 +95,7 @@ pub struct Duration {
     pub end_error_s: Option<f64>,
 }
 
-/// A polyline against the exact sine, at 512 points of a quarter.
+/// A polyline compared with the exact sine, at 512 points of a quarter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SineMeasures {
     pub segments: usize,
@@ -125,11 +109,11 @@ impl Measures {
     pub fn of(plan: &AxisPlan, pulses: &Pulses<'_>, requested: Option<&Axis>) -> Self {
         let (zero, hz) = (pulses.zero(), pulses.hz());
         let shifted = |step: &Step| Step { cycle: step.cycle.saturating_sub(zero), ..*step };
-        let made: Vec<Step> = pulses.steps.iter().map(shifted).collect();
+        let actual: Vec<Step> = pulses.steps.iter().map(shifted).collect();
         let (due, step_errors) = due_steps(plan, pulses.clock_hz());
-        let (tick_errors, stray) = placed(plan, &due, &made, hz);
+        let (tick_errors, stray) = by_position(plan, &due, &actual, hz);
         let last = |steps: &[Step]| steps.last().map(|step| step.cycle as f64 / hz);
-        let (last_due_s, last_pulse_s) = (last(&due), last(&made));
+        let (last_due_s, last_pulse_s) = (last(&due), last(&actual));
         // At least one cycle, so that the comparison is not empty.
         let ends = [Some(plan.duration_s()), last_due_s, last_pulse_s];
         let length_s = ends.into_iter().flatten().fold(1.0 / hz, libm::fmax);
@@ -138,11 +122,11 @@ impl Measures {
         Self {
             length_s,
             steps: curve_and_steps(plan, &breakpoints, &due, hz, length_s),
-            ticks: steps_and_steps(&due, &made, hz, length_s),
-            pulses: curve_and_steps(plan, &breakpoints, &made, hz, length_s),
+            ticks: steps_and_steps(&due, &actual, hz, length_s),
+            pulses: curve_and_steps(plan, &breakpoints, &actual, hz, length_s),
             step_errors,
             tick_errors,
-            counts: Counts { due: due.len() as u64, actual: made.len() as u64, stray },
+            counts: Counts { due: due.len() as u64, actual: actual.len() as u64, stray },
             peaks: extremes(plan, &breakpoints),
             duration: Duration {
                 planned_s: plan.duration_s(),
@@ -163,7 +147,7 @@ impl Measures {
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     let names_one = axis.moves.iter().any(|requested| requested.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
-    // In the order in which the plan adds them, so that equal times give equal sums.
+    // In the order of the plan, so that equal times give equal sums.
     let sum = times.fold(0.0, |sum, (requested, planned)| {
         sum + requested.requested_s().unwrap_or_else(|| planned.profile.duration_s())
     });
@@ -179,7 +163,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
         }
     };
     breakpoints.intervals(0.0, plan.duration_s(), &mut |interval| {
-        // Just inside: at a breakpoint the speed is that of one side.
+        // Just inside: at a breakpoint the speed is that of one side only.
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         let speed = |t: f64, by: f64| plan.speed(t) + plan.acceleration(t) * by;
         meets(before, speed(interval.from_s + inset, -inset));
@@ -192,7 +176,7 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
         jerk_steps_s3: peaks.jerk,
         speed_jump_steps_s: peaks.jump,
         acceleration_jump_steps_s2: peaks.acceleration_jump,
-        // A curve that begins at rest leaves only rounding here.
+        // A curve that starts at speed 0 leaves only rounding here.
         start_stop_steps_s: if start_stop > 1e-9 * peaks.speed { start_stop } else { 0.0 },
     }
 }
@@ -209,7 +193,7 @@ fn polyline(sine: &SineSegments) -> SineMeasures {
     for (point, (cosine, off)) in differences(&points, &cosines()).enumerate() {
         let (cosine, off) = (cosine * amplitude, off * amplitude);
         let at_s = point as f64 * sine.point_s();
-        sums.look(at_s, off);
+        sums.extreme(at_s, off);
         sums.sample(off);
         // Line and cosine meet at both ends, so a sum over the points is the trapezoid rule.
         sums.interval(&[(cosine, off, sine.point_s())]);

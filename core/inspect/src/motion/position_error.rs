@@ -1,18 +1,6 @@
 //! Position difference of two runs.
 //!
 //! Positions stay from step to step, so the difference changes only at steps; both are 0 before their first step.
-//!
-//! ```
-//! use stepscope_inspect::motion::position_error::{Scaled, apart};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! // Two runs that part at their second step.
-//! let steps = |second| [(100, 1), (second, 2)].map(|(cycle, position)| Step { cycle, position });
-//! let (one, other) = (steps(200), steps(300));
-//! let scaled = |steps| Scaled { steps, hz: 1000.0, unit: 1.0 };
-//! let apart = apart(scaled(&one), scaled(&other), 1.0);
-//! assert_eq!((apart.largest, apart.at_s), (1.0, 0.2));
-//! ```
 
 use crate::motion::curves::{Band, Window};
 use stepscope_peripheral::trace::Step;
@@ -30,7 +18,7 @@ impl Scaled<'_> {
         self.steps.get(index).map(|step| step.cycle as f64 / self.hz)
     }
 
-    fn place(&self, steps: usize) -> f64 {
+    fn position(&self, steps: usize) -> f64 {
         let last = steps.checked_sub(1).and_then(|last| self.steps.get(last));
         last.map_or(0.0, |step| f64::from(step.position)) * self.unit
     }
@@ -48,14 +36,14 @@ impl<'a> Difference<'a> {
     }
 
     fn now(&self) -> f64 {
-        let [a, b] = self.places();
+        let [a, b] = self.positions();
         a - b
     }
 
-    pub(crate) fn places(&self) -> [f64; 2] {
+    pub(crate) fn positions(&self) -> [f64; 2] {
         let [a, b] = self.runs;
         let [after_a, after_b] = self.next;
-        [a.place(after_a), b.place(after_b)]
+        [a.position(after_a), b.position(after_b)]
     }
 
     pub(crate) fn changes(&mut self, to_s: f64, each: &mut dyn FnMut(f64, [f64; 2])) {
@@ -69,7 +57,7 @@ impl<'a> Difference<'a> {
             for (next, time) in self.next.iter_mut().zip(times) {
                 *next += usize::from(time == at);
             }
-            each(at, self.places());
+            each(at, self.positions());
         }
     }
 }
@@ -131,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_and_the_whole_are_those_of_a_look_at_every_cycle() {
+    fn columns_equal_those_of_every_cycle() {
         // Clocks of 1024 Hz and 4096 Hz, so that all times are exact; a step at the same time in both, one a run's only step.
         let rows: [(Rows, Rows); 4] = [
             (&[(1, 1), (5, 2), (9, 1), (30, 2)], &[(4, 1), (22, 2), (23, 1), (36, 2), (80, 3)]),
@@ -144,7 +132,7 @@ mod tests {
             let first = Scaled { steps: &first, hz: 1024.0, unit: 0.5 };
             let second = Scaled { steps: &second, hz: 4096.0, unit: 2.0 };
             let common_s = 36.0 / 1024.0;
-            let looks: Vec<(f64, f64)> = (0..36 * 4)
+            let samples: Vec<(f64, f64)> = (0..36 * 4)
                 .map(|cycle| {
                     let time_s = f64::from(cycle) / 4096.0;
                     (time_s, position(first, time_s) - position(second, time_s))
@@ -154,29 +142,41 @@ mod tests {
             let band = difference(first, second, common_s, window);
             for column in 0..window.columns {
                 let (from, to) = (window.edge_s(column), window.edge_s(column + 1));
-                let before = looks.iter().rev().find(|(t, _)| *t < from);
-                let inside = looks.iter().filter(|(t, _)| *t >= from && *t < to);
-                let inside = before.into_iter().chain(inside).map(|look| look.1);
+                let before = samples.iter().rev().find(|(t, _)| *t < from);
+                let inside = samples.iter().filter(|(t, _)| *t >= from && *t < to);
+                let inside = before.into_iter().chain(inside).map(|sample| sample.1);
                 if from >= common_s {
                     assert!(band.min[column].is_nan() && band.max[column].is_nan());
                     continue;
                 }
-                let (least, most) = inside.fold((f64::MAX, f64::MIN), |(a, b), d| (a.min(d), b.max(d)));
+                let (least, max) = inside.fold((f64::MAX, f64::MIN), |(a, b), d| (a.min(d), b.max(d)));
                 assert_eq!(
                     (band.min[column], band.max[column]),
-                    (least, most),
+                    (least, max),
                     "{first:?} {second:?} {column}"
                 );
             }
             let found = apart(first, second, common_s);
-            let (at_s, largest) = looks
-                .iter()
-                .copied()
-                .fold((0.0, looks[0].1), |most, look| if look.1.abs() > most.1.abs() { look } else { most });
-            let square: f64 = looks.iter().map(|look| look.1 * look.1).sum();
-            let rms = (square / looks.len() as f64).sqrt();
+            let (at_s, largest) = samples.iter().copied().fold((0.0, samples[0].1), |max, sample| {
+                if sample.1.abs() > max.1.abs() { sample } else { max }
+            });
+            let square: f64 = samples.iter().map(|sample| sample.1 * sample.1).sum();
+            let rms = (square / samples.len() as f64).sqrt();
             assert_eq!((found.largest, found.at_s), (largest, at_s));
             assert!((found.rms - rms).abs() < 1e-12, "{} {rms}", found.rms);
         }
+    }
+
+    #[test]
+    fn two_runs_are_apart_by_a_step() {
+        use crate::motion::position_error::{Scaled, apart};
+        use stepscope_peripheral::trace::Step;
+
+        // Two runs that part at their second step.
+        let steps = |second| [(100, 1), (second, 2)].map(|(cycle, position)| Step { cycle, position });
+        let (one, other) = (steps(200), steps(300));
+        let scaled = |steps| Scaled { steps, hz: 1000.0, unit: 1.0 };
+        let apart = apart(scaled(&one), scaled(&other), 1.0);
+        assert_eq!((apart.largest, apart.at_s), (1.0, 0.2));
     }
 }

@@ -1,18 +1,4 @@
 //! The spectra of an axis: ideal motion and actual pulses.
-//!
-//! ```
-//! use stepscope_inspect::motion::{actual_motion::Pulses, spectra::Spectra};
-//! use stepscope_scenario::Scenario;
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); experiment.run(&mut recording); let made = steps(&recording.trace, 0);
-//! let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-//! let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
-//! let lines = |spectrum: Option<stepscope_inspect::motion::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
-//! assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
-//! ```
 
 use crate::motion::{
     actual_motion::Pulses,
@@ -29,18 +15,18 @@ const FOLDING: u32 = 16;
 pub struct Spectra {
     pub ideal: Option<Spectrum>,
     pub actual: Option<Spectrum>,
-    /// Why there is none, or its limits; empty for nothing.
+    /// Why a spectrum is missing or limited; may be empty.
     pub note: String,
 }
 
 impl Spectra {
-    /// Both spectra of the axis that the scenario's analysis selects. Without a plan only the pulses have one.
+    /// Both spectra of the selected axis. Without a plan only the pulses have one.
     pub fn of(scenario: &Scenario, plan: Option<&AxisPlan>, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
         let window = plan.and_then(AnalysisWindow::of);
         let (Some(plan), Some(window)) = (plan, window) else {
             if let Source::Motion(_) = &scenario.source {
-                let note = format!("This controller has no axis {}.", analysis.axis);
+                let note = format!("This controller has no axis {}; choose another one.", analysis.axis);
                 return Self { note, ..Self::default() };
             }
             return Self::of_steps(scenario, run);
@@ -48,10 +34,10 @@ impl Spectra {
         let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
         let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
         let note = if !window.periodic {
-            "The motion is not periodic: no harmonics, no THD.".to_owned()
+            "The motion is not periodic, so it has no harmonics and no THD.".to_owned()
         } else if u32::from(analysis.order) * FOLDING > analysis.fft_length {
             format!(
-                "Of {} samples a period the ideal curve's harmonics up to {} fold back, in the acceleration most: more samples, or a lower order, come nearer to the truth.",
+                "{} samples per period alias harmonics up to {}, mainly in the acceleration. Use more samples or a lower order.",
                 analysis.fft_length, analysis.order
             )
         } else {
@@ -67,14 +53,14 @@ impl Spectra {
     fn of_steps(scenario: &Scenario, run: &Pulses<'_>) -> Self {
         let analysis = &scenario.analysis;
         let Some(window) = AnalysisWindow::of_steps(run.steps, run.hz()) else {
-            let note = format!("Channel {} makes less than two steps.", run.channel);
+            let note = format!("Channel {} makes fewer than two steps.", run.channel);
             return Self { note, ..Self::default() };
         };
         let actual = Spectrum::of_pulses(&window.steps_within(run.steps, run.hz()), window, analysis.order);
         let note = if window.periodic {
-            format!("Taken over {} periods, from turn to turn: no plan is known.", window.periods)
+            format!("Measured over {} periods between reversals, because there is no plan.", window.periods)
         } else {
-            "The steps do not go to and fro evenly: no harmonics, no THD.".to_owned()
+            "The steps do not oscillate evenly, so there are no harmonics and no THD.".to_owned()
         };
         Self { ideal: None, actual: Some(actual.filtered_by(analysis.sensor_hz)), note }
     }
@@ -110,6 +96,25 @@ mod tests {
         let amplitude = found.position.amplitudes[0];
         assert!((amplitude / known.position.amplitudes[0] - 1.0).abs() < 1e-3, "{amplitude}");
         let still = Spectra::of(&other, None, &Pulses::recorded(0, &made[..1], 16_000_000));
-        assert!(still.actual.is_none() && still.note.contains("less than two steps"));
+        assert!(still.actual.is_none() && still.note.contains("fewer than two steps"));
+    }
+
+    #[test]
+    fn both_spectra_have_the_order_of_the_scenario() {
+        use crate::motion::{actual_motion::Pulses, spectra::Spectra};
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::trace::steps;
+        use stepscope_scenario::Scenario;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let made = steps(&recording.trace, 0);
+        let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
+        let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
+        let lines =
+            |spectrum: Option<crate::motion::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
+        assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
     }
 }

@@ -9,19 +9,6 @@
 //! ```
 //!
 //! A motion that is not periodic is taken as a whole, less its straight line, and has no distortion.
-//!
-//! ```
-//! use stepscope_inspect::motion::spectrum::Spectrum;
-//! use stepscope_motion::{
-//!     moves::{Axis, Move, SineSegments},
-//!     plan_axis,
-//! };
-//!
-//! let axis = Axis { moves: vec![Move::SineSegments(SineSegments::default())], ..Axis::default() };
-//! let plan = plan_axis(&axis, "x").expect("it can be planned");
-//! let spectrum = Spectrum::ideal(&plan, 40, 4096).expect("it takes time");
-//! assert!(spectrum.position.distortion.is_some_and(|distortion| distortion < 0.003));
-//! ```
 
 pub use crate::motion::analysis_window::AnalysisWindow;
 
@@ -103,8 +90,9 @@ impl Spectrum {
     /// The spectrum of pulses (time in s, +1 right or -1 left) in any order. Pulses outside the window are moved by
     /// whole periods.
     pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
-        let phases =
-            pulses.iter().map(|&(time_s, way)| ((time_s - window.start_s) / window.period_s, f64::from(way)));
+        let phases = pulses
+            .iter()
+            .map(|&(time_s, direction)| ((time_s - window.start_s) / window.period_s, f64::from(direction)));
         let position = sums(phases, order.into())
             .into_iter()
             .enumerate()
@@ -126,7 +114,7 @@ mod tests {
         step_tables::TickClock,
     };
 
-    /// All harmonics of the document's transform of 2048 points. The document does not state its
+    /// All harmonics of the paper's transform of 2048 points. The paper does not state its
     /// order; this is the one that gives its distortions to the last digit (up to the 40th harmonic
     /// they would be 0.26369 % and 0.26078 %).
     const DOCUMENT_ORDER: u16 = 1023;
@@ -145,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_documents_distortions_come_out() {
+    fn the_papers_distortions_are_reproduced() {
         // So many steps that their rounding is not in the last digit.
         let harmonics = |d1| {
             let sine = SineSegments {
@@ -197,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_sensor_feels_of_segments_has_a_distortion_that_the_order_hardly_changes() {
+    fn filtered_distortion_of_segments_hardly_depends_on_the_order() {
         let plan = plan(vec![sine(5e5, 0.006)]);
         // 2 Hz filtered with 40 Hz.
         let of = |order| Spectrum::ideal(&plan, order, 65_536).unwrap().filtered_by(Some(40.0));
@@ -245,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn pulses_through_the_grid_weigh_as_much_as_one_by_one() {
+    fn sums_over_the_grid_equal_sums_of_single_pulses() {
         let window = AnalysisWindow { start_s: 0.0, period_s: 0.125, periods: 3, periodic: true };
         let pulses: Vec<(f64, i8)> = (0..1001)
             .map(|i| (f64::from(i * i % 4099) * 0.375 / 4099.0, if i % 3 == 0 { -1 } else { 1 }))
@@ -253,10 +241,10 @@ mod tests {
         let found = Spectrum::of_pulses(&pulses, window, 1000);
         for (k, amplitude) in (1..).zip(&found.position.amplitudes) {
             let k = f64::from(k);
-            let (re, im) = pulses.iter().fold((0.0, 0.0), |(re, im), &(t, way)| {
+            let (re, im) = pulses.iter().fold((0.0, 0.0), |(re, im), &(t, direction)| {
                 let turns = k * (t / 0.125);
                 let (sine, cosine) = libm::sincos(TAU * (turns - libm::floor(turns)));
-                (re + f64::from(way) * cosine, im - f64::from(way) * sine)
+                (re + f64::from(direction) * cosine, im - f64::from(direction) * sine)
             });
             let expected = libm::sqrt(re * re + im * im) / (PI * k * 3.0);
             assert!((amplitude - expected).abs() < 1e-12 * 1001.0 / k, "{k}: {amplitude} {expected}");
@@ -264,12 +252,12 @@ mod tests {
     }
 
     #[test]
-    fn pulses_where_the_curve_asks_for_them_have_the_curves_spectrum() {
+    fn pulses_at_due_times_have_the_curves_spectrum() {
         let plan = plan(vec![sine(2000.0, 0.006)]);
         let mut pulses = Vec::new();
-        let (mut due, looks) = (0, 2_000_000);
-        for look in 1..=looks {
-            let t = plan.duration_s() * f64::from(look) / f64::from(looks);
+        let (mut due, samples) = (0, 2_000_000);
+        for sample in 1..=samples {
+            let t = plan.duration_s() * f64::from(sample) / f64::from(samples);
             let now = plan.steps_due(t);
             pulses.extend((due != now).then_some((t, if now > due { 1 } else { -1 })));
             due = now;
@@ -296,10 +284,10 @@ mod tests {
             let plan = plan(vec![constant.clone(), Move::SineSegments(sine), constant]);
             let window = AnalysisWindow::of(&plan).unwrap();
             let own = window.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
-            own.iter().map(|(t, way)| (round_half_up(t * 1e6) as u64, *way)).collect::<Vec<_>>()
+            own.iter().map(|(t, direction)| (round_half_up(t * 1e6) as u64, *direction)).collect::<Vec<_>>()
         };
         // On the grid nothing is shared. The sine goes 2 steps a tick: left in two, right in two.
-        let there = |tick: u64, way: i8| [(tick * 1000, way), (tick * 1000 + 500, way)];
+        let there = |tick: u64, direction: i8| [(tick * 1000, direction), (tick * 1000 + 500, direction)];
         let sine: Vec<(u64, i8)> =
             [there(2, -1), there(3, -1), there(4, 1), there(5, 1)].into_iter().flatten().collect();
         let all: Vec<(u64, i8)> =
@@ -309,16 +297,30 @@ mod tests {
         // the move after it ask of tick 6 cancels.
         let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (2, -1), (3, -1), (5, 1)]
             .into_iter()
-            .flat_map(|(tick, way)| there(tick, way))
+            .flat_map(|(tick, direction)| there(tick, direction))
             .collect();
         assert_eq!(run(-5.0, 2000.0, 2.0, &all), all[5..]);
         // The other way round: tick 2 cancels, of tick 6 the first pulse is the sine's.
         let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (3, 1), (5, -1), (6, -1)]
             .into_iter()
-            .flat_map(|(tick, way)| there(tick, way))
+            .flat_map(|(tick, direction)| there(tick, direction))
             .collect();
         assert_eq!(run(-5.0, 2000.0, -2.0, &all), all[4..9]);
         // A tick too many pulses, as of a broken line: the others' stay the others'.
         assert_eq!(run(-5.0, 2000.0, -2.0, &[(2500, 1), (2600, -1), (6500, 1)]), [(2500, 1)]);
+    }
+
+    #[test]
+    fn the_spectrum_of_a_sine_is_its_first_harmonic() {
+        use crate::motion::spectrum::Spectrum;
+        use stepscope_motion::{
+            moves::{Axis, Move, SineSegments},
+            plan_axis,
+        };
+
+        let axis = Axis { moves: vec![Move::SineSegments(SineSegments::default())], ..Axis::default() };
+        let plan = plan_axis(&axis, "x").expect("it can be planned");
+        let spectrum = Spectrum::ideal(&plan, 40, 4096).expect("it takes time");
+        assert!(spectrum.position.distortion.is_some_and(|distortion| distortion < 0.003));
     }
 }

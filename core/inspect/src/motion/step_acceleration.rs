@@ -11,13 +11,13 @@ pub(crate) fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
     let [from, at, to] =
         [middle.checked_sub(HALF)?, middle, middle.checked_add(HALF)?].map(|index| steps.get(index));
     let (from, at, to) = (from?, at?, to?);
-    let way = to.position.wrapping_sub(from.position);
-    if way.unsigned_abs() as usize != 2 * HALF || from.cycle == at.cycle || at.cycle == to.cycle {
+    let travel = to.position.wrapping_sub(from.position);
+    if travel.unsigned_abs() as usize != 2 * HALF || from.cycle == at.cycle || at.cycle == to.cycle {
         return None;
     }
     let [first_s, second_s] = [(from, at), (at, to)].map(|(a, b)| (b.cycle - a.cycle) as f64 / hz);
     let change = HALF as f64 / second_s - HALF as f64 / first_s;
-    Some(libm::copysign(1.0, f64::from(way)) * change / ((first_s + second_s) / 2.0))
+    Some(libm::copysign(1.0, f64::from(travel)) * change / ((first_s + second_s) / 2.0))
 }
 
 #[cfg(test)]

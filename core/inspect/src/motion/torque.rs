@@ -1,4 +1,4 @@
-//! Torque over step rate: can a motor follow a plan (Song, Han, Lu 2021, 1.1 and 2.3)?
+//! Torque over step rate: can a motor follow a plan (Song, Han, Lu 2021, 1.1 and 2.3; DESIGN B4)?
 //!
 //! The phasor model of a two-phase hybrid motor on a current-regulated bipolar driver (P. Acarnley, *Stepping Motors:
 //! a guide to theory and practice*): fundamentals only, without saturation, detent torque, iron losses or resonance.
@@ -10,8 +10,8 @@
 //! i = (V - E)/(R + j*X),  torque = k*Re(i)        the current, E being real
 //! ```
 //!
-//! Available is the maximum torque of all currents with |i| <= the regulated peak and |V| <= the supply: two discs in
-//! the plane of i. It is negative where all of these brake.
+//! Available is the maximum torque of all currents with |i| <= the regulated peak and |V| <= the supply: two discs in the
+//! plane of i. It is negative if all of these brake.
 //!
 //! ```text
 //! torque |--------.               up to the corner the driver holds the current: k*I
@@ -23,21 +23,6 @@
 //!
 //! Needed is inertia times acceleration plus the load's torque, which opposes the motion. Braking is compared with
 //! the same curve, which is on the safe side. Jumps of speed have no finite torque; [`Demand::jump`] reports them.
-//!
-//! ```
-//! use stepscope_inspect::motion::torque::{Demand, Machine};
-//! use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
-//!
-//! // The default turn, in 0.4 s, with the default motor.
-//! let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
-//! let machine = Machine::of(&axis).expect("it has a motor");
-//! let demand = Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned"));
-//! assert!(demand.is_met());
-//! // Ten times the load, and it is not.
-//! let motor = Motor { load_torque_mn_m: 4000.0, ..Motor::default() };
-//! let machine = Machine::of(&Axis { motor: Some(motor), ..axis.clone() }).expect("it has a motor");
-//! assert!(!Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned")).is_met());
-//! ```
 
 mod machine;
 mod moment;
@@ -70,7 +55,7 @@ pub struct Shortage {
     pub worst: Moment,
 }
 
-/// What a plan or a list of steps requires of a motor.
+/// The torque and rate that a plan or a list of steps requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     pub shortages: Vec<Shortage>,
@@ -100,14 +85,14 @@ impl Demand {
         found.finish(machine)
     }
 
-    /// What is wrong with the move from `from_s` to `to_s` of `peak_rate` steps/s, and how to fix it; `None` where
-    /// the torque suffices.
+    /// The problem of the move from `from_s` to `to_s` with `peak_rate` steps/s, and how to fix it; `None` if the torque
+    /// suffices.
     pub fn warning(&self, machine: &Machine, from_s: f64, to_s: f64, peak_rate: f64) -> Option<String> {
-        if let Some(most) = machine.working_rate().filter(|most| peak_rate > *most) {
+        if let Some(max) = machine.working_rate().filter(|max| peak_rate > *max) {
             return Some(format!(
                 "{} steps/s are above the motor's working rate of {}; give more time, or shorter ramps",
                 grouped(peak_rate),
-                grouped(most)
+                grouped(max)
             ));
         }
         let inside = self.shortages.iter().filter(|found| found.from_s < to_s && found.to_s > from_s);
@@ -123,22 +108,22 @@ impl Demand {
         ))
     }
 
-    /// Whether the motor can follow, jumps aside.
+    /// Whether the motor can follow, except for jumps.
     pub fn is_met(&self) -> bool {
         self.total == 0 && self.over_working_rate.is_none()
     }
 }
 
-/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `max_rate` steps/s; NaN where
-/// it has no such rate.
+/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `max_rate` steps/s; NaN for unused
+/// rates.
 pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, max_rate: f64, bins: usize) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     for planned in plan.moves() {
         let part_s = planned.profile.duration_s() / f64::from(SAMPLES_PER_MOVE);
         for sample in 0..SAMPLES_PER_MOVE {
             let moment = machine.at(plan, planned.start_s + (f64::from(sample) + 0.5) * part_s);
-            if let Some(most) = needed.get_mut((moment.rate / max_rate * bins as f64) as usize) {
-                *most = libm::fmax(*most, libm::fabs(moment.needed_mn_m));
+            if let Some(max) = needed.get_mut((moment.rate / max_rate * bins as f64) as usize) {
+                *max = libm::fmax(*max, libm::fabs(moment.needed_mn_m));
             }
         }
     }

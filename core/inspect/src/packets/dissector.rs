@@ -3,18 +3,6 @@
 //!
 //! COBS replaces each zero, so a decoded byte has one position on the line. The bytes that COBS adds are fields of
 //! their own.
-//!
-//! ```
-//! use stepscope_inspect::packets::dissector::Reading;
-//! use stepscope_inspect::packets::log::RowOutcome;
-//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
-//!
-//! // A raw packet for controller 7, two channels.
-//! let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
-//! let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
-//! assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
-//! assert_eq!(meaning.fields[0].bytes, 0..1);
-//! ```
 
 mod summary;
 
@@ -55,7 +43,6 @@ pub struct Meaning {
     pub check: Check,
 }
 
-/// What is needed to read the bytes of a line.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
     pub protocol: Protocol,
@@ -115,7 +102,7 @@ impl Reading<'_> {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
                 Meaning { fields: ignored.into_iter().collect(), check: Check::None }
             }
-            // A recorded reply may stand on a raw line.
+            // A raw line may have a recorded reply.
             (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
             (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
             (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
@@ -123,24 +110,24 @@ impl Reading<'_> {
     }
 
     fn framed(&self, bytes: &[u8]) -> Meaning {
-        let place = last_frame(bytes);
+        let range = last_frame(bytes);
         let mut fields = Vec::new();
-        if place.start > 0 {
-            fields.push(field("before it", 0..place.start, "no part of the frame"));
+        if range.start > 0 {
+            fields.push(field("before it", 0..range.start, "no part of the frame"));
         }
-        let content = Content::of(bytes, place.clone());
+        let content = Content::of(bytes, range.clone());
         let check = content.check();
         let mut meant = content.fields(check, self.channels);
         for &(at, code) in &content.overhead {
             // COBS bytes within a body belong to the body.
             if !meant.iter().any(|field| field.bytes.contains(&at)) {
-                let place = meant.partition_point(|field| field.bytes.start < at);
-                meant.insert(place, field("COBS", at..at + 1, cobs_to_text(code)));
+                let range = meant.partition_point(|field| field.bytes.start < at);
+                meant.insert(range, field("COBS", at..at + 1, cobs_to_text(code)));
             }
         }
         fields.extend(meant);
-        if place.end < bytes.len() {
-            fields.push(field("end mark", place.end..bytes.len(), "00"));
+        if range.end < bytes.len() {
+            fields.push(field("end mark", range.end..bytes.len(), "00"));
         }
         Meaning { fields, check }
     }
@@ -162,27 +149,28 @@ pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
 
 struct Content {
     decoded: Vec<u8>,
-    places: Vec<usize>,
+    offsets: Vec<usize>,
     overhead: Vec<(usize, u8)>,
     whole: bool,
 }
 
 impl Content {
     fn of(bytes: &[u8], range: Range<usize>) -> Self {
-        let mut content = Self { decoded: Vec::new(), places: Vec::new(), overhead: Vec::new(), whole: true };
+        let mut content =
+            Self { decoded: Vec::new(), offsets: Vec::new(), overhead: Vec::new(), whole: true };
         let mut reader = CobsDecoder::default();
         for at in range.clone() {
             let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
             match reader.byte(byte).content(byte) {
                 Some(decoded) => {
                     content.decoded.push(decoded);
-                    content.places.push(at);
+                    content.offsets.push(at);
                 }
                 None => content.overhead.push((at, byte)),
             }
         }
         content.whole = range.is_empty() || reader.is_whole();
-        content.places.push(range.end);
+        content.offsets.push(range.end);
         content
     }
 
@@ -201,8 +189,8 @@ impl Content {
     }
 
     fn at(&self, decoded: Range<usize>) -> Range<usize> {
-        let last = decoded.end.checked_sub(1).and_then(|last| self.places.get(last));
-        let first = self.places.get(decoded.start).copied().unwrap_or_default();
+        let last = decoded.end.checked_sub(1).and_then(|last| self.offsets.get(last));
+        let first = self.offsets.get(decoded.start).copied().unwrap_or_default();
         first..last.map_or(first, |last| last + 1)
     }
 
@@ -210,8 +198,8 @@ impl Content {
         let content = self.without(check);
         let end = content.len();
         let mut fields = Vec::new();
-        let mut add = |name: Cow<'static, str>, place: Range<usize>, value: String| {
-            fields.push(Field { name, bytes: self.at(place), value });
+        let mut add = |name: Cow<'static, str>, range: Range<usize>, value: String| {
+            fields.push(Field { name, bytes: self.at(range), value });
         };
         if let Some(&address) = content.first() {
             add("address".into(), 0..1, address_to_text(address));
@@ -246,10 +234,10 @@ fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
     add("seq".into(), 2..3, format!("{}", ticks.seq));
     add("count".into(), 3..4, format!("{}", ticks.count()));
     let channels = usize::from(channels.max(1));
-    for (place, &byte) in ticks.commands().iter().enumerate() {
-        let (tick, channel) = (place / channels, place % channels);
+    for (range, &byte) in ticks.commands().iter().enumerate() {
+        let (tick, channel) = (range / channels, range % channels);
         let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
-        add(name.into(), 4 + place..5 + place, command_to_text(byte));
+        add(name.into(), 4 + range..5 + range, command_to_text(byte));
     }
 }
 

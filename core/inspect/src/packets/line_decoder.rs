@@ -2,25 +2,11 @@
 //! A4 to A6).
 //!
 //! RX is decoded as the controller received it; what the host sent is shown where it differs.
-//!
-//! ```
-//! use stepscope_inspect::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
-//! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
-//! let first = table.row(0).expect("there are packets");
-//! let decoded = LineDecoder::new(table, &recording.trace).decode(first.start_cycle, first.line_end_cycle, 100, 100);
-//! assert_eq!(decoded.rx.bytes.len(), 1); // one channel, so one byte a packet
-//! assert_eq!(decoded.rx.bits.len(), 10); // start, eight of data, stop
-//! ```
 
 use crate::packets::log::{PacketLog, RowOutcome};
 use crate::packets::{
     dissector::{Check, Field},
-    packet_table::{PacketTable, PlacedByte},
+    packet_table::{LineByte, PacketTable},
 };
 use alloc::{borrow::ToOwned, format, string::String, string::ToString, vec, vec::Vec};
 use serde::Serialize;
@@ -90,7 +76,7 @@ impl<'a> LineDecoder<'a> {
                 spans.bits.extend(if reply {
                     self.sent_bits(placed)
                 } else {
-                    self.heard_bits(placed.start, Some(placed.packet))
+                    self.received_bits(placed.start, Some(placed.packet))
                 });
             }
         }
@@ -106,25 +92,27 @@ impl<'a> LineDecoder<'a> {
         self.table.packets()
     }
 
-    fn bytes_in(&self, start: u64, end: u64, most: usize) -> Option<Vec<PlacedByte>> {
+    fn bytes_in(&self, start: u64, end: u64, max: usize) -> Option<Vec<LineByte>> {
         let mut bytes = Vec::new();
         for packet in self.packets().touching(Instant(start), Instant(end)) {
             // A row may have megabytes: decode only what is visible.
             let seen = self.packets().seen(packet);
             let before =
                 if self.table.is_own_reply(packet) { 0 } else { seen.partition_point(|at| at.0 < start) };
-            let placed =
-                self.table.placed_from(packet, before.saturating_sub(1)).skip_while(|byte| byte.end <= start);
-            bytes.extend(placed.take_while(|byte| byte.start < end).take(most + 1));
-            if bytes.len() > most {
+            let placed = self
+                .table
+                .line_bytes_from(packet, before.saturating_sub(1))
+                .skip_while(|byte| byte.end <= start);
+            bytes.extend(placed.take_while(|byte| byte.start < end).take(max + 1));
+            if bytes.len() > max {
                 return None;
             }
         }
         Some(bytes)
     }
 
-    fn byte(&self, placed: PlacedByte, reply: bool) -> Span {
-        let PlacedByte { packet, byte, start, end } = placed;
+    fn byte(&self, placed: LineByte, reply: bool) -> Span {
+        let LineByte { packet, byte, start, end } = placed;
         let sent = if reply { None } else { self.table.sent_at(Instant(start)) };
         let sent = sent.filter(|&sent| sent != byte);
         let hex = format!("{byte:02x}");
@@ -135,7 +123,7 @@ impl<'a> LineDecoder<'a> {
         Span { start, end, texts, bad: sent.is_some(), packet: Some(packet), sample: None }
     }
 
-    fn heard_bits(&self, seen: u64, packet: Option<usize>) -> Vec<Span> {
+    fn received_bits(&self, seen: u64, packet: Option<usize>) -> Vec<Span> {
         let Cycles(bit) = self.own().bit();
         (0..BYTE_BITS)
             .map(|index| {
@@ -153,8 +141,8 @@ impl<'a> LineDecoder<'a> {
             .collect()
     }
 
-    fn sent_bits(&self, placed: PlacedByte) -> Vec<Span> {
-        let PlacedByte { packet, byte, start, .. } = placed;
+    fn sent_bits(&self, placed: LineByte) -> Vec<Span> {
+        let LineByte { packet, byte, start, .. } = placed;
         let times = BitTimes::new(self.own().clock_hz(), self.own().reply_baud());
         let bits = u16::from(byte) << 1 | 1 << (BYTE_BITS - 1);
         (0..BYTE_BITS)
@@ -185,7 +173,7 @@ impl<'a> LineDecoder<'a> {
             let packet = self.packets().touching(Instant(seen), Instant(seen)).next();
             rx.bytes.push(Span { start: seen, end: seen + length, texts, bad: true, packet, sample: None });
             if with_bits {
-                rx.bits.extend(self.heard_bits(seen, packet));
+                rx.bits.extend(self.received_bits(seen, packet));
             }
         }
     }
@@ -211,7 +199,7 @@ impl LineDecoder<'_> {
         if self.packets().bytes(packet).len() > MAX_BYTES {
             return Vec::new();
         }
-        let bytes = self.table.placed(packet);
+        let bytes = self.table.line_bytes(packet);
         let Some(meaning) = self.table.meaning(packet) else { return Vec::new() };
         let broken = matches!(meaning.check, Check::Compared { found, expected } if found != expected);
         let span =
@@ -220,7 +208,7 @@ impl LineDecoder<'_> {
             .fields
             .iter()
             .filter_map(|field| {
-                let carriers: &[PlacedByte] = bytes.get(field.bytes.clone())?;
+                let carriers: &[LineByte] = bytes.get(field.bytes.clone())?;
                 let bad = row.outcome == RowOutcome::Ignored
                     || field.name == "reason"
                     || (broken && field.name == "check");
@@ -243,4 +231,28 @@ fn texts(Field { name, value, .. }: &Field, bad: bool) -> Vec<String> {
         texts.push("!".into());
     }
     texts
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_packet_is_decoded_to_bits() {
+        use crate::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        let run = experiment.run(&mut recording);
+        let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+        let first = table.row(0).expect("there are packets");
+        let decoded = LineDecoder::new(table, &recording.trace).decode(
+            first.start_cycle,
+            first.line_end_cycle,
+            100,
+            100,
+        );
+        assert_eq!(decoded.rx.bytes.len(), 1); // one channel, so one byte a packet
+        assert_eq!(decoded.rx.bits.len(), 10); // start, eight of data, stop
+    }
 }

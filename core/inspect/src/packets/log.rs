@@ -1,14 +1,4 @@
-//! The packets of a run, one row each: when, which bytes, what the controller did with it.
-//!
-//! ```
-//! use stepscope_inspect::packets::log::{PacketLog, RowOutcome};
-//! use stepscope_peripheral::{signal::{Event, PacketOutcome, Sink}, units::Instant};
-//!
-//! let mut log = PacketLog::default();
-//! log.event(Instant(15), Event::Byte { seen: Instant(10), byte: 0x85 });
-//! log.event(Instant(15), Event::Packet(PacketOutcome::Queued));
-//! assert_eq!((log.rows()[0].outcome, log.bytes(0)), (RowOutcome::Packet(PacketOutcome::Queued), &[0x85][..]));
-//! ```
+//! The packets of a run, one row each: time, bytes and outcome.
 
 use alloc::{collections::VecDeque, vec::Vec};
 use core::fmt;
@@ -100,18 +90,15 @@ pub struct PacketLog {
     bytes: Vec<u8>,
     /// Start bit per byte; the bytes of a reply share the first.
     seen: Vec<Instant>,
-    /// Start bits of bytes with a framing error.
     broken: Vec<Instant>,
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
-    /// The row of each queued tick; `None` if firmware pushed it.
+    /// The row per queued tick; `None` if firmware pushed it.
     waiting: VecDeque<Option<usize>>,
     ticks: Vec<LoggedTick>,
     stops: Vec<Instant>,
-    /// Ends of ticks with steps that none followed.
     underruns: Vec<Instant>,
-    /// Replies come from a recording.
     is_answered: bool,
 }
 
@@ -160,22 +147,17 @@ impl PacketLog {
 
     /// Replaces the rows of `is_simulated` by recorded replies, in the order of their starts. The log must be finished.
     pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_simulated: &[bool]) {
-        let mut recorded = recorded.iter().peekable();
         let rows = core::mem::take(&mut self.rows);
-        let mut place = alloc::vec![None; rows.len()];
-        for ((row, place), is_simulated) in rows.into_iter().zip(&mut place).zip(is_simulated) {
-            if *is_simulated {
-                continue;
+        let mut new_index = alloc::vec![None; rows.len()];
+        for ((row, new_index), is_simulated) in rows.into_iter().zip(&mut new_index).zip(is_simulated) {
+            if !is_simulated {
+                *new_index = Some(self.rows.len());
+                self.rows.push(row);
             }
-            while let Some(reply) = recorded.next_if(|reply| reply.start < row.start) {
-                self.push_recorded(reply);
-            }
-            *place = Some(self.rows.len());
-            self.rows.push(row);
         }
-        recorded.for_each(|reply| self.push_recorded(reply));
+        recorded.iter().for_each(|reply| self.push_recorded(reply));
         for tick in &mut self.ticks {
-            tick.row = tick.row.and_then(|row| place.get(row).copied().flatten());
+            tick.row = tick.row.and_then(|row| new_index.get(row).copied().flatten());
         }
         self.is_answered = true;
         self.finish();
@@ -225,23 +207,15 @@ impl PacketLog {
     }
 
     fn sort(&mut self) {
-        // Insertion sort: few rows are out of place, and by little.
         let mut order: Vec<usize> = (0..self.rows.len()).collect();
-        let start = |row: usize| self.rows.get(row).map(|row| row.start);
-        for next in 1..order.len() {
-            let mut at = next;
-            while at > 0 && start(order[at - 1]) > start(order[at]) {
-                order.swap(at - 1, at);
-                at -= 1;
-            }
-        }
-        let mut place = alloc::vec![0; order.len()];
+        order.sort_by_key(|&row| self.rows.get(row).map(|row| row.start));
+        let mut new_index = alloc::vec![0; order.len()];
         for (new, &old) in order.iter().enumerate() {
-            place[old] = new;
+            new_index[old] = new;
         }
         self.rows = order.iter().filter_map(|&old| self.rows.get(old).copied()).collect();
         for tick in &mut self.ticks {
-            tick.row = tick.row.and_then(|row| place.get(row).copied());
+            tick.row = tick.row.and_then(|row| new_index.get(row).copied());
         }
     }
 
@@ -371,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn recorded_replies_take_the_place_of_those_that_were_made_and_ticks_keep_their_rows() {
+    fn recorded_replies_replace_simulated_rows_and_ticks_keep_theirs() {
         let status = stepscope_peripheral::protocol::Status {
             state: stepscope_peripheral::protocol::State::Ready,
             free: 1,
@@ -396,15 +370,15 @@ mod tests {
             bytes,
             reply,
         };
-        let is_made = [false, true, false, true];
+        let is_simulated = [false, true, false, true];
         let all =
             [recorded(5, &[5; 2], None), recorded(70, &[70; 2], Some(reply)), recorded(900, &[132; 2], None)];
-        log.answer(&all, &is_made);
+        log.answer(&all, &is_simulated);
         let rows: Vec<_> = log
             .rows()
             .iter()
             .enumerate()
-            .map(|(row, told)| (told.start.0, told.outcome, log.bytes(row)))
+            .map(|(row, logged)| (logged.start.0, logged.outcome, log.bytes(row)))
             .collect();
         let queued = RowOutcome::Frame(FrameOutcome::Queued(1));
         assert_eq!(
@@ -437,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn finished_rows_stand_in_the_order_of_their_starts_with_their_bytes_and_ticks() {
+    fn finished_rows_are_sorted_with_their_bytes_and_ticks() {
         let mut log = PacketLog::default();
         let events = [
             (20, Event::Byte { seen: Instant(10), byte: 1 }),
@@ -451,8 +425,8 @@ mod tests {
         }
         assert_eq!(log.rows()[0].outcome, RowOutcome::Collision, "known first");
         log.finish();
-        let told: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.outcome)).collect();
-        assert_eq!(told, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
+        let logged: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.outcome)).collect();
+        assert_eq!(logged, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
         assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
         assert_eq!(log.seen(0), [Instant(10), Instant(22)]);
         assert_eq!(
@@ -462,5 +436,22 @@ mod tests {
         );
         assert_eq!(log.ticks()[0].row, Some(0));
         assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
+    }
+
+    #[test]
+    fn a_packet_is_logged_with_its_bytes() {
+        use crate::packets::log::{PacketLog, RowOutcome};
+        use stepscope_peripheral::{
+            signal::{Event, PacketOutcome, Sink},
+            units::Instant,
+        };
+
+        let mut log = PacketLog::default();
+        log.event(Instant(15), Event::Byte { seen: Instant(10), byte: 0x85 });
+        log.event(Instant(15), Event::Packet(PacketOutcome::Queued));
+        assert_eq!(
+            (log.rows()[0].outcome, log.bytes(0)),
+            (RowOutcome::Packet(PacketOutcome::Queued), &[0x85][..])
+        );
     }
 }

@@ -1,34 +1,22 @@
 //! The packet table: one row per packet, frame or reply that one controller received or sent, with its outcome
 //! (DESIGN Part D).
 //!
-//! Bytes of another controller's reply look like a frame; the host's schedule tells them apart.
-//!
-//! ```
-//! use stepscope_inspect::packets::packet_table::PacketTable;
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
-//! let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
-//! let row = table.row(0).expect("there are packets");
-//! assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
-//! ```
+//! A reply of another controller looks like a frame; the host's schedule distinguishes them.
 
 mod csv;
 mod detail;
 mod faults;
 mod filter;
 mod format;
-mod places;
+mod line_bytes;
 
 #[cfg(feature = "std")]
 pub(crate) use csv::write_fields;
 pub use detail::{Detail, FieldRow};
-pub use faults::FaultPlace;
+pub use faults::FirstFault;
 pub use filter::{Filter, Request};
 pub use format::{Mark, TimeScale};
-pub use places::PlacedByte;
+pub use line_bytes::LineByte;
 
 use crate::packets::dissector::{Head, Meaning, Reading, write_steps};
 use crate::packets::log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
@@ -297,5 +285,22 @@ impl<'a> PacketTable<'a> {
 
     fn host_times(&self) -> BitTimes {
         BitTimes::new(self.own.clock_hz(), self.experiment.baud())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_first_row_is_a_queued_packet() {
+        use crate::packets::packet_table::PacketTable;
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        let run = experiment.run(&mut recording);
+        let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
+        let row = table.row(0).expect("there are packets");
+        assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
     }
 }

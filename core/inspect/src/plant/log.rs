@@ -2,29 +2,9 @@
 //! computed again, to the same bits.
 //!
 //! ```text
-//! points   . . . . . . . . . . . . . . . .     one each grid step, of which there may be 10^8
-//! bins     [   ][   ][   ][   ][   ][         min and max of so many points; when they are too many, two become one
-//! kept     ^                   ^              the plant and how many records it had heard
-//! ```
-//!
-//! ```
-//! use stepscope_inspect::plant::log::{PlantLog, CycleWindow};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_peripheral::{signal::Record, units::Instant};
-//! use stepscope_sim::Experiment;
-//!
-//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-//! let mut run = experiment.start();
-//! let mut recording = Recording::default();
-//! let mut log = PlantLog::new(run.plant(0).expect("it has one"));
-//! while !run.advance_observed((Instant(run.cycles().0 + 100_000), u64::MAX), &mut [&mut recording], &mut [&mut log]) {
-//!     log.keep(run.plant(0).expect("it has one"), recording.trace.len());
-//! }
-//! let records: &[Record] = &recording.trace;
-//! let all = log.curves(records, CycleWindow { from: 0, to: run.cycles().0, columns: 600 }, &[PlantLog::of_motor(0) + 1]);
-//! assert!((all[0].max.last().expect("columns") - 200.0).abs() < 0.1);
-//! let end = log.at(records, run.cycles().0);
-//! assert!((end[PlantLog::of_motor(0) + 1] - 200.0).abs() < 0.1);
+//! points   . . . . . . . . . . . . . . . .     one per grid step, up to 10^8
+//! bins     [   ][   ][   ][   ][   ][         min and max of several points; two bins become one when there are too many
+//! snapshots  ^                 ^              the plant and its number of processed records
 //! ```
 
 use alloc::{vec, vec::Vec};
@@ -39,7 +19,7 @@ pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a",
 
 const BINS: usize = 8192;
 const ENOUGH: u64 = 512;
-const KEPT: usize = 64;
+const MAX_SNAPSHOTS: usize = 64;
 const POINTS_A_COLUMN: u64 = 2;
 
 #[derive(Clone, Debug)]
@@ -50,12 +30,12 @@ pub struct PlantLog {
     min: Vec<f64>,
     max: Vec<f64>,
     latest: Vec<f64>,
-    kept: Vec<Kept>,
+    snapshots: Vec<Snapshot>,
     apart: u64,
 }
 
 #[derive(Clone, Debug)]
-struct Kept {
+struct Snapshot {
     plant: Plant,
     records: usize,
 }
@@ -117,25 +97,25 @@ impl PlantLog {
             min: Vec::new(),
             max: Vec::new(),
             latest: vec![0.0; SUPPLY.len() + plant.motors() * MOTOR.len()],
-            kept: vec![Kept { plant: plant.clone(), records: 0 }],
+            snapshots: vec![Snapshot { plant: plant.clone(), records: 0 }],
             apart: 1,
         }
     }
 
     /// Takes a snapshot of a plant that has processed the first `records` records; between slices of a run only.
-    pub fn keep(&mut self, plant: &Plant, records: usize) {
+    pub fn snapshot(&mut self, plant: &Plant, records: usize) {
         let step = plant.step_cycles();
-        let last = self.kept.last().map_or(0, |kept| kept.plant.cycle());
+        let last = self.snapshots.last().map_or(0, |snapshots| snapshots.plant.cycle());
         if plant.cycle() >= last + self.apart * step {
-            self.kept.push(Kept { plant: plant.clone(), records });
+            self.snapshots.push(Snapshot { plant: plant.clone(), records });
         }
-        if self.kept.len() > KEPT {
+        if self.snapshots.len() > MAX_SNAPSHOTS {
             let mut index = 0;
-            self.kept.retain(|_| {
+            self.snapshots.retain(|_| {
                 index += 1;
                 index % 2 == 1
             });
-            self.apart = (plant.cycle() / step / KEPT as u64).max(1) * 2;
+            self.apart = (plant.cycle() / step / MAX_SNAPSHOTS as u64).max(1) * 2;
         }
     }
 
@@ -205,9 +185,14 @@ impl PlantLog {
     fn again(&self, records: &[Record], from: u64, to: u64, observer: &mut dyn Observer) -> Option<Plant> {
         // A snapshot lies behind its point.
         let before = from.saturating_sub(2 * self.step_cycles);
-        let kept = self.kept.iter().rev().find(|kept| kept.plant.cycle() <= before).or(self.kept.first())?;
-        let mut plant = kept.plant.clone();
-        for &record in records.iter().skip(kept.records).take_while(|record| record.cycle.0 <= to) {
+        let snapshots = self
+            .snapshots
+            .iter()
+            .rev()
+            .find(|snapshots| snapshots.plant.cycle() <= before)
+            .or(self.snapshots.first())?;
+        let mut plant = snapshots.plant.clone();
+        for &record in records.iter().skip(snapshots.records).take_while(|record| record.cycle.0 <= to) {
             plant.record(record, observer);
         }
         plant.advance(to, observer);
@@ -265,5 +250,37 @@ impl Observer for Watched<'_, '_> {
         read(plant, &mut self.point);
         let point = &self.point;
         self.columns.add(plant.cycle() as f64, self.values.iter().map(|&value| (point[value], point[value])));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_log_has_a_curve_per_value() {
+        use crate::plant::log::{CycleWindow, PlantLog};
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::{signal::Record, units::Instant};
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+        let mut run = experiment.start();
+        let mut recording = Recording::default();
+        let mut log = PlantLog::new(run.plant(0).expect("it has one"));
+        while !run.advance_observed(
+            (Instant(run.cycles().0 + 100_000), u64::MAX),
+            &mut [&mut recording],
+            &mut [&mut log],
+        ) {
+            log.snapshot(run.plant(0).expect("it has one"), recording.trace.len());
+        }
+        let records: &[Record] = &recording.trace;
+        let all = log.curves(
+            records,
+            CycleWindow { from: 0, to: run.cycles().0, columns: 600 },
+            &[PlantLog::of_motor(0) + 1],
+        );
+        assert!((all[0].max.last().expect("columns") - 200.0).abs() < 0.1);
+        let end = log.at(records, run.cycles().0);
+        assert!((end[PlantLog::of_motor(0) + 1] - 200.0).abs() < 0.1);
     }
 }

@@ -2,23 +2,6 @@
 //!
 //! The curve ([`torque`](crate::motion::torque)) omits friction, ringing and jumps of speed, and assumes a sine where
 //! a driver out of voltage makes a square wave.
-//!
-//! ```
-//! use stepscope_inspect::{motion::torque::{Demand, Machine}, plant::model_agreement::{FirstSlips, agreement}};
-//! use stepscope_peripheral::trace::Digest;
-//! use stepscope_sim::{Experiment, plant_run::PlantRun};
-//!
-//! let json = r#"{ "plant": {}, "source": { "motion": { "axes": [ { "motor": {} } ] } } }"#;
-//! let experiment = Experiment::from_json(json).expect("no problem");
-//! let mut run = PlantRun::new(&experiment, vec![(Digest::default(), FirstSlips::default())]).expect("a plant");
-//! run.finish();
-//! let machine = Machine::of(&stepscope_motion::moves::Axis { motor: Some(Default::default()), ..Default::default() });
-//! let machine = machine.expect("it has a motor");
-//! let demand = Demand::of(&machine, &experiment.plans()[0]);
-//! let setup = &experiment.plants().expect("a plant").setups[0];
-//! let found = agreement(&machine, &demand, setup, 0, &run.results()[0], None, &FirstSlips::default());
-//! assert_eq!((found.plant.as_str(), found.agrees), ("follows", Some(true)));
-//! ```
 
 use crate::{
     motion::torque::{Demand, Machine},
@@ -37,9 +20,9 @@ use stepscope_plant::{
 const STEPS: usize = 16;
 /// Maximum gain of the driver's square wave over the curve's sine.
 const SQUARE_WAVE: f64 = 1.28;
-/// Multiple of the natural frequency, in full steps/s, up to which ...
+/// Multiple of the natural frequency, in full steps/s, and maximum microsteps: such a rate can throw the rotor out of
+/// its field.
 const RESONANCE: f64 = 1.5;
-/// ... and microsteps up to which a rate can throw the rotor out of its field.
 const RESONANT_MICROSTEPS: u16 = 4;
 /// A slip up to this multiple of the maximum jump of speed is due to the jump.
 const JUMPED: f64 = 2.0;
@@ -71,20 +54,20 @@ impl Observer for FirstSlips {
 
     fn slip(&mut self, channel: usize, _: Slip) {
         let Some(steps) = self.channels.get_mut(channel) else { return };
-        let kept = steps.count.min(STEPS);
-        if steps.interval.is_some() || kept < 2 {
+        let count = steps.count.min(STEPS);
+        if steps.interval.is_some() || count < 2 {
             return;
         }
         let at = |step: usize| steps.cycles.get(step % STEPS).copied().unwrap_or_default();
-        let cycles = at(steps.count - 1) - at(steps.count - kept);
-        steps.interval = Some(cycles as f64 / (kept - 1) as f64);
+        let cycles = at(steps.count - 1) - at(steps.count - count);
+        steps.interval = Some(cycles as f64 / (count - 1) as f64);
     }
 
     fn steps(&mut self, cycle: u64, rises: u16, _: u16) {
         for (channel, steps) in self.channels.iter_mut().enumerate() {
             if rises >> channel & 1 != 0 {
-                if let Some(place) = steps.cycles.get_mut(steps.count % STEPS) {
-                    *place = cycle;
+                if let Some(slot) = steps.cycles.get_mut(steps.count % STEPS) {
+                    *slot = cycle;
                 }
                 steps.count += 1;
             }
@@ -119,7 +102,7 @@ pub fn agreement(
     let plant = verdict(found, clock_hz);
     if let Some(cycle) = overload {
         let ms = cycle as f64 / f64::from(clock_hz) * 1e3;
-        let why = format!("an overload stops the controller at {ms:.2} ms, which the curve does not know");
+        let why = format!("an overload stops the controller at {ms:.2} ms, which the curve does not include");
         return Agreement { plant, agrees: None, why: Some(why) };
     }
     let (enough, follows) = (demand.total == 0, found.slip_count == 0);
@@ -139,7 +122,7 @@ fn why_it_slips(
     demand: &Demand,
     motor: &MotorModel,
     rate: Option<f64>,
-    (least_v, supply_v): (f64, f64),
+    (min_v, supply_v): (f64, f64),
 ) -> String {
     let rate = rate.unwrap_or(demand.jump);
     let full_steps = rate / f64::from(motor.microsteps);
@@ -147,28 +130,28 @@ fn why_it_slips(
     if motor.microsteps <= RESONANT_MICROSTEPS && full_steps <= RESONANCE * natural {
         return format!(
             "{full_steps:.0} full steps/s are near the rotor's natural frequency of {natural:.0} Hz: it resonates, which the curve \
-             leaves out; give more microsteps or another rate"
+             does not include; use more microsteps or another rate"
         );
     }
     if rate <= JUMPED * demand.jump {
         return format!(
-            "the speed jumps by {} steps/s at once, of which the curve says nothing: hold it against the start-stop rate \
+            "the speed jumps by {} steps/s at once, which the curve does not include: compare it with the start-stop rate \
              (stepscope limits)",
             grouped(demand.jump)
         );
     }
-    if least_v < SAG * supply_v {
-        return format!("the bus falls to {least_v:.1} V, where the curve has {supply_v} V throughout");
+    if min_v < SAG * supply_v {
+        return format!("the bus falls to {min_v:.1} V, where the curve has {supply_v} V throughout");
     }
     if machine.corner_rate().is_some_and(|corner| rate > corner) {
         return format!(
-            "at {} steps/s, above the corner rate, the rotor's ringing is hardly damped and it falls out below the curve, which \
-             knows none",
+            "at {} steps/s, above the corner rate, the rotor's ringing is hardly damped, and the rotor loses step below the curve, \
+             which does not include ringing",
             grouped(rate)
         );
     }
     format!(
-        "the curve leaves out friction ({} mN*m and {} uN*m*s), detent torque, the bridge and the rotor's ringing, and least \
+        "the curve does not include friction ({} mN*m and {} uN*m*s), detent torque, the bridge and the rotor's ringing, and the minimum \
          margin is {:.1} mN*m",
         motor.friction_mn_m,
         motor.viscous_un_m_s,
@@ -188,12 +171,12 @@ fn why_it_follows(machine: &Machine, demand: &Demand, found: &MotorResult) -> St
         );
     }
     if needed < 0.0 {
-        return "most is missing where the motor brakes, and there friction and losses help, which the curve leaves out"
+        return "most torque is missing while the motor brakes; friction and losses help there, and the curve does not include them"
             .into();
     }
     let lasts: f64 = demand.shortages.iter().map(|short| (short.to_s - short.from_s) * short.times).sum();
     format!(
-        "the shortage lasts {:.2} ms in all; the rotor falls behind, by {:.2} full steps at most, and catches up before it loses \
+        "the shortage lasts {:.2} ms in all; the rotor falls behind by up to {:.2} full steps and recovers before it loses \
          any",
         1e3 * lasts,
         found.following_error.0.abs()
@@ -232,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_models_differ_the_reason_is_told() {
+    fn different_results_are_explained() {
         let preset = |id: &str| -> String {
             let all = stepscope_scenario::presets::PLANT_PRESETS;
             all.iter().find(|preset| preset.id == id).expect("it is there").json.into()
@@ -244,7 +227,7 @@ mod tests {
         };
         let rows: &[(String, Option<bool>, &str)] = &[
             (preset("song-2021-motor"), Some(true), ""),
-            (preset("song-2021-stall"), Some(false), "at once, of which the curve says nothing"),
+            (preset("song-2021-stall"), Some(false), "at once, which the curve does not include"),
             (
                 preset("resonance-full-steps"),
                 Some(false),
@@ -265,9 +248,34 @@ mod tests {
         ];
         for (json, agrees, why) in rows {
             let found = of(json);
-            let told = found.why.clone().unwrap_or_default();
-            assert_eq!((found.agrees, told.is_empty()), (*agrees, why.is_empty()), "{json}\n{found:?}");
-            assert!(told.contains(why), "{told}");
+            let text = found.why.clone().unwrap_or_default();
+            assert_eq!((found.agrees, text.is_empty()), (*agrees, why.is_empty()), "{json}\n{found:?}");
+            assert!(text.contains(why), "{text}");
         }
+    }
+
+    #[test]
+    fn curve_and_plant_agree_on_the_default_motion() {
+        use crate::{
+            motion::torque::{Demand, Machine},
+            plant::model_agreement::{FirstSlips, agreement},
+        };
+        use stepscope_peripheral::trace::Digest;
+        use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+        let json = r#"{ "plant": {}, "source": { "motion": { "axes": [ { "motor": {} } ] } } }"#;
+        let experiment = Experiment::from_json(json).expect("no problem");
+        let mut run =
+            PlantRun::new(&experiment, vec![(Digest::default(), FirstSlips::default())]).expect("a plant");
+        run.finish();
+        let machine = Machine::of(&stepscope_motion::moves::Axis {
+            motor: Some(Default::default()),
+            ..Default::default()
+        });
+        let machine = machine.expect("it has a motor");
+        let demand = Demand::of(&machine, &experiment.plans()[0]);
+        let setup = &experiment.plants().expect("a plant").setups[0];
+        let found = agreement(&machine, &demand, setup, 0, &run.results()[0], None, &FirstSlips::default());
+        assert_eq!((found.plant.as_str(), found.agrees), ("follows", Some(true)));
     }
 }

@@ -2,18 +2,6 @@
 //!
 //! No data sheet states friction: every motor has the default motor's in proportion to its holding torque.
 //! [`MotorSheet::typical`] lists all such figures that the source does not state.
-//!
-//! ```
-//! use stepscope_inspect::plant::motors::{drive, motor};
-//! use stepscope_scenario::Scenario;
-//! use stepscope_sim::Experiment;
-//!
-//! let mut scenario = Scenario::from_json(r#"{ "plant": {} }"#).expect("it reads");
-//! motor("17hs4401").expect("it is listed").put_into(&mut scenario);
-//! drive("a4988").expect("it is listed").put_into(&mut scenario);
-//! let experiment = Experiment::new(&scenario).expect("it holds");
-//! assert_eq!(experiment.plants().expect("it has one").setups[0].motors[0].rotor_inertia_g_cm2, 54.0);
-//! ```
 
 use crate::motion::torque::Machine;
 use alloc::vec::Vec;
@@ -39,7 +27,7 @@ pub struct MotorSheet {
     pub detent_torque_mn_m: f64,
     pub friction_mn_m: f64,
     pub viscous_un_m_s: f64,
-    /// The document, and what in it the figures rest on.
+    /// The document, and the figures that it gives.
     pub source: &'static str,
     /// Fields that the source does not state: figures of the usual size.
     pub typical: &'static [&'static str],
@@ -257,8 +245,8 @@ pub fn drive(id: &str) -> Option<&'static DriveSheet> {
 }
 
 impl MotorSheet {
-    /// This motor at its rated current, with supply, load and driver of `place`.
-    pub fn in_place_of(&self, place: &Motor) -> Motor {
+    /// This motor at its rated current, with supply, load and driver of `other`.
+    pub fn replacing(&self, other: &Motor) -> Motor {
         Motor {
             rated_current_a: self.rated_current_a,
             resistance_ohm: self.resistance_ohm,
@@ -271,20 +259,20 @@ impl MotorSheet {
             stiction_mn_m: None,
             viscous_un_m_s: self.viscous_un_m_s,
             detent_torque_mn_m: self.detent_torque_mn_m,
-            ..place.clone()
+            ..other.clone()
         }
     }
 
     /// The motor without load, on the default supply and microsteps.
     pub fn machine(&self) -> Option<Machine> {
         let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
-        let motor = Some(self.in_place_of(&Motor::default()));
+        let motor = Some(self.replacing(&Motor::default()));
         Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
     }
 
     pub fn put_into(&self, scenario: &mut Scenario) {
         each_motor(scenario, |full_step_deg, motor| {
-            *motor = self.in_place_of(motor);
+            *motor = self.replacing(motor);
             if let Some(full_step_deg) = full_step_deg {
                 *full_step_deg = self.full_step_deg;
             }

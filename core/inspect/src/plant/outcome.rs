@@ -1,16 +1,4 @@
 //! Results of a plant as text and series, and the settling time of a motor's supply current (PLANT F8).
-//!
-//! ```
-//! use stepscope_inspect::plant::outcome::{settling, verdict};
-//! use stepscope_sim::{Experiment, plant_run::PlantRun};
-//!
-//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
-//! run.finish();
-//! assert_eq!(verdict(&run.results()[0].motors[0], 16_000_000), "follows");
-//! let setup = &experiment.plants().expect("a plant").setups[0];
-//! assert!(settling(setup, 0, 32_768, 0.2).expect("it is made").rest_a > 0.0);
-//! ```
 
 use alloc::{
     format,
@@ -30,7 +18,7 @@ use stepscope_plant::{
     settling::{REST_STEPS, SensorLog, StepResponse},
 };
 
-/// Following errors in full steps from which on the field hardly holds the rotor.
+/// Following error in full steps above which the field hardly holds the rotor.
 const FAR: f64 = 2.0;
 
 /// Half an electrical period in full steps: more per grid step is a throw, not a turn.
@@ -47,29 +35,30 @@ pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<
     let half_turning = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
     let what = if of_rotor > HALF_PERIOD {
         format!(
-            "the rotor goes {of_rotor:.1} full steps in one grid step, over half an electrical period (2)"
+            "the rotor moves {of_rotor:.1} full steps per grid step, more than half an electrical period (2)"
         )
     } else if motor.sine_torque_mn_m != 0.0 && of_load > half_turning {
         format!(
-            "the load goes {of_load:.3} full steps in one grid step, over half a period of its turning torque ({half_turning:.3})"
+            "the load moves {of_load:.3} full steps per grid step, more than half a period of its turning torque ({half_turning:.3})"
         )
     } else {
         return None;
     };
     let ms = cycle as f64 / f64::from(setup.clock_hz) * 1e3;
     Some(format!(
-        "{what}, at {ms:.2} ms, so the result says nothing; give a smaller step_cycles than {}",
+        "{what}, at {ms:.2} ms, so the result is meaningless; use a smaller step_cycles than {}",
         setup.grid_cycles()
     ))
 }
 
-/// More of the energy than this must not be left over (F8).
+/// Maximum share of unaccounted energy.
 const MAX_ENERGY_ERROR: f64 = 1e-3;
 
 pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     let error = found.energy.error();
-    (error > MAX_ENERGY_ERROR)
-        .then(|| format!("{:.2} % of the energy is left over; give a smaller step_cycles", 100.0 * error))
+    (error > MAX_ENERGY_ERROR).then(|| {
+        format!("{:.2} % of the energy is unaccounted for; use a smaller step_cycles", 100.0 * error)
+    })
 }
 
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
@@ -78,11 +67,11 @@ pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let step = motor.first_slip_step.unwrap_or(0);
     match motor.slips.first() {
         Some(slip) if lost == 0 => {
-            format!("slips and comes back; first at {:.2} ms in step {step}", ms(slip.cycle))
+            format!("slips and recovers; first at {:.2} ms in step {step}", ms(slip.cycle))
         }
         Some(slip) => format!("loses {lost} full steps, first at {:.2} ms in step {step}", ms(slip.cycle)),
         None if motor.following_error.0.abs() >= FAR => {
-            format!("follows, but by {:.2} full steps behind", motor.following_error.0.abs())
+            format!("follows, up to {:.2} full steps behind", motor.following_error.0.abs())
         }
         None => "follows".to_string(),
     }
@@ -125,22 +114,13 @@ pub fn table_row(plant: &Plant) -> String {
     row
 }
 
-/// Settling of the supply current after one step to the right, after a rest of ten `t_step` cycles. `None` where
-/// there is no such channel or sample.
-pub fn settling(
-    setup: &Setup,
-    channel: usize,
-    t_step: u64,
-    share: f64,
-) -> Result<StepResponse, Vec<Refused>> {
-    settling_with(setup, channel, t_step, share).map(|(response, _)| response)
-}
-
 /// A reading of the current sensor: cycles after STEP's rise, and A.
 pub type CurrentAt = (f64, f64);
 
-/// Also returns the sensor's readings from `t_step` cycles before the step on.
-pub fn settling_with(
+/// Settling of the supply current after one step to the right, after a rest of ten `t_step` cycles, and the sensor's
+/// readings from `t_step` cycles before the step on. Errors: an empty list if there is no such
+/// channel or sample.
+pub fn settling(
     setup: &Setup,
     channel: usize,
     t_step: u64,
@@ -177,11 +157,11 @@ mod tests {
     }
 
     #[test]
-    fn a_rotor_that_is_thrown_is_told_with_the_remedy_and_a_finer_grid_holds_it() {
+    fn a_thrown_rotor_is_a_warning_that_a_finer_grid_removes() {
         let thrown = r#"{"sine_torque_mn_m":1000000,"sine_per_turn":1000}"#;
         let told = warned("{}", thrown).expect("it is thrown");
         assert!(told.starts_with("the rotor goes 15.3 full steps in one grid step, over half an"), "{told}");
-        assert!(told.ends_with("so the result says nothing; give a smaller step_cycles than 80"), "{told}");
+        assert!(told.ends_with("so the result is meaningless; use a smaller step_cycles than 80"), "{told}");
         assert_eq!(warned(r#"{"step_cycles":8}"#, thrown), None);
         // At about 1000 full steps/s half a period, 0.1 full steps, takes 0.1 ms; a grid step is 0.15 ms.
         let fine = r#"{"sine_torque_mn_m":0.001,"sine_per_turn":1000}"#;
@@ -189,5 +169,18 @@ mod tests {
         let told = warned(r#"{"step_cycles":2000}"#, fine);
         assert!(told.expect("too coarse").starts_with("the load goes 0.1"));
         assert_eq!(warned("{}", "{}"), None);
+    }
+
+    #[test]
+    fn results_are_written_as_text() {
+        use crate::plant::outcome::{settling, verdict};
+        use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+        run.finish();
+        assert_eq!(verdict(&run.results()[0].motors[0], 16_000_000), "follows");
+        let setup = &experiment.plants().expect("a plant").setups[0];
+        assert!(settling(setup, 0, 32_768, 0.2).expect("it is made").0.rest_a > 0.0);
     }
 }

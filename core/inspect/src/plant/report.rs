@@ -1,15 +1,4 @@
 //! The results of a run's plant, for the command and the page.
-//!
-//! ```
-//! use stepscope_inspect::plant::report::PlantReport;
-//! use stepscope_sim::{Experiment, plant_run::PlantRun};
-//!
-//! let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-//! let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
-//! run.finish();
-//! let report = PlantReport::of(&experiment, &run, 0).expect("it has one");
-//! assert_eq!(report.motors[0].verdict, "follows");
-//! ```
 
 use crate::plant::outcome::{energy_left_over, too_coarse, verdict};
 use alloc::{format, string::String, vec::Vec};
@@ -159,5 +148,20 @@ fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
         fastest_full_steps_s: motor.fastest.0,
         grid_too_coarse: too_coarse(setup, channel, motor),
         energy_left_over: energy_left_over(motor),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_run_with_a_plant_has_a_report() {
+        use crate::plant::report::PlantReport;
+        use stepscope_sim::{Experiment, plant_run::PlantRun};
+
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
+        run.finish();
+        let report = PlantReport::of(&experiment, &run, 0).expect("it has one");
+        assert_eq!(report.motors[0].verdict, "follows");
     }
 }

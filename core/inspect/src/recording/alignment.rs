@@ -7,29 +7,13 @@
 //! ```
 //!
 //! Clocks differ by tens of ppm, so drift is reported apart from jitter; outliers affect neither drift nor rms jitter.
-//!
-//! ```
-//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! let steps = |cycles: &[u64]| cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>();
-//! // Recorded at 1 MHz, planned at 2 MHz; the third step is missing.
-//! let (recorded, plan) = (steps(&[100, 200, 400, 500]), steps(&[0, 200, 400, 600, 800]));
-//! let found = Alignment::of(
-//!     Side { steps: &recorded, clock_hz: 1_000_000, values: &[] },
-//!     Side { steps: &plan, clock_hz: 2_000_000, values: &[] },
-//!     None,
-//! ).expect("both have steps");
-//! let compared = found.comparison(Tolerance::ZERO);
-//! assert_eq!((compared.missing, compared.extra, compared.largest.late_s), (1, 0, 0.0));
-//! ```
 
 use super::{drift::Drift, matching::Matching, tolerance::Tolerance};
 use serde::Serialize;
 
-pub use super::side::Side;
+pub use super::side::{ExactTimes, Side};
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Off {
     pub step: usize,
     pub recorded_step: usize,
@@ -40,7 +24,7 @@ pub struct Off {
 }
 
 /// A recording compared with a plan. Times are in s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Comparison {
     pub recorded: usize,
     pub model: usize,
@@ -75,6 +59,8 @@ pub struct Alignment<'a> {
     pub matching: Matching,
     /// The planned and the recorded step of the shared instant.
     pub aligned: (usize, usize),
+    /// Times of the recorded steps where cycles would round them.
+    pub exact: Option<&'a ExactTimes>,
 }
 
 impl<'a> Alignment<'a> {
@@ -86,35 +72,49 @@ impl<'a> Alignment<'a> {
             Some(step) => (step, matching.recorded(step)?),
             None => matching.pair(0)?,
         };
-        Some(Self { recorded, model, matching, aligned })
+        Some(Self { recorded, model, matching, aligned, exact: None })
     }
 
-    /// Lateness of a matched step, exactly, in units of 1/(clock * clock) s.
+    /// The unit of recorded times: numerator and denominator, in s.
+    fn recorded_unit(&self) -> (u64, u64) {
+        self.exact.map_or((1, self.recorded.clock_hz.max(1).into()), |exact| exact.base.parts())
+    }
+
+    /// Lateness of a matched step, exactly, in units of 1/(denominator of the recorded unit * clock of the plan) s.
     fn units(&self, index: usize) -> Option<i128> {
         let (step, recorded_step) = self.matching.pair(index)?;
-        let (due, came) =
-            (self.model.since(self.aligned.0, step)?, self.recorded.since(self.aligned.1, recorded_step)?);
-        Some(came * i128::from(self.model.clock_hz) - due * i128::from(self.recorded.clock_hz))
+        let due = self.model.since(self.aligned.0, step)?;
+        let came = match self.exact {
+            Some(exact) => {
+                let tick = |step: usize| exact.ticks.get(step).map(|tick| i128::from(*tick));
+                tick(recorded_step)? - tick(self.aligned.1)?
+            }
+            None => self.recorded.since(self.aligned.1, recorded_step)?,
+        };
+        let (numerator, denominator) = self.recorded_unit();
+        let came = came.saturating_mul(numerator.into()).saturating_mul(self.model.clock_hz.into());
+        Some(came.saturating_sub(due.saturating_mul(denominator.into())))
     }
 
     pub fn off(&self, index: usize) -> Option<Off> {
         let Self { recorded, model, .. } = self;
         let (step, recorded_step) = self.matching.pair(index)?;
-        let (own, other) = (f64::from(recorded.clock_hz.max(1)), f64::from(model.clock_hz.max(1)));
+        let (_, denominator) = self.recorded_unit();
         Some(Off {
             step,
             recorded_step,
-            recorded_s: recorded.steps.get(recorded_step)?.cycle as f64 / own,
+            recorded_s: recorded.steps.get(recorded_step)?.cycle as f64 / f64::from(recorded.clock_hz.max(1)),
             // Exact up to the one division.
-            late_s: self.units(index)? as f64 / (own * other),
+            late_s: self.units(index)? as f64 / (denominator as f64 * f64::from(model.clock_hz.max(1))),
             other_direction: recorded.direction(recorded_step) != model.direction(step),
             other_value: recorded.values.get(recorded_step) != model.values.get(step),
         })
     }
 
     pub fn is_late(&self, index: usize, within: Tolerance) -> bool {
-        let most = within.units(self.recorded.clock_hz, self.model.clock_hz);
-        self.units(index).is_none_or(|units| units.unsigned_abs() > most)
+        let (_, denominator) = self.recorded_unit();
+        let max = within.units(denominator, self.model.clock_hz.into());
+        self.units(index).is_none_or(|units| units.unsigned_abs() > max)
     }
 
     /// Compares; a step that is off by exactly `within` is not different.
@@ -141,15 +141,7 @@ impl<'a> Alignment<'a> {
             extra: recorded.steps.len() - compared,
             offset_s: at.recorded_s - seconds(model, self.aligned.0),
             largest: at,
-            rms_s: 0.0,
-            mean_s: 0.0,
-            drift_ppm: 0.0,
-            largest_jitter_s: 0.0,
-            rms_jitter_s: 0.0,
-            outliers: 0,
-            first_difference: None,
-            differing: 0,
-            other_values: 0,
+            ..Comparison::default()
         };
         let n = compared as f64;
         let (mut sum, mut square) = (0.0, 0.0);
@@ -208,6 +200,7 @@ impl<'a> Alignment<'a> {
 mod tests {
     use super::*;
     use alloc::vec::Vec;
+    use stepscope_capture::timebase::Timebase;
     use stepscope_peripheral::trace::Step;
 
     fn steps(cycles: impl Iterator<Item = u64>) -> Vec<Step> {
@@ -274,6 +267,24 @@ mod tests {
     }
 
     #[test]
+    fn exact_times_are_compared_in_ticks_of_the_file() {
+        // In ps: 20 us, 1 ps more, and 1 ps less than 20 us early. A clock of 1 GHz would round all three to 20 us.
+        let ticks = alloc::vec![0, 1_020_000_000, 2_020_000_001, 2_980_000_001];
+        let recorded = steps(ticks.iter().map(|tick| tick / 1000));
+        let model = steps([0, 1_000_000, 2_000_000, 3_000_000].into_iter());
+        let sides = |steps, clock_hz| Side { steps, clock_hz, values: &[] };
+        let exact = ExactTimes { ticks, base: Timebase::new(1, 1_000_000_000_000).expect("a unit") };
+        let mut found = Alignment::of(sides(&recorded, 1_000_000_000), sides(&model, 1_000_000_000), None)
+            .expect("steps");
+        let within = Tolerance::from_micros(20, 0).expect("a time");
+        assert_eq!(found.comparison(within).differing, 0);
+        found.exact = Some(&exact);
+        let compared = found.comparison(within);
+        assert_eq!((compared.differing, compared.first_difference.map(|off| off.step)), (1, Some(2)));
+        assert!((compared.largest.late_s - 20.000_001e-6).abs() < 1e-15, "{compared:?}");
+    }
+
+    #[test]
     fn steps_that_lack_or_go_in_the_other_direction_are_reported() {
         let model = steps([100, 200, 300, 400].into_iter());
         let side = |steps| Side { steps, clock_hz: 1000, values: &[] };
@@ -289,5 +300,28 @@ mod tests {
         let turned = compared(&back, None);
         assert_eq!(turned.first_difference.map(|off| (off.step, off.other_direction)), Some((2, true)));
         assert!(of(&[], None).is_none() && of(&model, Some(4)).is_none());
+    }
+
+    #[test]
+    fn a_missing_step_is_not_late() {
+        use crate::recording::{
+            alignment::{Alignment, Side},
+            tolerance::Tolerance,
+        };
+        use stepscope_peripheral::trace::Step;
+
+        let steps = |cycles: &[u64]| {
+            cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>()
+        };
+        // Recorded at 1 MHz, planned at 2 MHz; the third step is missing.
+        let (recorded, plan) = (steps(&[100, 200, 400, 500]), steps(&[0, 200, 400, 600, 800]));
+        let found = Alignment::of(
+            Side { steps: &recorded, clock_hz: 1_000_000, values: &[] },
+            Side { steps: &plan, clock_hz: 2_000_000, values: &[] },
+            None,
+        )
+        .expect("both have steps");
+        let compared = found.comparison(Tolerance::ZERO);
+        assert_eq!((compared.missing, compared.extra, compared.largest.late_s), (1, 0, 0.0));
     }
 }

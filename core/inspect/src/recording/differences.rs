@@ -1,17 +1,4 @@
-//! The differences of a recording from its plan; neighbors of one kind share a row.
-//!
-//! ```
-//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, differences::Differences, events::Kind, tolerance::Tolerance};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! let steps = |cycles: &[u64]| cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>();
-//! let (recorded, plan) = (steps(&[100, 200, 400, 500]), steps(&[100, 200, 300, 400, 500]));
-//! let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
-//! let alignment = Alignment::of(side(&recorded), side(&plan), None).expect("both have steps");
-//! let found = Differences::of(&alignment, Tolerance::ZERO);
-//! assert_eq!(found.count, 1);
-//! assert!(found.listed[0].to_text(Kind::Steps).starts_with("1 step missing after step 1"));
-//! ```
+//! The differences of a recording from its plan; adjacent ones of a kind share a row.
 
 use super::{alignment::Alignment, side::Kind, tolerance::Tolerance};
 use alloc::{format, string::String, vec::Vec};

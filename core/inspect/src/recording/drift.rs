@@ -1,8 +1,8 @@
 //! Clock drift: a line through lateness over time that outliers do not tilt.
 //!
 //! ```text
-//!  late               .  left out        1. slope: the median of those from each event to the one a quarter of all later
-//!   |                    . - '           2. left out: what is further from its line, moved to the median, than
+//! late               .  excluded        1. slope: the median of those from each event to the one a quarter of all later
+//! |                    . - '           2. excluded: events farther from its line, moved to the median, than
 //!   |          . - ' . '                    6 median deviations and a cycle
 //!   |  . - ' .                           3. the least squares' line through the others
 //!   +------------------------> time

@@ -1,21 +1,7 @@
-//! What is compared: the steps of a channel or, if none steps, the bytes of RX.
-//!
-//! ```
-//! use stepscope_inspect::recording::{events::{Events, Kind}, tolerance::Tolerance};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_sim::Experiment;
-//!
-//! // The bytes of a run compared with themselves.
-//! let mut recording = Recording::default();
-//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
-//! let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
-//! let found = bytes.beside(&bytes, None, Tolerance::ZERO).expect("there are bytes");
-//! assert_eq!((found.comparison.compared, found.differences.count), (200, 0));
-//! assert!(found.is_same());
-//! ```
+//! The events to compare: the steps of a channel or, without steps, the bytes of RX.
 
 use super::{
-    alignment::{Alignment, Comparison, Side},
+    alignment::{Alignment, Comparison, ExactTimes, Side},
     differences::Differences,
     matching::Matching,
     serial::DecodedLine,
@@ -37,10 +23,11 @@ pub struct Events {
     pub clock_hz: u32,
     steps: Vec<Step>,
     values: Vec<u8>,
+    exact: Option<ExactTimes>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Beside {
+pub struct EventComparison {
     pub kind: Kind,
     #[serde(flatten)]
     pub comparison: Comparison,
@@ -51,7 +38,7 @@ pub struct Beside {
     pub aligned: (usize, usize),
 }
 
-impl Beside {
+impl EventComparison {
     pub const fn is_same(&self) -> bool {
         self.comparison.is_same()
     }
@@ -59,7 +46,7 @@ impl Beside {
 
 impl Events {
     pub const fn of_steps(steps: Vec<Step>, clock_hz: u32) -> Self {
-        Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new() }
+        Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new(), exact: None }
     }
 
     pub fn of_bytes(decoded: &DecodedLine, clock_hz: u32) -> Self {
@@ -70,7 +57,14 @@ impl Events {
             clock_hz,
             steps: (1..).zip(&decoded.bytes).map(step).collect(),
             values: decoded.bytes.iter().map(|byte| byte.byte).collect(),
+            exact: None,
         }
+    }
+
+    /// Compares by exact times if there is one per step.
+    pub fn with_exact(self, exact: Option<ExactTimes>) -> Self {
+        let exact = exact.filter(|exact| exact.ticks.len() == self.steps.len());
+        Self { exact, ..self }
     }
 
     /// The steps of a channel, or the bytes of RX at `baud`.
@@ -97,9 +91,15 @@ impl Events {
 
     /// Compares with a plan. Number `aligned` of the plan, or the first that both have, gives the shared instant;
     /// `None` where there is none.
-    pub fn beside(&self, model: &Self, aligned: Option<usize>, within: Tolerance) -> Option<Beside> {
-        let alignment = Alignment::of(self.side(), model.side(), aligned)?;
-        Some(Beside {
+    pub fn compare(
+        &self,
+        model: &Self,
+        aligned: Option<usize>,
+        within: Tolerance,
+    ) -> Option<EventComparison> {
+        let alignment =
+            Alignment { exact: self.exact.as_ref(), ..Alignment::of(self.side(), model.side(), aligned)? };
+        Some(EventComparison {
             kind: self.kind,
             comparison: alignment.comparison(within),
             differences: Differences::of(&alignment, within),
@@ -108,12 +108,39 @@ impl Events {
         })
     }
 
-    pub fn alignment<'a>(&'a self, model: &'a Self, found: &Beside) -> Alignment<'a> {
+    pub fn alignment<'a>(&'a self, model: &'a Self, found: &EventComparison) -> Alignment<'a> {
         let (recorded, model) = (self.side(), model.side());
-        Alignment { recorded, model, matching: found.matching.clone(), aligned: found.aligned }
+        Alignment {
+            recorded,
+            model,
+            matching: found.matching.clone(),
+            aligned: found.aligned,
+            exact: self.exact.as_ref(),
+        }
     }
 
     fn side(&self) -> Side<'_> {
         Side { steps: &self.steps, clock_hz: self.clock_hz, values: &self.values }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn bytes_of_a_run_equal_themselves() {
+        use crate::recording::{
+            events::{Events, Kind},
+            tolerance::Tolerance,
+        };
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        // The bytes of a run compared with themselves.
+        let mut recording = Recording::default();
+        Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+        let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
+        let found = bytes.compare(&bytes, None, Tolerance::ZERO).expect("there are bytes");
+        assert_eq!((found.comparison.compared, found.differences.count), (200, 0));
+        assert!(found.is_same());
     }
 }

@@ -1,15 +1,4 @@
 //! Figures of a channel's steps without a plan.
-//!
-//! ```
-//! use stepscope_inspect::recording::figures::StepFigures;
-//! use stepscope_peripheral::trace::Step;
-//!
-//! // Four steps right at 100 steps/s, and one back.
-//! let steps = [(10, 1), (20, 2), (30, 3), (40, 4), (60, 3)].map(|(cycle, position)| Step { cycle, position });
-//! let figures = StepFigures::of(steps, 1000).expect("there are steps");
-//! assert_eq!((figures.right, figures.left, figures.turns, figures.position), (4, 1, 1, 3));
-//! assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
-//! ```
 
 use crate::motion::step_acceleration::{self, HALF};
 use alloc::collections::VecDeque;
@@ -72,7 +61,7 @@ impl StepFigures {
         let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
         let mut acceleration =
             Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), certain: None, any: None };
-        let (mut last, mut way, mut length) = (first, 0, None::<u64>);
+        let (mut last, mut direction, mut length) = (first, 0, None::<u64>);
         for step in core::iter::once(first).chain(steps) {
             let now =
                 if found.steps == 0 { step.position } else { step.position.wrapping_sub(last.position) };
@@ -81,7 +70,7 @@ impl StepFigures {
             found.greatest_position = found.greatest_position.max(step.position);
             acceleration.take(step);
             if found.steps > 0 {
-                let turned = now != way;
+                let turned = now != direction;
                 found.turns += u64::from(turned);
                 let interval = step.cycle - last.cycle;
                 if shortest.is_none_or(|(least, _)| interval < least) {
@@ -90,13 +79,14 @@ impl StepFigures {
                 longest = longest.max(Some(interval));
                 if let Some(length) = length.filter(|length| !turned && *length > 0) {
                     let part = interval.abs_diff(length) as f64 / length as f64;
-                    let most = found.greatest_interval_change;
-                    found.greatest_interval_change = Some(most.map_or(part, |most| libm::fmax(most, part)));
+                    let known = found.greatest_interval_change;
+                    found.greatest_interval_change =
+                        Some(known.map_or(part, |known| libm::fmax(known, part)));
                 }
                 length = if turned { None } else { Some(interval) };
             }
             found.steps += 1;
-            (last, way) = (step, now);
+            (last, direction) = (step, now);
         }
         (found.position, found.last_s) = (last.position, seconds(last.cycle));
         found.shortest_interval_s = shortest.map(|(interval, _)| seconds(interval));
@@ -134,7 +124,7 @@ impl Acceleration {
         let explained =
             span(0).zip(span(HALF)).is_some_and(|(first, second)| first.abs_diff(second) <= ROUNDING);
         let found = libm::fabs(found);
-        let greater = |most: Option<f64>, found| Some(most.map_or(found, |most| libm::fmax(most, found)));
+        let greater = |known: Option<f64>, found| Some(known.map_or(found, |known| libm::fmax(known, found)));
         self.certain = greater(self.certain, if explained { 0.0 } else { found });
         self.any = greater(self.any, found);
     }
@@ -181,5 +171,18 @@ mod tests {
             let acceleration = found.greatest_acceleration_steps_s2.expect("enough steps");
             assert_eq!(acceleration > 0.0, accelerates, "{interval}: {acceleration}");
         }
+    }
+
+    #[test]
+    fn figures_of_the_steps_of_a_run() {
+        use crate::recording::figures::StepFigures;
+        use stepscope_peripheral::trace::Step;
+
+        // Four steps right at 100 steps/s, and one back.
+        let steps =
+            [(10, 1), (20, 2), (30, 3), (40, 4), (60, 3)].map(|(cycle, position)| Step { cycle, position });
+        let figures = StepFigures::of(steps, 1000).expect("there are steps");
+        assert_eq!((figures.right, figures.left, figures.turns, figures.position), (4, 1, 1, 3));
+        assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
     }
 }

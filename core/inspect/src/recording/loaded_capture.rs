@@ -1,16 +1,4 @@
 //! A capture loaded as a recording: times in cycles, levels, and a report.
-//!
-//! ```
-//! use stepscope_capture::read::{Limits, read};
-//! use stepscope_inspect::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
-//!
-//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1! #22 0!";
-//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
-//! let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a map is proposed");
-//! assert_eq!((loaded.map.as_str(), loaded.clock_hz), ("STEP0=STEP", 1_000_000));
-//! assert_eq!(loaded.report.channels[0].figures.steps, 2);
-//! assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
-//! ```
 
 mod align;
 mod contents;
@@ -22,6 +10,7 @@ mod tests;
 pub use align::Misaligned;
 
 use super::{
+    alignment::ExactTimes,
     events::Events,
     open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ},
     overview::Overview,
@@ -30,7 +19,7 @@ use super::{
 };
 use crate::{
     motion::curves::{Actual, Window},
-    trace::timing::{Rule, TimingCheck},
+    trace::timing::TimingCheck,
 };
 use alloc::{
     format,
@@ -40,7 +29,6 @@ use alloc::{
 use serde::Serialize;
 use stepscope_capture::{
     Capture, ChannelMap, Recorded,
-    capture::Format,
     channel_map::{PulseSource, written},
     recorded::Records,
     timebase::Timebase,
@@ -87,6 +75,8 @@ pub struct LoadedCapture {
     pub end_s: f64,
     pub report: Report,
     position_steps: Option<Vec<Step>>,
+    /// Per channel, where cycles round the times of its steps.
+    exact_steps: Vec<(u8, ExactTimes)>,
     /// Motors with generated pulses, and their source.
     generated_pulses: Vec<(u8, PulseSource)>,
 }
@@ -105,6 +95,7 @@ impl LoadedCapture {
         let report = loaded.without_levels(&capture, base, options, &map)?;
         let (exact, lines) = (loaded.exact_channels(&capture, &map, base, options), options.lines()?);
         let others = others_rounded(&capture, base, loaded.clock_hz);
+        loaded.note_exact_steps(&capture, &map, base);
         let recorded = Recorded::new(capture, &map, base, loaded.clock_hz).map_err(OpenError::TooLate)?;
         loaded.note_rounding(recorded.rounding, others);
         loaded.records = recorded.records;
@@ -181,9 +172,11 @@ impl LoadedCapture {
         if count <= part.max_records && part.from_s.is_none() && part.to_s.is_none() {
             self.records.reserve_exact(count);
             self.records.extend(Records::of(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
+            self.note_exact_steps(capture, map, base);
         } else {
             let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, self.end_s);
             let rest = Records::from(capture, map, base, self.clock_hz, (from_s / base.seconds()) as u64);
+            self.exact_steps.clear();
             self.load_part(rest.map_err(OpenError::TooLate)?, count, from_s, part);
         }
         Ok(())
@@ -197,12 +190,7 @@ impl LoadedCapture {
         max_listed: usize,
     ) -> Result<Option<(TimingCheck, Timebase)>, OpenError> {
         let (loaded, map, base) = Self::prepare(capture, options)?;
-        let are_generated = loaded.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
-        let is_rounded = |base: &Timebase| !capture.changes.is_empty() && !base.is_exact(loaded.clock_hz);
-        // Decimal times below a picosecond carry the noise of a float: 5.000000000000013e-06.
-        let is_noisy = |base: &Timebase| capture.format != Format::Vcd && base.seconds() < 1e-12;
-        let is_compared = |base: &Timebase| is_rounded(base) && !is_noisy(base) && !are_generated;
-        let Some(base) = base.filter(is_compared) else { return Ok(None) };
+        let Some(base) = base.filter(|base| loaded.has_better_ticks(capture, *base)) else { return Ok(None) };
         let mut check = TimingCheck::in_ticks(rules, base.parts(), max_listed);
         loaded.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
         Records::in_ticks(capture, &map).for_each(|record| check.record(record));
@@ -280,6 +268,7 @@ impl LoadedCapture {
             end_s: 0.0,
             report: Report { channels: Vec::new(), lines: Vec::new() },
             position_steps: None,
+            exact_steps: Vec::new(),
             generated_pulses: Vec::new(),
         };
         if !capture.changes.is_empty() {
@@ -310,7 +299,11 @@ impl LoadedCapture {
     pub fn events(&self, channel: u8) -> Events {
         match self.report.rx().filter(|_| self.report.channels.is_empty()) {
             Some(line) => Events::of_bytes(&line.decoded, self.clock_hz),
-            None => Events::of_steps(self.steps_of(channel), self.clock_hz),
+            None => {
+                let exact = self.exact_steps.iter().find(|(of, _)| *of == channel);
+                Events::of_steps(self.steps_of(channel), self.clock_hz)
+                    .with_exact(exact.map(|(_, exact)| exact.clone()))
+            }
         }
     }
 

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A beam search: each hypothesis follows the recording's clock by a filter of offset and rate. A step that is not on
-//! time makes further hypotheses: missing, extra, late, or a shift. The cheapest wins. It starts from each of the
+//! time makes additional hypotheses: missing, extra, late, or a shift. The cheapest wins. It starts from each of the
 //! first pairs of steps. Hypotheses and tried gaps are bounded, so time and memory are linear.
 
 mod clock;

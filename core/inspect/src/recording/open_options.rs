@@ -47,16 +47,16 @@ impl OpenOptions {
         positions: bool,
         makes_pulses: bool,
     ) -> Result<u32, OpenError> {
-        let (least, most) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
+        let (min_hz, max) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
         let own = || {
             if positions && base.is_exact(USUAL_CLOCK_HZ) {
                 return USUAL_CLOCK_HZ;
             }
             let (_, denominator) = base.parts();
-            let least =
-                if makes_pulses { least.max(denominator.saturating_mul(CYCLES_PER_EDGE)) } else { least };
-            let whole = least.div_ceil(denominator).checked_mul(denominator);
-            whole.map_or(most, |hz| hz.min(most)) as u32
+            let min_hz =
+                if makes_pulses { min_hz.max(denominator.saturating_mul(CYCLES_PER_EDGE)) } else { min_hz };
+            let whole = min_hz.div_ceil(denominator).checked_mul(denominator);
+            whole.map_or(max, |hz| hz.min(max)) as u32
         };
         valid_clock(self.clock_hz.unwrap_or_else(own))
     }
@@ -89,7 +89,7 @@ impl fmt::Display for OpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Map(error) => write!(f, "the channel map: {error}"),
-            Self::NoMap { .. } => f.write_str("nothing says which channel is which signal"),
+            Self::NoMap { .. } => f.write_str("no channel has a known signal"),
             Self::Clock(given) => {
                 write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
             }
@@ -99,28 +99,28 @@ impl fmt::Display for OpenError {
                     "the log has no CLOCK_FREQ; give the clock of its controller as the sample rate, in Hz, such as 16000000"
                 }
                 Format::Annotations => {
-                    "the annotations count samples and do not say how long one lasts; give the sample rate of the recording, in Hz"
+                    "the annotations count samples without a sample rate; give the sample rate of the recording, in Hz"
                 }
                 Format::Vcd | Format::SigrokSession | Format::SigrokCsv => {
-                    "the file does not say how long a sample lasts; give the sample rate, in Hz"
+                    "the file has no sample rate; give the sample rate in Hz"
                 }
                 Format::Trace | Format::EdgesCsv => {
-                    "the file does not say how long a cycle lasts; give the clock as the sample rate, in Hz"
+                    "the file has no clock; give the clock as the sample rate in Hz"
                 }
                 _ => {
-                    "the file does not say how long a sample, or a cycle, lasts; give the sample rate, in Hz: 1000000 for times in µs, or name their unit in the head of the table (time_us)"
+                    "the file has no unit of time; give the sample rate in Hz, such as 1000000 for times in µs, or name the unit in the table's header, such as time_us"
                 }
             }),
             Self::NoBaud => f.write_str(
-                "the bytes have no times; give the bit rate; they then count as sent back to back",
+                "the bytes have no times; give the bit rate: they then count as sent back to back",
             ),
             Self::Baud => f.write_str("the bit rate is 0; give the bits per second"),
-            Self::Uart(given, allowed) => write!(f, "the UART format: \"{given}\" is not one; {allowed}"),
+            Self::Uart(given, allowed) => write!(f, "the UART format \"{given}\" is not supported; {allowed}"),
             Self::NoRate(why, _) => f.write_str(why),
             Self::TooLate(error) => error.fmt(f),
-            Self::TooManySteps(most) => write!(
+            Self::TooManySteps(max) => write!(
                 f,
-                "the positions need more than {most} steps, or go beyond 2^31; give a shorter table"
+                "the positions need more than {max} steps, or go beyond 2^31; give a shorter table"
             ),
         }
     }

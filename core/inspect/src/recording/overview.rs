@@ -1,15 +1,5 @@
 //! A recording at a glance: minimum and maximum position and speed per pixel column, in one pass that stores no
 //! steps.
-//!
-//! ```
-//! use stepscope_inspect::{motion::curves::Window, recording::overview::Overview};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! // A step every 10 ms in the second of two halves.
-//! let steps = (1..=10).map(|k| Step { cycle: 100 + 10 * k, position: k as i32 });
-//! let found = Overview::of(steps, 1000.0, Window { start_s: 0.0, end_s: 0.21, columns: 2 });
-//! assert_eq!((found.position.max, found.speed.max), (vec![0.0, 10.0], vec![0.0, 100.0]));
-//! ```
 
 use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
@@ -21,7 +11,7 @@ pub struct Overview {
     position: Band,
     speed: Band,
     next: usize,
-    place: i32,
+    position_steps: i32,
     last: Option<u64>,
     moved_to_s: f64,
 }
@@ -34,7 +24,7 @@ impl Overview {
             position: Band::new(window.columns),
             speed: Band::new(window.columns),
             next: 0,
-            place: 0,
+            position_steps: 0,
             last: None,
             moved_to_s: window.start_s,
         };
@@ -53,20 +43,20 @@ impl Overview {
     fn take(&mut self, step: Step) {
         let step_s = step.cycle as f64 / self.hz;
         if let Some(last) = self.last.replace(step.cycle).filter(|_| step_s > self.window.start_s) {
-            let way = f64::from(step.position.wrapping_sub(self.place));
-            self.rate(last as f64 / self.hz, step_s, self.hz / (step.cycle - last) as f64 * way);
+            let travel = f64::from(step.position.wrapping_sub(self.position_steps));
+            self.rate(last as f64 / self.hz, step_s, self.hz / (step.cycle - last) as f64 * travel);
         }
         if step_s >= self.window.start_s {
             let column = self.window.column(step_s).max(0) as usize;
             self.reach(column.saturating_add(1).min(self.window.columns));
             self.position.take(column, f64::from(step.position));
         }
-        self.place = step.position;
+        self.position_steps = step.position;
     }
 
     fn reach(&mut self, column: usize) {
         for column in self.next..column {
-            self.position.take(column, f64::from(self.place));
+            self.position.take(column, f64::from(self.position_steps));
         }
         self.next = self.next.max(column);
     }
@@ -94,16 +84,16 @@ mod tests {
         let (mut cycle, mut position) = (20_000, 0);
         let there = (0..300_u64).map(|k| (1, 2000 - 6 * k));
         let back = (0..250_u64).map(|k| (-1, if k == 0 { 90_000 } else { 400 + 3 * k }));
-        let step = |(way, interval)| {
+        let step = |(travel, interval)| {
             cycle += interval;
-            position += way;
+            position += travel;
             Step { cycle, position }
         };
         there.chain(back).map(step).collect()
     }
 
     #[test]
-    fn one_pass_over_steps_makes_the_columns_that_are_made_of_steps_that_lie_together() {
+    fn one_pass_gives_the_columns_of_stored_steps() {
         let steps = steps();
         let pulses = Pulses::recorded(0, &steps, 1_000_000);
         let end_s = steps.last().expect("steps").cycle as f64 / 1e6;
@@ -140,5 +130,16 @@ mod tests {
         let window = Window { start_s: 0.0, end_s: 1.0, columns: 3 };
         let none = Overview::of([], 1e6, window);
         assert_eq!((none.position.max, none.speed.min), (Vec::from([0.0; 3]), Vec::from([0.0; 3])));
+    }
+
+    #[test]
+    fn an_overview_has_the_maximum_of_each_column() {
+        use crate::{motion::curves::Window, recording::overview::Overview};
+        use stepscope_peripheral::trace::Step;
+
+        // A step every 10 ms in the second of two halves.
+        let steps = (1..=10).map(|k| Step { cycle: 100 + 10 * k, position: k as i32 });
+        let found = Overview::of(steps, 1000.0, Window { start_s: 0.0, end_s: 0.21, columns: 2 });
+        assert_eq!((found.position.max, found.speed.max), (vec![0.0, 10.0], vec![0.0, 100.0]));
     }
 }

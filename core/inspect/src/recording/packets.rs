@@ -1,20 +1,5 @@
 //! Packets on recorded lines in the order of time. Frames (DESIGN A6) end at their delimiter and are checked; other
 //! bytes end at a gap (A5).
-//!
-//! ```
-//! use stepscope_inspect::recording::{packets::Packets, report::Report};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_sim::Experiment;
-//!
-//! // A framed link, as a logic analyzer would have seen it: each frame of the host is answered.
-//! let mut recording = Recording::default();
-//! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
-//! let report = Report::of(&recording.trace, 16_000_000, 1, None);
-//! let packets = Packets::of(&report, 16_000_000, 1, false);
-//! let known = |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
-//! assert_eq!(known(0), Some(("RX", "frame", "to 0: STATUS")));
-//! assert!(known(1).is_some_and(|(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")));
-//! ```
 
 use super::{
     report::{LineReport, Report},
@@ -265,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn raw_packets_end_at_a_gap_and_a_reply_that_is_broken_says_so() {
+    fn raw_packets_end_at_a_gap_and_broken_replies_are_marked() {
         let (recording, channels) = run(
             r#"{"bus":{"channels":2},"line":{"address":7},"source":{"packets":{"packets":["078a05","070203"]}}}"#,
         );
@@ -299,10 +284,33 @@ mod tests {
         let bytes =
             (0..40).map(|k| DecodedByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
         let decoded = DecodedLine { bytes: bytes.collect(), ..DecodedLine::default() };
-        let report =
-            Report { channels: Vec::new(), lines: Vec::from([LineReport::of_decoded(decoded, 1000, 1000)]) };
+        let report = Report {
+            channels: Vec::new(),
+            lines: Vec::from([LineReport::of_decoded(Levels::RX, decoded, 1000, 1000)]),
+        };
         let rows = Packets::of(&report, 1000, 1, false).rows;
         assert_eq!(rows.iter().map(|row| row.bytes.len()).collect::<Vec<_>>(), [30, 10], "{rows:?}");
         assert!(rows.iter().all(|row| row.meaning.is_empty() && row.outcome.is_empty()), "{rows:?}");
+    }
+
+    #[test]
+    fn packets_of_a_recorded_line() {
+        use crate::recording::{packets::Packets, report::Report};
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        // A framed link, as a logic analyzer would have seen it: each frame of the host is answered.
+        let mut recording = Recording::default();
+        Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#)
+            .expect("the default motion, framed")
+            .run(&mut recording);
+        let report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let packets = Packets::of(&report, 16_000_000, 1, false);
+        let known =
+            |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
+        assert_eq!(known(0), Some(("RX", "frame", "to 0: STATUS")));
+        assert!(known(1).is_some_and(
+            |(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")
+        ));
     }
 }

@@ -1,4 +1,4 @@
-//! What helps with a recording; the command names options, the page fields.
+//! Remedies for problems of a recording; the command names options, the page fields.
 //!
 //! ```
 //! use stepscope_inspect::recording::remedy::{Note, Remedy};

@@ -1,19 +1,4 @@
-//! Recorded TX replies as bytes, which one worker of the page hands to another: start, end, length and controller per
-//! reply.
-//!
-//! ```
-//! use stepscope_inspect::recording::{replies, report::Report};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_sim::Experiment;
-//!
-//! // A framed link, as a logic analyzer would have seen it.
-//! let mut recording = Recording::default();
-//! Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed").run(&mut recording);
-//! let report = Report::of(&recording.trace, 16_000_000, 1, None);
-//! let dealt = replies::to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
-//! let found = replies::of(&dealt.bytes, 0);
-//! assert!(!found.is_empty() && found.iter().all(|reply| reply.reply.is_some()));
-//! ```
+//! Recorded TX replies as bytes for transfer between workers of the page: start, end, length and controller per reply.
 
 use super::{
     packets::{Found, Line},
@@ -46,13 +31,13 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
     };
     let mut dealt = Dealt::default();
     let Some(tx) = of(Levels::TX) else { return dealt };
-    let place = |address: u8| addresses.iter().position(|own| *own == address);
+    let index_of = |address: u8| addresses.iter().position(|own| *own == address);
     let mut commands: Vec<(u64, usize)> = Vec::new();
     if let Some(rx) = of(Levels::RX).filter(|_| addresses.len() > 1) {
         rx.each(|Found { end_cycle, bytes, outcome, .. }| {
             let head = outcome.and_then(|outcome| Head::of(&bytes, RowOutcome::Frame(outcome)));
             // RX may carry replies of other controllers.
-            let to = head.filter(|head| !head.is_reply()).and_then(|head| place(head.address));
+            let to = head.filter(|head| !head.is_reply()).and_then(|head| index_of(head.address));
             commands.extend(to.map(|to| (end_cycle, to)));
         });
     }
@@ -60,9 +45,9 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
         if !cycles.contains(&start_cycle) {
             return;
         }
-        let named = reply(&bytes).and_then(|reply| place(reply.address));
+        let named = reply(&bytes).and_then(|reply| index_of(reply.address));
         let last = || commands.get(commands.partition_point(|(end, _)| *end <= start_cycle).checked_sub(1)?);
-        let controller = named.or_else(|| last().map(|(_, place)| *place));
+        let controller = named.or_else(|| last().map(|(_, index_of)| *index_of));
         dealt.unknown += usize::from(controller.is_none() && addresses.len() > 1);
         let length = bytes.len() as u64 | (controller.unwrap_or(0) as u64) << CONTROLLER_SHIFT;
         for word in [start_cycle, end_cycle, length] {
@@ -96,8 +81,9 @@ pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
 /// Replaces the replies in a controller's finished log: its own, and those that it received of others.
 pub fn put(bytes: &[u8], experiment: &Experiment, run: &Run, controller: usize, log: &mut PacketLog) {
     let table = PacketTable::new(experiment, run, controller, log);
-    let is_made: Vec<bool> = (0..table.len()).map(|row| table.kind(row) == Some(RowKind::Reply)).collect();
-    log.answer(&of(bytes, controller), &is_made);
+    let is_simulated: Vec<bool> =
+        (0..table.len()).map(|row| table.kind(row) == Some(RowKind::Reply)).collect();
+    log.answer(&of(bytes, controller), &is_simulated);
 }
 
 fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
@@ -115,13 +101,13 @@ mod tests {
     use stepscope_sim::Experiment;
 
     #[test]
-    fn recorded_replies_stand_in_the_table_of_packets_with_the_turnaround_that_they_had() {
+    fn recorded_replies_are_rows_with_their_turnaround() {
         let json = r#"{"line":{"protocol":"framed"}}"#;
         let experiment = Experiment::from_json(json).expect("no problems");
         let mut recording = Recording::default();
         let run = experiment.run(&mut recording);
         recording.packets.finish();
-        let made = recording.packets.clone();
+        let simulated = recording.packets.clone();
         // The device took 500 cycles more for each than the model does; one reply is spoilt on its way.
         let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
@@ -131,7 +117,7 @@ mod tests {
         assert_eq!(unknown, 0, "there is but one controller");
         put(&bytes, &experiment, &run, 0, &mut recording.packets);
 
-        let own = PacketTable::new(&experiment, &run, 0, &made);
+        let own = PacketTable::new(&experiment, &run, 0, &simulated);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
         assert_eq!(table.len(), own.len());
         let replies: Vec<usize> = (0..own.len())
@@ -160,13 +146,13 @@ mod tests {
     }
 
     #[test]
-    fn replies_go_to_the_controller_that_they_name_or_that_was_asked_last() {
+    fn replies_belong_to_their_address_or_the_last_addressed_controller() {
         let json = r#"{"line":{"protocol":"framed","address":3},"controllers":[{"address":7,"axes":[{"moves":[{"cosine":{"distance":{"steps":200}}}]}]}]}"#;
         let experiment = Experiment::from_json(json).expect("no problems");
         let mut recordings = [Recording::default(), Recording::default()];
         let run = experiment.run_each(&mut recordings);
         recordings.iter_mut().for_each(|one| one.packets.finish());
-        let made = recordings.each_ref().map(|one| one.packets.clone());
+        let simulated = recordings.each_ref().map(|one| one.packets.clone());
         // One analyser at the line: TX is low where one of both sends.
         let mut report = Report::of(&recordings[0].trace, 16_000_000, 1, None);
         let others = Report::of(&recordings[1].trace, 16_000_000, 1, None).lines;
@@ -184,7 +170,7 @@ mod tests {
         let addresses = [3, 7];
         for (index, one) in recordings.iter_mut().enumerate() {
             put(&bytes, &experiment, &run, index, &mut one.packets);
-            let own = PacketTable::new(&experiment, &run, index, &made[index]);
+            let own = PacketTable::new(&experiment, &run, index, &simulated[index]);
             let table = PacketTable::new(&experiment, &run, index, &one.packets);
             let replies = |table: &PacketTable<'_>| -> Vec<_> {
                 (0..table.len())
@@ -214,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_handed_on_is_read_as_far_as_it_is_whole_and_in_order() {
+    fn transferred_replies_are_read_while_valid_and_in_order() {
         let row = |start: u64, end: u64, bytes: &[u8]| {
             let mut row: Vec<u8> =
                 [start, end, bytes.len() as u64].iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -238,5 +224,22 @@ mod tests {
             assert_eq!(starts(&bytes), expected, "{bytes:?}");
         }
         assert!(of(&two, 0).iter().all(|reply| reply.reply.is_none()));
+    }
+
+    #[test]
+    fn recorded_replies_replace_simulated_ones() {
+        use crate::recording::{replies, report::Report};
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        // A framed link, as a logic analyzer would have seen it.
+        let mut recording = Recording::default();
+        Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#)
+            .expect("the default motion, framed")
+            .run(&mut recording);
+        let report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let dealt = replies::to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
+        let found = replies::of(&dealt.bytes, 0);
+        assert!(!found.is_empty() && found.iter().all(|reply| reply.reply.is_some()));
     }
 }

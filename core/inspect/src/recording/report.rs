@@ -1,16 +1,4 @@
 //! The report of a recording: figures of each channel, and its lines.
-//!
-//! ```
-//! use stepscope_inspect::recording::report::Report;
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_sim::Experiment;
-//!
-//! let mut recording = Recording::default();
-//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
-//! let report = Report::of(&recording.trace, 16_000_000, 1, None);
-//! assert_eq!(report.channels.len(), 1);
-//! assert_eq!(report.lines[0].to_text(), "RX: 115200 baud (115187 measured), 200 bytes, raw packets of 1 byte");
-//! ```
 
 use super::serial::{
     DecodedByte, LineOptions, MEASURED_EDGES, decode_records, edges, is_text_of_seven, parity_of_seven,
@@ -29,7 +17,7 @@ use stepscope_peripheral::{
     trace::Step,
 };
 
-/// Figures of each channel, and what the lines carry.
+/// Figures of each channel, and the contents of the lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     pub channels: Vec<ChannelReport>,
@@ -139,6 +127,11 @@ fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
         let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
         return (format!("its pulses fit several bit rates ({})", rates.join(", ")), [Remedy::Baud].into());
     }
+    if *why == NoRate::TooCoarse {
+        let text = "its bits last fewer than 3 cycles of the recording, so its bit rate cannot be measured; record at 4 samples per \
+                    bit or more, or export times with more decimal places";
+        return (text.into(), [Remedy::Baud].into());
+    }
     let other = other(why, line);
     let found = other.as_ref().map_or_else(String::new, |(text, _)| format!(": {text}"));
     let remedies = other.into_iter().map(|(_, remedy)| remedy).chain([Remedy::BaudOrFormat]);
@@ -229,12 +222,8 @@ impl LineReport {
         Some(line)
     }
 
-    pub fn of_decoded(decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
-        Self::of_decoded_on(Levels::RX, decoded, clock_hz, baud)
-    }
-
     /// Decoded bytes on a line: [`Levels::RX`] or [`Levels::TX`].
-    pub fn of_decoded_on(line: u64, decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
+    pub fn of_decoded(line: u64, decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
         let guess = guess(&decoded.bytes, u64::from(clock_hz / baud.max(1)));
         Self {
             name: line_name(line),
@@ -286,7 +275,26 @@ impl LineReport {
                 let others = if bad == 0 { String::new() } else { format!(", {bad} of another length") };
                 format!("raw packets of {length} byte{s}{others}")
             }
-            Guess::Other => "no packets that are known".into(),
+            Guess::Other => "no known packets".into(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_report_of_a_run() {
+        use crate::recording::report::Report;
+        use crate::trace::stored_run::Recording;
+        use stepscope_sim::Experiment;
+
+        let mut recording = Recording::default();
+        Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+        let report = Report::of(&recording.trace, 16_000_000, 1, None);
+        assert_eq!(report.channels.len(), 1);
+        assert_eq!(
+            report.lines[0].to_text(),
+            "RX: 115200 baud (115187 measured), 200 bytes, raw packets of 1 byte"
+        );
     }
 }

@@ -2,22 +2,6 @@
 //!
 //! Steps are exact to the requested error. Pulse width and DIR set-up belong to the bus and are taken over where all
 //! pulses agree. Bytes begin within half a bit of the recording; those back to back are one send.
-//!
-//! ```
-//! use stepscope_inspect::recording::scenario::{Steps, of_steps};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_peripheral::trace::steps;
-//! use stepscope_sim::Experiment;
-//!
-//! // What a run made, made again by segments: each step in its cycle.
-//! let mut recording = Recording::default();
-//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
-//! let made = of_steps(&recording.trace, &Steps { clock_hz: 16_000_000, channels: 1, within_cycles: 0 }).expect("steps");
-//! let mut again = Recording::default();
-//! Experiment::new(&made.scenario).expect("no problems").run(&mut again);
-//! let cycles = |recording: &Recording| steps(&recording.trace, 0).iter().map(|step| step.cycle).collect::<Vec<_>>();
-//! assert_eq!(cycles(&again), cycles(&recording));
-//! ```
 
 use super::serial::{DecodedLine, Guess};
 use crate::trace::timing::{Rule, TimingCheck};
@@ -41,7 +25,7 @@ use stepscope_scenario::{
 };
 use stepscope_sim::replayed;
 
-/// Lists start at cycle 1 at the earliest (DESIGN A3).
+/// Lists start at cycle 1 at the earliest.
 const START: u64 = 1;
 /// Cycles before the first step in addition to its pulse.
 const MARGIN: u64 = 1;
@@ -57,7 +41,7 @@ pub struct Steps {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Made {
+pub struct Reproduction {
     pub scenario: Scenario,
     /// Delay of everything, because a first step may need time for its pulse.
     pub later_cycles: u64,
@@ -78,11 +62,13 @@ impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSteps => f.write_str("no channel steps; map a channel to STEP0"),
-            Self::NoBytes => f.write_str("no byte was heard; map a channel to RX, or give another bit rate"),
+            Self::NoBytes => {
+                f.write_str("no byte was decoded; map a channel to RX, or give another bit rate")
+            }
             Self::Channel(channel, cause) => write!(f, "channel {channel}: {cause}"),
             Self::FewCycles(clock_hz, baud) => write!(
                 f,
-                "a bit of {baud} baud has less than 11 cycles of {clock_hz} Hz; take a clock of at least {} Hz",
+                "a bit of {baud} baud has fewer than 11 cycles of {clock_hz} Hz; use a clock of at least {} Hz",
                 11 * u64::from(*baud)
             ),
         }
@@ -92,17 +78,17 @@ impl fmt::Display for Refused {
 impl core::error::Error for Refused {}
 
 /// The steps of all channels as segment lists.
-pub fn of_steps(records: &[Record], request: &Steps) -> Result<Made, Refused> {
+pub fn of_steps(records: &[Record], request: &Steps) -> Result<Reproduction, Refused> {
     let all: Vec<Vec<Step>> = (0..request.channels).map(|channel| steps(records, channel)).collect();
     of_list(&all, request, Some(records))
 }
 
 /// Steps by channel, without pulses: the width is half of the shortest interval, at most the default.
-pub fn of_step_times(all: &[Vec<Step>], request: &Steps) -> Result<Made, Refused> {
+pub fn of_step_times(all: &[Vec<Step>], request: &Steps) -> Result<Reproduction, Refused> {
     of_list(all, request, None)
 }
 
-fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Result<Made, Refused> {
+fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Result<Reproduction, Refused> {
     let first =
         all.iter().filter_map(|steps| steps.first()).map(|step| step.cycle).min().ok_or(Refused::NoSteps)?;
     let pulse = pulse_times(records, all, request.clock_hz);
@@ -140,7 +126,7 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
     scenario.bus.dir_hold_cycles = narrow(pulse.hold);
     scenario.source = Source::Segments(SegmentLists { channels });
     scenario.analysis.axis = 0;
-    Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: greatest, entries })
 }
 
 fn channel_list(list: &SegmentList) -> ChannelSegments {
@@ -158,8 +144,8 @@ fn channel_list(list: &SegmentList) -> ChannelSegments {
 fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> PulseTimes {
     let mut check = TimingCheck::new(&TimingRules::default(), clock_hz, 0);
     records.into_iter().flatten().for_each(|record| check.record(*record));
-    let least = |rule: Rule| {
-        let found = check.results().iter().find(|result| result.rule == rule)?.least?;
+    let shortest = |rule: Rule| {
+        let found = check.results().iter().find(|result| result.rule == rule)?.shortest?;
         Some(found.measured.0)
     };
     let interval = all
@@ -168,13 +154,13 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
         .map(|(before, step)| step.cycle - before.cycle)
         .min()
         .unwrap_or(u64::MAX);
-    let width = least(Rule::StepHigh)
+    let width = shortest(Rule::StepHigh)
         .unwrap_or_else(|| Bus::default().pulse_width_cycles.into())
         .min(interval / MAX_WIDTH_PART)
         .clamp(*PULSE_WIDTH_CYCLES.start(), *PULSE_WIDTH_CYCLES.end());
     // DIR changes at the start of a segment, long before most of its steps, so more set-up only refuses some.
     let setup =
-        least(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / MAX_WIDTH_PART);
+        shortest(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / MAX_WIDTH_PART);
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
@@ -188,7 +174,11 @@ pub struct Bytes {
 }
 
 /// The bytes of a line as a line script for the controllers of `base`, or for one that the bytes imply.
-pub fn of_bytes(decoded: &DecodedLine, request: &Bytes, base: Option<&Scenario>) -> Result<Made, Refused> {
+pub fn of_bytes(
+    decoded: &DecodedLine,
+    request: &Bytes,
+    base: Option<&Scenario>,
+) -> Result<Reproduction, Refused> {
     let Bytes { clock_hz, baud, .. } = *request;
     let first = decoded.bytes.first().ok_or(Refused::NoBytes)?;
     let mut scenario = base.map_or_else(|| implied_by(request), Scenario::clone);
@@ -209,7 +199,7 @@ pub fn of_bytes(decoded: &DecodedLine, request: &Bytes, base: Option<&Scenario>)
         let at = cycle(byte.start).saturating_add(later_cycles);
         let next =
             sends.last().map(|send| send.start_cycle.saturating_add(times.byte(send.bytes.0.len() as u64).0));
-        // A fast clock makes bytes overlap; these are sent back to back.
+        // With a fast clock bytes overlap; these are sent back to back.
         match (sends.last_mut(), next) {
             (Some(send), Some(next)) if at <= next.saturating_add(half_bit) => {
                 greatest = greatest.max(at.abs_diff(next));
@@ -223,7 +213,7 @@ pub fn of_bytes(decoded: &DecodedLine, request: &Bytes, base: Option<&Scenario>)
     scenario.line.baud = baud;
     let entries = sends.len();
     let scenario = replayed(scenario, LineScript { sends });
-    Ok(Made { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: greatest, entries })
 }
 
 fn implied_by(request: &Bytes) -> Scenario {
@@ -243,18 +233,18 @@ fn implied_by(request: &Bytes) -> Scenario {
     scenario
 }
 
-pub fn note(file: &str, made: &Made) -> String {
-    let error = match made.greatest_error_cycles {
+pub fn note(file: &str, reproduced: &Reproduction) -> String {
+    let error = match reproduced.greatest_error_cycles {
         0 => "each in its very cycle".into(),
         cycles => format!("none more than {cycles} cycles off"),
     };
-    let later = match made.later_cycles {
+    let later = match reproduced.later_cycles {
         0 => String::new(),
         cycles => format!(", all {cycles} cycles later than recorded"),
     };
-    match made.scenario.source {
-        Source::Line(_) => format!("Bytes recorded in {file}: {} sends, {error}{later}.", made.entries),
-        _ => format!("Steps recorded in {file}: {} segments, {error}{later}.", made.entries),
+    match reproduced.scenario.source {
+        Source::Line(_) => format!("Bytes recorded in {file}: {} sends, {error}{later}.", reproduced.entries),
+        _ => format!("Steps recorded in {file}: {} segments, {error}{later}.", reproduced.entries),
     }
 }
 
@@ -277,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn two_axes_that_turn_come_again_in_their_cycles_also_where_the_first_step_is_early() {
+    fn two_reversing_axes_are_reproduced_despite_an_early_first_step() {
         let motion = r#"{"bus":{"channels":2},"source":{"motion":{"engine":"segments","axes":[
             {"moves":[{"cosine":{"distance":{"steps":400}}},{"dwell":{}},{"cosine":{"distance":{"steps":-100}}}]},
             {"moves":[{"constant":{"distance":{"steps":-300},"speed":{"steps_s":5000}}}]}]}}}"#;
@@ -289,21 +279,21 @@ mod tests {
                 record.cycle = Instant(record.cycle.0.saturating_sub(by).max(1));
             }
             let request = Steps { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
-            let made = of_steps(&trace, &request).expect("steps");
-            assert_eq!(made.greatest_error_cycles, 0);
+            let reproduced = of_steps(&trace, &request).expect("steps");
+            assert_eq!(reproduced.greatest_error_cycles, 0);
             let mut again = Recording::default();
-            Experiment::new(&made.scenario).expect("no problems").run(&mut again);
+            Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
             for channel in 0..2 {
-                let shifted = |step: &Step| Step { cycle: step.cycle + made.later_cycles, ..*step };
+                let shifted = |step: &Step| Step { cycle: step.cycle + reproduced.later_cycles, ..*step };
                 let wanted: Vec<Step> = steps(&trace, channel).iter().map(shifted).collect();
                 assert_eq!(steps(&again.trace, channel), wanted, "channel {channel}, {by} earlier");
             }
-            assert_eq!(made.later_cycles > 0, early > 0);
+            assert_eq!(reproduced.later_cycles > 0, early > 0);
         }
     }
 
     #[test]
-    fn bytes_that_were_heard_make_the_same_run_again() {
+    fn decoded_bytes_reproduce_the_run() {
         for json in [
             r#"{"line":{"protocol":"framed","address":3}}"#,
             r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{}]}}}"#,
@@ -312,11 +302,11 @@ mod tests {
             let clock_hz = 16_000_000;
             let decoded = decode_line(&recording.trace, Levels::RX, clock_hz, 115_200);
             let request = Bytes { clock_hz, baud: 115_200, guess: guess(&decoded.bytes, 139), channels: 1 };
-            let made = of_bytes(&decoded, &request, None).expect("bytes");
+            let reproduced = of_bytes(&decoded, &request, None).expect("bytes");
             let mut again = Recording::default();
-            Experiment::new(&made.scenario).expect("no problems").run(&mut again);
+            Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
             assert_eq!(steps(&again.trace, 0), steps(&recording.trace, 0), "{json}");
-            assert!(made.greatest_error_cycles <= 1, "{made:?}");
+            assert!(reproduced.greatest_error_cycles <= 1, "{reproduced:?}");
         }
         let error = of_bytes(
             &DecodedLine::default(),
@@ -324,5 +314,26 @@ mod tests {
             None,
         );
         assert_eq!(error, Err(Refused::NoBytes));
+    }
+
+    #[test]
+    fn recorded_steps_become_a_scenario() {
+        use crate::recording::scenario::{Steps, of_steps};
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::trace::steps;
+        use stepscope_sim::Experiment;
+
+        // What a run made, made again by segments: each step in its cycle.
+        let mut recording = Recording::default();
+        Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+        let reproduced =
+            of_steps(&recording.trace, &Steps { clock_hz: 16_000_000, channels: 1, within_cycles: 0 })
+                .expect("steps");
+        let mut again = Recording::default();
+        Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
+        let cycles = |recording: &Recording| {
+            steps(&recording.trace, 0).iter().map(|step| step.cycle).collect::<Vec<_>>()
+        };
+        assert_eq!(cycles(&again), cycles(&recording));
     }
 }

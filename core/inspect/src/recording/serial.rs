@@ -1,21 +1,4 @@
-//! Bytes on a recorded line: bit rate, framing, and protocol.
-//!
-//! ```
-//! use stepscope_inspect::recording::serial::{Guess, guess, decode_line, measured_baud};
-//! use stepscope_inspect::trace::stored_run::Recording;
-//! use stepscope_peripheral::signal::Levels;
-//! use stepscope_sim::Experiment;
-//!
-//! // The line of a run, as a logic analyzer would have seen it.
-//! let experiment = Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed");
-//! let mut recording = Recording::default();
-//! experiment.run(&mut recording);
-//! let baud = measured_baud(&recording.trace, Levels::RX, 16_000_000).expect("a line");
-//! assert_eq!(baud.usual, Some(115_200));
-//! let decoded = decode_line(&recording.trace, Levels::RX, 16_000_000, 115_200);
-//! assert!(decoded.framing_errors.is_empty());
-//! assert!(matches!(guess(&decoded.bytes, 139), Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }));
-//! ```
+//! Bytes on a recorded line: bit rate, framing, and protocol (DESIGN A5, A6).
 
 use alloc::collections::BTreeSet;
 use alloc::{vec, vec::Vec};
@@ -30,7 +13,7 @@ use stepscope_peripheral::{
 
 /// Edges of a rate measurement.
 pub(super) const MEASURED_EDGES: usize = 4000;
-/// Gap in bit times that ends a raw packet (DESIGN A5).
+/// Gap in bit times that ends a raw packet.
 pub(super) const GAP_BITS: u64 = 45;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +132,7 @@ pub enum Guess {
         good: u32,
         bad: u32,
     },
-    /// Raw packets of so many bytes (DESIGN A5), including the address.
+    /// Length in bytes, including the address.
     Raw {
         length: u8,
         good: u32,
@@ -189,8 +172,9 @@ fn framed(bytes: &[DecodedByte]) -> Guess {
             None => {}
         }
     }
-    let most = (0..255).max_by_key(|address| (addresses.get(usize::from(*address)).copied(), 255 - *address));
-    Guess::Framed { address: most.unwrap_or(0), channels, good, bad }
+    let frequent =
+        (0..255).max_by_key(|address| (addresses.get(usize::from(*address)).copied(), 255 - *address));
+    Guess::Framed { address: frequent.unwrap_or(0), channels, good, bad }
 }
 
 fn raw(bytes: &[DecodedByte], bit_cycles: u64) -> Guess {
@@ -258,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_is_measured_and_the_bytes_are_heard_at_any_rate_and_pause() {
+    fn bytes_are_decoded_at_any_rate_and_pause() {
         for (clock_hz, baud, pause) in [
             (16_000_000, 9600, 0),
             (1_000_000, 9600, 7),
@@ -284,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn seven_bits_are_known_by_their_text() {
+    fn seven_bits_are_detected_by_text() {
         let decoded = |bytes: &[u8]| -> Vec<DecodedByte> {
             bytes.iter().map(|byte| DecodedByte { start: Instant(0), byte: *byte }).collect()
         };
@@ -303,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn raw_packets_are_known_by_their_gaps() {
+    fn raw_packets_are_detected_by_gaps() {
         let bit = 139;
         let packets = |length: usize, count: usize| -> Vec<(u8, u64)> {
             (0..length * count).map(|i| (0x85, if i % length == 0 { 60 * bit } else { 0 })).collect()
@@ -317,5 +301,27 @@ mod tests {
             decode_line(&line(16_000_000, 115_200, &packets(300, 1)), Levels::RX, 16_000_000, 115_200);
         assert_eq!(guess(&decoded.bytes, bit), Guess::Raw { length: 17, good: 1, bad: 0 });
         assert_eq!(guess(&[], bit), Guess::Other);
+    }
+
+    #[test]
+    fn the_line_of_a_framed_run_is_decoded() {
+        use crate::recording::serial::{Guess, decode_line, guess, measured_baud};
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::signal::Levels;
+        use stepscope_sim::Experiment;
+
+        // The line of a run, as a logic analyzer would have seen it.
+        let experiment =
+            Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let baud = measured_baud(&recording.trace, Levels::RX, 16_000_000).expect("a line");
+        assert_eq!(baud.usual, Some(115_200));
+        let decoded = decode_line(&recording.trace, Levels::RX, 16_000_000, 115_200);
+        assert!(decoded.framing_errors.is_empty());
+        assert!(matches!(
+            guess(&decoded.bytes, 139),
+            Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }
+        ));
     }
 }

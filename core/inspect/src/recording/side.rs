@@ -1,6 +1,8 @@
 //! One side of a comparison: recording or plan.
 
+use alloc::vec::Vec;
 use serde::Serialize;
+use stepscope_capture::timebase::Timebase;
 use stepscope_peripheral::trace::Step;
 
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +31,14 @@ impl Side<'_> {
     pub(super) fn direction(&self, index: usize) -> i32 {
         Step::direction(self.steps, index).signum()
     }
+}
+
+/// The exact times of steps whose cycles are rounded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExactTimes {
+    /// One tick of the file per step.
+    pub ticks: Vec<u64>,
+    pub base: Timebase,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -1,12 +1,4 @@
 //! An exact tolerance, so that a step off by exactly that time is accepted.
-//!
-//! ```
-//! use stepscope_inspect::recording::tolerance::Tolerance;
-//!
-//! let within = Tolerance::from_micros(20, 0).expect("a time");
-//! // 320 cycles of 16 MHz are 20 us, in units of 1/(16 MHz * 1 MHz) s.
-//! assert_eq!(within.units(16_000_000, 1_000_000), 320_000_000);
-//! ```
 
 use serde::{Serialize, Serializer};
 
@@ -32,9 +24,13 @@ impl Tolerance {
     }
 
     /// In units of 1/(`one_hz` * `other_hz`) s, in which time differences of both clocks are whole; rounded down.
-    pub const fn units(self, one_hz: u32, other_hz: u32) -> u128 {
-        // The product of the clocks fits in 64 bits.
-        self.numerator as u128 * (one_hz as u128 * other_hz as u128) / self.denominator as u128
+    pub const fn units(self, one_hz: u64, other_hz: u64) -> u128 {
+        let (numerator, denominator) = (self.numerator as u128, self.denominator as u128);
+        let per_s = one_hz as u128 * other_hz as u128;
+        // In two parts, because the whole product may not fit. Larger values exceed every difference.
+        (per_s / denominator)
+            .saturating_mul(numerator)
+            .saturating_add(per_s % denominator * numerator / denominator)
     }
 
     pub const fn seconds(self) -> f64 {
@@ -67,8 +63,26 @@ mod tests {
             let units = Tolerance::from_micros(mantissa, places).map(|within| within.units(1_000_000_000, 1));
             assert_eq!(units, expected, "{mantissa} {places}");
         }
-        assert_eq!(Tolerance::cycle(u32::MAX, 16_000_000).units(u32::MAX, 16_000_000), u128::from(u32::MAX));
-        assert_eq!(Tolerance::ZERO.units(u32::MAX, u32::MAX), 0);
+        assert_eq!(
+            Tolerance::cycle(u32::MAX, 16_000_000).units(u32::MAX.into(), 16_000_000),
+            u128::from(u32::MAX)
+        );
+        assert_eq!(Tolerance::ZERO.units(u64::MAX, u64::MAX), 0);
+        let ps = Tolerance::from_micros(1, 6).expect("a time");
+        assert_eq!(ps.units(1_000_000_000_000_000, 1_000_000_000), 1_000_000_000_000);
+        let hour = Tolerance::from_micros(3_600_000_000, 0).expect("a time");
+        assert_eq!(hour.units(1_000_000_000_000_000, 1_000_000_000), 3600 * 10_u128.pow(24));
+        let long = Tolerance::from_micros(u64::MAX, 0).expect("a time");
+        assert_eq!(long.units(u64::MAX, u64::MAX), u128::MAX);
         assert!((Tolerance::cycle(16_000_000, 2_000_000).seconds() - 5e-7).abs() < 1e-20);
+    }
+
+    #[test]
+    fn twenty_microseconds_are_320_cycles() {
+        use crate::recording::tolerance::Tolerance;
+
+        let within = Tolerance::from_micros(20, 0).expect("a time");
+        // 320 cycles of 16 MHz are 20 us, in units of 1/(16 MHz * 1 MHz) s.
+        assert_eq!(within.units(16_000_000, 1_000_000), 320_000_000);
     }
 }

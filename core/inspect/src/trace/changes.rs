@@ -8,29 +8,22 @@
 //!
 //! Masks are exact, so a search skips every block in which its signal is constant. All levels take about a quarter of
 //! a byte per record.
-//!
-//! ```
-//! use stepscope_inspect::trace::changes::{Changes, Edge};
-//!
-//! // Of the trace of a run: the first rise of STEP0, bit 0.
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps;
-//! # use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
-//! let mut changes = Changes::default();
-//! changes.extend(&recording.trace);
-//! let found = changes.next_edge(&recording.trace, 0, 0, Edge::Rise).expect("it steps");
-//! assert_eq!(recording.trace[found].cycle.0, steps(&recording.trace, 0)[0].cycle);
-//! ```
 
-use crate::trace::columns::Columns;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;
 
 const BLOCK: usize = 64;
 const FAN: usize = 16;
+
+/// Pixel columns of a logic view, one bit per signal. Nothing is sampled: a glitch of one cycle shows in any column.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Columns {
+    /// High in some cycle of the column.
+    pub high: Vec<u64>,
+    /// Low in some cycle of the column.
+    pub low: Vec<u64>,
+    pub last: Vec<u64>,
+}
 
 /// Signals that were high or low in a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,7 +91,8 @@ impl Changes {
         self.levels.iter().map(|level| level.capacity() * size_of::<Block>()).sum()
     }
 
-    /// As [`super::columns`], with `margin` additional columns on each side; columns before cycle 0 have no levels.
+    /// Column i of `count` starts at start + floor(i*span/count) and has at least one cycle. `margin` columns are added on
+    /// each side; columns before cycle 0 have no levels, those past the last record continue its levels.
     pub fn columns(&self, trace: &[Record], start: u64, end: u64, count: usize, margin: usize) -> Columns {
         let span = i128::from(end.saturating_sub(start).max(1));
         let total = count + 2 * margin;

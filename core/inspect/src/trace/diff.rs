@@ -2,22 +2,6 @@
 //! or a trace's text ([`write_record`](stepscope_peripheral::trace::write_record)), in pieces of any size.
 //!
 //! The file may be a part of a run: its first row holds all levels, and the run may continue after its last.
-//!
-//! ```
-//! use stepscope_inspect::trace::diff::TraceDiff;
-//! use stepscope_peripheral::trace::write_record;
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); let run = experiment.run(&mut recording);
-//! let mut file = String::new(); // what `stepscope run --trace` writes
-//! recording.trace.iter().for_each(|&record| write_record(&mut file, record).expect("a string takes it"));
-//! let mut diff = TraceDiff::new(1);
-//! diff.feed(&recording.trace, file.as_bytes()).expect("it is a trace");
-//! let outcome = diff.finish(&recording.trace).expect("it has edges");
-//! assert_eq!((outcome.difference, outcome.same), (None, recording.trace.len() as u64));
-//! ```
 
 use alloc::{
     format,
@@ -150,7 +134,7 @@ impl TraceDiff {
         self.line += 1;
         let bytes = core::mem::take(&mut self.partial);
         if bytes.len() > MAX_LINE {
-            return Err(self.bad(format!("longer than {MAX_LINE} characters; this is no file of edges")));
+            return Err(self.bad(format!("longer than {MAX_LINE} characters; this is not a file of edges")));
         }
         let text = core::str::from_utf8(&bytes).map_err(|_| self.bad("not UTF-8 text".into()))?;
         let text = text.trim_start_matches('\u{feff}').trim();
@@ -184,7 +168,7 @@ impl TraceDiff {
         }
         let (given, own) = (head.split(',').count().saturating_sub(2), expected.len());
         Err(self.bad(format!(
-            "the columns are not those of this controller, which has {} channels: cycle, time_s and {own} signals; the file has {given}",
+            "the columns do not match this controller with {} channels: expected cycle, time_s and {own} signals, found {given} signals",
             self.channels
         )))
     }
@@ -246,7 +230,7 @@ fn row(text: &str, bits: &[u32]) -> Result<Record, String> {
     }
     match fields.next() {
         None => Ok(Record { cycle: Instant(cycle), levels: Levels(levels) }),
-        Some(_) => Err("more fields than the head of the table names".into()),
+        Some(_) => Err("more fields than the header names".into()),
     }
 }
 

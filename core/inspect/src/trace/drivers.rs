@@ -2,13 +2,6 @@
 //!
 //! Figures are minima in ns, at the slowest clock that the sheet allows. [`DataSheet::source`] states what is not
 //! confirmed by a sheet.
-//!
-//! ```
-//! use stepscope_inspect::trace::drivers::DRIVERS;
-//!
-//! let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
-//! assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
-//! ```
 
 use crate::trace::timing::TimingCheck;
 use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
@@ -22,6 +15,13 @@ pub struct DataSheet {
     pub rules: TimingRules,
 }
 
+/// Minima in ns: STEP high and low, set-up and hold of DIR, wake-up from EN.
+const fn times(
+    [step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns]: [u32; 5],
+) -> TimingRules {
+    TimingRules { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns }
+}
+
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
 /// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
@@ -31,13 +31,7 @@ pub const A4988: DataSheet = DataSheet {
     id: "a4988",
     name: "Allegro A4988",
     source: "data sheet 4988-DS: t_A, t_B, t_C, t_D; no time from ENABLE (1 ms from SLEEP)",
-    rules: TimingRules {
-        step_high_ns: 1000,
-        step_low_ns: 1000,
-        dir_setup_ns: 200,
-        dir_hold_ns: 200,
-        enable_wake_ns: 0,
-    },
+    rules: times([1000, 1000, 200, 200, 0]),
 };
 
 /// Allegro A4979: STEP high 1 us (Zephyr's binding, `step-width-ns`). Other times are the A4988's, **not confirmed**
@@ -57,13 +51,7 @@ pub const DRV8825: DataSheet = DataSheet {
     id: "drv8825",
     name: "Texas Instruments DRV8825",
     source: "data sheet SLVSA73: t_WH, t_WL, t_SU, t_H, t_ENBL (1.7 ms from nSLEEP)",
-    rules: TimingRules {
-        step_high_ns: 1900,
-        step_low_ns: 1900,
-        dir_setup_ns: 650,
-        dir_hold_ns: 650,
-        enable_wake_ns: 650,
-    },
+    rules: times([1900, 1900, 650, 650, 650]),
 };
 
 /// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface": t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns),
@@ -75,13 +63,7 @@ pub const TMC2209: DataSheet = DataSheet {
     name: "Trinamic TMC2209",
     source: "data sheet rev. 1.09: t_SH, t_SL = t_CLK + 20 ns at 11.5 MHz, its own oscillator's least; \
              t_DSU, t_DSH; no time from ENN",
-    rules: TimingRules {
-        step_high_ns: 107,
-        step_low_ns: 107,
-        dir_setup_ns: 20,
-        dir_hold_ns: 20,
-        enable_wake_ns: 0,
-    },
+    rules: times([107, 107, 20, 20, 0]),
 };
 
 /// Trinamic TMC262 with the TMC2100's formula and a clock of 10 MHz, as on boards with the TMC2660: **not confirmed**
@@ -92,13 +74,7 @@ pub const TMC262: DataSheet = DataSheet {
     name: "Trinamic TMC262",
     source: "formula of the TMC2100's data sheet, t_CLK + 20 ns at 10 MHz, the TMC2660's least; not \
              confirmed by the TMC262's own: check your sheet",
-    rules: TimingRules {
-        step_high_ns: 120,
-        step_low_ns: 120,
-        dir_setup_ns: 20,
-        dir_hold_ns: 20,
-        enable_wake_ns: 0,
-    },
+    rules: times([120, 120, 20, 20, 0]),
 };
 
 /// Opto-isolated drivers such as TB6600 boxes, DM542, DM556, AM882, after the Leadshine AM882 manual: pulse high and
@@ -110,30 +86,17 @@ pub const TB6600_CLASS: DataSheet = DataSheet {
     name: "Opto-isolated, class of TB6600, DM542, AM882",
     source: "class figures (Leadshine AM882 manual, t1 to t4), ENA 5 us ahead of DIR and DIR 5 us \
              ahead of PUL; boxes differ: check your driver's sheet",
-    rules: TimingRules {
-        step_high_ns: 2500,
-        step_low_ns: 2500,
-        dir_setup_ns: 5000,
-        dir_hold_ns: 0,
-        enable_wake_ns: 10_000,
-    },
+    rules: times([2500, 2500, 5000, 0, 10_000]),
 };
 
-pub const fn sheet(model: DriverModel) -> &'static DataSheet {
-    match model {
-        DriverModel::A4988 => &A4988,
-        DriverModel::A4979 => &A4979,
-        DriverModel::Drv8825 => &DRV8825,
-        DriverModel::Tmc2209 => &TMC2209,
-        DriverModel::Tmc262 => &TMC262,
-        DriverModel::Tb6600Class => &TB6600_CLASS,
-    }
+pub fn sheet(model: DriverModel) -> &'static DataSheet {
+    DRIVERS.into_iter().find(|sheet| sheet.model == model).unwrap_or(&A4988)
 }
 
 /// The check that a scenario requests; it lists `most` violations.
-pub fn check(scenario: &Scenario, most: usize) -> Option<TimingCheck> {
+pub fn check(scenario: &Scenario, max_listed: usize) -> Option<TimingCheck> {
     let rules = scenario.driver_timing.as_ref().map(rules)?;
-    Some(TimingCheck::new(&rules, scenario.clock_hz, most))
+    Some(TimingCheck::new(&rules, scenario.clock_hz, max_listed))
 }
 
 pub fn rules(driver: &DriverTiming) -> TimingRules {
@@ -162,5 +125,13 @@ mod tests {
             };
             assert!(own.check().is_ok(), "{} asks for more than a rule may", listed.id);
         }
+    }
+
+    #[test]
+    fn slow_drivers_need_more_than_a_microsecond() {
+        use crate::trace::drivers::DRIVERS;
+
+        let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
+        assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
     }
 }

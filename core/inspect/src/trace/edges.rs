@@ -1,20 +1,4 @@
 //! Edges for the logic view: next, pulse, lists and counts. Each call reads only as many records as its result needs.
-//!
-//! ```
-//! use stepscope_inspect::trace::{changes::Changes, edges::Signals};
-//!
-//! // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps; use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default(); experiment.run(&mut recording);
-//! let mut changes = Changes::default();
-//! changes.extend(&recording.trace);
-//! let signals = Signals { trace: &recording.trace, changes: &changes };
-//! let pulse = signals.pulse_at(0, steps(&recording.trace, 0)[0].cycle);
-//! assert!(pulse.high);
-//! assert_eq!(pulse.end.zip(pulse.begin).map(|(end, begin)| end - begin), Some(40));
-//! ```
 
 use crate::trace::changes::{Changes, Edge};
 use alloc::vec::Vec;
@@ -78,7 +62,7 @@ impl Signals<'_> {
 
     /// Edges after `cycle` (`None`: from reset), or before it, of one or all signals: at least `most` if they exist,
     /// and all edges of the last cycle.
-    pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, most: usize) -> EdgeList {
+    pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, max: usize) -> EdgeList {
         let at = cycle.unwrap_or(0);
         let mut index = match (forward, cycle) {
             (true, None) => 1,
@@ -87,15 +71,15 @@ impl Signals<'_> {
         };
         let mut list = EdgeList::default();
         while let Some(found) = self.changed_from(bit, index, forward) {
-            if list.rows.len() >= most {
+            if list.rows.len() >= max {
                 list.more = true;
                 break;
             }
             let (before, now) = (self.levels(found - 1), self.levels(found));
-            let bits = (0..SIGNALS).filter(|place| (before ^ now) >> place & 1 == 1);
-            let shown = bits.filter(|&place| bit.is_none_or(|bit| u32::from(bit) == place));
+            let bits = (0..SIGNALS).filter(|signal| (before ^ now) >> signal & 1 == 1);
+            let shown = bits.filter(|&signal| bit.is_none_or(|bit| u32::from(bit) == signal));
             let cycle = self.trace.get(found).map_or(0, |record| record.cycle.0);
-            let edge = |place| EdgeRow { cycle, bit: place, high: now >> place & 1 == 1 };
+            let edge = |signal| EdgeRow { cycle, bit: signal, high: now >> signal & 1 == 1 };
             // Backward lists are reversed at the end, so rows of one cycle are, too.
             if forward {
                 list.rows.extend(shown.map(edge));
@@ -160,8 +144,8 @@ mod tests {
         let mut changes = Changes::default();
         changes.extend(&trace);
         let signals = Signals { trace: &trace, changes: &changes };
-        let list = |bit, cycle, forward, most| {
-            let found = signals.list(bit, cycle, forward, most);
+        let list = |bit, cycle, forward, max| {
+            let found = signals.list(bit, cycle, forward, max);
             (found.rows.iter().map(|row| (row.cycle, row.bit, row.high)).collect::<Vec<_>>(), found.more)
         };
         assert_eq!(list(None, None, true, 1), ([(5, 0, true), (5, 1, true)].to_vec(), true));
@@ -172,5 +156,24 @@ mod tests {
         assert_eq!(list(Some(1), Some(5), true, 9), ([(12, 1, false)].to_vec(), false));
         assert_eq!(signals.pulse_at(1, 7), Pulse { high: true, begin: Some(5), end: Some(12), next: None });
         assert_eq!((count(&trace), changing(&trace)), (4, [0, 1].to_vec()));
+    }
+
+    #[test]
+    fn the_first_pulse_of_a_run_has_the_default_width() {
+        use crate::trace::stored_run::Recording;
+        use crate::trace::{changes::Changes, edges::Signals};
+        use stepscope_peripheral::trace::steps;
+        use stepscope_sim::Experiment;
+
+        // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let mut changes = Changes::default();
+        changes.extend(&recording.trace);
+        let signals = Signals { trace: &recording.trace, changes: &changes };
+        let pulse = signals.pulse_at(0, steps(&recording.trace, 0)[0].cycle);
+        assert!(pulse.high);
+        assert_eq!(pulse.end.zip(pulse.begin).map(|(end, begin)| end - begin), Some(40));
     }
 }

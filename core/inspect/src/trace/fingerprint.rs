@@ -1,27 +1,11 @@
-//! Compares two runs without their traces: the digest, and running digests at up to sixteen checkpoints.
+//! Compares two runs without their traces: the digest, and running digests at up to sixteen checkpoints (DESIGN A3).
 //!
 //! Checkpoints are the smallest power of two of records apart that makes at most sixteen, so the number of records
 //! determines them:
 //!
 //! ```text
 //! records    1 … 16    17 … 33    34 … 67    …    n
-//! spacing         1          2          4         least power of two s with n/s < 17
-//! ```
-//!
-//! ```
-//! use stepscope_inspect::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
-//! use stepscope_peripheral::signal::Sink;
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps;
-//! # use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
-//! let sent = Fingerprint::of(&recording.trace); // what a link carries
-//! let mut check = FingerprintCheck::with(&sent);
-//! recording.trace.iter().for_each(|&record| check.record(record));
-//! assert!(matches!(check.finish(), FingerprintMatch::Same(_)));
+//! spacing         1          2          4         the smallest power of two s with n/s < 17
 //! ```
 
 use alloc::vec::Vec;
@@ -35,7 +19,7 @@ pub(crate) const MAX_CHECKPOINTS: usize = 16;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fingerprint {
-    /// The digest of the trace (DESIGN A3).
+    /// The digest of the trace.
     pub digest: u64,
     pub records: u64,
     /// High halves of the digests of the first [`Self::spacing`] records, twice as many, and so on.
@@ -91,7 +75,7 @@ impl Sink for Fingerprinter {
         if self.digest.records() == self.next {
             self.checkpoints.push(high_half(&self.digest));
             if self.checkpoints.len() > MAX_CHECKPOINTS {
-                // Keep every second one.
+                // Leaves every second one.
                 let mut index = 0;
                 self.checkpoints.retain(|_| {
                     index += 1;
@@ -216,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn checkpoints_are_the_digests_of_beginnings_at_most_sixteen_of_them() {
+    fn checkpoints_are_up_to_sixteen_running_digests() {
         for records in (1..=80).chain([127, 128, 543, 544, 545, 1000]) {
             let trace = trace(records);
             let Fingerprint { digest, records: counted, checkpoints } = Fingerprint::of(&trace);
@@ -232,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_difference_lies_where_the_comparison_says() {
+    fn the_first_difference_lies_in_the_reported_range() {
         for records in [1, 2, 16, 17, 100, 545] {
             let sent = trace(records);
             let other = Fingerprint::of(&sent);
@@ -244,8 +228,8 @@ mod tests {
                 let FingerprintMatch::Differs { after, until, shorter: None } = compare(&own, &other) else {
                     panic!("{records} {changed}: they differ")
                 };
-                let place = changed as u64 + 1;
-                assert!(after.records < place && place <= until.records, "{records} {changed}");
+                let number = changed as u64 + 1;
+                assert!(after.records < number && number <= until.records, "{records} {changed}");
                 assert!(until.records - after.records <= spacing(records), "{records} {changed}");
                 assert_eq!(until.cycle, own[until.records as usize - 1].cycle);
             }
@@ -253,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn a_trace_that_ends_early_or_late_is_told_from_one_that_differs() {
+    fn a_shorter_trace_is_distinguished_from_a_different_one() {
         let sent = trace(100);
         let other = Fingerprint::of(&sent);
         let FingerprintMatch::Differs { after, until, shorter } = compare(&trace(77), &other) else {
@@ -264,5 +248,21 @@ mod tests {
             panic!("they differ")
         };
         assert_eq!((after.records, until.records, shorter), (100, 101, Some(Shorter::Other)));
+    }
+
+    #[test]
+    fn equal_traces_have_equal_fingerprints() {
+        use crate::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
+        use crate::trace::stored_run::Recording;
+        use stepscope_peripheral::signal::Sink;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let sent = Fingerprint::of(&recording.trace); // what a link carries
+        let mut check = FingerprintCheck::with(&sent);
+        recording.trace.iter().for_each(|&record| check.record(record));
+        assert!(matches!(check.finish(), FingerprintMatch::Same(_)));
     }
 }

@@ -7,20 +7,6 @@
 //!
 //! The CRC-32 (ISO-HDLC) of all before the last dot keeps a damaged link from reporting a difference. Checkpoints are
 //! big-endian base64url; `_` replaces dots of the version.
-//!
-//! ```
-//! use stepscope_inspect::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
-//!
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # use stepscope_peripheral::trace::steps;
-//! # use stepscope_sim::Experiment;
-//! # let experiment = Experiment::from_json("{}").expect("the default motion");
-//! # let mut recording = Recording::default();
-//! # let run = experiment.run(&mut recording);
-//! let sent = RunFingerprint::of(vec![Fingerprint::of(&recording.trace)]);
-//! assert_eq!(RunFingerprint::parse(&sent.emit()), Ok(sent)); // the part `d` of a link
-//! assert!(RunFingerprint::parse("no fingerprint").is_err());
-//! ```
 
 use crate::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter, spacing};
 use alloc::{
@@ -58,11 +44,9 @@ impl fmt::Display for RunFingerprintError {
         match self {
             Self::Newer { given } => write!(
                 f,
-                "the sender's digest in the link is from a newer version of Stepscope (form {given}, this one reads {FORM}); it is left out"
+                "the sender's digest in the link is from a newer version of Stepscope (form {given}; this version reads form {FORM}); it is ignored"
             ),
-            Self::Damaged => f.write_str(
-                "the sender's digest in the link was cut short or changed on the way; it is left out",
-            ),
+            Self::Damaged => f.write_str("the sender's digest in the link is damaged; it is ignored"),
         }
     }
 }
@@ -183,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn every_truncation_and_every_changed_character_is_told() {
+    fn every_truncation_and_changed_character_is_an_error() {
         let text = proof(2).emit();
         for length in 0..text.len() {
             assert_eq!(RunFingerprint::parse(&text[..length]), Err(RunFingerprintError::Damaged), "{length}");
@@ -199,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_is_judged_before_the_check_and_nonsense_with_a_good_check_is_refused() {
+    fn the_form_is_checked_before_the_crc() {
         assert_eq!(RunFingerprint::parse("2.what.ever"), Err(RunFingerprintError::Newer { given: 2 }));
         for text in [
             "1",
@@ -215,5 +199,19 @@ mod tests {
             let text = format!("{text}.{:08x}", CHECK.checksum(text.as_bytes()));
             assert_eq!(RunFingerprint::parse(&text), Err(RunFingerprintError::Damaged), "{text}");
         }
+    }
+
+    #[test]
+    fn a_fingerprint_is_read_back() {
+        use crate::trace::stored_run::Recording;
+        use crate::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("the default motion");
+        let mut recording = Recording::default();
+        experiment.run(&mut recording);
+        let sent = RunFingerprint::of(vec![Fingerprint::of(&recording.trace)]);
+        assert_eq!(RunFingerprint::parse(&sent.emit()), Ok(sent)); // the part `d` of a link
+        assert!(RunFingerprint::parse("no fingerprint").is_err());
     }
 }

@@ -1,13 +1,4 @@
 //! A run as the views need it: records, digest and packets, in bounded memory.
-//!
-//! ```
-//! use stepscope_inspect::trace::stored_run::record_run;
-//! use stepscope_sim::Experiment;
-//!
-//! let experiment = Experiment::from_json("{}").expect("every field has a default");
-//! let (_, recordings) = record_run(&experiment, 1).expect("it is short");
-//! assert_eq!(recordings[0].trace.len() as u64, recordings[0].digest.records());
-//! ```
 
 use crate::packets::log::PacketLog;
 use alloc::vec::Vec;
@@ -60,16 +51,16 @@ pub enum TooLong {
 impl fmt::Display for TooLong {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Steps(steps) => write!(f, "{steps} steps; up to {} are analyzed", MAX_RECORDS / 2)?,
-            Self::Edges => write!(f, "the run makes more than {MAX_RECORDS} edges; no more are analyzed")?,
+            Self::Steps(steps) => write!(f, "{steps} steps, and up to {} can be analyzed", MAX_RECORDS / 2)?,
+            Self::Edges => write!(f, "the run makes more than {MAX_RECORDS} edges, the maximum")?,
         }
-        f.write_str(": give a shorter motion, or end the run sooner with run_cycles")
+        f.write_str("; use a shorter motion, or end the run earlier with run_cycles")
     }
 }
 
 impl core::error::Error for TooLong {}
 
-/// Runs an experiment and keeps the traces of its first `controllers` controllers.
+/// Runs an experiment and stores the traces of its first `controllers` controllers.
 pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<Recording>), TooLong> {
     record_within(experiment, controllers, MAX_RECORDS)
 }
@@ -109,7 +100,7 @@ mod tests {
     use alloc::{format, string::ToString};
 
     #[test]
-    fn a_run_is_kept_as_it_is_without_a_bound() {
+    fn a_stored_run_equals_the_run() {
         let experiment = Experiment::from_json("{}").expect("it runs");
         let mut expected = Recording::default();
         let run = experiment.run(&mut expected);
@@ -129,7 +120,7 @@ mod tests {
         assert_eq!(refused, TooLong::Steps(u32::MAX.into()));
         assert_eq!(
             refused.to_string(),
-            "4294967295 steps; up to 24000000 are analyzed: give a shorter motion, or end the run sooner with run_cycles"
+            "4294967295 steps; up to 24000000 are analyzed; use a shorter motion, or end the run earlier with run_cycles"
         );
         let experiment = Experiment::from_json(&json(1000)).expect("it runs");
         assert!(record_within(&experiment, 1, 2000).is_ok());
@@ -142,5 +133,15 @@ mod tests {
         let experiment = Experiment::from_json(json).expect("it runs");
         assert!(record_run(&experiment, 1).is_ok());
         assert_eq!(record_within(&experiment, 1, 100_000).err(), Some(TooLong::Edges));
+    }
+
+    #[test]
+    fn a_stored_run_has_all_records() {
+        use crate::trace::stored_run::record_run;
+        use stepscope_sim::Experiment;
+
+        let experiment = Experiment::from_json("{}").expect("every field has a default");
+        let (_, recordings) = record_run(&experiment, 1).expect("it is short");
+        assert_eq!(recordings[0].trace.len() as u64, recordings[0].digest.records());
     }
 }

@@ -15,23 +15,6 @@
 //! that STOP cuts short (DESIGN A6) is a short pulse.
 //!
 //! n cycles satisfy t ns from ceil(t*clock_hz/10^9) on, which is what is compared, without rounding.
-//!
-//! ```
-//! use stepscope_inspect::trace::{drivers::TB6600_CLASS, timing::{Rule, TimingCheck}};
-//! use stepscope_scenario::TimingRules;
-//! use stepscope_sim::Experiment;
-//!
-//! // The default motion's pulses of 2.5 us are just long enough for an opto-isolated driver.
-//! let experiment = Experiment::from_json("{}").expect("the default motion");
-//! let violations = |rules: &TimingRules| {
-//!     let mut check = TimingCheck::new(rules, experiment.config().clock_hz(), 10);
-//!     experiment.run(&mut check);
-//!     (check.total(), check.violations().first().map(|violation| violation.rule))
-//! };
-//! assert_eq!(violations(&TB6600_CLASS.rules), (0, None));
-//! let longer = TimingRules { step_high_ns: 3000, ..TB6600_CLASS.rules.clone() };
-//! assert_eq!(violations(&longer), (3200, Some(Rule::StepHigh)));
-//! ```
 
 use alloc::vec::Vec;
 use stepscope_peripheral::{
@@ -92,7 +75,7 @@ pub struct Violation {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Least {
+pub struct Shortest {
     pub measured: Cycles,
     /// The edge that ended it; the first of equals.
     pub at: Instant,
@@ -105,7 +88,7 @@ pub struct RuleResult {
     pub nanos: u32,
     pub required: Cycles,
     /// The shortest time of all channels, required or not; `None` where nothing was measured.
-    pub least: Option<Least>,
+    pub shortest: Option<Shortest>,
     pub violations: [u64; MAX_CHANNELS],
 }
 
@@ -142,7 +125,7 @@ impl TimingCheck {
         let result = |rule: Rule| {
             let nanos = rule.nanos(rules);
             let required = cycles_at_least(nanos, clock_hz);
-            RuleResult { rule, nanos, required, least: None, violations: [0; MAX_CHANNELS] }
+            RuleResult { rule, nanos, required, shortest: None, violations: [0; MAX_CHANNELS] }
         };
         Self {
             results: Rule::ALL.map(result),
@@ -255,8 +238,8 @@ impl TimingCheck {
             return;
         }
         let (measured, number) = (at - from, channel as u8);
-        if result.least.is_none_or(|least| measured < least.measured) {
-            result.least = Some(Least { measured, at, channel: number });
+        if result.shortest.is_none_or(|shortest| measured < shortest.measured) {
+            result.shortest = Some(Shortest { measured, at, channel: number });
         }
         if measured < result.required
             && let Some(count) = result.violations.get_mut(channel)

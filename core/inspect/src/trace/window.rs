@@ -1,14 +1,4 @@
 //! A part of a trace as records: the first one has the levels at its start.
-//!
-//! ```
-//! use stepscope_inspect::trace::window::TraceWindow;
-//! use stepscope_peripheral::{signal::{Levels, Record}, units::Instant};
-//!
-//! let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
-//! let window = TraceWindow::of(&trace, Instant(6), Instant(20));
-//! assert_eq!(window.records(), 2);
-//! assert_eq!(window.get(0), Some(Record { cycle: Instant(6), levels: Levels(1) })); // still high
-//! ```
 
 use stepscope_peripheral::{signal::Record, trace::levels_at, units::Instant};
 
@@ -64,5 +54,20 @@ mod tests {
             let found: Vec<_> = window.iter_from(0).map(|record| (record.cycle.0, record.levels.0)).collect();
             assert_eq!((found.as_slice(), window.records()), (expected, expected.len()), "{start} to {end}");
         }
+    }
+
+    #[test]
+    fn a_window_continues_a_high_level() {
+        use crate::trace::window::TraceWindow;
+        use stepscope_peripheral::{
+            signal::{Levels, Record},
+            units::Instant,
+        };
+
+        let trace = [(0, 0), (5, 1), (8, 0)]
+            .map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+        let window = TraceWindow::of(&trace, Instant(6), Instant(20));
+        assert_eq!(window.records(), 2);
+        assert_eq!(window.get(0), Some(Record { cycle: Instant(6), levels: Levels(1) })); // still high
     }
 }

@@ -1,15 +1,4 @@
-//! Changes that make a motion possible that is too fast for its bus; each is validated before it is offered.
-//!
-//! ```
-//! use stepscope_inspect::validation::remedies::Remedies;
-//! use stepscope_sim::ValidatedScenario;
-//!
-//! // 16 000 steps/s at the top, and slots of 2000 cycles at 16 MHz: 8000 steps/s at most.
-//! let slow = ValidatedScenario::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
-//! let remedies = Remedies::of(&slow).expect("it is refused for its speed");
-//! assert_eq!(remedies.wrong, "The motion needs up to 16000 steps/s, the bus gives at most 8000.");
-//! assert_eq!(remedies.offers[0].change, "slot 1000 cycles");
-//! ```
+//! Changes that make a motion possible that is too fast for its bus; each is validated first.
 
 use alloc::{
     format,
@@ -41,7 +30,7 @@ pub struct Offer {
 }
 
 impl Remedies {
-    /// `None` where no motion is too fast for its bus.
+    /// `None` if no motion is too fast for its bus.
     pub fn of(validated: &ValidatedScenario) -> Option<Self> {
         let is_too_fast = |cause: &Cause| matches!(cause, Cause::Motion(problem::Cause::TooManySteps { .. }));
         if !validated.problems().iter().any(|problem| is_too_fast(&problem.cause)) {
@@ -64,7 +53,7 @@ impl Remedies {
         });
         let Rates { needed, limit, .. } = worst;
         let wrong = format!(
-            "The motion needs up to {} steps/s, the bus gives at most {}.",
+            "The motion needs up to {} steps/s; the bus allows {}.",
             libm::ceil(needed),
             libm::floor(limit)
         );
@@ -162,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn each_offer_is_judged_and_has_no_problem() {
+    fn each_offer_is_valid() {
         let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
         let expected = ["slot 1000 cycles", "more time for the move: 0.8 s", "step generation by segments"];
         assert_eq!(offers(slow), expected);
@@ -174,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_not_do_is_not_offered() {
+    fn insufficient_changes_are_not_offered() {
         // A pulse of 1500 cycles does not fit into a slot of 1000.
         let long_pulse = r#"{"bus":{"step_period_cycles":2000,"slots":10,"pulse_width_cycles":1500}}"#;
         assert_eq!(offers(long_pulse), ["more time for the move: 0.8 s"]);
@@ -190,5 +179,17 @@ mod tests {
         for json in ["{}", r#"{"bus":{"slots":0}}"#, "]", r#"{"source":{"line":{}}}"#] {
             assert!(Remedies::of(&ValidatedScenario::from_json(json)).is_none(), "{json}");
         }
+    }
+
+    #[test]
+    fn a_fast_motion_has_remedies() {
+        use crate::validation::remedies::Remedies;
+        use stepscope_sim::ValidatedScenario;
+
+        // 16 000 steps/s at the top, and slots of 2000 cycles at 16 MHz: 8000 steps/s at most.
+        let slow = ValidatedScenario::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
+        let remedies = Remedies::of(&slow).expect("it is refused for its speed");
+        assert_eq!(remedies.wrong, "The motion needs up to 16000 steps/s; the bus allows 8000.");
+        assert_eq!(remedies.offers[0].change, "slot 1000 cycles");
     }
 }

@@ -59,7 +59,7 @@ fn whole(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 #[test]
-fn the_ideal_curves_extremes_are_those_of_a_thousand_looks_a_column() {
+fn extremes_equal_those_of_a_thousand_samples_per_column() {
     for moves in MOTIONS {
         let ran = motion(moves);
         let plan = &ran.experiment.plans()[0];
@@ -67,16 +67,16 @@ fn the_ideal_curves_extremes_are_those_of_a_thousand_looks_a_column() {
         for &(from, to, columns) in WINDOWS {
             let window = Window { start_s: zero_s + from * length, end_s: zero_s + to * length, columns };
             let bands = ideal(plan, zero_s, window);
-            let looks: [(&Band, Value<'_>, f64); 3] = [
+            let samples: [(&Band, Value<'_>, f64); 3] = [
                 (&bands.position, &|t| plan.position(t), 3000.0),
                 (&bands.speed, &|t| plan.speed(t), peaks.speed),
                 (&bands.acceleration, &|t| plan.acceleration(t), peaks.acceleration.max(1.0)),
             ];
-            for (band, value, scale) in looks {
+            for (band, value, scale) in samples {
                 for column in 0..columns {
-                    let looks = (0..1000)
+                    let samples = (0..1000)
                         .map(|k| window.edge_s(column) + (f64::from(k) + 0.5) / 1000.0 * window.width_s());
-                    let (low, high) = whole(looks.map(|t| value(t - zero_s)));
+                    let (low, high) = whole(samples.map(|t| value(t - zero_s)));
                     let (found_low, found_high) = (band.min[column], band.max[column]);
                     // The looks are inside the extremes, and come as near as a thousand can.
                     let (slack, near) = (1e-6 * scale, 0.006 * scale);
@@ -92,7 +92,7 @@ fn the_ideal_curves_extremes_are_those_of_a_thousand_looks_a_column() {
 }
 
 #[test]
-fn what_the_pulses_make_is_that_of_every_step_and_every_tick_in_a_column() {
+fn actual_columns_include_every_step_and_tick() {
     let runs = MOTIONS.iter().map(|moves| motion(moves)).chain([Ran::of(SEGMENTS)]);
     for ran in runs {
         let pulses = ran.pulses();
@@ -125,7 +125,7 @@ fn what_the_pulses_make_is_that_of_every_step_and_every_tick_in_a_column() {
 }
 
 #[test]
-fn in_a_dwell_of_segments_the_speed_is_none() {
+fn the_speed_is_zero_in_a_dwell() {
     // 10 steps right, 1 ms apart, a pause of 5 ms, and 10 back, 0.5 ms apart.
     let ran = Ran::of(
         r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
@@ -224,4 +224,15 @@ fn the_acceleration_of_steps_is_that_of_their_figures_and_near_their_plans() {
     let few = Pulses::recorded(0, &made[..16], 16_000_000);
     let none = actual_acceleration(&few, Window { start_s: 0.0, end_s, columns: 97 });
     assert!(none.max.iter().all(|value| value.is_nan()));
+}
+
+#[test]
+fn a_column_has_minimum_and_maximum() {
+    use crate::motion::curves::{Window, ideal};
+    use stepscope_motion::{moves::Axis, plan_axis};
+
+    let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+    let curves = ideal(&plan, 0.0, Window { start_s: 0.0, end_s: 0.4, columns: 4 });
+    let top = curves.speed.max.iter().fold(0.0, |top: f64, speed| top.max(*speed));
+    assert_eq!(top, 16_000.0); // no column leaves a peak out
 }

@@ -13,7 +13,7 @@ use stepscope_peripheral::trace::Step;
 
 pub const POINTS: u32 = 2048;
 
-/// Deviation of the second of two curves from the first, in steps.
+/// Deviation of the second curve from the first, in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CurveMetrics {
     pub largest_steps: f64,
@@ -26,7 +26,7 @@ pub struct CurveMetrics {
     pub points: u32,
     pub sum_of_squares_steps2: f64,
     pub euclidean_steps: f64,
-    /// -1 to 1; `None` where a curve stands still.
+    /// -1 to 1; `None` if a curve is constant.
     pub correlation: Option<f64>,
     /// 1 less the correlation, which keeps its digits near 1.
     pub uncorrelated: Option<f64>,
@@ -48,9 +48,9 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    pub(super) fn interval(&mut self, looks: &[(f64, f64, f64)]) {
+    pub(super) fn interval(&mut self, samples: &[(f64, f64, f64)]) {
         let mut off_sum = 0.0;
-        for &(first, off, seconds) in looks {
+        for &(first, off, seconds) in samples {
             self.seconds += seconds;
             self.first += first * seconds;
             self.first_square += first * first * seconds;
@@ -62,7 +62,7 @@ impl Sums {
         self.area += libm::fabs(off_sum);
     }
 
-    pub(super) fn look(&mut self, at_s: f64, off: f64) {
+    pub(super) fn extreme(&mut self, at_s: f64, off: f64) {
         if libm::fabs(off) > libm::fabs(self.largest) {
             (self.largest, self.largest_at_s) = (off, at_s);
         }
@@ -80,7 +80,7 @@ impl Sums {
         let of_off = mean(self.off_square) - off * off;
         let of_both = mean(self.product) - first * off;
         let of_second = of_first + 2.0 * of_both + of_off;
-        // A curve that stands still leaves only rounding.
+        // A constant curve leaves only rounding.
         let least = 1e-12 * mean(self.first_square);
         let correlation = (of_first > least && of_second > least)
             .then(|| (of_first + of_both) / libm::sqrt(of_first * of_second));
@@ -112,29 +112,29 @@ pub(super) fn curve_and_steps(
     length_s: f64,
 ) -> CurveMetrics {
     let mut sums = Sums::default();
-    let (mut since_s, mut place) = (0.0, 0.0);
-    let mut stay = |since_s: f64, to_s: f64, place: f64| {
+    let (mut since_s, mut held) = (0.0, 0.0);
+    let mut stay = |since_s: f64, to_s: f64, held: f64| {
         breakpoints
-            .intervals(since_s, to_s, &mut |interval| curve_and_place(plan, interval, place, hz, &mut sums));
+            .intervals(since_s, to_s, &mut |interval| curve_and_held(plan, interval, held, hz, &mut sums));
     };
     for step in steps {
         let at_s = step.cycle as f64 / hz;
-        stay(since_s, at_s, place);
-        (since_s, place) = (at_s, f64::from(step.position));
+        stay(since_s, at_s, held);
+        (since_s, held) = (at_s, f64::from(step.position));
     }
-    stay(since_s, length_s, place);
-    sample(&mut sums, length_s, |t| place_at(steps, hz, t) - plan.position(t));
+    stay(since_s, length_s, held);
+    sample(&mut sums, length_s, |t| position_at(steps, hz, t) - plan.position(t));
     sums.ended()
 }
 
-fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sums: &mut Sums) {
-    let off = |t: f64| place - plan.position(t);
-    // Just inside: a table's curve ends with half a step at once.
+fn curve_and_held(plan: &AxisPlan, interval: Interval, held: f64, hz: f64, sums: &mut Sums) {
+    let off = |t: f64| held - plan.position(t);
+    // Just inside: a table's curve ends with a jump of half a step.
     let inset = (interval.to_s - interval.from_s) * 1e-9;
     let ends = [interval.from_s + inset, interval.to_s - inset].map(|t| (t, off(t)));
     // Shorter than a cycle: rounding of the step's time.
     if (interval.to_s - interval.from_s) * hz > 0.75 {
-        ends.into_iter().for_each(|(t, off)| sums.look(t, off));
+        ends.into_iter().for_each(|(t, off)| sums.extreme(t, off));
     }
     let middle_s = if ends[0].1 * ends[1].1 < 0.0 { crossing(ends, off) } else { interval.to_s };
     for (from_s, to_s) in [(interval.from_s, middle_s), (middle_s, interval.to_s)] {
@@ -142,7 +142,7 @@ fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sum
         if half > 0.0 {
             sums.interval(&GAUSS.map(|(point, weight)| {
                 let position = plan.position(middle + half * point);
-                (position, place - position, 2.0 * half * weight * interval.times)
+                (position, held - position, 2.0 * half * weight * interval.times)
             }));
         }
     }
@@ -150,7 +150,7 @@ fn curve_and_place(plan: &AxisPlan, interval: Interval, place: f64, hz: f64, sum
 
 /// The zero of a monotonic deviation, by false position (Illinois).
 fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f64 {
-    let mut kept_low = None;
+    let mut low_side = None;
     for _ in 0..50 {
         let t = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
         let value = off(t);
@@ -160,16 +160,16 @@ fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f
         }
         if (value < 0.0) == (low.1 < 0.0) {
             low = (t, value);
-            if kept_low == Some(false) {
+            if low_side == Some(false) {
                 high.1 /= 2.0;
             }
-            kept_low = Some(false);
+            low_side = Some(false);
         } else {
             high = (t, value);
-            if kept_low == Some(true) {
+            if low_side == Some(true) {
                 low.1 /= 2.0;
             }
-            kept_low = Some(true);
+            low_side = Some(true);
         }
     }
     (low.0 + high.0) / 2.0
@@ -179,19 +179,19 @@ pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s
     let mut sums = Sums::default();
     // From before the start, so that a step in cycle 0 is a change.
     let mut walk = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);
-    let (mut since_s, mut places) = (0.0, [0.0; 2]);
+    let (mut since_s, mut held) = (0.0, [0.0; 2]);
     let mut stay = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
         if to_s > since_s {
-            sums.look(since_s, second - first);
+            sums.extreme(since_s, second - first);
             sums.interval(&[(first, second - first, to_s - since_s)]);
         }
     };
     walk.changes(length_s, &mut |time_s, now| {
-        stay(since_s, time_s, places);
-        (since_s, places) = (time_s, now);
+        stay(since_s, time_s, held);
+        (since_s, held) = (time_s, now);
     });
-    stay(since_s, length_s, places);
-    sample(&mut sums, length_s, |t| place_at(second, hz, t) - place_at(first, hz, t));
+    stay(since_s, length_s, held);
+    sample(&mut sums, length_s, |t| position_at(second, hz, t) - position_at(first, hz, t));
     sums.ended()
 }
 
@@ -199,7 +199,7 @@ fn sample(sums: &mut Sums, length_s: f64, off: impl Fn(f64) -> f64) {
     (0..POINTS).for_each(|point| sums.sample(off(length_s * (f64::from(point) / f64::from(POINTS)))));
 }
 
-fn place_at(steps: &[Step], hz: f64, time_s: f64) -> f64 {
+fn position_at(steps: &[Step], hz: f64, time_s: f64) -> f64 {
     let after = steps.partition_point(|step| step.cycle as f64 / hz <= time_s);
     after.checked_sub(1).and_then(|last| steps.get(last)).map_or(0.0, |step| f64::from(step.position))
 }

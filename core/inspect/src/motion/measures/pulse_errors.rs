@@ -1,7 +1,7 @@
 //! Errors of pulses in time and position.
 //!
-//! A pulse is compared with the step of the same position and direction, the nearest in time of several. So canceled
-//! or lost steps do not shift the others.
+//! A pulse is compared with the step of the same position and direction that is nearest in time, so canceled or lost steps
+//! do not shift the others.
 
 use alloc::vec::Vec;
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub struct PulseErrors {
     pub largest_at_s: f64,
     pub mean_s: f64,
     pub rms_s: f64,
-    /// Distance of the ideal motion within the time error.
+    /// Travel of the ideal motion within the time error.
     pub largest_steps: f64,
     pub rms_steps: f64,
 }
@@ -60,24 +60,24 @@ pub(super) fn due_steps(plan: &AxisPlan, clock_hz: u32) -> (Vec<Step>, PulseErro
     let steps = plan
         .due_instants(clock_hz)
         .map(|(ideal, due)| {
-            let way = if due.right { 1 } else { -1 };
-            position += way;
+            let direction = if due.right { 1 } else { -1 };
+            position += direction;
             let at_s = due.cycle as f64 / hz;
-            errors.add(at_s, (due.cycle as f64 - ideal) / hz, gone(plan, ideal / hz, at_s, hz));
+            errors.add(at_s, (due.cycle as f64 - ideal) / hz, distance(plan, ideal / hz, at_s, hz));
             Step { cycle: due.cycle, position }
         })
         .collect();
     (steps, errors.ended())
 }
 
-pub(super) fn placed(plan: &AxisPlan, due: &[Step], made: &[Step], hz: f64) -> (PulseErrors, u64) {
+pub(super) fn by_position(plan: &AxisPlan, due: &[Step], actual: &[Step], hz: f64) -> (PulseErrors, u64) {
     let runs = runs(due);
     let (mut errors, mut stray) = (Errors::default(), 0);
-    for (index, pulse) in made.iter().enumerate() {
-        match nearest(&runs, due, pulse, Step::direction(made, index)) {
+    for (index, pulse) in actual.iter().enumerate() {
+        match nearest(&runs, due, pulse, Step::direction(actual, index)) {
             Some(step) => {
                 let (at_s, due_s) = (pulse.cycle as f64 / hz, step.cycle as f64 / hz);
-                errors.add(at_s, at_s - due_s, gone(plan, due_s, at_s, hz));
+                errors.add(at_s, at_s - due_s, distance(plan, due_s, at_s, hz));
             }
             None => stray += 1,
         }
@@ -85,9 +85,9 @@ pub(super) fn placed(plan: &AxisPlan, due: &[Step], made: &[Step], hz: f64) -> (
     (errors.ended(), stray)
 }
 
-/// Distance of the ideal motion in steps. Both times are one cycle earlier, because a table's curve goes its last
-/// half step at once.
-fn gone(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
+/// Travel of the ideal motion in steps. Both times are one cycle earlier, because a table's curve ends with a jump of
+/// half a step.
+fn distance(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }
 
@@ -95,32 +95,32 @@ struct Run {
     first: usize,
     cycle: u64,
     count: usize,
-    way: i32,
+    direction: i32,
 }
 
-/// Runs on either side of a pulse's time that are searched.
-const BESIDE: usize = 3;
+/// Runs searched on either side of a pulse's time.
+const NEAR_RUNS: usize = 3;
 
 fn runs(due: &[Step]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (first, step) in due.iter().enumerate() {
-        let way = Step::direction(due, first);
+        let direction = Step::direction(due, first);
         match runs.last_mut() {
-            Some(run) if run.way == way => run.count += 1,
-            _ => runs.push(Run { first, cycle: step.cycle, count: 1, way }),
+            Some(run) if run.direction == direction => run.count += 1,
+            _ => runs.push(Run { first, cycle: step.cycle, count: 1, direction }),
         }
     }
     runs
 }
 
-/// The step of the pulse's position and direction nearest in time; of equals the earlier.
-fn nearest<'d>(runs: &[Run], due: &'d [Step], pulse: &Step, way: i32) -> Option<&'d Step> {
+/// The step of the pulse's position and direction nearest in time; the earlier of equals.
+fn nearest<'d>(runs: &[Run], due: &'d [Step], pulse: &Step, direction: i32) -> Option<&'d Step> {
     let after = runs.partition_point(|run| run.cycle <= pulse.cycle);
-    let beside = runs.iter().skip(after.saturating_sub(BESIDE)).take(2 * BESIDE);
-    let steps = beside.filter(|run| run.way == way).filter_map(|run| {
+    let near = runs.iter().skip(after.saturating_sub(NEAR_RUNS)).take(2 * NEAR_RUNS);
+    let steps = near.filter(|run| run.direction == direction).filter_map(|run| {
         let first = due.get(run.first)?;
         let past = i64::from(pulse.position) - i64::from(first.position);
-        let index = usize::try_from(past * i64::from(way)).ok()?;
+        let index = usize::try_from(past * i64::from(direction)).ok()?;
         if index < run.count { due.get(run.first + index) } else { None }
     });
     steps.min_by_key(|step| step.cycle.abs_diff(pulse.cycle))

@@ -58,11 +58,11 @@ fn close(found: f64, expected: f64, within: f64, what: &str) {
 /// By a great number of looks, each in the middle of its part.
 fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64) -> CurveMetrics {
     // Not in step with the slots of a tick.
-    let looks = 912_347_u32;
-    let each = length_s / f64::from(looks);
-    let at = |look: u32| (f64::from(look) + 0.5) * each;
-    let pairs: Vec<(f64, f64)> = (0..looks).map(|look| (first(at(look)), second(at(look)))).collect();
-    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / f64::from(looks);
+    let samples = 912_347_u32;
+    let each = length_s / f64::from(samples);
+    let at = |sample: u32| (f64::from(sample) + 0.5) * each;
+    let pairs: Vec<(f64, f64)> = (0..samples).map(|sample| (first(at(sample)), second(at(sample)))).collect();
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / f64::from(samples);
     let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
     let cross = mean(&|p| (p.0 - x) * (p.1 - y));
     let (xx, yy) = (mean(&|p| (p.0 - x) * (p.0 - x)), mean(&|p| (p.1 - y) * (p.1 - y)));
@@ -113,7 +113,7 @@ const MOTIONS: &[&str] = &[
 ];
 
 #[test]
-fn comparisons_are_those_of_a_million_looks() {
+fn comparisons_equal_those_of_a_million_samples() {
     for moves in MOTIONS {
         let ran = Ran::of(&scenario(moves, "ticks"));
         let (found, plan, pulses) = (ran.measures(), ran.plan(), ran.pulses());
@@ -193,7 +193,7 @@ fn steps_are_within_half_a_step_and_half_a_cycle_and_segments_add_nothing() {
 }
 
 #[test]
-fn ticks_add_less_than_a_tick_and_what_cancels_in_one_moves_no_other() {
+fn ticks_delay_less_than_a_tick_and_canceled_steps_shift_no_others() {
     for moves in MOTIONS {
         let found = measured(moves);
         assert_eq!(found.counts.stray, 0, "{moves}");
@@ -227,7 +227,7 @@ fn pulses_that_a_broken_line_lost_leave_the_others_with_their_steps() {
 }
 
 #[test]
-fn the_start_stop_rate_is_what_rest_turns_into_at_once() {
+fn the_start_stop_rate_is_the_jump_from_standstill() {
     let constant = |steps: i32, speed: u32| {
         format!(r#"{{"constant":{{"distance":{{"steps":{steps}}},"speed":{{"steps_s":{speed}}}}}}}"#)
     };
@@ -264,7 +264,7 @@ fn the_start_stop_rate_is_what_rest_turns_into_at_once() {
 }
 
 #[test]
-fn a_duration_is_held_against_the_one_that_was_asked_for() {
+fn a_duration_is_compared_with_the_requested_one() {
     let cosine = r#"{"cosine":{"distance":{"steps":3200},"duration_s":0.4,"ramp_s":0.2}}"#;
     let found = measured(cosine).duration;
     assert_eq!((found.planned_s, found.requested_s, found.plan_error_s), (0.4, Some(0.4), Some(0.0)));
@@ -287,7 +287,7 @@ fn a_duration_is_held_against_the_one_that_was_asked_for() {
 }
 
 #[test]
-fn the_documents_distance_and_its_list_come_from_its_512_points() {
+fn the_papers_distance_comes_from_its_512_points() {
     for d1 in [0.0054, 0.006, 0.02] {
         let moves = format!(
             r#"{{"sine_segments":{{"amplitude":{{"steps":1000}},"period_s":0.5,"periods":1,"max_deviation":{d1}}}}}"#
@@ -315,4 +315,21 @@ fn the_documents_distance_and_its_list_come_from_its_512_points() {
         assert!(found.quarter.correlation.unwrap() > 0.999);
     }
     assert_eq!(measured(r#"{"dwell":{"duration_s":0.1}}"#).sine, None);
+}
+
+#[test]
+fn the_pulses_of_the_default_motion_are_near_its_curve() {
+    use crate::motion::{actual_motion::Pulses, measures::Measures};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::trace::steps;
+    use stepscope_sim::Experiment;
+
+    let experiment = Experiment::from_json("{}").expect("the default motion");
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let made = steps(&recording.trace, 0);
+    let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
+    let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+    assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
+    assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
 }

@@ -61,7 +61,7 @@ impl Machine {
         }
     }
 
-    /// The motor of the channel's axis, otherwise that of the scenario's plant (F9).
+    /// The motor of the channel's axis, otherwise that of the scenario's plant.
     pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
         let axis = axes_of(scenario, controller).get(channel);
         if let Some(machine) = axis.and_then(Self::of) {
@@ -111,7 +111,7 @@ impl Machine {
     /// Torque in mN*m in the direction of motion that a signed speed and acceleration need; negative where the motor
     /// brakes.
     pub fn needed_mn_m(&self, speed: f64, acceleration: f64) -> f64 {
-        // From rest it moves in the direction of the acceleration.
+        // From standstill it moves in the direction of the acceleration.
         let ahead = if speed == 0.0 { acceleration } else { speed };
         if ahead == 0.0 {
             return 0.0;
@@ -150,7 +150,7 @@ impl Machine {
         greatest(|rate| self.available_mn_m(rate) >= self.load_mn_m())
     }
 
-    /// B4's f_s: the lower of [`Self::torque_rate`] and [`Self::working_rate`], in steps/s.
+    /// f_s of Song 2021: the lower of [`Self::torque_rate`] and [`Self::working_rate`], in steps/s.
     pub fn greatest_rate(&self) -> Option<f64> {
         match (self.torque_rate(), self.working_rate) {
             (Some(by_torque), Some(stated)) => Some(libm::fmin(by_torque, stated)),
@@ -166,12 +166,12 @@ impl Machine {
         })
     }
 
-    /// The rate up to which a curve shows all that matters, in steps/s.
+    /// The rate up to which to draw a curve, in steps/s.
     pub fn shown_rate(&self, used: f64) -> f64 {
         let corner = self.corner_rate().unwrap_or(0.0);
         let greatest = self.greatest_rate().unwrap_or(0.0);
-        let most = libm::fmax(libm::fmax(used, greatest), 2.0 * corner);
-        libm::fmin(libm::fmax(1.1 * most, 1.0), MAX_SPEED)
+        let max = libm::fmax(libm::fmax(used, greatest), 2.0 * corner);
+        libm::fmin(libm::fmax(1.1 * max, 1.0), MAX_SPEED)
     }
 }
 

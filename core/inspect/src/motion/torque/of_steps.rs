@@ -13,29 +13,13 @@
 //! Both are piecewise linear between t_i - h, t_i and t_i + h of all steps, so the maximum acceleration is found
 //! exactly. With 16 microsteps a position error of one step requires at most 4 % of the motor's torque, whatever the
 //! load, so jitter makes no shortage.
-//!
-//! ```
-//! use stepscope_inspect::motion::torque::{Demand, Machine};
-//! use stepscope_motion::{motor::Motor, moves::Axis};
-//! use stepscope_peripheral::trace::Step;
-//!
-//! let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
-//! let machine = Machine::of(&axis).expect("it has a motor");
-//! // 1000 steps/s at once, and 60 000.
-//! let asked = |interval: u64| {
-//!     let steps = (1..1000).map(|k: i32| Step { cycle: k.unsigned_abs() as u64 * interval, position: k });
-//!     Demand::of_steps(&machine, &steps.collect::<Vec<_>>(), 16_000_000)
-//! };
-//! assert!(asked(16_000).is_met());
-//! assert!(!asked(266).is_met());
-//! ```
 
 use super::{Demand, Machine, Moment, Shortages};
 use alloc::vec::Vec;
 use stepscope_peripheral::trace::Step;
 
 impl Demand {
-    /// What steps in cycles of `clock_hz` require. The jump is the maximum rate next to a rest or turn.
+    /// The demand of steps in cycles of `clock_hz`. The jump is the maximum rate next to a stop or reversal.
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
         let mut found = Shortages::new(0.0, jump(machine, steps, clock_hz));
         let mut last: Option<Moment> = None;
@@ -67,8 +51,8 @@ pub fn steps_needed_over_rate(
     moments(machine, steps, clock_hz, &mut |moment| {
         let moves = moment.rate > 0.0 || moment.needed_mn_m != 0.0;
         let bin = (moment.rate / max_rate * bins as f64) as usize;
-        if let Some(most) = needed.get_mut(bin).filter(|_| moves) {
-            *most = libm::fmax(*most, libm::fabs(moment.needed_mn_m));
+        if let Some(max) = needed.get_mut(bin).filter(|_| moves) {
+            *max = libm::fmax(*max, libm::fabs(moment.needed_mn_m));
         }
     });
     needed
@@ -126,16 +110,16 @@ impl Position<'_> {
                 let part = (at_s - seconds(from)) / (seconds(to) - seconds(from));
                 f64::from(from.position) + part * f64::from(to.position.wrapping_sub(from.position))
             }
-            // Before the first step it stands at that step's target; how long that took is unknown.
+            // Before the first step the position is that step's target, because its time is unknown.
             (at, None) | (None, at) => at.map_or(0.0, |step| f64::from(step.position)),
         }
     }
 }
 
-/// The maximum rate next to a turn, a rest, or an end.
+/// The maximum rate next to a reversal, a stop, or an end.
 ///
-/// It is that of the next step or of the next half full step, whichever is lower, because less moves the rotor
-/// little. A rest is longer than a natural period, or than half a full step and four steps take at that rate.
+/// It is that of the next step or of the next half full step, whichever is lower, because less hardly moves the rotor. A
+/// stop is longer than a natural period, or than half a full step and four steps take at that rate.
 fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     let swing_s = machine.natural_period_s();
     let half = machine.microsteps_of_half_a_step();
@@ -167,14 +151,38 @@ impl Side {
     fn of(steps: &[Step], at: usize, ends: [Option<usize>; 2], hz: f64) -> Self {
         let span = |to: Option<usize>| {
             let (from, to) = (steps.get(at)?, steps.get(to?)?);
-            let way = f64::from(to.position.wrapping_sub(from.position));
-            Some((to.cycle.abs_diff(from.cycle) as f64 / hz, if to.cycle < from.cycle { -way } else { way }))
+            let travel = f64::from(to.position.wrapping_sub(from.position));
+            Some((
+                to.cycle.abs_diff(from.cycle) as f64 / hz,
+                if to.cycle < from.cycle { -travel } else { travel },
+            ))
         };
         let [next, all] = ends.map(span);
         let rate = |span: Option<(f64, f64)>| {
-            span.map_or(0.0, |(time_s, way)| libm::fabs(way) / libm::fmax(time_s, 1.0 / hz))
+            span.map_or(0.0, |(time_s, travel)| libm::fabs(travel) / libm::fmax(time_s, 1.0 / hz))
         };
         let (interval_s, direction) = next.unwrap_or((f64::INFINITY, 0.0));
         Self { interval_s, direction, rate: libm::fmin(rate(next), rate(all)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn recorded_steps_need_torque() {
+        use crate::motion::torque::{Demand, Machine};
+        use stepscope_motion::{motor::Motor, moves::Axis};
+        use stepscope_peripheral::trace::Step;
+
+        let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
+        let machine = Machine::of(&axis).expect("it has a motor");
+        // 1000 steps/s at once, and 60 000.
+        let demand = |interval: u64| {
+            let steps =
+                (1..1000).map(|k: i32| Step { cycle: k.unsigned_abs() as u64 * interval, position: k });
+            Demand::of_steps(&machine, &steps.collect::<Vec<_>>(), 16_000_000)
+        };
+        assert!(demand(16_000).is_met());
+        assert!(!demand(266).is_met());
     }
 }

@@ -1,4 +1,4 @@
-//! Ramps with which a motor can follow a move of n steps in T (DESIGN B4).
+//! Ramps with which a motor can follow a move of n steps in T (Song 2021; DESIGN B4).
 //!
 //! A short ramp needs torque to accelerate; a long one has a high rate, where torque is low: f_max = n/(T - t_s).
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use stepscope_motion::{Curve, Profile, bisection::border, curves::Cosine};
 
 const TRIED: u32 = 512;
-const LOOKS: u32 = 128;
+const SAMPLES: u32 = 128;
 
 /// Ramps that a motor can follow, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -23,7 +23,7 @@ pub struct Ramps {
     pub enough_s: Option<(f64, f64)>,
     /// Otherwise those with enough torque above the stated rate.
     pub too_fast_s: Option<(f64, f64)>,
-    /// Torque and rate suffice without ramps, apart from the jump.
+    /// Torque and rate suffice without ramps, except for the jump.
     pub without_ramps: bool,
 }
 
@@ -57,7 +57,7 @@ impl Ramps {
         let enough = |ramp_s: f64| keeps_rate(machine, &of(ramp_s)) && torque(ramp_s);
         let too_fast = greatest_rate.is_some() && longest_s.is_none();
         let longest_tried_s =
-            if too_fast { 0.0 } else { longest_s.map_or(room_s, |most| libm::fmin(most, room_s)) };
+            if too_fast { 0.0 } else { longest_s.map_or(room_s, |max| libm::fmin(max, room_s)) };
         let enough_s = widest(longest_tried_s, enough);
         Self {
             greatest_rate,
@@ -73,13 +73,13 @@ impl Ramps {
 
 fn keeps_rate(machine: &Machine, curve: &impl Curve) -> bool {
     let top = libm::fabs(curve.speed(curve.duration_s() / 2.0));
-    machine.working_rate().is_none_or(|most| top <= most)
+    machine.working_rate().is_none_or(|max| top <= max)
 }
 
-/// Checks the way up and the plateau; on the way down the load helps.
+/// Checks acceleration and plateau; during deceleration the load helps.
 fn suffices(machine: &Machine, curve: &impl Curve, ramp_s: f64) -> bool {
     // The last sample is just before the ramp's end, where a straight ramp still accelerates.
-    let ramp = (0..=LOOKS).map(|look| ramp_s * (1.0 - 1e-9) * f64::from(look) / f64::from(LOOKS));
+    let ramp = (0..=SAMPLES).map(|sample| ramp_s * (1.0 - 1e-9) * f64::from(sample) / f64::from(SAMPLES));
     ramp.chain([curve.duration_s() / 2.0]).all(|t| {
         let (speed, acceleration) = (curve.speed(t), curve.acceleration(t));
         machine.needed_mn_m(speed, acceleration) <= machine.available_mn_m(speed)

@@ -59,9 +59,9 @@ impl TorqueReport {
 
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(machine, steps, clock_hz);
-        let most = machine.shown_rate(demand.greatest_rate);
-        let needed = |most, bins| steps_needed_over_rate(machine, steps, clock_hz, most, bins);
-        let curve = TorqueCurve::with(machine, most, needed);
+        let max_rate = machine.shown_rate(demand.greatest_rate);
+        let needed = |max_rate, bins| steps_needed_over_rate(machine, steps, clock_hz, max_rate, bins);
+        let curve = TorqueCurve::with(machine, max_rate, needed);
         Self { window_s: Some(machine.natural_period_s()), ..Self::with(machine, demand, curve) }
     }
 
@@ -89,15 +89,15 @@ impl TorqueCurve {
         Self::up_to(machine, Some(plan), machine.shown_rate(plan.peaks().speed))
     }
 
-    pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, most: f64) -> Self {
-        Self::with(machine, most, |most, bins| {
-            plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, most, bins))
+    pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, max_rate: f64) -> Self {
+        Self::with(machine, max_rate, |max_rate, bins| {
+            plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, max_rate, bins))
         })
     }
 
-    fn with(machine: &Machine, most: f64, needed: impl FnOnce(f64, usize) -> Vec<f64>) -> Self {
-        let (rate, available) = machine.curve(most, POINTS).unzip();
-        let width = most / f64::from(POINTS - 1);
+    fn with(machine: &Machine, max_rate: f64, needed: impl FnOnce(f64, usize) -> Vec<f64>) -> Self {
+        let (rate, available) = machine.curve(max_rate, POINTS).unzip();
+        let width = max_rate / f64::from(POINTS - 1);
         Self { rate, available, needed: needed(width * f64::from(POINTS), POINTS as usize) }
     }
 }

@@ -25,7 +25,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 const TURN: &str = r#"{"cosine":{}}"#;
 
 #[test]
-fn without_a_motor_nothing_is_said() {
+fn without_a_motor_there_is_no_report() {
     assert_eq!(Machine::of(&Axis::default()), None);
     let direct = r#"{"mechanics":{"direct":{}},"motor":{}}"#;
     assert_eq!(Machine::of(&stepscope_scenario::part_from_json(direct).unwrap()), None);
@@ -181,7 +181,7 @@ fn a_plateau_above_what_the_load_allows_is_short_all_along() {
 }
 
 #[test]
-fn whole_periods_of_a_sine_are_told_once_with_their_number() {
+fn repeated_periods_are_one_shortage() {
     let sine = r#"{"sine_segments":{"amplitude":{"steps":4000},"period_s":0.1,"periods":1000}}"#;
     let found = demand(r#"{"load_torque_mn_m":200,"supply_v":12}"#, sine);
     // A sine of straight segments has no acceleration but jumps; only its rate matters.
@@ -214,7 +214,7 @@ fn where_every_current_brakes_no_load_is_light_enough() {
 }
 
 #[test]
-fn a_stated_working_rate_is_kept_beside_the_torque() {
+fn a_working_rate_limits_in_addition_to_torque() {
     let found = demand(r#"{"working_rate_hz":15999}"#, TURN);
     assert_eq!((found.total, found.over_working_rate), (0, Some(16_000.0)));
     assert!(!found.is_met());
@@ -251,7 +251,7 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
 }
 
 #[test]
-fn where_no_ramp_is_enough_what_limits_is_told() {
+fn without_a_suitable_ramp_the_limit_is_reported() {
     let ramps =
         |motor: &str| Ramps::of(&machine(motor), &Profile::Cosine(Cosine::new(3200, 0.4, 0.0))).unwrap();
     // 8000 steps/s are the least that the move can do, and only without ramps.
@@ -315,7 +315,7 @@ fn a_curve_and_the_moments_of_a_plan_can_be_drawn() {
 }
 
 #[test]
-fn a_move_that_is_short_of_torque_is_warned_of_and_its_neighbours_are_not() {
+fn only_a_move_with_too_little_torque_has_a_warning() {
     let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100,"working_rate_hz":30000}"#;
     let moves = r#"{"constant":{}},{"cosine":{}},{"dwell":{}}"#;
     let found = demand(motor, moves);
@@ -347,7 +347,7 @@ fn steps_of(motor: &str, moves: &str) -> (Machine, Vec<stepscope_peripheral::tra
 }
 
 #[test]
-fn the_steps_of_a_plan_ask_for_what_the_plan_asks_for() {
+fn the_steps_of_a_plan_need_the_torque_of_the_plan() {
     let rows = [
         // The bare rotor, a load of inertia, one of friction as well, and there and back with a rest between.
         ("{}", TURN, 0.02),
@@ -387,7 +387,7 @@ fn a_shortage_of_steps_is_where_that_of_their_plan_is() {
 }
 
 #[test]
-fn jitter_of_a_step_asks_for_little_and_a_start_at_once_is_told() {
+fn jitter_needs_little_torque_and_jumps_are_reported() {
     let machine = machine("{}");
     let steps = |interval: u64, off: fn(u64) -> u64| -> Vec<_> {
         let at = |k: i32| u64::from(k.unsigned_abs()) * interval + off(u64::from(k.unsigned_abs()));
@@ -421,7 +421,7 @@ fn jitter_of_a_step_asks_for_little_and_a_start_at_once_is_told() {
 }
 
 #[test]
-fn a_stated_rate_and_steps_in_one_cycle_are_judged_too() {
+fn a_working_rate_and_simultaneous_steps_are_checked() {
     let machine = machine(r#"{"working_rate_hz":1000}"#);
     let all: Vec<_> = (1..50)
         .map(|k: i32| stepscope_peripheral::trace::Step {
@@ -463,4 +463,20 @@ fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
         of(1).corner_rate().unwrap(),
         1e-9,
     );
+}
+
+#[test]
+fn a_motor_follows_the_default_motion_or_not() {
+    use crate::motion::torque::{Demand, Machine};
+    use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
+
+    // The default turn, in 0.4 s, with the default motor.
+    let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
+    let machine = Machine::of(&axis).expect("it has a motor");
+    let demand = Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned"));
+    assert!(demand.is_met());
+    // Ten times the load, and it is not.
+    let motor = Motor { load_torque_mn_m: 4000.0, ..Motor::default() };
+    let machine = Machine::of(&Axis { motor: Some(motor), ..axis.clone() }).expect("it has a motor");
+    assert!(!Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned")).is_met());
 }

@@ -68,8 +68,8 @@ impl Reading<'_> {
         let ticks = (kind == Kind::Ticks).then(|| Ticks::parse(frame.body, channels)).flatten();
         let Some(ticks) = ticks else { return };
         let mut totals = [0_i64; 256];
-        for (place, &byte) in ticks.commands().iter().enumerate() {
-            totals[place % usize::from(channels.max(1))] += steps(byte);
+        for (index, &byte) in ticks.commands().iter().enumerate() {
+            totals[index % usize::from(channels.max(1))] += steps(byte);
         }
         let many = if ticks.count() == 1 { "tick" } else { "ticks" };
         let _ = write!(text, " seq {}, {} {many}, ", ticks.seq, ticks.count());

@@ -27,7 +27,7 @@ fn told(meaning: &Meaning) -> Vec<String> {
 }
 
 #[test]
-fn a_raw_packet_is_its_address_and_an_order_a_channel() {
+fn a_raw_packet_has_one_command_per_channel() {
     let packet = RowOutcome::Packet(PacketOutcome::Queued);
     let plain = read(Protocol::Raw, false, &[0x85, 0x05, 0x80], packet);
     assert_eq!(told(&plain), ["ch0 0..1 +5", "ch1 1..2 \u{2212}5", "ch2 2..3 0, right"]);
@@ -38,7 +38,7 @@ fn a_raw_packet_is_its_address_and_an_order_a_channel() {
 }
 
 #[test]
-fn a_frame_of_ticks_has_each_order_at_its_byte_also_where_cobs_took_its_zero() {
+fn each_command_of_a_frame_has_its_byte_despite_cobs() {
     let wire = emit(0, 1, &Ticks::emit(7, 2, &[0x81, 0, 0, 3]));
     let meaning = read(Protocol::Framed, false, &wire, FRAME);
     let check = u32::from_le_bytes(CHECK.checksum(&[0, 1, 7, 2, 0x81, 0, 0, 3]).to_le_bytes());
@@ -63,7 +63,7 @@ fn a_frame_of_ticks_has_each_order_at_its_byte_also_where_cobs_took_its_zero() {
 }
 
 #[test]
-fn a_reply_tells_its_status_and_a_refusal_its_reason() {
+fn a_reply_has_a_status_and_a_refusal_a_reason() {
     let status =
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
     let acknowledged = Reply { address: 4, answer: Ok(Kind::Status), status };
@@ -86,7 +86,7 @@ fn a_reply_tells_its_status_and_a_refusal_its_reason() {
 }
 
 #[test]
-fn the_acknowledgement_of_positions_tells_each_channels_counter_in_its_four_bytes() {
+fn the_reply_to_positions_has_four_bytes_per_channel() {
     let status = Status { state: State::Ready, free: 4, expected_seq: 1, faults: 0, ticks_done: 2 };
     let reply = Reply { address: 5, answer: Ok(Kind::Positions), status };
     let of = |counters: &[i32]| {
@@ -142,7 +142,7 @@ fn a_long_frame_has_its_fields_after_the_byte_that_cobs_adds_every_254() {
 }
 
 #[test]
-fn what_is_broken_is_read_as_far_as_it_goes() {
+fn broken_frames_are_read_up_to_the_fault() {
     let wire = emit(1, 4, &[]);
     let mut flipped = wire.clone();
     flipped[2] ^= 2;
@@ -164,4 +164,17 @@ fn what_is_broken_is_read_as_far_as_it_goes() {
             read(Protocol::Raw, true, &bytes, RowOutcome::Open);
         }
     }
+}
+
+#[test]
+fn a_raw_packet_has_an_address_and_commands() {
+    use crate::packets::dissector::Reading;
+    use crate::packets::log::RowOutcome;
+    use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
+
+    // A raw packet for controller 7, two channels.
+    let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
+    let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
+    assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
+    assert_eq!(meaning.fields[0].bytes, 0..1);
 }

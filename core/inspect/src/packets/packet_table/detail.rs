@@ -6,10 +6,10 @@ use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::units::Cycles;
 
-/// Bit times from the end of a frame to the reply's start bit (DESIGN A6).
+/// Bit times from the end of a frame to the reply's start bit.
 const REPLY_BITS: u64 = 11;
 const DE_BITS: u64 = 10;
-/// Rows among which the frame of a reply is searched.
+/// Maximum rows between a reply and its frame.
 const NEAR: usize = 64;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -47,7 +47,7 @@ impl PacketTable<'_> {
                 (if found == expected { "holds" } else { "fails" }, Some((found, expected)))
             }
         };
-        let bytes = self.placed(index);
+        let bytes = self.line_bytes(index);
         let answers = self.answered(index);
         let turnaround = answers.map(|frame| row.start_cycle.saturating_sub(self.line_end(frame)));
         let Cycles(bit) = self.own.bit();
@@ -74,7 +74,7 @@ impl PacketTable<'_> {
         })
     }
 
-    /// The frame that a reply answers. A recorded reply answers the last frame before it.
+    /// The frame of a reply. A recorded reply belongs to the last frame before it.
     pub(super) fn answered(&self, index: usize) -> Option<usize> {
         let reply = self.logged(index).filter(|_| self.is_own_reply(index))?;
         let wait = Cycles(REPLY_BITS * self.own.bit().0);

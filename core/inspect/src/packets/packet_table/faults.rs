@@ -18,7 +18,7 @@ use stepscope_peripheral::{
 const NEAR: usize = 64;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct FaultPlace {
+pub struct FirstFault {
     pub name: &'static str,
     pub times: u64,
     pub cycle: u64,
@@ -50,31 +50,31 @@ impl PacketTable<'_> {
                 self.too_many(bytes.get(first..).unwrap_or_default())
             }
             RowOutcome::Packet(PacketOutcome::QueueFull) => match self.own.queue_depth() {
-                1 => "the one place of the queue was taken".into(),
-                places => format!("all {places} places of the queue were taken"),
+                1 => "the queue (1 entry) was full".into(),
+                depth => format!("the queue ({depth} entries) was full"),
             },
-            RowOutcome::Packet(PacketOutcome::Booting) => "reset was not over yet".into(),
+            RowOutcome::Packet(PacketOutcome::Booting) => "the controller was still in its self-test".into(),
             RowOutcome::Frame(FrameOutcome::Short) => short_frame(bytes),
             RowOutcome::Frame(FrameOutcome::Overlong) => {
-                format!("more than {MAX_DECODED} bytes before an end mark")
+                format!("more than {MAX_DECODED} bytes before a delimiter")
             }
             RowOutcome::Frame(FrameOutcome::Refused(reason)) => self.why_refused(index, reason),
             _ => String::new(),
         }
     }
 
-    pub fn fault_places(&self) -> Vec<FaultPlace> {
-        let mut places: Vec<FaultPlace> = Vec::new();
+    pub fn first_faults(&self) -> Vec<FirstFault> {
+        let mut first: Vec<FirstFault> = Vec::new();
         let mut raise = |fault: Faults, cycle: u64, row: Option<usize>| {
             for name in fault.names() {
-                match places.iter_mut().find(|place| place.name == name) {
-                    Some(place) => {
-                        place.times += 1;
-                        if cycle < place.cycle {
-                            (place.cycle, place.row) = (cycle, row);
+                match first.iter_mut().find(|fault| fault.name == name) {
+                    Some(fault) => {
+                        fault.times += 1;
+                        if cycle < fault.cycle {
+                            (fault.cycle, fault.row) = (cycle, row);
                         }
                     }
-                    None => places.push(FaultPlace { name, times: 1, cycle, row }),
+                    None => first.push(FirstFault { name, times: 1, cycle, row }),
                 }
             }
         };
@@ -88,23 +88,23 @@ impl PacketTable<'_> {
         for at in self.log.underruns() {
             raise(Faults::UNDERRUN, at.0, None);
         }
-        let place = |name| places.iter().find(|place| place.name == name).copied();
-        Faults::ALL.names().filter_map(place).collect()
+        let fault = |name| first.iter().find(|fault| fault.name == name).copied();
+        Faults::ALL.names().filter_map(fault).collect()
     }
 
     /// The first command of a tick that exceeds the tick's slots.
     fn too_many(&self, commands: &[u8]) -> String {
         let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
         let moves =
-            commands.iter().enumerate().map(|(place, &byte)| (place, ChannelCommand::parse(byte).steps));
-        let Some((place, steps)) = moves.into_iter().find(|(_, steps)| *steps > slots) else {
+            commands.iter().enumerate().map(|(fault, &byte)| (fault, ChannelCommand::parse(byte).steps));
+        let Some((fault, steps)) = moves.into_iter().find(|(_, steps)| *steps > slots) else {
             return String::new();
         };
-        let tick = match place / channels {
+        let tick = match fault / channels {
             0 if commands.len() <= channels => String::new(),
             tick => format!("tick {tick}, "),
         };
-        format!("{tick}channel {}: {steps} steps, and a tick has {slots} slots", place % channels)
+        format!("{tick}channel {}: {steps} steps do not fit in {slots} slots", fault % channels)
     }
 
     fn why_refused(&self, index: usize, reason: Reason) -> String {
@@ -114,7 +114,7 @@ impl PacketTable<'_> {
         let status = self.reply_to(index).map(|reply| reply.status);
         match (reason, ticks, status) {
             (Reason::BadSeq, Some(ticks), Some(status)) => {
-                format!("sequence number {}, and {} was expected", ticks.seq, status.expected_seq)
+                format!("sequence number {} instead of {}", ticks.seq, status.expected_seq)
             }
             (Reason::QueueFull, Some(ticks), Some(status)) => {
                 format!(
@@ -125,11 +125,11 @@ impl PacketTable<'_> {
             }
             (Reason::TooManySteps, Some(ticks), _) => self.too_many(ticks.commands()),
             (Reason::Busy, _, Some(status)) => format!("the controller was {}", status.state.name()),
-            (Reason::Stopped, ..) => "after STOP only ENABLE lets it move again".into(),
+            (Reason::Stopped, ..) => "stopped; send ENABLE first".into(),
             (Reason::BadBody, ..) => {
-                format!("a body of {} is none of this kind's", count(body.len(), "byte"))
+                format!("a body of {} does not fit this kind", count(body.len(), "byte"))
             }
-            (Reason::UnknownKind, ..) => "there is no such kind of frame".into(),
+            (Reason::UnknownKind, ..) => "unknown kind of frame".into(),
             _ => String::new(),
         }
     }
@@ -160,9 +160,9 @@ fn short_frame(bytes: &[u8]) -> String {
     let (content, whole) = decoded(bytes);
     let bytes = count(content.len(), "byte");
     if whole {
-        format!("{bytes} without COBS, and a frame has at least {MIN_DECODED}")
+        format!("{bytes} without COBS; a frame has at least {MIN_DECODED}")
     } else {
-        format!("the end mark came after {bytes}, within what COBS announced")
+        format!("the delimiter came after {bytes}, before the end that COBS gives")
     }
 }
 
@@ -178,75 +178,72 @@ mod tests {
     use stepscope_sim::Experiment;
 
     /// What is said of each row, and of the flags: name, times, row.
-    type Told = (Vec<String>, Vec<(&'static str, u64, Option<usize>)>);
+    type Reported = (Vec<String>, Vec<(&'static str, u64, Option<usize>)>);
 
-    fn told(json: &str) -> Told {
+    fn reported(json: &str) -> Reported {
         let experiment = Experiment::from_json(json).expect("no problems");
         let mut recording = Recording::default();
         let run = experiment.run(&mut recording);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
-        let places = table.fault_places();
-        let names: Vec<&str> = places.iter().map(|place| place.name).collect();
+        let first = table.first_faults();
+        let names: Vec<&str> = first.iter().map(|fault| fault.name).collect();
         assert_eq!(names, run.faults().names().collect::<Vec<_>>(), "{json}");
         let why = (0..table.len()).map(|index| table.why(index)).collect();
-        (why, places.iter().map(|place| (place.name, place.times, place.row)).collect())
+        (why, first.iter().map(|fault| (fault.name, fault.times, fault.row)).collect())
     }
 
-    fn raw(line: &str, sends: &[(u64, &str)]) -> Told {
+    fn raw(line: &str, sends: &[(u64, &str)]) -> Reported {
         let sends =
             sends.iter().map(|(start, bytes)| format!(r#"{{"start_cycle":{start},"bytes":"{bytes}"}}"#));
         let sends = sends.collect::<Vec<_>>().join(",");
-        told(&format!(
+        reported(&format!(
             r#"{{"bus":{{"channels":2,"slots":10,"step_period_cycles":800,"queue_depth":1}},"line":{line},"source":{{"line":{{"sends":[{sends}]}}}}}}"#
         ))
     }
 
     #[test]
-    fn raw_packets_that_came_to_nothing_tell_why_in_their_own_numbers() {
+    fn dropped_raw_packets_have_a_reason() {
         let address = r#"{"address":7}"#;
-        let (why, places) = raw(address, &[(2000, "078a05"), (12_000, "078b00"), (32_000, "0781")]);
-        let expected = [
-            "",
-            "channel 0: 11 steps, and a tick has 10 slots",
-            "2 of 3 bytes, then 45 bit times of silence",
-        ];
+        let (why, first) = raw(address, &[(2000, "078a05"), (12_000, "078b00"), (32_000, "0781")]);
+        let expected =
+            ["", "channel 0: 11 steps do not fit in 10 slots", "2 of 3 bytes, then 45 bit times of silence"];
         assert_eq!(why, expected);
-        assert_eq!(places, [("SHORT_PACKET", 1, Some(2)), ("TOO_MANY_STEPS", 1, Some(1))]);
+        assert_eq!(first, [("SHORT_PACKET", 1, Some(2)), ("TOO_MANY_STEPS", 1, Some(1))]);
 
-        let (why, places) = raw("{}", &[(2000, "8a8a8a8a8a8a8a8a")]);
-        assert_eq!(why, ["", "", "the one place of the queue was taken", ""]);
-        assert_eq!(places, [("QUEUE_OVERFLOW", 1, Some(2))]);
+        let (why, first) = raw("{}", &[(2000, "8a8a8a8a8a8a8a8a")]);
+        assert_eq!(why, ["", "", "the queue (1 entry) was full", ""]);
+        assert_eq!(first, [("QUEUE_OVERFLOW", 1, Some(2))]);
 
         // The stop bit of the second byte is forced low: bit 19 of 139 cycles.
         let glitch = r#"{"glitches":[{"start_cycle":4641,"length_cycles":139,"level":0}]}"#;
-        let (why, places) = raw(glitch, &[(2000, "8a8a"), (6000, "05")]);
+        let (why, first) = raw(glitch, &[(2000, "8a8a"), (6000, "05")]);
         let framing =
             "the stop bit of byte 2 of 2 was low; what follows is ignored until 45 bit times of silence";
         assert_eq!(why, [framing, "1 byte after a framing error, before 45 bit times of silence"]);
-        assert_eq!(places, [("FRAMING", 1, Some(0))]);
+        assert_eq!(first, [("FRAMING", 1, Some(0))]);
     }
 
     #[test]
-    fn frames_that_were_dropped_or_refused_tell_why() {
+    fn dropped_and_refused_frames_have_a_reason() {
         let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
         let ticks = |seq, commands: &[u8]| emit(0, 1, &Ticks::emit(seq, 1, commands));
         let frames = [
-            (vec![3, 1, 2, 0], "2 bytes without COBS, and a frame has at least 6"),
-            (vec![9, 1, 2, 0], "the end mark came after 2 bytes, within what COBS announced"),
-            (ticks(3, &[0x81]), "sequence number 3, and 0 was expected"),
+            (vec![3, 1, 2, 0], "2 bytes without COBS; a frame has at least 6"),
+            (vec![9, 1, 2, 0], "the delimiter came after 2 bytes, before the end that COBS gives"),
+            (ticks(3, &[0x81]), "sequence number 3 instead of 0"),
             (ticks(0, &[0x81; 20]), "20 ticks, and 4 places free in the queue"),
-            (ticks(0, &[0x81, 0x8b]), "tick 1, channel 0: 11 steps, and a tick has 10 slots"),
-            (emit(0, 1, &[0]), "a body of 1 byte is none of this kind's"),
-            (emit(0, 99, &[]), "there is no such kind of frame"),
+            (ticks(0, &[0x81, 0x8b]), "tick 1, channel 0: 11 steps do not fit in 10 slots"),
+            (emit(0, 1, &[0]), "a body of 1 byte does not fit this kind"),
+            (emit(0, 99, &[]), "unknown kind of frame"),
             (ticks(0, &[0x81]), ""),
         ];
         let sends: Vec<String> = (1..)
             .zip(&frames)
-            .map(|(place, (bytes, _))| {
-                format!(r#"{{"start_cycle":{},"bytes":"{}"}}"#, place * 120_000, hex(bytes))
+            .map(|(fault, (bytes, _))| {
+                format!(r#"{{"start_cycle":{},"bytes":"{}"}}"#, fault * 120_000, hex(bytes))
             })
             .collect();
-        let (why, places) = told(&format!(
+        let (why, first) = reported(&format!(
             r#"{{"bus":{{"channels":1,"slots":10,"step_period_cycles":800,"queue_depth":4}},"line":{{"protocol":"framed"}},"source":{{"line":{{"sends":[{}]}}}}}}"#,
             sends.join(",")
         ));
@@ -255,7 +252,7 @@ mod tests {
         let expected: Vec<&str> =
             frames.iter().map(|(_, text)| *text).filter(|text| !text.is_empty()).collect();
         assert_eq!(said, expected);
-        let names: Vec<_> = places.iter().map(|(name, times, _)| (*name, *times)).collect();
+        let names: Vec<_> = first.iter().map(|(name, times, _)| (*name, *times)).collect();
         let flags = ["SHORT_PACKET", "QUEUE_OVERFLOW", "TOO_MANY_STEPS", "BAD_SEQ"];
         assert_eq!(names[..4], [(flags[0], 2), (flags[1], 1), (flags[2], 1), (flags[3], 1)]);
         assert_eq!(names.get(4), Some(&("UNDERRUN", 1)), "the one tick has steps, and none follows");

@@ -16,7 +16,7 @@ pub struct Filter {
 #[derive(Debug, Default)]
 pub struct Request {
     needle: Option<Needle>,
-    /// A [`RowKind::name`], a kind of DESIGN A6 or `NAK`; empty for any.
+    /// A [`RowKind::name`], a kind of frame or `NAK`; empty for any.
     kind: String,
     address: Option<u8>,
     mark: String,
@@ -36,7 +36,7 @@ impl Request {
         self.needle.is_none() && self.kind.is_empty() && self.address.is_none() && self.mark.is_empty()
     }
 
-    fn keeps(&self, table: &PacketTable<'_>, index: usize) -> bool {
+    fn accepts(&self, table: &PacketTable<'_>, index: usize) -> bool {
         let Some(row) = table.logged(index) else { return false };
         let kind = match self.kind.as_str() {
             "" => true,
@@ -77,7 +77,7 @@ impl Needle {
         }
         let note = match (only_number, number) {
             (true, None) => {
-                format!("\u{201c}{}\u{201d} is no number of a row; give one, such as #12.", typed.trim())
+                format!("\u{201c}{}\u{201d} is not a row number; use one such as #12.", typed.trim())
             }
             _ => note,
         };
@@ -113,15 +113,17 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
     let parts: Vec<&str> = parts.map(|part| part.strip_prefix("0x").unwrap_or(part)).collect();
     let digits = |part: &&str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_hexdigit());
     if !parts.iter().all(digits) {
-        let note = format!("\u{201c}{text}\u{201d} is no hex: give two digits a byte, such as 81 05.");
+        let note =
+            format!("\u{201c}{text}\u{201d} is not hexadecimal; use two digits per byte, such as 81 05.");
         return (Vec::new(), if meant { note } else { String::new() });
     }
     if parts.iter().any(|part| part.len() % 2 != 0) {
         // A plain number is searched among the numbers.
         let plain = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_digit());
         let word = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_alphabetic());
-        let note =
-            format!("\u{201c}{text}\u{201d} ends within a byte: give two hex digits a byte, such as 81 05.");
+        let note = format!(
+            "\u{201c}{text}\u{201d} ends within a byte; use two hexadecimal digits per byte, such as 81 05."
+        );
         return (Vec::new(), if plain || word { String::new() } else { note });
     }
     let pair = |pair: &[u8]| core::str::from_utf8(pair).ok().and_then(|two| u8::from_str_radix(two, 16).ok());
@@ -143,7 +145,7 @@ impl Filter {
         let mut text = String::new();
         let until = total.min(self.next.saturating_add(count));
         for index in self.next..until {
-            if !request.keeps(table, index) {
+            if !request.accepts(table, index) {
                 continue;
             }
             let found = request.needle.as_ref().is_some_and(|needle| needle.finds(table, index, &mut text));
@@ -207,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hex_is_read_with_and_without_spaces_and_what_is_none_is_said() {
+    fn hex_is_read_with_and_without_spaces_and_invalid_text_is_reported() {
         let rows: [(&str, &[u8], bool); 11] = [
             ("81 05", &[0x81, 5], false),
             ("8105", &[0x81, 5], false),

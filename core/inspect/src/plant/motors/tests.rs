@@ -46,7 +46,7 @@ fn every_word_stands_for_one() {
 }
 
 #[test]
-fn what_is_typical_are_fields_of_the_scenario() {
+fn typical_figures_are_fields_of_the_scenario() {
     for (typical, path) in MOTORS
         .iter()
         .map(|sheet| (sheet.typical, ""))
@@ -66,13 +66,13 @@ fn what_is_typical_are_fields_of_the_scenario() {
 #[test]
 fn the_documents_motors_are_those_of_their_presets() {
     let default = Motor::default();
-    assert_eq!(motor("song-2021").expect("listed").in_place_of(&default), default);
+    assert_eq!(motor("song-2021").expect("listed").replacing(&default), default);
     assert_eq!(drive("ideal").expect("listed").drive, Drive::default());
     let presets = stepscope_scenario::presets::PLANT_PRESETS;
     let preset = presets.iter().find(|preset| preset.id == "patent-2019-figure-1").expect("it is there");
     let plant = preset.scenario().plant.expect("a plant");
     let given = &plant.motors[0].motor;
-    assert_eq!(&motor("patent-2019").expect("listed").in_place_of(given), given);
+    assert_eq!(&motor("patent-2019").expect("listed").replacing(given), given);
 }
 
 #[test]
@@ -177,4 +177,17 @@ fn the_tables_of_the_documentation_are_these() {
             "docs/motors.md has other tables; STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect writes them"
         );
     }
+}
+
+#[test]
+fn a_motor_of_the_list_drives_an_axis() {
+    use crate::plant::motors::{drive, motor};
+    use stepscope_scenario::Scenario;
+    use stepscope_sim::Experiment;
+
+    let mut scenario = Scenario::from_json(r#"{ "plant": {} }"#).expect("it reads");
+    motor("17hs4401").expect("it is listed").put_into(&mut scenario);
+    drive("a4988").expect("it is listed").put_into(&mut scenario);
+    let experiment = Experiment::new(&scenario).expect("it holds");
+    assert_eq!(experiment.plants().expect("it has one").setups[0].motors[0].rotor_inertia_g_cm2, 54.0);
 }

@@ -73,3 +73,23 @@ fn each_difference_is_a_row_in_plain_words() {
         ],
     );
 }
+
+#[test]
+fn a_missing_step_is_listed() {
+    use crate::recording::{
+        alignment::{Alignment, Side},
+        differences::Differences,
+        events::Kind,
+        tolerance::Tolerance,
+    };
+    use stepscope_peripheral::trace::Step;
+
+    let steps =
+        |cycles: &[u64]| cycles.iter().map(|cycle| Step { cycle: *cycle, position: 1 }).collect::<Vec<_>>();
+    let (recorded, plan) = (steps(&[100, 200, 400, 500]), steps(&[100, 200, 300, 400, 500]));
+    let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
+    let alignment = Alignment::of(side(&recorded), side(&plan), None).expect("both have steps");
+    let found = Differences::of(&alignment, Tolerance::ZERO);
+    assert_eq!(found.count, 1);
+    assert!(found.listed[0].to_text(Kind::Steps).starts_with("1 step missing after step 1"));
+}

@@ -27,17 +27,17 @@ impl fmt::Display for Misaligned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Part => f.write_str(
-                "only a part of the recording is shown, and a part cannot be aligned with an experiment; record a shorter time",
+                "only a part of the recording is loaded, which cannot be aligned; record a shorter time",
             ),
             Self::None { kind, aligned, count } => write!(
                 f,
-                "there is no {} {aligned}: {count} {} were recorded, from 0; align by one that both have",
+                "there is no {} {aligned}; {count} {} were recorded, from 0: align by one that both have",
                 kind.singular(),
                 kind.plural()
             ),
             Self::Early { kind, aligned, first_s } => write!(
                 f,
-                "aligned by {0} {aligned} the first {0} would come at {first_s:.6} s, before the experiment begins; align by another one",
+                "aligned by {0} {aligned} the first {0} would come at {first_s:.6} s, before the start of the experiment; align by a later one",
                 kind.singular()
             ),
         }

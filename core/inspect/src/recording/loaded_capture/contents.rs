@@ -3,6 +3,7 @@
 use super::LoadedCapture;
 use crate::{
     recording::{
+        alignment::ExactTimes,
         figures::StepFigures,
         open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ, valid_clock},
         remedy::{Note, Remedy},
@@ -12,12 +13,17 @@ use crate::{
     trace::timing::Rule,
 };
 use alloc::{borrow::ToOwned, format, vec::Vec};
-use stepscope_capture::{Capture, ChannelMap, capture::TimedByte, recorded::Records, timebase::Timebase};
+use stepscope_capture::{
+    Capture, ChannelMap,
+    capture::{Format, TimedByte},
+    recorded::Records,
+    timebase::Timebase,
+};
 use stepscope_peripheral::{signal::Levels, units::Instant, wire::BitTimes};
 
 const USUAL_BAUD: u32 = 115_200;
 /// Maximum steps of position rows; two rows can demand any number.
-const MAX_MADE_STEPS: u64 = 10_000_000;
+const MAX_STEPS: u64 = 10_000_000;
 
 impl LoadedCapture {
     /// Figures in the file's own ticks where its clock would round: otherwise a constant rate would have an
@@ -29,13 +35,7 @@ impl LoadedCapture {
         base: Timebase,
         options: &OpenOptions,
     ) -> Option<Vec<ChannelReport>> {
-        // Generated pulses may not fit in ticks.
-        let are_generated = self.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
-        if capture.changes.is_empty()
-            || options.clock_hz.is_some()
-            || base.is_exact(self.clock_hz)
-            || are_generated
-        {
+        if options.clock_hz.is_some() || !self.is_rounded(capture, base) {
             return None;
         }
         let (numerator, denominator) = base.parts();
@@ -45,6 +45,28 @@ impl LoadedCapture {
             Some(ChannelReport { channel, figures: StepFigures::of_rate(steps, hz)? })
         };
         Some((0..self.channels).filter_map(of).collect())
+    }
+
+    /// Whether cycles round the file's ticks. Generated pulses may not fit in ticks.
+    fn is_rounded(&self, capture: &Capture, base: Timebase) -> bool {
+        let are_generated = self.unchecked().any(|(_, rule)| rule == Rule::StepHigh);
+        !capture.changes.is_empty() && !base.is_exact(self.clock_hz) && !are_generated
+    }
+
+    /// Whether ticks are more exact than cycles. Decimal times below a picosecond carry the noise of a float:
+    /// 5.000000000000013e-06.
+    pub(super) fn has_better_ticks(&self, capture: &Capture, base: Timebase) -> bool {
+        let is_noisy = capture.format != Format::Vcd && base.seconds() < 1e-12;
+        self.is_rounded(capture, base) && !is_noisy
+    }
+
+    pub(super) fn note_exact_steps(&mut self, capture: &Capture, map: &ChannelMap, base: Timebase) {
+        if !self.has_better_ticks(capture, base) {
+            return;
+        }
+        let ticks = |channel| steps(Records::in_ticks(capture, map), channel).map(|step| step.cycle);
+        let of = |channel| (channel, ExactTimes { ticks: ticks(channel).collect(), base });
+        self.exact_steps = (0..self.channels).map(of).collect();
     }
 
     pub(super) fn without_levels(
@@ -62,17 +84,16 @@ impl LoadedCapture {
             let baud = options.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
             if options.baud.is_none() {
                 self.notes.push(Note::from(format!(
-                    "the file does not say the bit rate; {baud} baud is assumed from the times of its bytes: give it"
+                    "the file does not give the bit rate; {baud} baud is assumed from the times of its bytes; set the right rate"
                 )));
             }
             let lines = self.lines_of(capture, map).into_iter();
             let lines = lines.map(|(line, bytes)| {
-                LineReport::of_decoded_on(line, decoded(bytes.into_iter(), cycle), clock_hz, baud)
+                LineReport::of_decoded(line, decoded(bytes.into_iter(), cycle), clock_hz, baud)
             });
             report = Some(Report { channels: Vec::new(), lines: lines.collect() });
         } else if !capture.positions.is_empty() {
-            let steps =
-                capture.steps(cycle, MAX_MADE_STEPS).ok_or(OpenError::TooManySteps(MAX_MADE_STEPS))?;
+            let steps = capture.steps(cycle, MAX_STEPS).ok_or(OpenError::TooManySteps(MAX_STEPS))?;
             report = Some(Report::of_steps(&steps, clock_hz));
             self.position_steps = Some(steps);
         }
@@ -95,7 +116,7 @@ impl LoadedCapture {
         let found: Vec<_> = lines.into_iter().filter_map(of).collect();
         if capture.channels.len() > 1 && found.is_empty() {
             self.notes.push(Note {
-                text: format!("bytes of {} are taken together, as RX", self.names.join(", ")),
+                text: format!("bytes of {} are combined as RX", self.names.join(", ")),
                 remedy: Some(Remedy::ChooseLine),
             });
         }
@@ -151,16 +172,16 @@ impl LoadedCapture {
             });
             let decoded = DecodedLine { bytes: bytes.collect(), ..DecodedLine::default() };
             last = last.max(decoded.bytes.len() as u64);
-            self.report.lines.push(LineReport::of_decoded_on(line, decoded, self.clock_hz, baud));
+            self.report.lines.push(LineReport::of_decoded(line, decoded, self.clock_hz, baud));
         }
         self.end_s = times.byte(last).0 as f64 / f64::from(self.clock_hz);
-        self.rounding = "the bytes have no times: taken for sent back to back".to_owned();
+        self.rounding = "the bytes have no times; they count as sent back to back".to_owned();
         Ok(())
     }
 
     /// Bytes without times have their index as tick.
     pub(super) fn has_untimed_bytes(capture: &Capture) -> bool {
-        let untimed = || (0..).zip(&capture.bytes).all(|(place, byte)| byte.tick == place);
+        let untimed = || (0..).zip(&capture.bytes).all(|(index, byte)| byte.tick == index);
         capture.timebase.is_none() && !capture.bytes.is_empty() && untimed()
     }
 }

@@ -1,4 +1,4 @@
-//! What a user should know of a loaded capture: generated pulses, rounded times, edges that may count otherwise.
+//! Notes on a loaded capture: generated pulses, rounded times, edges that may count otherwise.
 
 use super::LoadedCapture;
 use crate::{

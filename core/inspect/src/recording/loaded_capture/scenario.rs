@@ -2,7 +2,7 @@
 
 use super::LoadedCapture;
 use crate::{
-    recording::scenario::{self, Bytes, Made, Refused, Steps},
+    recording::scenario::{self, Bytes, Refused, Reproduction, Steps},
     trace::timing::Rule,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -15,9 +15,10 @@ const MAX_TITLE: usize = 120;
 impl LoadedCapture {
     /// The scenario to show: [`Self::scenario`], or an idle one with its clock, channels and duration.
     pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
-        let made = if self.part.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
-        let made = made.filter(|made| made.clock_hz == self.clock_hz && entries(made) <= MAX_SHOWN);
-        let mut scenario = made.unwrap_or_else(|| {
+        let reproduced = if self.part.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
+        let reproduced = reproduced
+            .filter(|reproduced| reproduced.clock_hz == self.clock_hz && entries(reproduced) <= MAX_SHOWN);
+        let mut scenario = reproduced.unwrap_or_else(|| {
             let mut scenario = Scenario { clock_hz: self.clock_hz, ..Scenario::default() };
             scenario.bus.channels = self.channels;
             scenario.source = Source::Segments(SegmentLists::default());
@@ -51,7 +52,7 @@ impl LoadedCapture {
         let within_cycles = (error_us * 1e-6 * f64::from(clock_hz)) as u64;
         let request = Steps { clock_hz, channels, within_cycles };
         let rx = self.report.rx().filter(|line| !line.decoded.bytes.is_empty() && !steps);
-        let made: Made = match (rx, &self.position_steps) {
+        let reproduced: Reproduction = match (rx, &self.position_steps) {
             (Some(line), _) => {
                 let request = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
                 scenario::of_bytes(&line.decoded, &request, base)
@@ -64,7 +65,7 @@ impl LoadedCapture {
             }
             (None, None) => scenario::of_steps(&self.records, &request),
         }?;
-        let mut scenario = Scenario { note: scenario::note(file, &made), ..made.scenario };
+        let mut scenario = Scenario { note: scenario::note(file, &reproduced), ..reproduced.scenario };
         scenario.title = title(file);
         Ok(scenario)
     }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::recording::report::LineReport;
+use crate::recording::{events::Events, report::LineReport, tolerance::Tolerance};
 use alloc::borrow::ToOwned;
 use stepscope_capture::capture::Format;
 use stepscope_capture::read::{Limits, read};
@@ -11,10 +11,10 @@ fn capture() -> Capture {
 
 /// Steps at 1, 2, 3 and 5 ms, as Saleae Logic saves them.
 fn loaded() -> LoadedCapture {
-    LoadedCapture::new(capture(), &asked()).expect("it opens")
+    LoadedCapture::new(capture(), &options()).expect("it opens")
 }
 
-fn asked() -> OpenOptions {
+fn options() -> OpenOptions {
     OpenOptions { clock_hz: Some(1_000_000), ..OpenOptions::default() }
 }
 
@@ -46,22 +46,22 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
     assert_eq!(loaded.report.lines[1].decoded.bytes[0].start, loaded.report.lines[0].decoded.bytes[0].start);
     // Times without a unit are no places: their length is asked for.
     let table = "0,55\n1041,AA\n2083,01\n";
-    let asked = |sample_rate_hz| OpenOptions { sample_rate_hz, baud: Some(9600), ..OpenOptions::default() };
+    let options = |sample_rate_hz| OpenOptions { sample_rate_hz, baud: Some(9600), ..OpenOptions::default() };
     assert_eq!(
-        LoadedCapture::new(read(table), &asked(None)).err(),
+        LoadedCapture::new(read(table), &options(None)).err(),
         Some(OpenError::NoSampleRate(Format::HexBytes))
     );
-    let loaded = LoadedCapture::new(read(table), &asked(Some(1_000_000))).expect("it opens");
+    let loaded = LoadedCapture::new(read(table), &options(Some(1_000_000))).expect("it opens");
     let starts =
         loaded.report.lines[0].decoded.bytes.iter().map(|decoded| decoded.start.0).collect::<Vec<_>>();
     assert_eq!(starts, [0, 1041, 2083]);
 }
 
 #[test]
-fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
+fn a_part_has_its_records_and_the_figures_of_all() {
     let whole = loaded();
     let part = |max_records, from_s, to_s| {
-        LoadedCapture::of_part(&capture(), &asked(), &Part { max_records, from_s, to_s }).expect("it opens")
+        LoadedCapture::of_part(&capture(), &options(), &Part { max_records, from_s, to_s }).expect("it opens")
     };
     assert_eq!(part(9, None, None), whole);
     // From one part to another it is as if it were loaded with that at once.
@@ -76,7 +76,7 @@ fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
         for (after, from, to) in parts {
             let again = part(most, from_s, to_s).with_part(
                 &capture(),
-                &asked(),
+                &options(),
                 &Part { max_records: after, from_s: from, to_s: to },
             );
             assert_eq!(
@@ -118,21 +118,21 @@ fn of_a_part_the_records_are_kept_and_the_figures_are_of_all() {
 }
 
 #[test]
-fn the_overview_is_of_all_and_there_is_one_of_levels_alone() {
-    let found = LoadedCapture::overview(&capture(), &asked(), 0, 5).expect("it opens").expect("levels");
+fn the_overview_covers_the_whole_recording() {
+    let found = LoadedCapture::overview(&capture(), &options(), 0, 5).expect("it opens").expect("levels");
     // 5.1 ms in five columns, a step in each of the first three and in the last.
     assert_eq!(found.position.max, [1.0, 2.0, 3.0, 3.0, 4.0]);
     assert_eq!((found.speed.max[1].round(), found.speed.max[4].round()), (1000.0, 500.0));
-    let still = LoadedCapture::overview(&capture(), &asked(), 1, 2).expect("it opens").expect("levels");
+    let still = LoadedCapture::overview(&capture(), &options(), 1, 2).expect("it opens").expect("levels");
     assert_eq!(still.position.max, [0.0, 0.0]);
-    assert_eq!(LoadedCapture::overview(&capture(), &asked(), 0, 0), Ok(None));
+    assert_eq!(LoadedCapture::overview(&capture(), &options(), 0, 0), Ok(None));
     let bytes = "0.1: 55\n0.2: AA\n";
     let bytes = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true).capture;
     assert_eq!(LoadedCapture::overview(&bytes, &OpenOptions::default(), 0, 5), Ok(None));
 }
 
 #[test]
-fn any_step_can_be_put_to_a_time_as_long_as_none_comes_before_cycle_0() {
+fn any_step_can_be_aligned_unless_one_would_precede_cycle_0() {
     for (aligned, at_s, expected) in [
         (0, 0.01, Ok([10_000, 11_000, 12_000, 14_000])),
         (3, 0.01, Ok([6000, 7000, 8000, 10_000])),
@@ -141,7 +141,7 @@ fn any_step_can_be_put_to_a_time_as_long_as_none_comes_before_cycle_0() {
             2,
             0.001,
             Err(
-                "aligned by step 2 the first step would come at -0.001000 s, before the experiment begins; align by another one",
+                "aligned by step 2 the first step would come at -0.001000 s, before the start of the experiment; align by a later one",
             ),
         ),
         (4, 0.01, Err("there is no step 4: 4 steps were recorded, from 0; align by one that both have")),
@@ -164,4 +164,39 @@ fn any_step_can_be_put_to_a_time_as_long_as_none_comes_before_cycle_0() {
     // A channel on which nothing comes moves nothing.
     let mut found = loaded();
     assert_eq!((found.align(1, 7, 0.01), &found), (Ok(()), &loaded()));
+}
+
+#[test]
+fn a_dump_is_loaded_with_a_proposed_map() {
+    use crate::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
+    use stepscope_capture::read::{Limits, read};
+
+    let dump =
+        "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1! #22 0!";
+    let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+    let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a map is proposed");
+    assert_eq!((loaded.map.as_str(), loaded.clock_hz), ("STEP0=STEP", 1_000_000));
+    assert_eq!(loaded.report.channels[0].figures.steps, 2);
+    assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
+}
+
+#[test]
+fn steps_of_a_finer_file_are_compared_in_its_own_ticks() {
+    // The second step is 20 us late, the third 20 us and 1 ps: a clock of 1 GHz rounds both to 20 us.
+    let dump = "$timescale 1 ps $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #1000000 1! #2000000 0! \
+                #121000000 1! #122000000 0! #221000001 1! #222000000 0!";
+    let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+    let options = OpenOptions::default();
+    let part = Part { max_records: 100, from_s: None, to_s: None };
+    let plan =
+        [1000, 101_000, 201_000].into_iter().zip(1..).map(|(cycle, position)| Step { cycle, position });
+    let plan = Events::of_steps(plan.collect(), 1_000_000_000);
+    let within = Tolerance::from_micros(20, 0).expect("a time");
+    let whole = LoadedCapture::of_part(&capture, &options, &part);
+    for loaded in [LoadedCapture::new(capture, &options), whole] {
+        let loaded = loaded.expect("it loads");
+        assert_eq!(loaded.clock_hz, 1_000_000_000);
+        let found = loaded.events(0).compare(&plan, Some(0), within).expect("both have steps").comparison;
+        assert_eq!((found.differing, found.first_difference.map(|off| off.step)), (1, Some(2)), "{found:?}");
+    }
 }

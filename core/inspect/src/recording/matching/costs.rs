@@ -12,15 +12,15 @@ pub(super) struct Costs {
     pub(super) shift: f64,
     differs_first: f64,
     differs: f64,
-    differs_most: f64,
+    max_differing: f64,
 }
 
 /// Two gaps cost less than two late steps between them that fit others.
 pub(super) const STEPS: Costs =
-    Costs { late_first: 1.2, late: 0.3, shift: 1.5, differs_first: 0.3, differs: 0.05, differs_most: 1.0 };
+    Costs { late_first: 1.2, late: 0.3, shift: 1.5, differs_first: 0.3, differs: 0.05, max_differing: 1.0 };
 /// A sender of bytes may pause at any time.
 pub(super) const BYTES: Costs =
-    Costs { late_first: 0.3, late: 0.02, shift: 0.3, differs_first: 0.35, differs: 0.1, differs_most: 2.0 };
+    Costs { late_first: 0.3, late: 0.02, shift: 0.3, differs_first: 0.35, differs: 0.1, max_differing: 2.0 };
 
 impl Costs {
     /// The cost of an offset is linear: a small error of every step then outweighs jitter.
@@ -34,7 +34,7 @@ impl Costs {
 
     pub(super) fn differing_row(&self, so_far: f64) -> f64 {
         let more = if so_far > 0.0 { so_far + self.differs } else { self.differs_first };
-        libm::fmin(more, self.differs_most)
+        libm::fmin(more, self.max_differing)
     }
 }
 

@@ -76,7 +76,7 @@ pub(super) struct Search<'a> {
     model: Side<'a>,
     costs: Costs,
     /// Minimum interval in s: two cycles of the slower clock.
-    least_s: f64,
+    min_interval_s: f64,
     living: Vec<Hypothesis>,
     best: Option<Hypothesis>,
     /// Minimum estimate of all starts per block.
@@ -85,9 +85,11 @@ pub(super) struct Search<'a> {
     block: usize,
     /// A start behind many steps reaches a block without their jitter, so it sets no limit for other starts.
     is_far: bool,
-    /// Bounds the time on recordings that are unlike the plan.
-    max_gaps: usize,
-    pub(super) tried_gaps: usize,
+    /// Maximum gaps per start: bounds the time on recordings that are unlike the plan.
+    pub(super) max_gaps: usize,
+    /// Gaps tried from the current start.
+    tried_gaps: usize,
+    pub(super) all_tried_gaps: usize,
 }
 
 impl<'a> Search<'a> {
@@ -98,7 +100,7 @@ impl<'a> Search<'a> {
             recorded,
             model,
             costs: if model.values.is_empty() { STEPS } else { BYTES },
-            least_s: 2.0 / f64::from(slower),
+            min_interval_s: 2.0 / f64::from(slower),
             living: Vec::with_capacity(WIDTH),
             best: None,
             trial: vec![f64::INFINITY; TRIAL],
@@ -107,6 +109,7 @@ impl<'a> Search<'a> {
             is_far: false,
             max_gaps: steps.saturating_mul(16).saturating_add(1 << 20),
             tried_gaps: 0,
+            all_tried_gaps: 0,
         }
     }
 
@@ -144,6 +147,7 @@ impl<'a> Search<'a> {
 
     fn begin(&mut self, model: usize, recorded: usize) {
         self.block = 0;
+        self.tried_gaps = 0;
         self.is_far = model.max(recorded) > NEAR_START;
         let start = Hypothesis {
             model,
@@ -166,7 +170,7 @@ impl<'a> Search<'a> {
         for index in 0..SIGNATURE {
             let found = interval(&one, from + index).zip(interval(&other, other_from + index));
             let Some((own, due)) = found else { return if index == 0 { f64::INFINITY } else { sum } };
-            sum += libm::fabs(own - due) / libm::fmax(due, self.least_s);
+            sum += libm::fabs(own - due) / libm::fmax(due, self.min_interval_s);
             if sum > SIGNATURE as f64 {
                 break;
             }
@@ -178,11 +182,11 @@ impl<'a> Search<'a> {
         if needle.steps.len() <= SIGNATURE {
             return None;
         }
-        let (mut least, mut found) = (0.1 * SIGNATURE as f64, None);
+        let (mut min, mut found) = (0.1 * SIGNATURE as f64, None);
         for at in 0..=hay.steps.len().checked_sub(SIGNATURE + 1)? {
             let unlike = self.unlike(hay, at, needle, 0);
-            if unlike < 0.9 * least {
-                (least, found) = (unlike, Some(at));
+            if unlike < 0.9 * min {
+                (min, found) = (unlike, Some(at));
             }
         }
         found
@@ -191,24 +195,24 @@ impl<'a> Search<'a> {
     /// Takes the hypothesis with the fewest steps and drops the expensive ones.
     fn next(&mut self) -> Option<Hypothesis> {
         let block = self.living.iter().map(Hypothesis::block).min()?;
-        let least = self.living.iter().fold(f64::INFINITY, |least, of| libm::fmin(least, of.estimate));
-        let mut most = libm::fmin(least + MARGIN, self.best_estimate());
+        let min = self.living.iter().fold(f64::INFINITY, |min, of| libm::fmin(min, of.estimate));
+        let mut max = libm::fmin(min + MARGIN, self.best_estimate());
         if block > self.block {
             // Compare with other starts at the end of each block.
             if let Some(others) = self.trial.get_mut(block) {
-                most = libm::fmin(most, *others + 2.0 * MARGIN);
+                max = libm::fmin(max, *others + 2.0 * MARGIN);
                 if !self.is_far {
-                    *others = libm::fmin(*others, least);
+                    *others = libm::fmin(*others, min);
                 }
             } else if self.block < TRIAL {
-                most = libm::fmin(most, self.trial_end);
+                max = libm::fmin(max, self.trial_end);
                 if !self.is_far {
-                    self.trial_end = libm::fmin(self.trial_end, least);
+                    self.trial_end = libm::fmin(self.trial_end, min);
                 }
             }
             self.block = block;
         }
-        self.living.retain(|living| living.estimate < most);
+        self.living.retain(|living| living.estimate < max);
         let far = |living: &Hypothesis| living.model + living.recorded;
         let (first, _) = self.living.iter().enumerate().min_by_key(|(_, living)| far(living))?;
         Some(self.living.swap_remove(first))
@@ -219,7 +223,7 @@ impl<'a> Search<'a> {
     }
 
     fn least_estimate(&self) -> f64 {
-        self.living.iter().fold(self.best_estimate(), |least, living| libm::fmin(least, living.estimate))
+        self.living.iter().fold(self.best_estimate(), |min, living| libm::fmin(min, living.estimate))
     }
 
     fn go_on(&mut self, mut hypothesis: Hypothesis) {
@@ -238,8 +242,8 @@ impl<'a> Search<'a> {
             return;
         }
         let is_clean = self.step(&hypothesis, None);
-        let most = self.least_estimate() + SPAWNING;
-        if is_clean || hypothesis.estimate > most || self.tried_gaps >= self.max_gaps {
+        let max = self.least_estimate() + SPAWNING;
+        if is_clean || hypothesis.estimate > max || self.tried_gaps >= self.max_gaps {
             return;
         }
         let mut gaps = Vec::with_capacity(2 * NEAR + 4);
@@ -249,6 +253,7 @@ impl<'a> Search<'a> {
         self.due_gaps(&hypothesis, &mut gaps);
         for gap in gaps {
             self.tried_gaps += 1;
+            self.all_tried_gaps += 1;
             self.step(&hypothesis, Some(gap));
         }
     }
@@ -278,7 +283,7 @@ impl<'a> Search<'a> {
         let here = at(Some(model)).unwrap_or(0.0);
         let before = at(model.checked_sub(1)).map_or(f64::INFINITY, |before| here - before);
         let after = at(model.checked_add(1)).map_or(f64::INFINITY, |after| after - here);
-        libm::fmax(libm::fmin(before, after), self.least_s)
+        libm::fmax(libm::fmin(before, after), self.min_interval_s)
     }
 
     /// Advances by one step if it is on time and has the right direction or value.

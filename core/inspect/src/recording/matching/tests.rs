@@ -178,10 +178,25 @@ fn a_recording_that_is_unlike_the_plan_is_matched_with_bounded_effort() {
     let mut search = Search::new(side(&recorded), side(&model));
     search.run();
     // Without its bound the search would try some more.
-    assert!(search.tried_gaps < 1_690_000, "{}", search.tried_gaps);
+    assert!(search.all_tried_gaps < 1_690_000, "{}", search.all_tried_gaps);
     let matching = Matching::of(side(&recorded), side(&model));
     // Most steps are near one that was planned.
     assert!((15_000..20_000).contains(&matching.len()), "{}", matching.len());
+}
+
+#[test]
+fn each_start_has_its_own_budget() {
+    // Five steps are missing at the beginning, so another start than the first one is right; three more later.
+    let plan = plan(1, 3200);
+    let recorded = without(&without(&plan, 2500..2503), 0..5);
+    let (recorded, model) = (steps(&recorded, 1e8), steps(&plan, 16e6));
+    let mut search = Search::new(
+        Side { steps: &recorded, clock_hz: 100_000_000, values: &[] },
+        Side { steps: &model, clock_hz: 16_000_000, values: &[] },
+    );
+    search.max_gaps = 200;
+    let (_, starts) = search.run().expect("both have steps");
+    assert_eq!(starts, [(5, 0), (2503, 2495)], "{}", search.all_tried_gaps);
 }
 
 #[test]

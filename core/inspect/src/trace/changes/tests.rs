@@ -1,7 +1,6 @@
 //! Every answer against one that looks at all records, or at all cycles.
 
 use super::*;
-use crate::trace::columns::columns;
 use proptest::{collection::vec, prelude::*};
 use stepscope_peripheral::{signal::Levels, units::Instant};
 
@@ -34,6 +33,33 @@ fn changes(trace: &[Record], slice: usize) -> Changes {
         changes.extend(&trace[..end]);
     }
     changes
+}
+
+/// Columns from all records one by one.
+fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns {
+    let span = u128::from(end.saturating_sub(start).max(1));
+    let bound = |i: usize| start.saturating_add((span * i as u128 / count.max(1) as u128) as u64);
+    let mut result = Columns { high: vec![0; count], low: vec![0; count], last: vec![0; count] };
+    let mut next = trace.partition_point(|r| r.cycle.0 <= start);
+    let mut levels = next.checked_sub(1).and_then(|i| trace.get(i)).map_or(0, |r| r.levels.0);
+    for i in 0..count {
+        let (first, after) = (bound(i), bound(i + 1).max(bound(i).saturating_add(1)));
+        // Columns narrower than a cycle share it.
+        let (mut high, mut low) = (levels, !levels);
+        while let Some(record) = trace.get(next).filter(|r| r.cycle.0 < after) {
+            if record.cycle.0 == first && high == levels && low == !levels {
+                (high, low) = (0, 0);
+            }
+            levels = record.levels.0;
+            high |= levels;
+            low |= !levels;
+            next += 1;
+        }
+        result.high[i] = high;
+        result.low[i] = low;
+        result.last[i] = levels;
+    }
+    result
 }
 
 proptest! {
@@ -86,8 +112,55 @@ fn an_empty_trace_has_no_edges_and_low_columns() {
 }
 
 #[test]
-fn it_takes_little_beside_the_trace() {
+fn the_pyramid_is_small_compared_with_the_trace() {
     let trace: Vec<Record> = (0..1 << 17).map(|cycle| record(cycle, cycle & 1)).collect();
     let bytes = changes(&trace, 4096).bytes();
     assert!(bytes < trace.len() * 6 / 10, "{bytes} bytes for {} records", trace.len());
+}
+
+#[test]
+fn the_first_rise_of_a_run_is_found() {
+    use crate::trace::changes::{Changes, Edge};
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::trace::steps;
+    use stepscope_sim::Experiment;
+
+    // Of the trace of a run: the first rise of STEP0, bit 0.
+    let experiment = Experiment::from_json("{}").expect("the default motion");
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let mut changes = Changes::default();
+    changes.extend(&recording.trace);
+    let found = changes.next_edge(&recording.trace, 0, 0, Edge::Rise).expect("it steps");
+    assert_eq!(recording.trace[found].cycle.0, steps(&recording.trace, 0)[0].cycle);
+}
+
+#[test]
+fn the_columns_of_every_record_equal_those_of_every_cycle() {
+    let trace: Vec<Record> =
+        [(0, 0b10), (3, 0b11), (4, 0b01), (10, 0b00), (11, 0b01), (12, 0b11), (40, 0b10)]
+            .map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) })
+            .to_vec();
+    let at = |cycle: u64| trace.iter().rev().find(|r| r.cycle.0 <= cycle).map_or(0, |r| r.levels.0);
+    for (start, end) in [(0, 50), (1, 12), (3, 7), (9, 13), (0, 3), (38, 100), (10, 11)] {
+        for count in 1..=60 {
+            let found = columns(&trace, start, end, count);
+            for i in 0..count {
+                let bound = |i: usize| start + (end - start) * i as u64 / count as u64;
+                let (first, after) = (bound(i), bound(i + 1).max(bound(i) + 1));
+                let expected = (first..after).fold((0, 0), |(h, l), c| (h | at(c), l | !at(c)));
+                assert_eq!((found.high[i], found.low[i]), expected, "{start}..{end} {i}/{count}");
+                assert_eq!(found.last[i], at(after - 1));
+            }
+        }
+    }
+}
+
+#[test]
+fn columns_show_a_short_pulse() {
+    // STEP0 is high in cycles 5 to 7; two columns of ten cycles each.
+    let trace = [(0, 0), (5, 1), (8, 0)].map(|(cycle, levels)| record(cycle, levels));
+    let columns = changes(&trace, 1).columns(&trace, 0, 20, 2, 0);
+    assert_eq!((columns.high[0] & 1, columns.low[0] & 1), (1, 1)); // both within the first
+    assert_eq!((columns.high[1] & 1, columns.last[1] & 1), (0, 0));
 }

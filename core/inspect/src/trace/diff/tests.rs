@@ -35,7 +35,7 @@ fn against(run: &[Record], text: &str) -> Result<Outcome, BadLine> {
 }
 
 #[test]
-fn a_file_of_the_same_run_and_of_a_stretch_of_it_is_the_same() {
+fn a_file_of_a_run_or_of_its_part_agrees() {
     let run = run();
     for text in texts(&run) {
         for text in [text.clone(), text.replace('\n', "\r\n"), text.trim_end().into()] {
@@ -79,15 +79,12 @@ fn the_first_difference_is_found_with_its_cycle_and_signals() {
 }
 
 #[test]
-fn what_cannot_be_read_is_told_with_its_line() {
+fn invalid_lines_are_reported_with_their_number() {
     let head = "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n";
     let rows = [
         (String::new(), "line 0: the file has no edges"),
         (head.into(), "line 1: the file has no edges"),
-        (
-            "cycle,time_s,STEP0\n".into(),
-            "line 1: the columns are not those of this controller, which has 1 channels",
-        ),
+        ("cycle,time_s,STEP0\n".into(), "line 1: the columns do not match this controller with 1 channels"),
         (format!("{head}0,0,0,0,1,1,1,0\nx,0,0,0,1,1,1,0\n"), "line 3: “x” is not a cycle"),
         (format!("{head}0,0,0,0,1,1,1\n"), "line 2: DE is “”"),
         (format!("{head}0,0,0,2,1,1,1,0\n"), "line 2: DIR0 is “2”"),
@@ -100,4 +97,22 @@ fn what_cannot_be_read_is_told_with_its_line() {
         let found = against(&run(), &text).expect_err(&text).to_string();
         assert!(found.starts_with(expected), "{text}: {found}");
     }
+}
+
+#[test]
+fn a_saved_trace_equals_its_run() {
+    use crate::trace::diff::TraceDiff;
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::trace::write_record;
+    use stepscope_sim::Experiment;
+
+    let experiment = Experiment::from_json("{}").expect("the default motion");
+    let mut recording = Recording::default();
+    experiment.run(&mut recording);
+    let mut file = String::new(); // what `stepscope run --trace` writes
+    recording.trace.iter().for_each(|&record| write_record(&mut file, record).expect("a string takes it"));
+    let mut diff = TraceDiff::new(1);
+    diff.feed(&recording.trace, file.as_bytes()).expect("it is a trace");
+    let outcome = diff.finish(&recording.trace).expect("it has edges");
+    assert_eq!((outcome.difference, outcome.same), (None, recording.trace.len() as u64));
 }

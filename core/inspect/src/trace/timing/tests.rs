@@ -75,8 +75,8 @@ fn each_rule_holds_from_the_fewest_cycles_that_last_as_long_and_not_one_under() 
         for rule in Rule::ALL {
             let check = checked(&only(rule, nanos), clock_hz, &time(rule, limit));
             assert_eq!(found(&check), [], "{rule:?}, {nanos} ns at {clock_hz} Hz");
-            let least = check.results()[rule as usize].least.expect("it was measured");
-            assert_eq!((least.measured.0, least.at.0, least.channel), (limit, 5000 + limit, 0));
+            let shortest = check.results()[rule as usize].shortest.expect("it was measured");
+            assert_eq!((shortest.measured.0, shortest.at.0, shortest.channel), (limit, 5000 + limit, 0));
             if limit > 1 {
                 let short = limit - 1;
                 let check = checked(&only(rule, nanos), clock_hz, &time(rule, short));
@@ -100,15 +100,16 @@ fn what_never_changed_is_not_measured() {
     };
     let check = checked(&all, 16_000_000, &[(100, STEP)]);
     assert_eq!(found(&check), []);
-    let measured: Vec<Rule> = check.results().iter().filter(|r| r.least.is_some()).map(|r| r.rule).collect();
+    let measured: Vec<Rule> =
+        check.results().iter().filter(|r| r.shortest.is_some()).map(|r| r.rule).collect();
     assert_eq!(measured, [Rule::EnableWake], "only the wake-up, which counts from reset");
     // The line's edges are nothing.
     let check = checked(&all, 16_000_000, &[(5, Levels::RX), (6, Levels::TX | Levels::DE), (7, Levels::RX)]);
-    assert!(check.results().iter().all(|result| result.least.is_none()));
+    assert!(check.results().iter().all(|result| result.shortest.is_none()));
 }
 
 #[test]
-fn edges_of_one_cycle_and_of_enable_are_taken_as_documented() {
+fn simultaneous_edges_and_enable_follow_the_rules() {
     use Rule::{DirHold, DirSetup, EnableWake, StepHigh};
     let rules = TimingRules {
         step_high_ns: 3,
@@ -163,7 +164,7 @@ fn edges_of_one_cycle_and_of_enable_are_taken_as_documented() {
 }
 
 #[test]
-fn only_the_first_are_kept_and_all_are_counted_and_found_again() {
+fn only_the_first_violations_are_listed_and_all_are_counted() {
     let mut check = TimingCheck::new(&only(Rule::StepHigh, 10), 1_000_000_000, 3);
     for pulse in 1..=5_u64 {
         let width = if pulse == 4 { 2 } else { 9 };
@@ -173,7 +174,7 @@ fn only_the_first_are_kept_and_all_are_counted_and_found_again() {
     assert_eq!(check.violations().iter().map(|v| v.at.0).collect::<Vec<_>>(), [109, 209, 309]);
     let result = &check.results()[0];
     assert_eq!((check.total(), result.total(), result.violations[2]), (5, 5, 5));
-    assert_eq!(result.least, Some(Least { measured: Cycles(2), at: Instant(402), channel: 2 }));
+    assert_eq!(result.shortest, Some(Shortest { measured: Cycles(2), at: Instant(402), channel: 2 }));
     for (at, forward, expected) in [
         (0, true, Some(0)),
         (108, true, Some(0)),
@@ -185,4 +186,25 @@ fn only_the_first_are_kept_and_all_are_counted_and_found_again() {
     ] {
         assert_eq!(check.next(Instant(at), forward), expected, "{at}, forward {forward}");
     }
+}
+
+#[test]
+fn longer_pulses_than_those_of_a_run_are_violations() {
+    use crate::trace::{
+        drivers::TB6600_CLASS,
+        timing::{Rule, TimingCheck},
+    };
+    use stepscope_scenario::TimingRules;
+    use stepscope_sim::Experiment;
+
+    // The default motion's pulses of 2.5 us are just long enough for an opto-isolated driver.
+    let experiment = Experiment::from_json("{}").expect("the default motion");
+    let violations = |rules: &TimingRules| {
+        let mut check = TimingCheck::new(rules, experiment.config().clock_hz(), 10);
+        experiment.run(&mut check);
+        (check.total(), check.violations().first().map(|violation| violation.rule))
+    };
+    assert_eq!(violations(&TB6600_CLASS.rules), (0, None));
+    let longer = TimingRules { step_high_ns: 3000, ..TB6600_CLASS.rules.clone() };
+    assert_eq!(violations(&longer), (3200, Some(Rule::StepHigh)));
 }

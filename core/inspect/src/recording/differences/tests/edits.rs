@@ -210,7 +210,7 @@ fn check(close: bool) {
 }
 
 #[test]
-fn edits_anywhere_are_reported_as_they_were_made() {
+fn all_edits_are_reported() {
     check(false);
 }
 

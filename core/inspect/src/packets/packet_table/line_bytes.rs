@@ -9,7 +9,7 @@ use stepscope_peripheral::{
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PlacedByte {
+pub struct LineByte {
     pub packet: usize,
     pub byte: u8,
     pub start: u64,
@@ -22,23 +22,25 @@ impl PacketTable<'_> {
             .is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_) | RowOutcome::Recorded))
     }
 
-    pub fn placed(&self, index: usize) -> Vec<PlacedByte> {
-        self.placed_from(index, 0).collect()
+    pub fn line_bytes(&self, index: usize) -> Vec<LineByte> {
+        self.line_bytes_from(index, 0).collect()
     }
 
     /// Bytes of a row from an index on. Received bytes have the receiver's length, sent ones the sender's.
-    pub(crate) fn placed_from(&self, index: usize, first: usize) -> impl Iterator<Item = PlacedByte> {
+    pub(crate) fn line_bytes_from(&self, index: usize, first: usize) -> impl Iterator<Item = LineByte> {
         let seen = self.log.seen(index);
         let sent =
             self.is_own_reply(index).then(|| BitTimes::new(self.own.clock_hz(), self.own.reply_baud()));
-        let heard = Cycles(BYTE_BITS * self.own.bit().0);
+        let byte_time = Cycles(BYTE_BITS * self.own.bit().0);
         let bytes = self.bytes(index).iter().zip(seen).enumerate().skip(first);
         bytes.map(move |(at, (&byte, &first))| {
             let (start, end) = match sent {
                 Some(times) => (first + times.byte(at as u64), first + times.byte(at as u64 + 1)),
-                None => (first, seen.get(at + 1).map_or(first + heard, |&next| next.min(first + heard))),
+                None => {
+                    (first, seen.get(at + 1).map_or(first + byte_time, |&next| next.min(first + byte_time)))
+                }
             };
-            PlacedByte { packet: index, byte, start: start.0, end: end.0 }
+            LineByte { packet: index, byte, start: start.0, end: end.0 }
         })
     }
 
@@ -52,7 +54,7 @@ impl PacketTable<'_> {
                 (row.end.0 + byte).saturating_sub(bit / 2 + 9 * bit)
             }
             RowOutcome::Short | RowOutcome::Ignored | RowOutcome::Open => {
-                self.placed(index).last().map_or(row.end.0, |byte| byte.end)
+                self.line_bytes(index).last().map_or(row.end.0, |byte| byte.end)
             }
         }
     }
