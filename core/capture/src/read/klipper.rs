@@ -392,7 +392,7 @@ impl Reader for StepCommands {
         if !steppers.is_empty() {
             self.recorder.leave_out(format!("steppers: {}", steppers.join(", ")));
             self.recorder.leave_out(format!(
-                "the commands have no pulse widths and no DIR set-up times: pulses of at max_rows {PULSE} ticks are made, so \
+                "the commands have no pulse widths and no DIR set-up times: pulses of at most {PULSE} ticks are made, so \
                  timing checks do not apply"
             ));
         }

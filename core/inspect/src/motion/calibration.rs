@@ -229,7 +229,7 @@ mod tests {
                 &[(1.0, f64::INFINITY), (2.0, 2.0)],
                 "pair 1 has length 1.0 and inf steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
-            (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; measure at least one of another length"),
+            (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; add a pair with another length"),
             (
                 &[(1.0, -2.0), (2.0, -4.0)],
                 "-2.0 steps per unit: steps must increase with length; give both the same sign and check the order of the columns",

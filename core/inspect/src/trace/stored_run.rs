@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(refused, TooLong::Steps(u32::MAX.into()));
         assert_eq!(
             refused.to_string(),
-            "4294967295 steps; up to 24000000 are analyzed; use a shorter motion, or end the run earlier with run_cycles"
+            "4294967295 steps, and up to 24000000 can be analyzed; use a shorter motion, or end the run earlier with run_cycles"
         );
         let experiment = Experiment::from_json(&json(1000)).expect("it runs");
         assert!(record_within(&experiment, 1, 2000).is_ok());

@@ -346,7 +346,7 @@ mod tests {
             host.report(true).to_string(),
             "sent 4 of 5 packets; not verified: raw packets are not answered\n\
              late median <=0.1 ms, 99 % <=50 ms, worst 21.00 ms\n\
-             the motor must have standstills before 1 ticks: 2\n\
+             the motor must have stopped before 1 ticks: 2\n\
              stopped sending: queued packets still run, because a raw line has no STOP\n"
         );
     }

@@ -318,12 +318,12 @@ mod tests {
                 "NAK BUSY, the model ACK TICKS",
             ),
             (6, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
-            (7, |reply| reply.status.expected_seq = 9, "it has taken 9 frames of ticks"),
+            (7, |reply| reply.status.expected_seq = 9, "it has accepted 9 frames of ticks"),
             (8, |reply| reply.status.faults |= 1, "its new faults are"),
             (
                 29,
                 |reply| reply.status.ticks_done -= 1,
-                "it has done 200 ticks since it was opened, the model 201",
+                "it has done 200 ticks since the start, the model 201",
             ),
         ];
         for (at, change, expected) in rows {

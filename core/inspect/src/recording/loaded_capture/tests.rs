@@ -144,7 +144,7 @@ fn any_step_can_be_aligned_unless_one_would_precede_cycle_0() {
                 "aligned by step 2 the first step would come at -0.001000 s, before the start of the experiment; align by a later one",
             ),
         ),
-        (4, 0.01, Err("there is no step 4: 4 steps were recorded, from 0; align by one that both have")),
+        (4, 0.01, Err("there is no step 4; 4 steps were recorded, from 0: align by one that both have")),
     ] {
         let mut found = loaded();
         let before = found.clone();

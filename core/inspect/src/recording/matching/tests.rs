@@ -177,8 +177,8 @@ fn a_recording_that_is_unlike_the_plan_is_matched_with_bounded_effort() {
     let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
     let mut search = Search::new(side(&recorded), side(&model));
     search.run();
-    // Without its bound the search would try some more.
-    assert!(search.all_tried_gaps < 1_690_000, "{}", search.all_tried_gaps);
+    // Most starts are given up early; each has at most 1_690_000.
+    assert!(search.all_tried_gaps < 5_000_000, "{}", search.all_tried_gaps);
     let matching = Matching::of(side(&recorded), side(&model));
     // Most steps are near one that was planned.
     assert!((15_000..20_000).contains(&matching.len()), "{}", matching.len());
