@@ -170,7 +170,8 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
         }
     }
     let all = on_threads(common, ("settling", "motors"), motors.len(), |index| {
-        motors.get(index).map_or(Err(Vec::new()), |alone| settling_of(&alone.setup, 0, t_step, share))
+        let alone = motors.get(index).ok_or_else(Vec::new)?;
+        settling_of(&alone.setup, 0, t_step, share).map(|(found, _)| found)
     })?;
     let all: Vec<StepResponse> =
         all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;

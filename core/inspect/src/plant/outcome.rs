@@ -160,7 +160,10 @@ mod tests {
     fn a_thrown_rotor_is_a_warning_that_a_finer_grid_removes() {
         let thrown = r#"{"sine_torque_mn_m":1000000,"sine_per_turn":1000}"#;
         let told = warned("{}", thrown).expect("it is thrown");
-        assert!(told.starts_with("the rotor moves 15.3 full steps per grid step, more than half an"), "{told}");
+        assert!(
+            told.starts_with("the rotor moves 15.3 full steps per grid step, more than half an"),
+            "{told}"
+        );
         assert!(told.ends_with("so the result is meaningless; use a smaller step_cycles than 80"), "{told}");
         assert_eq!(warned(r#"{"step_cycles":8}"#, thrown), None);
         // At about 1000 full steps/s half a period, 0.1 full steps, takes 0.1 ms; a grid step is 0.15 ms.

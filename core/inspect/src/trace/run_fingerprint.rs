@@ -46,7 +46,9 @@ impl fmt::Display for RunFingerprintError {
                 f,
                 "the sender's digest in the link is from a newer version of Stepscope (form {given}; this version reads form {FORM}); it is ignored"
             ),
-            Self::Damaged => f.write_str("the sender's digest in the link was cut short or changed; it is ignored"),
+            Self::Damaged => {
+                f.write_str("the sender's digest in the link was cut short or changed; it is ignored")
+            }
         }
     }
 }
