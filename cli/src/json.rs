@@ -1,9 +1,5 @@
 //! The JSON of `--json`: one object of tables (docs/command.md).
 //!
-//! ```text
-//! { "stepscope": "0.1.0", "command": "presets", "tables": { "presets": [ { "id": "…", "title": "…" }, … ] } }
-//! ```
-//!
 //! A table is a list of rows with the same columns. A cell is a number, a text, a Boolean or null. Column names
 //! contain units.
 

@@ -11,7 +11,7 @@ pub(crate) struct Paths {
     pub(crate) command: &'static str,
     pub(crate) read: &'static [&'static str],
     pub(crate) written: &'static [&'static str],
-    #[cfg_attr(not(test), expect(dead_code, reason = "a test finds arguments that nobody has classified"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test finds arguments that are missing here"))]
     pub(crate) other: &'static [&'static str],
 }
 

@@ -5,9 +5,6 @@ use std::{io::Write, path::Path};
 use stepscope_core::scenario::Scenario;
 
 /// The text for the file `path`. `help` says how to shorten it.
-///
-/// # Errors
-/// The scenario is invalid or too long to be read.
 pub(crate) fn text(path: &Path, scenario: &Scenario, help: &'static str) -> Result<String, Failure> {
     scenario.check().map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
     let text = scenario.to_file_json().ok_or_else(|| Failure::LongScenario(path.to_owned(), help))?;

@@ -154,7 +154,6 @@ fn passed_on(command: &mut Command) -> Result<UnboundedReceiver<()>> {
     let (heard, chunks) = unbounded_channel();
     let (out, out_end) = io::pipe().context("a pipe can't be made")?;
     if let Some(file) = aside::file()? {
-        // One pipe for both keeps their order.
         command.stdout(out_end.try_clone()?).stderr(out_end);
         pass_on(out, file, heard);
     } else {

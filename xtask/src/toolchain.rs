@@ -26,7 +26,6 @@ pub(crate) fn ignored_tests(names: &[&str]) -> Command {
     command
 }
 
-/// rustc's version, commit and target, one per line.
 pub(crate) async fn version() -> Result<String> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).arg("-vV");

@@ -1,9 +1,4 @@
 //! Prints measures as text and CSV.
-//!
-//! ```text
-//! group       columns          rows: measure, unit, a figure under each column
-//! deviation   steps   |ideal, the steps of B1|   ticks   |those, the pulses|   pulses   |ideal, the pulses|
-//! ```
 
 use crate::{json::Tables, measures::distortion::Distortion};
 use serde_json::json;
