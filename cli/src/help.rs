@@ -10,6 +10,8 @@ pub(crate) struct Page {
     two: &'static str,
     three: &'static str,
     four: &'static str,
+    success: &'static str,
+    stopped: &'static str,
     /// A test runs them in a folder with the files of docs/samples.
     pub(crate) examples: [&'static str; 2],
 }
@@ -25,7 +27,8 @@ const fn page(
     two: &'static str,
     examples: [&'static str; 2],
 ) -> Page {
-    Page { command, one, two, three: "", four: "", examples }
+    let stopped = "stopped by Ctrl-C or a signal; no file was changed";
+    Page { command, one, two, three: "", four: "", success: "success", stopped, examples }
 }
 
 /// Every command; the first is `stepscope` itself.
@@ -52,6 +55,8 @@ pub(crate) const PAGES: &[Page] = &[
     Page {
         three: "the session was not in real time, or its recording does not reproduce it",
         four: "the port was lost; the recording is written",
+        success: "success, also after Ctrl-C",
+        stopped: "stopped by a signal before the session began",
         ..page(
             "serve",
             "a file could not be read or written, or the port could not be opened",
@@ -65,6 +70,7 @@ pub(crate) const PAGES: &[Page] = &[
     Page {
         three: "not everything that was sent is confirmed",
         four: "the port was lost; the report says what is known",
+        stopped: "stopped by Ctrl-C or a signal; the report says what is known",
         ..page(
             "send",
             "the scenario could not be read, or the port could not be opened",
@@ -240,12 +246,12 @@ pub(crate) const PAGES: &[Page] = &[
 impl Page {
     fn text(&self) -> String {
         let codes = [
-            ("0", "success"),
+            ("0", self.success),
             ("1", self.one),
             ("2", self.two),
             ("3", self.three),
             ("4", self.four),
-            ("130", "stopped by Ctrl-C or a signal; no file was changed"),
+            ("130", self.stopped),
             ("141", "standard output was closed"),
         ];
         let codes = codes.iter().filter(|(_, when)| !when.is_empty());
@@ -309,6 +315,7 @@ fn group(command: &str, id: &str) -> &'static str {
 fn is_output(command: &str, id: &str) -> bool {
     let words = [
         "json",
+        "controller",
         "format",
         "digest",
         "status",

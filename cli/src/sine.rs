@@ -30,7 +30,7 @@ use stepscope_core::{
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Report segments and distortion over a range of maximum deviations
+    /// Report segments and distortion for each maximum deviation d1 of a range
     Sweep {
         #[command(flatten)]
         range: Range,
@@ -38,7 +38,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", default_value = "500", value_parser = whole::<u32>(2..=1_000_000))]
         points: u32,
     },
-    /// Find the maximum deviation with minimum distortion in a range
+    /// Find the maximum deviation d1 with the minimum distortion
     ///
     /// Compares every polyline of the range.
     Best {
@@ -48,7 +48,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
         segments: Option<usize>,
     },
-    /// Find the vertices with minimum distortion for a number of segments
+    /// Find the vertices with the minimum distortion for a number of segments
     Vertices {
         /// Number of segments per quarter
         #[arg(long, value_name = "N", value_parser = whole::<u8>(1..=MAX_SEGMENTS as u64))]

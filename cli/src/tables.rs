@@ -80,9 +80,9 @@ pub(crate) struct Arguments {
     axis: Option<usize>,
     /// Name of the table in source code (default: axis_K)
     ///
-    /// Up to 32 lower-case letters, digits and underscores; the first is a letter, and one is not a letter. Names that
-    /// C reserves are refused: names that begin with is, to, str, mem, wcs or e and a letter, with e and a digit, or
-    /// with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_.
+    /// Up to 32 lower-case letters, digits and underscores. It starts with a letter, and has a digit or an underscore.
+    /// Names that C reserves are refused: names that begin with is, to, str, mem, wcs or e and a letter, with e and a
+    /// digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_.
     #[arg(long, value_parser = name, conflicts_with = "json")]
     name: Option<String>,
     #[command(flatten)]

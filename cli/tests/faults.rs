@@ -29,7 +29,7 @@ fn framed_has_no_wrong_steps_raw_has_and_the_threads_do_not_matter() {
         let numbers = row(&table, name);
         assert!(numbers[0] == 0 && numbers[1] > 0, "{name}: {numbers:?}");
     }
-    assert!(table.contains("raw: something is wrong with seeds "), "{table}");
+    assert!(table.contains("raw: errors with seeds "), "{table}");
     assert_eq!(call("3"), (code, table, err));
 }
 

@@ -4,7 +4,7 @@ use crate::program::stepscope;
 #[cfg(unix)]
 use std::{
     fs,
-    io::{BufRead, BufReader},
+    io::{BufRead, BufReader, Read},
     path::{Path, PathBuf},
     process::{Command, Stdio},
 };
@@ -74,6 +74,18 @@ fn every_example_runs_as_printed_in_an_empty_folder() {
     }
 }
 
+/// Ends with the test.
+#[cfg(unix)]
+struct Running(std::process::Child);
+
+#[cfg(unix)]
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
 /// Each example of `send` talks to the example of `serve` at its place.
 #[cfg(unix)]
 #[test]
@@ -82,14 +94,15 @@ fn the_examples_of_live_commands_run_with_each_other() {
     for (serve, send) in pairs {
         let folder = folder("live-examples");
         // A busy machine replies late.
-        let mut server = shell(&format!("exec {serve} --lag 60000"), &folder).spawn().expect("sh starts");
-        let mut out = BufReader::new(server.stdout.take().expect("piped"));
+        let server = shell(&format!("exec {serve} --lag 60000"), &folder).spawn().expect("sh starts");
+        let mut server = Running(server);
+        let mut out = BufReader::new(server.0.stdout.take().expect("piped"));
         let mut place = String::new();
         out.read_line(&mut place).expect("text");
         if place.is_empty() {
             // Another program has the port.
-            let output = server.wait_with_output().expect("it ends");
-            let err = String::from_utf8_lossy(&output.stderr).into_owned();
+            let mut err = String::new();
+            server.0.stderr.take().expect("piped").read_to_string(&mut err).expect("text");
             assert!(serve.contains("--tcp") && err.contains("in use"), "{serve}: {err}");
             continue;
         }
@@ -98,11 +111,11 @@ fn the_examples_of_live_commands_run_with_each_other() {
         // A queue that ran empty on a busy machine is reported, with 3.
         let code = output.status.code();
         assert!(code == Some(0) || code == Some(3) && err.contains("UNDERRUN"), "{send}: {err}");
-        let pid = rustix::process::Pid::from_child(&server);
+        let pid = rustix::process::Pid::from_child(&server.0);
         rustix::process::kill_process(pid, rustix::process::Signal::TERM).expect("it runs");
         drop(out);
         // Standard output is closed, so the exit code may be 141.
-        server.wait().expect("it ends");
+        server.0.wait().expect("it ends");
         assert_eq!(folder.join("session.json").exists(), serve.contains("--record session.json"));
     }
 }
@@ -110,7 +123,7 @@ fn the_examples_of_live_commands_run_with_each_other() {
 #[test]
 fn a_name_that_is_nearly_right_is_suggested() {
     let rows: &[(&[&str], &str, &str)] = &[
-        (&["mesures"], "", "a similar subcommand exists: 'measures'"),
+        (&["calibrat"], "", "a similar subcommand exists: 'calibrate'"),
         (&["run", "-", "--trase", "x"], "{}", "a similar argument exists: '--trace'"),
         (&["run", "song-2021-one-trun"], "", "did you mean song-2021-one-turn?"),
         (&["capture", "recorded-step-tabel"], "", "did you mean recorded-step-table?"),
@@ -172,7 +185,6 @@ fn long_work_shows_a_bar_on_a_terminal_and_ends_with_a_line() {
         process::{Pid, Signal, kill_process},
         pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
     };
-    use std::io::Read as _;
     let folder = folder("progress");
     // Up to 2000 s.
     let moves = |steps: u32| {

@@ -139,7 +139,7 @@ fn a_value_of_the_wrong_type_is_told_the_documented_range() {
         ),
         (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30; give a whole number from 1 to 9000000000000000 cycles"),
         (r#"{"title":5}"#, "title: 5; give a text of 0 to 120 characters"),
-        (r#"{"controllers":{}}"#, "controllers: a map; give a list of 0 to 31 additional controllers"),
+        (r#"{"controllers":{}}"#, "controllers: an object; give a list of 0 to 31 additional controllers"),
         (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d}; give a whole number: 1 or 2"),
         (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d}; give a number from "),
         (r#"{"title":"\ud800"}"#, "title: a text with half of a surrogate pair; give a text of 0 to 120"),

@@ -38,7 +38,7 @@ fn a_scenario_without_a_plant_is_refused_with_the_remedy() {
     assert!(code == Some(2) && err.contains("plant.source_ohm: 0 Ω is out of range"), "{err}");
     assert_eq!(stepscope(&["plant", "-", "--controller", "1"], r#"{"plant":{}}"#).0, Some(2));
     assert_eq!(stepscope(&["limits", "-", "--channel", "1"], r#"{"plant":{}}"#).0, Some(2));
-    for options in [["limits", "--ramp", "0"], ["settling", "--share", "1"], ["resonance", "--rung", "0"]] {
+    for options in [["limits", "--ramp", "0"], ["settling", "--share", "1"], ["resonance", "--step", "0"]] {
         let (code, _, err) = stepscope(&[options[0], "-", options[1], options[2]], r#"{"plant":{}}"#);
         assert!(code == Some(2) && err.contains(options[1]), "{err}");
     }

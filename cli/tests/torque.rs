@@ -236,7 +236,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
         (
             &["--axis", "1", "--motor", "nema-8"],
             r#","bus":{"channels":2},"source":{"line":{}}"#,
-            "source: no channel",
+            "source: the selected channels make no step",
         ),
     ];
     for (options, scenario, expected) in rows {
