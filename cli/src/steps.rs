@@ -6,7 +6,7 @@ use stepscope_core::motion::ScheduledStep;
 /// Possible columns of a time, with units per second; `None` for clock cycles.
 const TIMES: [(&str, Option<u32>); 4] =
     [("cycle", None), ("time_s", Some(1)), ("time_ms", Some(1000)), ("time_us", Some(1_000_000))];
-/// Ignoring a direction column would turn no motor around, so its other names are accepted, too.
+/// An unknown direction column would be ignored, so the long name is accepted, too.
 const DIRECTION: &str = "dir";
 const DIRECTION_IN_FULL: &str = "direction";
 const MAX_DIGITS: usize = 12;

@@ -51,7 +51,7 @@ use std::{env, io};
 use anyhow::Result;
 use clap::{Args, Parser, Subcommand};
 
-/// Builds, shows, tests, measures, fuzzes and mutates Stepscope.
+/// Build, test, measure and fuzz Stepscope
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask")]
 struct Cli {
@@ -61,12 +61,12 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing, build the page, serve it on this machine and open it
+    /// Install missing tools, build the page, serve it on this machine and open it
     Demo {
-        /// Port on 127.0.0.1; 0 takes any free one
+        /// Port on 127.0.0.1; 0 for any free one
         #[arg(long, default_value_t = 8080)]
         port: u16,
-        /// Print the address only
+        /// Print the address without opening it
         #[arg(long)]
         no_open: bool,
         #[command(flatten)]
@@ -77,9 +77,9 @@ enum Task {
         #[command(flatten)]
         optimising: Optimising,
     },
-    /// Build the page into dist/, as any static host can serve it, and print what each of its files weighs
+    /// Build the page into dist/ for any static host, and print the size of each file
     Dist {
-        /// Take the built wasm as it is
+        /// Use the wasm that was built last
         #[arg(long)]
         no_build: bool,
         #[command(flatten)]
@@ -87,71 +87,71 @@ enum Task {
     },
     /// Build the documentation as a site into dist/docs
     Docs,
-    /// Serve the page's sources as they lie, without building anything
+    /// Serve the page's sources without building anything
     Serve {
-        /// Port on 127.0.0.1; 0 takes any free one
+        /// Port on 127.0.0.1; 0 for any free one
         #[arg(long, default_value_t = 8080)]
         port: u16,
-        /// Folder to serve; the workspace's web/ if not given
+        /// Folder to serve (default: web/)
         #[arg(long)]
         web: Option<PathBuf>,
     },
-    /// Write all sources, Rust and the page's, in the form that the tests ask for
+    /// Format all sources
     Format,
-    /// Run every check of the project: the continuous integration's whole job
+    /// Run every check of the project
     Test {
-        /// Only this step; may be given several times
+        /// Step to run; repeatable (default: all)
         #[arg(long, value_enum)]
         only: Vec<steps::Step>,
-        /// Name the steps and stop
+        /// List the steps
         #[arg(long)]
         list: bool,
     },
-    /// Measure the core, native and in a browser, and print ratios that can be compared
+    /// Measure the core, native and in a browser, and print ratios
     Bench {
-        /// In a minute or two after the builds, and noisier
+        /// Measure for a minute or two, with more noise
         #[arg(long)]
         quick: bool,
-        /// Measure the page in Chromium alone: its frames, its loading, its answers to keys
+        /// Measure only the page in Chromium: frames, loading, reaction to keys
         #[arg(long, conflicts_with_all = ["quick", "against"])]
         page: bool,
-        /// Measure `stepscope serve` alone: how late its replies are, its load, its memory over a day of session
+        /// Measure only `stepscope serve`: delay of replies, load, memory over a day
         #[arg(long, conflicts_with_all = ["quick", "against", "page"])]
         live: bool,
         /// Write the table of docs/benchmarks.md from the last measurement
         #[arg(long, alias = "readme", conflicts_with_all = ["quick", "against", "page", "live"])]
         table: bool,
-        /// Measure the kernels of this commit in the same blocks, and print what they have become
+        /// Compare the kernels with those of this commit
         #[arg(long, value_name = "REV")]
         against: Option<String>,
     },
-    /// Run a program until standard input ends, and then end it with all that it started
+    /// Run a program until standard input ends, then end it and its children
     #[command(hide = true)]
     Attend {
-        /// The program and its arguments
+        /// Program and its arguments
         #[arg(last = true, required = true)]
         words: Vec<OsString>,
     },
-    /// Search for inputs that break the core, by libFuzzer; what is found is said and can be kept as a test
+    /// Search for inputs that break the core, with libFuzzer
     Fuzz {
-        /// Targets to run, such as `line`; all if none is given
+        /// Targets to run, such as line (default: all)
         targets: Vec<String>,
-        /// How long each target runs
+        /// Seconds per target
         #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
         seconds: u32,
-        /// Where chance begins: the same seed takes the same way. Without one each run takes a new one, and says which
+        /// Random seed; the same seed repeats a run (default: a new one, which is printed)
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         seed: Option<u32>,
     },
-    /// Change the peripheral and the motions one thing at a time, and see whether the tests notice
+    /// Change single expressions, and count the changes that no test notices
     Mutants {
-        /// How many changes are drawn
+        /// Number of changes
         #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=10_000))]
         sample: u32,
-        /// Which: the same seed draws the same from the same sources
+        /// Random seed; the same seed draws the same changes from the same sources
         #[arg(long, default_value_t = 1)]
         seed: u64,
-        /// Only of this package; may be given twice
+        /// Package to change; repeatable (default: all of them)
         #[arg(long)]
         package: Vec<String>,
     },
@@ -159,7 +159,7 @@ enum Task {
 
 #[derive(Args, Clone, Copy)]
 struct Optimising {
-    /// Leave wasm-opt out: a larger and slower page, but no wasm-opt is needed
+    /// Build without wasm-opt; the page is larger and slower
     #[arg(long)]
     no_opt: bool,
 }

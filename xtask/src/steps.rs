@@ -21,39 +21,38 @@ use crate::{
     spelling, words,
 };
 
-/// The fuzz targets are a workspace of their own.
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 
 /// The steps in their order (see [`ROWS`]); those that fail fastest come first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Step {
-    /// rustfmt and Biome find nothing to change
+    /// Format of all sources, by rustfmt and Biome
     Format,
     /// Unit tests of the page's models, in Node
     Scripts,
-    /// clippy is silent: native, wasm and bare metal; Biome of the page's sources; words and spelling of all texts
+    /// clippy for native, wasm and bare metal; Biome; words and spelling of all texts
     Lint,
-    /// rustdoc is silent, and the documentation site has no broken links
+    /// rustdoc, and the links of the documentation site
     Docs,
-    /// Unit, integration and documentation tests, as native code
+    /// Unit, integration and documentation tests
     Native,
-    /// Value change dumps, read by GTKWave's and sigrok's programs
+    /// Value change dumps, with GTKWave's and sigrok's programs
     Vcd,
-    /// The recordings of firmware, made again in simavr, and a firmware at the other end of the live commands
+    /// Firmware in simavr: its recordings, and its replies to the live commands
     Avr,
-    /// The live commands, with a host and a device in Python and with socat
+    /// Live commands, with a host and a device in Python and with socat
     Live,
-    /// The golden cases on a Cortex-M3 without an operating system, in QEMU
+    /// Golden cases on a bare Cortex-M3, in QEMU
     BareMetal,
-    /// The wasm crate's own tests, in Chromium and Firefox
+    /// Tests of the wasm crate, in Chromium and Firefox
     Wasm,
-    /// tsc is silent: the types of the page's modules
+    /// Types of the page's modules, by tsc
     Types,
-    /// The library crates and the npm package as others would get them: packed, built, used by a Node program
+    /// Library crates and npm package: packed, built, used by a Node program
     Package,
-    /// The page as it is shipped: its weight, and its use in Chromium
+    /// The shipped page: its size, and its use in Chromium
     Page,
-    /// The page's main job, the golden digests and the dialog of devices, in Chromium, Firefox and WebKit; a port of the system
+    /// The page's main functions in Chromium, Firefox and WebKit, with a serial port
     Engines,
 }
 
@@ -164,7 +163,6 @@ pub(crate) async fn with_page(line: &str) -> Result<Command> {
     Ok(command)
 }
 
-/// Needs a browser with windows.
 const INSTALLED: &str = "offline::the_page_can_be_installed";
 
 async fn page() -> Result<()> {
@@ -232,9 +230,6 @@ const ROWS: [[&[Step]; 2]; 5] = [
 ];
 
 /// Runs the steps named in `only`, or all if it is empty.
-///
-/// # Errors
-/// The names of failed and skipped steps.
 pub(crate) async fn run(only: &[Step]) -> Result<()> {
     let start = Instant::now();
     let report = RefCell::default();
@@ -277,7 +272,6 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
 enum Outcome {
     Passed,
     Failed(String),
-    /// A step that it depends on has failed.
     Skipped(String),
 }
 
@@ -301,7 +295,6 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// The page's build failed in an earlier step.
 #[derive(Debug)]
 struct NotBuilt(String);
 
@@ -313,7 +306,6 @@ impl fmt::Display for NotBuilt {
 
 impl std::error::Error for NotBuilt {}
 
-/// Builds the page at most once.
 async fn built_for(step: Step) -> Result<&'static Parts> {
     static FAILED_IN: OnceLock<String> = OnceLock::new();
     if let Some(step) = FAILED_IN.get() {
@@ -334,7 +326,6 @@ async fn in_front(steps: &[Step], report: &Report) {
     }
 }
 
-/// Runs the steps of the second lane, with buffered output.
 async fn beside_it(steps: &[Step], report: &Report) {
     for step in steps {
         let start = Instant::now();
