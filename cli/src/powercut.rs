@@ -37,7 +37,8 @@ pub(crate) struct Arguments {
     scenario: PathBuf,
     /// Number of cycles in which to cut the power
     ///
-    /// Every cycle of a run that is no longer. Otherwise random cycles, half of them while a record is written.
+    /// A run of fewer cycles is cut in every cycle. Otherwise the cycles are random, half of them while a record is
+    /// written.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole::<u32>(1..=10_000_000))]
     cuts: u32,
     /// Random seed

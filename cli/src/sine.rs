@@ -122,9 +122,9 @@ pub(crate) struct Common {
 #[derive(Args)]
 pub(crate) struct Written {
     #[command(flatten)]
-    out: Out,
-    #[command(flatten)]
     json: Json,
+    #[command(flatten)]
+    out: Out,
 }
 
 pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
