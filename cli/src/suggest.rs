@@ -1,11 +1,11 @@
 //! "Did you mean": the known name that is most like a given one.
 
-/// As clap's own suggestions for commands and options.
-const LEAST: f64 = 0.8;
+/// Below it a name is another name, not a misspelled one.
+const MIN_LIKENESS: f64 = 0.85;
 
 pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let likeness = |name: &'a str| (strsim::jaro(given, name), name);
-    let likely = known.into_iter().map(likeness).filter(|(likeness, _)| *likeness > LEAST);
+    let likeness = |name: &'a str| (strsim::jaro_winkler(given, name), name);
+    let likely = known.into_iter().map(likeness).filter(|(likeness, _)| *likeness > MIN_LIKENESS);
     likely.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, name)| name)
 }
 

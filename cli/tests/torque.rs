@@ -246,7 +246,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
     }
     let (code, _, err) =
         stepscope(&["torque", "-", "--motor", "nema-8", "--microsteps", "4"], &axes(r#"{"motor":{}},{}"#));
-    assert!(code == Some(2) && err.contains("an axis has its own in its mechanics"), "{err}");
+    assert!(code == Some(2) && err.contains("the axes of a motion have their own microsteps"), "{err}");
     // For a motion the named motor replaces those of its axes.
     let (_, out, _) = stepscope(&["torque", "-", "--motor", "nema-8"], &axes("{},{}"));
     assert_eq!(out.matches("  full torque      12.7 mN*m").count(), 2, "{out}");
