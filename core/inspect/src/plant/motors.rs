@@ -231,7 +231,7 @@ pub const DRIVES: &[DriveSheet] = &[
             ..CHIP
         },
         source: "data sheet rev. 1.09: 0.17 Ω each side, sine table of 8 bits; TOFF = 3, its own \
-                 setting, is 9 to 10 µs at 12 MHz and comes twice a period. The hysteresis of SpreadCycle is not modelled, nor is StealthChop, which regulates a voltage",
+                 setting, is 9 to 10 µs at 12 MHz and comes twice a period. The hysteresis of SpreadCycle is not modeled, nor is StealthChop, which regulates a voltage",
         typical: &["decay_share", "off_us", "blank_us", "diode_v"],
     },
 ];
