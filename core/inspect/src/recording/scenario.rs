@@ -21,7 +21,7 @@ use stepscope_peripheral::{
     wire::bit_times::{BYTE_BITS, BitTimes},
 };
 use stepscope_scenario::{
-    ChannelSegments, Hex, LineScript, Scenario, ScriptedSend, SegmentLists, Source, TimingRules,
+    ChannelSegments, Hex, LineScript, Problem, Scenario, ScriptedSend, SegmentLists, Source, TimingRules,
 };
 use stepscope_sim::replayed;
 
@@ -56,6 +56,8 @@ pub enum Refused {
     NoBytes,
     Channel(u8, Cause),
     FewCycles(u32, u32),
+    /// The first problem of the scenario.
+    Invalid(Problem),
 }
 
 impl fmt::Display for Refused {
@@ -71,6 +73,9 @@ impl fmt::Display for Refused {
                 "a bit of {baud} baud has fewer than 11 cycles of {clock_hz} Hz; use a clock of at least {} Hz",
                 11 * u64::from(*baud)
             ),
+            Self::Invalid(problem) => {
+                write!(f, "no scenario holds the recording ({problem}); shorten it or use another clock")
+            }
         }
     }
 }

@@ -67,7 +67,10 @@ impl LoadedCapture {
         }?;
         let mut scenario = Scenario { note: scenario::note(file, &reproduced), ..reproduced.scenario };
         scenario.title = title(file);
-        Ok(scenario)
+        match scenario.check() {
+            Ok(_) => Ok(scenario),
+            Err(problems) => Err(problems.into_iter().next().map_or(Refused::NoBytes, Refused::Invalid)),
+        }
     }
 }
 

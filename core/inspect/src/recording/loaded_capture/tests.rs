@@ -3,6 +3,7 @@ use crate::recording::{events::Events, report::LineReport, tolerance::Tolerance}
 use alloc::borrow::ToOwned;
 use stepscope_capture::capture::Format;
 use stepscope_capture::read::{Limits, read};
+use stepscope_scenario::Scenario;
 
 fn capture() -> Capture {
     let text = "Time [s],STEP,DIR\n0.0,0,1\n0.001,1,1\n0.0011,0,1\n0.002,1,1\n0.0021,0,1\n0.003,1,1\n0.0031,0,1\n0.005,1,1\n0.0051,0,1\n";
@@ -16,6 +17,17 @@ fn loaded() -> LoadedCapture {
 
 fn options() -> OpenOptions {
     OpenOptions { clock_hz: Some(1_000_000), ..OpenOptions::default() }
+}
+
+#[test]
+fn bytes_after_the_last_cycle_make_no_scenario() {
+    // Seconds of day and then of the epoch: more than 50 years apart.
+    let log = "20.123456 RX: 55 AA\n2026-11-26T12:00:00.2 RX: 01\n";
+    let capture = read(std::io::Cursor::new(log), &Limits::default(), &mut |_| true).capture;
+    let loaded = LoadedCapture::new(capture, &OpenOptions { baud: Some(9600), ..options() }).expect("it opens");
+    let fast = Scenario { clock_hz: 1_000_000_000, ..Scenario::default() };
+    let refused = loaded.scenario("log.txt", false, 0.0, Some(&fast)).expect_err("no such cycle").to_string();
+    assert!(refused.contains("start_cycle") && refused.ends_with("shorten it or use another clock"), "{refused}");
 }
 
 #[test]
