@@ -24,10 +24,14 @@ fn bytes_after_the_last_cycle_make_no_scenario() {
     // Seconds of day and then of the epoch: more than 50 years apart.
     let log = "20.123456 RX: 55 AA\n2026-11-26T12:00:00.2 RX: 01\n";
     let capture = read(std::io::Cursor::new(log), &Limits::default(), &mut |_| true).capture;
-    let loaded = LoadedCapture::new(capture, &OpenOptions { baud: Some(9600), ..options() }).expect("it opens");
+    let loaded =
+        LoadedCapture::new(capture, &OpenOptions { baud: Some(9600), ..options() }).expect("it opens");
     let fast = Scenario { clock_hz: 1_000_000_000, ..Scenario::default() };
     let refused = loaded.scenario("log.txt", false, 0.0, Some(&fast)).expect_err("no such cycle").to_string();
-    assert!(refused.contains("start_cycle") && refused.ends_with("shorten it or use another clock"), "{refused}");
+    assert!(
+        refused.contains("start_cycle") && refused.ends_with("shorten it or use another clock"),
+        "{refused}"
+    );
 }
 
 #[test]
