@@ -284,7 +284,7 @@ fn a_device_that_does_not_tell_its_positions_is_counted_and_not_said_to_be_done(
     let (code, out, err) = send(&file("old.json", FEW), &port, &[]);
     assert_eq!(code, Some(3), "{out}");
     assert!(out.contains("done by its count of ticks; it does not report its positions"), "{out}");
-    assert!(out.contains("ticks 4 of 4 done") && err.contains("does not tell its positions"), "{out}{err}");
+    assert!(out.contains("ticks 4 of 4 done") && err.contains("does not report its positions"), "{out}{err}");
     device.join().expect("it ends");
 }
 
