@@ -383,7 +383,7 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
         (&["send", text(&script), "--port", "/dev/no-such-port"], 2, "use a motion or packets"),
         (&["send", framed, "--port", "tcp:127.0.0.1:1"], 1, "refused"),
         (&["send", framed, "--port", "pty:/dev/null", "--rs485", "rts"], 2, "9600"),
-        (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "100 places"),
+        (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "100 entries"),
     ];
     for (arguments, code, why) in cases {
         let (ended, out, err) = ended(command(arguments).output().expect("it runs"));

@@ -60,8 +60,9 @@ impl LoadedCapture {
         self.is_rounded(capture, base) && !is_noisy
     }
 
+    /// Stores the ticks of files finer than every clock, whose cycles would round by up to 0.5 ns.
     pub(super) fn note_exact_steps(&mut self, capture: &Capture, map: &ChannelMap, base: Timebase) {
-        if !self.has_better_ticks(capture, base) {
+        if base.seconds() >= 1e-9 || !self.has_better_ticks(capture, base) {
             return;
         }
         let ticks = |channel| steps(Records::in_ticks(capture, map), channel).map(|step| step.cycle);
