@@ -34,7 +34,7 @@ fn a_link_that_does_not_open_says_why_and_the_default_motion_is_drawn() -> Resul
         ensure!(bomb.len() > 10_000 && bomb.len() < 16_384, "a bomb of {} characters", bomb.len());
         let rows = [
             ("cut short", cut.to_owned(), "cut short"),
-            ("one character changed", flipped, "changed on the way"),
+            ("one character changed", flipped, "cut short or changed"),
             ("from a newer version", "c=7.z.AAAA.00000000".to_owned(), "newer version of Stepscope"),
             ("a deflate bomb", bomb, "more than 65536 bytes"),
             ("out of range", forged('j', br#"{"bus":{"slots":200,"queue_depth":0}}"#), "bus.slots"),

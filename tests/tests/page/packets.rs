@@ -91,9 +91,9 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
         let same = with(&|row| log.bytes(row).windows(8).any(|part| part == &bytes[..8]));
         search(&page, &hex).await?;
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", same.len()))).await?;
-        // What is no hex is said, and not silently found nowhere.
+        // Text that is not hexadecimal is reported.
         search(&page, "0x8z").await?;
-        page.until("document.getElementById('packets-note').textContent.includes('is no hex')").await?;
+        page.until("document.getElementById('packets-note').textContent.includes('is not hexadecimal')").await?;
         page.until("document.getElementById('packets-empty').textContent.startsWith('No row matches.')")
             .await?;
         page.click("#packets-unmatched").await?;
