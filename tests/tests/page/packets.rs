@@ -93,7 +93,8 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", same.len()))).await?;
         // Text that is not hexadecimal is reported.
         search(&page, "0x8z").await?;
-        page.until("document.getElementById('packets-note').textContent.includes('is not hexadecimal')").await?;
+        page.until("document.getElementById('packets-note').textContent.includes('is not hexadecimal')")
+            .await?;
         page.until("document.getElementById('packets-empty').textContent.startsWith('No row matches.')")
             .await?;
         page.click("#packets-unmatched").await?;
