@@ -58,8 +58,9 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
 
 /// What a room may use of one that stands before it, where that is not all of it (DESIGN Part C): the modules.
 const NARROW: &[(&str, &str, &[&str])] = &[
-    ("motion", "peripheral", &["segment", "units", "signal"]),
-    ("plant", "peripheral", &["signal", "units"]),
+    // `parameters` is a macro for structs with defaults.
+    ("motion", "peripheral", &["parameters", "segment", "units", "signal"]),
+    ("plant", "peripheral", &["parameters", "signal", "units"]),
     // Neither knows the other: they meet in the scenario.
     ("plant", "motion", &[]),
 ];

@@ -1,4 +1,14 @@
 //! Problems of a motion, each with the path, the value given, the allowed values, and the remedy (DESIGN B1).
+//!
+//! ```
+//! use stepscope_motion::Validator;
+//!
+//! let mut validator: Validator = Validator::default();
+//! validator.range("axis.speed", 12_000.0, 1.0..=10_000.0, "steps/s");
+//! let problems = validator.end(()).unwrap_err();
+//! assert_eq!(problems[0].path, "axis.speed");
+//! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
+//! ```
 
 use alloc::string::String;
 use core::fmt;

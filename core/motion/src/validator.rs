@@ -1,14 +1,4 @@
 //! Collects the problems of a motion or scenario, each with the path of its value (DESIGN B1).
-//!
-//! ```
-//! use stepscope_motion::Validator;
-//!
-//! let mut validator: Validator = Validator::default();
-//! validator.range("axis.speed", 12_000.0, 1.0..=10_000.0, "steps/s");
-//! let problems = validator.end(()).unwrap_err();
-//! assert_eq!(problems[0].path, "axis.speed");
-//! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
-//! ```
 
 use crate::problem::{Cause, Problem, ValueError};
 use alloc::{string::String, vec::Vec};

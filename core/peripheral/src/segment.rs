@@ -62,7 +62,6 @@ pub struct SegmentList {
     pub segments: Vec<Segment>,
 }
 
-/// Times of a pulse and of DIR before and after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
     /// W: time that STEP is high.

@@ -65,7 +65,6 @@ impl Levels {
         (self.0 >> Self::DIR_SHIFT) as u16
     }
 
-    /// Whether every signal of `mask` is high.
     #[must_use]
     pub const fn has(self, mask: u64) -> bool {
         self.0 & mask == mask
@@ -116,7 +115,6 @@ impl Positions {
         Some(Self { counters: all, channels: counters.len() as u8 })
     }
 
-    /// One counter per channel.
     #[must_use]
     pub fn as_slice(&self) -> &[i32] {
         self.counters.get(..usize::from(self.channels)).unwrap_or_default()

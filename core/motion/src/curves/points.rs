@@ -10,8 +10,8 @@
 //! A turn that only touches a half-integer from below does not cross it, so no step is due, although the rounded position
 //! is one more there. After the end the position is the last one rounded.
 
-mod exact;
 mod max_error;
+mod passed;
 
 use crate::{
     Curve, Peaks,

@@ -133,7 +133,6 @@ impl Line {
         self.force.unwrap_or(others)
     }
 
-    /// Whether the host holds the line low.
     #[must_use]
     pub const fn is_pulled_low(&self) -> bool {
         !self.sender.level()
