@@ -78,6 +78,8 @@ impl Rotor {
         core::mem::take(&mut self.from_bus)
     }
 
+    // A call per motor-step takes 1.7 times as long in `plant_averaged`.
+    #[inline(always)]
     fn step(&mut self, span: &Span, bus: f64, powered: bool) {
         let Self { constants, driver, state, .. } = self;
         let State { x, w, i_a, i_b, .. } = *state;
