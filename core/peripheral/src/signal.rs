@@ -49,7 +49,6 @@ impl Levels {
     pub const TX: u64 = 1 << 34;
     /// DE, high while the controller drives the line.
     pub const DE: u64 = 1 << 35;
-    /// At reset the drivers are powered and the line is idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
     const SIGNALS: u32 = 2 * MAX_CHANNELS as u32 + 4;
 
@@ -144,7 +143,6 @@ pub enum Event {
     /// The byte completed a frame, or exceeded its maximum length.
     Frame(FrameOutcome),
     Reply {
-        /// First start bit.
         start: Instant,
         end: Instant,
         reply: Reply,
