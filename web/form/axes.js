@@ -46,7 +46,7 @@ function axisItem(kit, place, axes, index) {
       become(`${path}.mechanics`, "Mechanics", selected, samples.mechanics[selected]),
     ),
     ...(axes.length > 1
-      ? [button("Copy to all", `Copy ${name} to all others`, () => copyToAll(kit, place, index))]
+      ? [button("Copy to all", `Copy to all: ${name}`, () => copyToAll(kit, place, index))]
       : []),
     button("Copy", `Copy ${name}`, () => addAxis(kit, place, (now) => now[index]), axes.length >= MAX_CHANNELS),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, index), axes.length <= place.least),

@@ -100,7 +100,7 @@ fn structure_buttons_act_on_what_the_form_holds_when_they_are_pressed() -> Resul
         (motion(&axis(2), ""), distance(0, 1), "73", "Remove move 1", distance(0, 0), "73"),
         (motion(&axis(1), ""), distance(0, 0), "74", "Copy axis 0", distance(1, 0), "74"),
         (motion(&axis(1), ""), distance(0, 0), "75", "Add axis", distance(1, 0), "75"),
-        (two.clone(), distance(0, 0), "76", "Copy axis 0 to all others", distance(1, 0), "76"),
+        (two.clone(), distance(0, 0), "76", "Copy to all: axis 0", distance(1, 0), "76"),
         (two, distance(1, 0), "77", "Remove axis 0", distance(0, 0), "77"),
         (
             motion(&axis(1), controllers),

@@ -166,7 +166,7 @@ fn the_inspector_reads_frames_and_replies_as_the_core_does() -> Result<()> {
         inspected(&page, &known, 4).await?;
         let facts = page.text("#packet-facts").await?;
         ensure!(
-            facts.contains("turnaround") && facts.contains("of #2") && facts.contains("holds"),
+            facts.contains("turnaround") && facts.contains("of #2") && facts.contains("DE rises"),
             "{facts}"
         );
         Ok(())

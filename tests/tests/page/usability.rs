@@ -248,7 +248,7 @@ fn an_axis_is_copied_to_all_others_in_one_step() -> Result<()> {
         if let Source::Motion(motion) = &mut scenario.source {
             motion.axes = vec![motion.axes[1].clone(); motion.axes.len()];
         }
-        page.click("[aria-label=\"Copy axis 1 to all others\"]").await?;
+        page.click("[aria-label=\"Copy to all: axis 1\"]").await?;
         page.until_digest(&Known::of(&scenario.to_json())?.digest).await?;
         page.click("#undo").await?;
         page.until_digest(&Known::preset(preset)?.digest).await?;
