@@ -92,7 +92,7 @@ export function createFront(place, hand) {
     place,
     element("div", { class: "glass" }, display, element("span", { class: "lamp" }, lamp, lampText), outputs),
     words,
-    element("div", { class: "panel-advice" }, next),
+    element("div", { class: "panel-messages" }, next),
     ...BUTTONS.map((row) =>
       element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, ABOUT[input]))),
     ),

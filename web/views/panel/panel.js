@@ -102,7 +102,7 @@ export async function createPanel({ engine, dispatch, now }) {
     set: editor.set,
   });
   // Over the buttons, where it stays in sight, in place of the advice.
-  front.querySelector(".panel-advice")?.prepend(status);
+  front.querySelector(".panel-messages")?.prepend(status);
   const axis = createAxis(axisPlace, editor.push);
   const strip = createStrip(stripPlace, {
     ...{ engine, dispatch, now, remove },
