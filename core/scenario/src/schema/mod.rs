@@ -16,6 +16,15 @@
 //!
 //! `settings!` declares a struct with its rows, `choices!` an enum with its kinds. Types of other crates get rows by
 //! `fields!` and `kinds!`; those crates check the ranges. `words!` declares choices without settings.
+//!
+//! ```
+//! use stepscope_peripheral::config::Bus;
+//! use stepscope_scenario::schema::{Limit, Type, Typed};
+//!
+//! let Type::Group(bus) = Bus::TYPE else { panic!("a map of fields") };
+//! let slots = bus.fields.iter().find(|field| field.name == "slots").expect("a row");
+//! assert!(matches!(slots.limit, Limit::Whole(1, 127)), "{:?}", slots.limit);
+//! ```
 
 pub(crate) mod rows;
 
