@@ -226,7 +226,7 @@ fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<
         page.click("#pulses-violation-next").await?;
         until_reads(&page, "Violation 2 of ").await?;
         page.press("#margins tbody tr:not(.bad) th button", &ENTER.to_string()).await?;
-        until_reads(&page, ": least ").await?;
+        until_reads(&page, ": shortest ").await?;
         // EN never changes here.
         page.choose("#edge-row", "32").await?;
         page.click("#edge-next").await?;

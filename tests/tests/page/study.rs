@@ -167,7 +167,7 @@ fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
             &json!(Known::of(&SINE.replace("0.0054", "0.00425").replace("399", "99"))?.digest),
         )
         .await?;
-        page.until("[...document.querySelectorAll('#study-sine tr')].some((row) => row.innerText.includes('the scenario') && row.cells[1].textContent === '0.00425')").await?;
+        page.until("[...document.querySelectorAll('#study-sine tr')].some((row) => row.innerText.includes('current') && row.cells[1].textContent === '0.00425')").await?;
         same(&cells(&page, "Results by d1", "current").await?, &rows[1])?;
         page.click("#undo").await?;
         page.until_digest(&known.digest).await?;
@@ -246,7 +246,7 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
         page.ready().await?;
         // The button has gone; what it says has the focus, until an undo makes it untrue.
         ensure!(page.eval::<bool>("document.activeElement.id === 'sine-note'").await?);
-        ensure!(page.text("#sine-note").await?.starts_with("Axis 0 ends with a sine"));
+        ensure!(page.text("#sine-note").await?.starts_with("Axis 0 now ends with a sine"));
         page.until("document.querySelector(\"[aria-label='Use: 6 segments, best d1']\")").await?;
         page.press("[aria-label='Use: 6 segments, best d1']", &ENTER.to_string()).await?;
         page.until(

@@ -92,7 +92,7 @@ fn every_field_of_the_form_is_explained() -> Result<()> {
             page.ready().await?;
             let dumb: Vec<String> = page
                 .eval(
-                    "Promise.all([import('./form/schema.js'), import('./help/texts.js')]).then(([{ termOf }, { DERIVED }]) =>
+                    "Promise.all([import('./form/schema.js'), import('./help/term_texts.js')]).then(([{ termOf }, { DERIVED }]) =>
                      [...document.querySelectorAll('#form .term')].map((word) => word.dataset.term)
                      .filter((term) => !(termOf(term) ?? DERIVED[term])?.text))",
                 )
@@ -178,7 +178,7 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
         }
         let names: Vec<String> = page
             .eval(
-                "Promise.all([import('./form/schema.js'), import('./help/texts.js'), import('./help/explained.js')])
+                "Promise.all([import('./form/schema.js'), import('./help/term_texts.js'), import('./help/explained.js')])
                  .then(([{ terms, takeExplanations }, { TERMS, DERIVED }, { EXPLAINED }]) => { takeExplanations(EXPLAINED);
                  return [terms(), DERIVED, ...Object.values(TERMS)].flatMap(Object.values).map(({ name }) => name); })",
             )
