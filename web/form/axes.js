@@ -45,9 +45,7 @@ function axisItem(kit, place, axes, index) {
     kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (selected) =>
       become(`${path}.mechanics`, "Mechanics", selected, samples.mechanics[selected]),
     ),
-    ...(axes.length > 1
-      ? [button("Copy to all", `Copy to all: ${name}`, () => copyToAll(kit, place, index))]
-      : []),
+    ...(axes.length > 1 ? [button("Copy to all", `Copy to all: ${name}`, () => copyToAll(kit, place, index))] : []),
     button("Copy", `Copy ${name}`, () => addAxis(kit, place, (now) => now[index]), axes.length >= MAX_CHANNELS),
     button("✕", `Remove ${name}`, () => removeAxis(kit, place, index), axes.length <= place.least),
   );

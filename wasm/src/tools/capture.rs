@@ -255,7 +255,7 @@ impl CaptureFile {
         })
     }
 
-    /// Its contents ([`Facts`]).
+    /// Its contents (`Facts`).
     pub fn facts(&self) -> Result<JsValue, JsError> {
         let capture = &self.capture;
         let (map, map_error) = map_of(capture, self.map.as_deref());
@@ -275,7 +275,7 @@ impl CaptureFile {
         })
     }
 
-    /// A preview with some of [`PreviewOptions`].
+    /// A preview with some of `PreviewOptions`.
     ///
     /// # Errors
     /// Its `field` is the option that has to change.

@@ -65,7 +65,7 @@ impl Shown {
 
 #[wasm_bindgen]
 impl ValidatedScenario {
-    /// A move of an axis as every kind of motion with ramps of `ramp_s`, one row each ([`Shown`]): with its `move` in JSON and
+    /// A move of an axis as every kind of motion with ramps of `ramp_s`, one row each (`Shown`): with its `move` in JSON and
     /// its curve as columns `at_speed` and `at_acceleration` at `points` times. Empty for a move without distance.
     ///
     /// # Errors

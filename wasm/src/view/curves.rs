@@ -120,7 +120,7 @@ impl Simulation {
         bytes
     }
 
-    /// Readings at two cursors and between them ([`BothReadings`]), in steps and s. The pulses have an acceleration only
+    /// Readings at two cursors and between them (`BothReadings`), in steps and s. The pulses have an acceleration only
     /// without a plan; it may be NaN at a cursor.
     pub fn between(&mut self, axis: u8, a_cycle: f64, b_cycle: f64) -> Result<JsValue, JsError> {
         let hz = f64::from(self.experiment.config().clock_hz());
@@ -170,7 +170,7 @@ impl Simulation {
         result
     }
 
-    /// Deviation of the position from another run ([`Deviation`]).
+    /// Deviation of the position from another run (`Deviation`).
     pub fn apart(
         &mut self,
         other: &mut Simulation,

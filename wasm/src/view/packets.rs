@@ -65,7 +65,7 @@ impl Simulation {
         object(&progress)
     }
 
-    /// The visible rows at positions `from..from + count` ([`Page`]), with the `rank` of matches. Times are in `unit`.
+    /// The visible rows at positions `from..from + count` (`Page`), with the `rank` of matches. Times are in `unit`.
     pub fn packets(&self, from: u32, count: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
         struct Placed {

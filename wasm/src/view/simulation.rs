@@ -149,7 +149,7 @@ impl ValidatedScenario {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Runs for about `max_records` more records ([`advance`]), then processes as many of a recording. Returns the progress.
+    /// Runs for about `max_records` more records (`advance`), then processes as many of a recording. Returns the progress.
     ///
     /// # Errors
     /// If the run has too many records.

@@ -154,7 +154,7 @@ impl LiveDevice {
         if due == Instant::NEVER { f64::INFINITY } else { self.clock.nanos(cycles) as f64 / 1e6 }
     }
 
-    /// Its state ([`SessionState`]).
+    /// Its state (`SessionState`).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let Self { session, clock, traces, replies, latest_ns, .. } = self;
         let experiment = session.experiment();
@@ -204,7 +204,7 @@ impl LiveDevice {
         times.to_json(clock, &session.recording(), session.records_all())
     }
 
-    /// The session as a scenario, repeated and compared ([`Recorded`]).
+    /// The session as a scenario, repeated and compared (`Recorded`).
     pub fn recording(&self) -> Result<JsValue, JsError> {
         let recording = self.session.recording();
         object(&Recorded {

@@ -246,7 +246,7 @@ impl LiveHost {
         self.host.stop(now);
     }
 
-    /// Progress ([`State`]).
+    /// Progress (`State`).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let standing = Standing::new(&self.host);
         object(&State {
@@ -259,12 +259,12 @@ impl LiveHost {
         })
     }
 
-    /// New exchanges ([`Exchange`]).
+    /// New exchanges (`Exchange`).
     pub fn rows(&mut self) -> Result<JsValue, JsError> {
         object(&take(&mut self.rows))
     }
 
-    /// The report ([`FinalReport`]). `lost`: why the port is lost.
+    /// The report (`FinalReport`). `lost`: why the port is lost.
     pub fn report(&mut self, lost: Option<String>) -> Result<JsValue, JsError> {
         let report = Report::new(&self.experiment, &mut self.host, self.stopped);
         let ends = report.rows.iter().map(|row| {

@@ -103,7 +103,7 @@ impl LiveRawHost {
         self.host.due_ns().map_or(f64::INFINITY, |due| due.saturating_sub(nanos(ms)) as f64 / 1e6)
     }
 
-    /// Progress ([`State`]).
+    /// Progress (`State`).
     pub fn state(&self) -> Result<JsValue, JsError> {
         let report = self.host.report(false);
         object(&State {
@@ -115,7 +115,7 @@ impl LiveRawHost {
         })
     }
 
-    /// The report ([`FinalReport`]).
+    /// The report (`FinalReport`).
     pub fn report(&self, stopped: bool, ms: f64) -> Result<JsValue, JsError> {
         let report = self.host.report(stopped);
         let RawReport { sent, packets, standstill_count, .. } = report;
