@@ -270,7 +270,7 @@ fn hash_of(texts: &BTreeMap<String, String>) -> u64 {
 fn clear(dist: &Path) -> Result<()> {
     if dist.exists() {
         ensure!(
-            [ASSETS, docs::FOLDER].iter().any(|folder| dist.join(folder).exists())
+            [dist.join(ASSETS), dist.join(docs::FOLDER).join("index.html")].iter().any(|it| it.exists())
                 || dist.read_dir().is_ok_and(|mut it| it.next().is_none()),
             "{} is no earlier build; remove it or take another folder",
             dist.display()

@@ -240,7 +240,7 @@ fn implied_by(request: &Bytes) -> Scenario {
 
 pub fn note(file: &str, reproduced: &Reproduction) -> String {
     let error = match reproduced.greatest_error_cycles {
-        0 => "each in its very cycle".into(),
+        0 => "cycle-exact".into(),
         cycles => format!("none more than {cycles} cycles off"),
     };
     let later = match reproduced.later_cycles {

@@ -53,8 +53,9 @@ impl AxisPlan {
         let length = |end: CycleTime, planned: &PlannedMove| {
             end.plus(planned.profile.schedule().length(clock_hz.max(1)))
         };
+        let cycles = cycles.max(1);
         let end = self.moves().iter().fold(CycleTime::default(), length);
-        let mut spans = (end.whole / cycles.max(1)).max(1);
+        let mut spans = (end.whole / cycles).max(1);
         // One more for a rest, and for a last step at the very end of the span, which belongs to the next.
         while !end.is_by(spans.saturating_mul(cycles))
             || self.due_by(clock_hz).steps(spans.saturating_mul(cycles)) != self.steps()

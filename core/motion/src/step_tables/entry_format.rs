@@ -158,14 +158,14 @@ impl Packer {
         let last = i128::from(interval) + i128::from(add) * i128::from(count.saturating_sub(1));
         let fits = (format.min_add()..=format.max_add()).contains(&add)
             && interval <= format.max_interval()
-            && last <= i128::from(format.max_interval());
+            && (0..=i128::from(format.max_interval())).contains(&last);
         let max = if fits { format.max_count() } else { 1 };
         while count > 0 {
             let part = count.min(max);
             self.wait(interval.saturating_sub(format.max_interval()));
             let first = interval.min(format.max_interval());
             self.entries.push(Entry { interval: first, count: part, add: if part == 1 { 0 } else { add } });
-            interval = interval.wrapping_add_signed(add.wrapping_mul(part.into()));
+            interval = interval.saturating_add_signed(add.saturating_mul(part.into()));
             count -= part;
         }
     }

@@ -100,7 +100,10 @@ impl PowerCuts {
             let mut chosen = BTreeSet::new();
             let mut random = SplitMix64::seed_from_u64(seed);
             let begins = writes.iter().flat_map(|&(begun, _)| [begun.saturating_sub(1), begun, begun + 1]);
-            chosen.extend(begins.filter(|&cycle| cycle > 0).take(count as usize / 4));
+            let begins: Vec<u64> = begins.filter(|&cycle| cycle > 0).collect();
+            // At most a quarter of the cuts, spread over the run.
+            let stride = begins.len().div_ceil((count as usize / 4).max(1)).max(1);
+            chosen.extend(begins.into_iter().step_by(stride));
             let spans: u64 = writes.iter().map(|&(begun, end)| end - begun).sum();
             while (chosen.len() as u64) < count {
                 let anywhere = 1 + random.next_u64() % (length - 1);
@@ -319,8 +322,10 @@ pub struct Wear {
 pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
     let mut setup = checked.setup();
     let mut totals: Vec<u64> = Vec::new();
+    let mut done = 0_u32;
     for _ in 0..cycles {
         let Ok(checked) = setup.clone().check() else { break };
+        done += 1;
         let mut run = StandAlone::new(&checked);
         run.run(end, &mut ());
         let at = run.now();
@@ -335,8 +340,8 @@ pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, end
         }
     }
     let max = totals.into_iter().max().unwrap_or(0);
-    let writes_a_cycle = max as f64 / f64::from(cycles.max(1));
-    let life = (max > 0).then(|| u64::from(endurance) * u64::from(cycles) / max);
+    let writes_a_cycle = max as f64 / f64::from(done.max(1));
+    let life = (max > 0).then(|| u64::from(endurance) * u64::from(done) / max);
     Wear { writes_a_cycle, life_power_cycles: life }
 }
 

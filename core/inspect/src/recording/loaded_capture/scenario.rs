@@ -24,7 +24,7 @@ impl LoadedCapture {
             scenario.source = Source::Segments(SegmentLists::default());
             scenario.title = title(file);
             scenario.note = format!(
-                "Recorded in {file}. No scenario that can be edited here reproduces it: it is too long, too fast for the bus, or has another clock. The command reports which, and can write a long scenario (stepscope capture --scenario)."
+                "Recorded in {file}. No scenario that can be edited here reproduces it: it is too long, too fast for the bus, or has another clock. The command reports which, and can write a long scenario (stepscope capture --write-scenario)."
             );
             scenario
         });
