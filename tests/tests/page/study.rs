@@ -250,7 +250,7 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
         page.until("document.querySelector(\"[aria-label='Use: 6 segments, best d1']\")").await?;
         page.press("[aria-label='Use: 6 segments, best d1']", &ENTER.to_string()).await?;
         page.until(
-            "document.getElementById('sine-note').textContent.startsWith('Move 2 of axis 0 has d1 = ')",
+            "document.getElementById('sine-note').textContent.startsWith('Move 2 of axis 0 now has d1 = ')",
         )
         .await?;
         page.ready().await?;
