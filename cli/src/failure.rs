@@ -194,7 +194,7 @@ impl fmt::Display for Failure {
             }
             Self::NotRenamed(path, error, kept) => {
                 let path = Escaped::path(path);
-                write!(f, "{path}: {error}; what was written is saved under other names:")?;
+                write!(f, "{path}: {error}; the new files keep their temporary names:")?;
                 kept.iter().try_for_each(|kept| write!(f, "\n  {}", Escaped::path(kept)))
             }
             Self::Output(path, detail) => write!(f, "{}: {detail}", Escaped::path(path)),
@@ -225,7 +225,7 @@ impl fmt::Display for Failure {
             }
             Self::Link(error) => write!(f, "{error}"),
             Self::NoDigests => f.write_str(
-                "--verify: the link has no digests of its sender (no d= part); make it with Share in the page, or with `stepscope run --link`",
+                "--verify: the link has no digests of its sender (no d= part); create it with Share in the page, or with `stepscope run --link`",
             ),
             Self::RunFingerprint(error) => write!(f, "{error}"),
             Self::Preset(id, hint) => {
@@ -233,7 +233,7 @@ impl fmt::Display for Failure {
             }
             Self::NoPanel(path) => write!(
                 f,
-                "{}: --panel: the scenario has no stand-alone controller; omit the option, or use a source standalone",
+                "{}: --panel: the scenario has no stand-alone controller; omit the option, or use a preset such as zhang-2012-controller",
                 Escaped::path(path)
             ),
             Self::LongRun(path) => write!(
@@ -243,12 +243,12 @@ impl fmt::Display for Failure {
             ),
             Self::NoStandAlone(path) => write!(
                 f,
-                "{}: the scenario has no stand-alone controller; use a source standalone, or a preset such as zhang-2012-controller",
+                "{}: the scenario has no stand-alone controller; use one with source.standalone, or a preset such as zhang-2012-controller",
                 Escaped::path(path)
             ),
             Self::SilentlyWrong(count) => {
                 let s = plural(*count);
-                write!(f, "after {count} power cut{s} a wrong position is trusted; --json lists the first of them")
+                write!(f, "a wrong position is trusted after {count} power cut{s}; use --json for the first cycle")
             }
             Self::NoDriver(path) => write!(
                 f,
@@ -261,7 +261,7 @@ impl fmt::Display for Failure {
             }
             Self::PartOnly(path, why) => write!(
                 f,
-                "{}: the recording is truncated: {why}; the results are of the part before",
+                "{}: the recording is truncated: {why}; the results cover the part before",
                 Escaped::path(path)
             ),
             Self::OtherRun(why) | Self::NotThePlan(why) | Self::Option(why) | Self::NotVerified(why) => {
@@ -273,7 +273,7 @@ impl fmt::Display for Failure {
                 let s = plural(*count);
                 write!(
                     f,
-                    "not in real time: the clock was set back {count} time{s}, by {ms:.0} ms in total; the run is exact for its input. Use a longer --lag or a lower --pace"
+                    "not in real time: the clock was set back {count} time{s}, by {ms:.0} ms in total, but the run is exact for its input; use a longer --lag or a lower --pace"
                 )
             }
             Self::NotRecorded(path, why) => write!(

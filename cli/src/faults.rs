@@ -27,7 +27,7 @@ use stepscope_core::{
 const BATCH: u64 = 64;
 /// Seeds have 32 bits.
 const SEEDS: u64 = 1 << 32;
-/// The protocol that must never give wrong steps.
+/// The protocol that must never cause wrong steps.
 const FRAMED: &str = "framed";
 const MAX_NAMED: usize = 8;
 
@@ -35,8 +35,8 @@ const MAX_NAMED: usize = 8;
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// Each seed has its own noise and receiver rates. Without a scenario, two motors turn in opposite directions for
-    /// 40 ticks.
+    /// The seed determines the noise and the bit rates of the receivers. By default, two motors turn in opposite
+    /// directions for 40 ticks.
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Number of seeds to run
@@ -51,13 +51,13 @@ pub(crate) struct Arguments {
     /// Run only this seed
     #[arg(long, value_name = "SEED", conflicts_with_all = ["seeds", "from"], value_parser = whole::<u32>(0..=u32::MAX.into()))]
     seed: Option<u32>,
-    /// Write the scenario of --seed for `stepscope run`, and run nothing
+    /// Write the scenario of --seed for `stepscope run`, without running it
     #[arg(short = 'o', long, value_name = "FILE", requires = "seed", conflicts_with_all = ["scenario", "link", "json"])]
     write_scenario: Option<PathBuf>,
     // The former name of --write-scenario -.
     #[arg(long, hide = true, requires = "seed", conflicts_with = "json")]
     scenario: bool,
-    /// Print the share link of the scenario of --seed, and run nothing
+    /// Print the share link of the scenario of --seed, without running it
     #[arg(long, requires = "seed", conflicts_with_all = ["scenario", "json"])]
     link: bool,
     #[command(flatten)]
@@ -68,9 +68,9 @@ pub(crate) struct Arguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Which {
-    /// Packets without a check, as in patent RU 2704486
+    /// Packets without a checksum, as in patent RU 2704486
     Raw,
-    /// Frames with a check, sequence numbers and replies
+    /// Frames with a CRC, sequence numbers and replies
     Framed,
     /// One column per protocol
     Both,

@@ -3,7 +3,7 @@
 use crate::{complete, paths};
 use clap::{Arg, Command};
 
-/// A command's examples, and when it ends with each exit code of its own.
+/// The exit codes and examples of one command.
 pub(crate) struct Page {
     pub(crate) command: &'static str,
     one: &'static str,
@@ -53,7 +53,7 @@ pub(crate) const PAGES: &[Page] = &[
         )
     },
     Page {
-        three: "the session was not in real time, or its recording does not reproduce it",
+        three: "the session fell behind real time, or its recording does not reproduce it",
         four: "the port was lost; the recording is written",
         success: "success, also after Ctrl-C",
         stopped: "stopped by a signal before the session began",
@@ -68,9 +68,9 @@ pub(crate) const PAGES: &[Page] = &[
         )
     },
     Page {
-        three: "not everything that was sent is confirmed",
-        four: "the port was lost; the report says what is known",
-        stopped: "stopped by Ctrl-C or a signal; the report says what is known",
+        three: "ticks or final positions are not confirmed",
+        four: "the port was lost; the results so far are reported",
+        stopped: "stopped by Ctrl-C or a signal; the results so far are reported",
         ..page(
             "send",
             "the scenario could not be read, or the port could not be opened",
@@ -82,7 +82,7 @@ pub(crate) const PAGES: &[Page] = &[
         )
     },
     Page {
-        three: "steps were wrong, duplicated or missing on the framed line",
+        three: "ticks were wrong, duplicated or missing on the framed line",
         ..page(
             "faults",
             READ,
@@ -148,7 +148,7 @@ pub(crate) const PAGES: &[Page] = &[
         ],
     ),
     Page {
-        three: "the recording differs from --against, or --strict found violations or no step",
+        three: "the recording differs from --against, or --strict found violations or no steps",
         ..page(
             "capture",
             "a file could not be read or written, or the recording is truncated",
@@ -160,7 +160,7 @@ pub(crate) const PAGES: &[Page] = &[
         )
     },
     Page {
-        three: "after a power cut a wrong position is trusted",
+        three: "a wrong position was trusted after a power cut",
         ..page(
             "powercut",
             READ,
@@ -216,7 +216,7 @@ pub(crate) const PAGES: &[Page] = &[
         ],
     ),
     Page {
-        three: "with --verify: the run differs from the sender's",
+        three: "--verify found a difference from the sender's run",
         ..page(
             "open",
             WRITTEN,

@@ -48,13 +48,13 @@ pub(crate) struct Common {
 pub(crate) struct SettlingArguments {
     #[command(flatten)]
     common: Common,
-    /// Deviation that counts as settled, as a part of the peak
+    /// Deviation that counts as settled, as a fraction of the peak
     #[arg(long, value_name = "PART", default_value = "0.2")]
     share: PeakPart,
-    /// Time to observe a step, in cycles (default: a slot of the bus)
+    /// Step period, in cycles; the current is observed for 11 periods (default: a slot of the bus)
     #[arg(long, value_name = "CYCLES", value_parser = whole::<NonZero<u32>>(1..=u32::MAX.into()))]
     t_step: Option<NonZero<u32>>,
-    /// Write the scenario with the longest settling time as its bus.settle_cycles
+    /// Write the scenario with its bus.settle_cycles set to the longest settling time
     #[arg(short = 'o', long, alias = "write", value_name = "FILE")]
     write_scenario: Option<PathBuf>,
 }
@@ -63,10 +63,10 @@ pub(crate) struct SettlingArguments {
 pub(crate) struct LimitsArguments {
     #[command(flatten)]
     common: Common,
-    /// Steps of each trial to start and stop (default: one turn)
+    /// Number of steps in each start-stop trial (default: one turn)
     #[arg(long, value_name = "N", value_parser = whole::<NonZero<u64>>(1..=MAX_STEPS))]
     steps: Option<NonZero<u64>>,
-    /// Acceleration of the ramps to the pull-out rate, in steps/s^2
+    /// Acceleration of the ramps in pull-out trials, in steps/s^2
     #[arg(long, value_name = "A", default_value = "200000")]
     ramp: Acceleration,
 }
@@ -81,7 +81,7 @@ pub(crate) struct ResonanceArguments {
     /// Maximum rate, in full steps/s
     #[arg(long, value_name = "RATE", default_value = "400")]
     to: Rate,
-    /// Rate increment
+    /// Rate increment, in full steps/s
     #[arg(long, alias = "rung", value_name = "RATE", default_value = "4")]
     step: Rate,
     #[command(flatten)]
@@ -283,7 +283,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let count = (to - from) / step + 1e-9;
     if !(to >= from && count < MAX_RATES) {
         let what = format!(
-            "--from {from} --to {to} --step {step}: out of range; use rates that rise, at most {MAX_RATES} of them"
+            "--from {from} --to {to} --step {step}: out of range; use a --to of at least --from, and at most {MAX_RATES} rates"
         );
         return Err(wrong_option(path, &what));
     }
@@ -294,7 +294,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
     if motor_steps > MAX_MOTOR_STEPS {
         let what = format!(
-            "the map takes {motor_steps:.2e} motor steps; at most {MAX_MOTOR_STEPS:e} are allowed; use a larger --step, or one --channel"
+            "the map needs {motor_steps:.2e} motor steps, more than {MAX_MOTOR_STEPS:e}; use a larger --step, or one --channel"
         );
         return Err(wrong_option(path, &what));
     }

@@ -50,7 +50,7 @@ use std::{
 };
 use stepscope_core::inspect::export::plain_text::is_unsafe;
 
-/// Simulate and check stepper motion to the clock cycle
+/// Simulate and check stepper motion with clock-cycle accuracy
 #[derive(Parser)]
 #[command(name = "stepscope", version, arg_required_else_help = true)]
 struct Arguments {
@@ -68,17 +68,16 @@ enum Command {
     Serve(live::serve::Arguments),
     /// Send a scenario's ticks to real controllers and confirm each one
     ///
-    /// On a framed line every tick and the final positions are confirmed. Raw packets have no replies: their timing is
-    /// reported.
+    /// On a framed line, each tick and the final positions are confirmed. Raw packets get no replies, so only their
+    /// timing is reported.
     Send(live::send::Arguments),
     /// Simulate random line faults, one run per seed
     ///
-    /// Counts ticks that were executed wrong, twice or not at all, with and without the framed protocol.
+    /// Counts ticks that are executed incorrectly, twice or not at all, with and without the framed protocol.
     Faults(faults::Arguments),
-    /// Write the step times of an axis as a table for a firmware
+    /// Write the step times of an axis as a table for firmware
     ///
-    /// Source code in C, C for AVR, or Rust, or CSV. Without --format, reports the size and the errors of each form of
-    /// table.
+    /// The table is C, C for AVR, Rust or CSV. Without --format, reports the size and the error of each form of table.
     Tables(tables::Arguments),
     /// Report tracking error, peaks and distortion of an axis
     ///
@@ -86,13 +85,13 @@ enum Command {
     Measures(measures::Arguments),
     /// Check that the motors have enough torque for the planned motion
     ///
-    /// Also reports which ramps they can follow, or writes the torque-speed curve of a motor.
+    /// Also reports feasible ramps, or writes the torque-speed curve of a motor.
     Torque(torque::Arguments),
     /// Simulate motors, supply and sensors driven by the pulses
     Plant(plant::Arguments),
-    /// Measure how long the supply current of each motor settles after a step
+    /// Measure the settling time of each motor's supply current after a step
     ///
-    /// This is the minimum stagger of two motors in patent RU 2704486.
+    /// In patent RU 2704486, steps of different motors are at least this far apart.
     Settling(limits::SettlingArguments),
     /// Find the start-stop rate and the pull-out rate of each motor
     Limits(limits::LimitsArguments),
@@ -105,8 +104,8 @@ enum Command {
     Capture(capture::Arguments),
     /// Cut the power of stand-alone controllers and check the restored position
     ///
-    /// Counts the cycles after which the position is known, known to be lost, or wrong without notice. Also finds the
-    /// minimum hold-up time and the life of the memory.
+    /// Counts the power cuts after which the position is known, known to be lost, or wrong without notice. Also finds
+    /// the minimum hold-up time and the lifetime of the memory.
     Powercut(powercut::Arguments),
     /// Compute steps per millimeter from measured lengths by least squares
     Calibrate(calibrate::Arguments),
@@ -119,11 +118,11 @@ enum Command {
     Open(scenarios::OpenArguments),
     /// List the presets, or write one as JSON
     Presets(scenarios::PresetsArguments),
-    /// List the drivers that --driver takes, with their limits and sources
+    /// List the drivers that --driver accepts, with their limits and sources
     Drivers(options::Json),
-    /// Write a script that completes commands, options and presets in a shell
+    /// Write a completion script for a shell
     Completions {
-        /// Shell
+        /// Shell to complete commands, options and presets in
         shell: clap_complete::Shell,
         #[command(flatten)]
         out: options::Out,

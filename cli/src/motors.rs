@@ -25,27 +25,27 @@ use stepscope_core::{
 
 #[derive(Args)]
 pub(crate) struct Replacing {
-    /// Replace every motor by this one, at its rated current
+    /// Replace all motors with this one, at its rated current
     ///
-    /// `stepscope plant --motors` describes them. Supply and load stay the scenario's.
+    /// `stepscope plant --motors` lists the motors. Supply and load do not change.
     #[arg(long, value_name = "MOTOR", value_parser = motor_parser(), hide_possible_values = true)]
     motor: Option<&'static MotorSheet>,
-    /// Replace every motor driver by this one
+    /// Replace all motor drivers with this one
     ///
-    /// `stepscope plant --motors` describes them.
+    /// `stepscope plant --motors` lists the motor drivers.
     #[arg(long, alias = "drive", value_name = "DRIVER", value_parser = drive_parser(), hide_possible_values = true)]
     motor_driver: Option<&'static DriveSheet>,
 }
 
 #[derive(Args)]
 pub(crate) struct Named {
-    /// Replace every motor by this one, at its rated current
+    /// Replace all motors with this one, at its rated current
     ///
-    /// `stepscope plant --motors` describes them. Supply and load stay the scenario's: 24 V and no load if it has no
-    /// motor.
+    /// `stepscope plant --motors` lists the motors. Supply and load do not change; if the scenario has no motor, they are
+    /// 24 V and no load.
     #[arg(long, value_name = "MOTOR", value_parser = motor_parser(), hide_possible_values = true)]
     pub(crate) motor: Option<&'static MotorSheet>,
-    /// Microsteps per full step of --motor if no axis has its own (default: 16)
+    /// Microsteps per full step of --motor, unless axes define their own (default: 16)
     #[arg(long, value_name = "N", requires = "motor", value_parser = whole::<u16>(1..=512))]
     pub(crate) microsteps: Option<u16>,
 }

@@ -6,7 +6,7 @@ use std::{num::NonZero, path::PathBuf};
 
 #[derive(Args)]
 pub(crate) struct Json {
-    /// Print the results as JSON: one object of tables (docs/command.md)
+    /// Print the results as JSON tables (format: docs/command.md)
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Out {
 
 #[derive(Args)]
 pub(crate) struct ShowProgress {
-    /// Show the progress even if standard error is not a terminal
+    /// Show progress even if standard error is not a terminal
     #[arg(long)]
     pub(crate) progress: bool,
 }
@@ -28,7 +28,7 @@ pub(crate) struct ShowProgress {
 /// Options of work that uses all cores.
 #[derive(Args)]
 pub(crate) struct Work {
-    /// Number of threads (default: one per core); the result is the same
+    /// Number of threads (default: one per core); does not affect the result
     #[arg(long, value_name = "N", value_parser = whole::<NonZero<usize>>(1..=u64::MAX))]
     pub(crate) threads: Option<NonZero<usize>>,
     #[command(flatten)]

@@ -53,7 +53,7 @@ pub(crate) struct Arguments {
     scenario: Option<PathBuf>,
     #[command(flatten)]
     replacing: Replacing,
-    /// List the motors and motor drivers with their figures and sources
+    /// List the motors and motor drivers with their parameters and sources
     #[arg(long, conflicts_with_all = ["scenario", "motor", "motor_driver", "controller", "digest", "csv", "vcd"])]
     motors: bool,
     /// Controller to report
@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     /// Print only the digest of the plant (XXH64)
     #[arg(long, conflicts_with = "json")]
     digest: bool,
-    /// Write a table of the simulated points (CSV): voltage, currents, angles, lost steps, codes
+    /// Write the simulated points (CSV): voltage, currents, angles, lost steps, sensor codes
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
     /// Write a value change dump of signals and analog values

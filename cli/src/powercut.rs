@@ -33,12 +33,12 @@ const BYTE_TIMES: u64 = 17;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
-    /// Scenario with a source standalone: a JSON file or a preset's name; `-` reads standard input
+    /// Scenario with stand-alone controllers: a JSON file or a preset's name; `-` reads standard input
     scenario: PathBuf,
-    /// Number of cycles in which to cut the power
+    /// Number of power cuts
     ///
-    /// A run of fewer cycles is cut in every cycle. Otherwise the cycles are random, half of them while a record is
-    /// written.
+    /// If the run has fewer cycles, there is one cut per cycle. Otherwise the cycles are random; half of them are during
+    /// writes of records.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole::<u32>(1..=10_000_000))]
     cuts: u32,
     /// Random seed

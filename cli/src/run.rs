@@ -42,12 +42,12 @@ pub(crate) struct Arguments {
     digest: bool,
     /// Print positions, fault flags and completed ticks
     ///
-    /// On a framed line also the controller's state, the host's counters and the line load.
+    /// For a framed line, also prints the controller's state, the host's counters and the line load.
     #[arg(long)]
     status: bool,
     /// Print the share link of the scenario
     ///
-    /// It contains the digests of this run, so that `stepscope open --verify` can compare.
+    /// The link contains the digests of this run for `stepscope open --verify`.
     #[arg(long)]
     link: bool,
     /// Write the trace: cycle and levels in hexadecimal, one record per line
@@ -58,29 +58,30 @@ pub(crate) struct Arguments {
     vcd: Option<PathBuf>,
     /// Time unit of the dump: 1, 10 or 100 of s, ms, us, ns, ps or fs
     ///
-    /// At most one cycle, so that the dump is exact: a time t is cycle round(t*clock). The dump's header has the clock.
+    /// It must not exceed one cycle, so that the dump is exact: time t is cycle round(t*clock). The dump's header has
+    /// the clock.
     #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
     vcd_timescale: Timescale,
     /// Write a table of the signals (CSV): cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a table of the packets with the outcome of each (CSV)
+    /// Write a table of the packets and their outcomes (CSV)
     #[arg(long, value_name = "FILE")]
     packets: Option<PathBuf>,
-    /// Write the panel of stand-alone controllers as a table (CSV)
+    /// Write the panel states of stand-alone controllers (CSV)
     ///
     /// One row per change: cycle, panel word, position, display, and the fields of the word (state, alarm, trust,
     /// outputs, group, loop).
     #[arg(long, value_name = "FILE")]
     panel: Option<PathBuf>,
-    /// Write the scenario with every byte, forced level or segment as its source
+    /// Write a scenario that replays each byte, forced level or segment of the run
     ///
-    /// Noise is included, so a run of the written scenario gives the same traces.
+    /// It includes the noise, so its run has the same traces.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
     /// Controller to report: 0 is the scenario's own, 1 the first of `controllers`
     ///
-    /// By default digest and status are of all controllers, files and timing of controller 0.
+    /// By default, digest and status cover all controllers; files and the timing check cover controller 0.
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     controller: Option<usize>,
     #[command(flatten)]

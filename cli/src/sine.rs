@@ -30,7 +30,7 @@ use stepscope_core::{
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Report segments and distortion for each maximum deviation d1 of a range
+    /// Report segments and distortion for a range of maximum deviations d1
     Sweep {
         #[command(flatten)]
         range: Range,
@@ -40,7 +40,7 @@ pub(crate) enum Command {
     },
     /// Find the maximum deviation d1 with the minimum distortion
     ///
-    /// Compares every polyline of the range.
+    /// Compares all different polylines of the range.
     Best {
         #[command(flatten)]
         range: Range,
@@ -48,7 +48,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", value_parser = whole::<usize>(1..=u64::MAX))]
         segments: Option<usize>,
     },
-    /// Find the vertices with the minimum distortion for a number of segments
+    /// Find the vertices with the minimum distortion for a given number of segments
     Vertices {
         /// Number of segments per quarter
         #[arg(long, value_name = "N", value_parser = whole::<u8>(1..=MAX_SEGMENTS as u64))]
@@ -61,7 +61,7 @@ pub(crate) enum Command {
     },
     /// Report the segments of a scenario's sines
     ///
-    /// Vertices, steps, rates and bytes of a quarter of each sine.
+    /// Lists vertices, steps, rates and bytes for a quarter of each sine.
     Segments {
         /// Scenario with a motion: a JSON file or a preset's name; `-` reads standard input
         scenario: PathBuf,
@@ -75,10 +75,10 @@ pub(crate) enum Command {
 
 #[derive(Args)]
 pub(crate) struct Range {
-    /// Minimum deviation d1, as a part of the amplitude
+    /// Start of the range of d1, as a fraction of the amplitude
     #[arg(long, value_name = "D1", default_value = "0.002")]
     from: AmplitudePart,
-    /// Maximum deviation d1
+    /// End of the range of d1
     #[arg(long, value_name = "D1", default_value = "0.06")]
     to: AmplitudePart,
     /// Bandwidth of an accelerometer, in Hz; adds the distortion that it measures
@@ -184,7 +184,7 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
     if selected.flat_map(|(_, axis)| &axis.moves).any(|each| matches!(each, Move::SineSegments(_))) {
         return Ok(());
     }
-    let detail = "there is no sine in segments; use a move sine_segments, as in the preset sine-2022-d00054";
+    let detail = "no move is a sine of segments; use a move sine_segments, as in the preset sine-2022-d00054";
     let problem = Problem::new("source", ValueError::Conflict { detail });
     Err(Failure::Scenario(path.to_owned(), vec![problem]))
 }

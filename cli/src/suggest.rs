@@ -1,6 +1,6 @@
-//! "Did you mean": the known name that is most like a given one.
+//! Suggests the known name that is most similar to an unknown one.
 
-/// Below it a name is another name, not a misspelled one.
+/// Below this similarity a name is not a misspelling.
 const MIN_LIKENESS: f64 = 0.85;
 
 pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -9,9 +9,9 @@ pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>)
     likely.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, name)| name)
 }
 
-/// `; did you mean NAME?`, or nothing.
+/// `; a similar name is NAME`, or nothing.
 pub(crate) fn hint<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(given, known).map_or_else(String::new, |name| format!("; did you mean {name}?"))
+    nearest(given, known).map_or_else(String::new, |name| format!("; a similar name is {name}"))
 }
 
 #[cfg(test)]
@@ -30,6 +30,6 @@ mod tests {
         ] {
             assert_eq!(nearest(given, known), expected, "{given}");
         }
-        assert_eq!(hint("slot", known), "; did you mean slots?");
+        assert_eq!(hint("slot", known), "; a similar name is slots");
     }
 }

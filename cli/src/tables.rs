@@ -35,54 +35,55 @@ use stepscope_core::{
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// If its source is not a motion, the tables are of the steps of its run. With --steps only its clock and pulse
-    /// times are used (default: 16 MHz and the default bus).
+    /// If its source is not a motion, the steps of its run are used. With --steps, only its clock and pulse times are
+    /// used (default: 16 MHz and the default bus).
     #[arg(required_unless_present = "steps")]
     scenario: Option<PathBuf>,
     /// Read step times from a CSV table, as axis 0
     ///
-    /// One row per step: its time from the start in a column cycle, time_s, time_ms or time_us. A column dir has the
-    /// direction: 1 or right, 0 or left.
+    /// One row per step. The column cycle, time_s, time_ms or time_us has the time from the start; the column dir has
+    /// the direction: 1 or right, 0 or left.
     #[arg(long, value_name = "FILE")]
     steps: Option<PathBuf>,
-    /// Form of the table (default: compressed; in a summary all)
+    /// Form of the table (default: compressed; for a summary, all)
     #[arg(long, value_enum)]
     form: Option<FormName>,
     /// Maximum error of a step in a compressed table, in us
     #[arg(long, value_name = "US", default_value = "25")]
     error_us: Microseconds,
-    /// Maximum error of a step as a part of its interval: 2 for a half, as in Klipper
+    /// Maximum error of a step in a compressed table, as 1/N of a step interval (Klipper: 2)
     ///
-    /// In a compressed table, in addition to --error-us. The part is of the shorter interval next to the step; with
-    /// --window early, of the interval before it.
+    /// Applies in addition to --error-us. The interval is the shorter one next to the step; with --window early, the one
+    /// before the step.
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
     interval_part: Option<NonZeroU32>,
-    /// Side of the error in a compressed table
+    /// Allowed direction of the error in a compressed table
     #[arg(long, value_enum, default_value = "both")]
     window: WindowName,
     /// Search method of a compressed table
     ///
-    /// fewest applies to tables of whole cycles, and to others if the error is so small that a window has up to 4096
+    /// For tables with fractions of cycles, fewest requires a maximum error so small that a window has at most 4096
     /// units. Otherwise both methods are the same.
     #[arg(long, value_enum, default_value = "fewest")]
     search: Search,
-    /// Format of an entry: q16, q8, ticks or klipper (default: q16; in a summary all)
+    /// Format of an entry: q16, q8, ticks or klipper (default: q16; for a summary, all)
     ///
-    /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 8 bytes and 1/256 cycle, ticks 8 bytes and whole cycles.
-    /// klipper is another name for ticks: the numbers that Klipper's queue_step takes.
+    /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
+    /// cycles. klipper is another name for ticks: the arguments of Klipper's queue_step.
     #[arg(long, value_name = "FORMAT", value_parser = widths)]
     entries: Option<EntryFormat>,
     /// Output format
     #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
     format: Written,
-    /// Axis, from 0 (default: 0; in a summary all)
+    /// Axis, from 0 (default: 0; for a summary, all)
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     axis: Option<usize>,
     /// Name of the table in source code (default: axis_K)
     ///
-    /// Up to 32 lower-case letters, digits and underscores. It starts with a letter, and has a digit or an underscore.
-    /// Names that C reserves are refused: names that begin with is, to, str, mem, wcs or e and a letter, with e and a
-    /// digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_.
+    /// Use up to 32 lower-case letters, digits and underscores. The first character is a letter, and at least one is a
+    /// digit or an underscore. Names that C reserves are refused. They begin with is, to, str, mem, wcs or e and a
+    /// letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or
+    /// tss_.
     #[arg(long, value_parser = name, conflicts_with = "json")]
     name: Option<String>,
     #[command(flatten)]
@@ -93,9 +94,9 @@ pub(crate) struct Arguments {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum WindowName {
-    /// Early or late
+    /// Early and late
     Both,
-    /// Early, never late, as in Klipper
+    /// Only early, as in Klipper
     Early,
 }
 
@@ -110,17 +111,17 @@ impl WindowName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Search {
-    /// Minimum number of entries, as far as the summary's column surplus says
+    /// Minimum number of entries; column surplus of the summary is the maximum excess
     Fewest,
-    /// Hundreds of times faster: each entry is the longest that ends near the middle of a window
+    /// Hundreds of times faster: each entry is the longest one that ends near the middle of a window
     Quick,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum FormName {
-    /// Every step in its cycle
+    /// Each step in its exact cycle
     Exact,
-    /// The table that the paper of the motion describes
+    /// The table described by the paper of the motion
     Document,
     /// Few entries, within a maximum error
     Compressed,
@@ -172,7 +173,7 @@ fn name(text: &str) -> Result<String, String> {
     if is_name(text) {
         Ok(text.to_owned())
     } else {
-        Err("not a name for a table; use up to 32 lower-case letters, digits and underscores that C does not reserve, such as x_axis (`stepscope tables --help` lists the reserved names)"
+        Err("not a valid name; use up to 32 lower-case letters, digits and underscores that C does not reserve, such as x_axis (`stepscope tables --help` lists the reserved names)"
             .to_owned())
     }
 }
@@ -262,7 +263,7 @@ fn steps_of_run(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledSte
         all.pop();
     }
     if all.is_empty() {
-        let detail = "no channel steps, so there is no table; use a scenario that moves, or --steps";
+        let detail = "no channel has steps, so there is no table; use a scenario with steps, or --steps";
         return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
     }
     Ok(all)

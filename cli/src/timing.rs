@@ -34,11 +34,11 @@ pub(crate) struct Options {
     timing: bool,
     /// Check STEP, DIR and EN against this driver's timing
     ///
-    /// A driver that `stepscope drivers` lists, limits of your own such as
-    /// custom:step_high_ns=1000,dir_setup_ns=200, or a JSON file with them. Replaces the scenario's driver.
+    /// Use a driver from `stepscope drivers`, your own limits such as custom:step_high_ns=1000,dir_setup_ns=200, or a
+    /// JSON file with limits. Replaces the scenario's driver.
     #[arg(long, value_name = "DRIVER")]
     driver: Option<PathBuf>,
-    /// Write the violations (CSV), up to a million
+    /// Write the violations (CSV), at most a million
     #[arg(long, value_name = "FILE")]
     pub(crate) violations: Option<PathBuf>,
     /// End with exit code 3 if the timing check finds a violation
@@ -78,7 +78,7 @@ fn custom(fields: &str) -> Result<TimingRules, String> {
         let value: u64 =
             ns.parse().map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed()))?;
         if rules.insert(name.to_owned(), value.into()).is_some() {
-            return Err(format!("{name} is given twice; give it once"));
+            return Err(format!("{name} is given twice; use it once"));
         }
     }
     rules_of(Value::Object(rules))
@@ -194,7 +194,7 @@ pub(crate) fn drivers(as_json: bool) -> Result<(), Failure> {
             writeln!(out, "{:14} {}", "", figures(&sheet.rules))?;
             writeln!(out, "{:14} {}", "", sheet.source)
         })?;
-        writeln!(out, "{:14} your own limits, in ns: --driver {}", "custom", example())?;
+        writeln!(out, "{:14} your own limits in ns: --driver {}", "custom", example())?;
         writeln!(out, "{:14} or a JSON file: {{\"step_high_ns\": 1000, \"dir_setup_ns\": 200}}", "")
     };
     list(&mut terminal::out()).map_err(Failure::output)

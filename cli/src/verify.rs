@@ -22,7 +22,9 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
     let own = experiment.controllers();
     let mut checks = proof.checks(own).map_err(|sent| {
-        Failure::OtherRun(format!("the link has digests of {sent} controllers, but its scenario has {own}"))
+        Failure::OtherRun(format!(
+            "the link has digests of {sent} controllers, but its scenario has {own}; create the link again"
+        ))
     })?;
     let mut progress = Progress::new("open", false);
     let mut run = experiment.start();

@@ -265,7 +265,7 @@ fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing(
     assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
     assert!(
         err.starts_with("-: the recording is truncated: line 3: ")
-            && err.ends_with("; the results are of the part before\n"),
+            && err.ends_with("; the results cover the part before\n"),
         "{err}"
     );
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");

@@ -203,7 +203,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
         ),
         (
             &["resonance", "resonance-full-steps", "--from", "3", "--to", "2"],
-            "--from 3 --to 2 --step 4: out of range; use rates that rise",
+            "--from 3 --to 2 --step 4: out of range; use a --to of at least --from",
         ),
         (
             &["settling", "resonance-full-steps", "--t-step", "1"],

@@ -120,7 +120,7 @@ fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
     assert_eq!(first["steps"], column("steps")[0] as u64);
 
     for (arguments, said) in [
-        (["sine", "segments", "exact-sine"].as_slice(), "there is no sine in segments"),
+        (["sine", "segments", "exact-sine"].as_slice(), "no move is a sine of segments"),
         (&["sine", "segments", "sine-2022-d00054", "--axis", "3"], "axis"),
     ] {
         let (code, _, err) = stepscope(arguments, "");
@@ -136,7 +136,7 @@ fn what_a_scenario_lacks_is_found_before_its_motion_is_planned() {
     let (code, _, err) = stepscope(&["run", "-", "--digest"], LONG);
     assert!(code == Some(2) && err.contains("source.motion"), "{err}");
     let rows: [(&[&str], &str); 10] = [
-        (&["sine", "segments", "-"], "there is no sine in segments"),
+        (&["sine", "segments", "-"], "no move is a sine of segments"),
         (&["sine", "segments", "-", "--axis", "7"], "--axis: 7 is out of range"),
         (&["powercut", "-"], "has no stand-alone controller"),
         (&["plant", "-"], "has no plant"),

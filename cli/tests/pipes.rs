@@ -127,7 +127,7 @@ fn a_recording_goes_to_files_only() {
             (Some(2), &[] as &[u8]),
             "{given}: {err}"
         );
-        assert!(err.contains("not a file, but a recording needs two"), "{given}: {err}");
+        assert!(err.contains("not a file; a recording has two"), "{given}: {err}");
     }
     let mut left: Vec<_> =
         fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("one").file_name()).collect();

@@ -208,7 +208,7 @@ fn names_that_c_keeps_for_itself_are_refused_and_told() {
     }
     let help = stepscope(&["tables", "--help"], "").1;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("names that begin with is, to, str, mem, wcs or e and a letter"), "{help}");
+    assert!(help.contains("They begin with is, to, str, mem, wcs or e and a letter"), "{help}");
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn what_cannot_be_a_table_ends_with_2_and_says_why() {
             MOTION,
             "axes[1]: a move of this kind has no table",
         ),
-        (&[], r#"{ "source": { "line": {} } }"#, "source: no channel steps"),
+        (&[], r#"{ "source": { "line": {} } }"#, "source: no channel has steps"),
         (&["--error-us=-1"], MOTION, "use 0 to 1000000000"),
         (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
     ];

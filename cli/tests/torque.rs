@@ -15,7 +15,7 @@ fn an_axis_with_torque_to_spare_says_so_and_names_the_longest_ramp() {
 axis 0
   full torque      282.8 mN*m, up to 30945 steps/s
   maximum rate     any rate with a load of 0.0 mN*m
-  working rate     19200 steps/s, as stated
+  working rate     19200 steps/s, as specified
   minimum margin   281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
   enough torque throughout
   move 0           3200 steps in 0.4 s
@@ -34,7 +34,7 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
     assert_eq!(code, Some(0), "a warning is no error");
     for line in [
         "  minimum margin   -63.9 mN*m: at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
-        "  jump of speed    250 steps/s at once; the motor's start-stop rate has to be higher",
+        "  jump of speed    250 steps/s at once; the start-stop rate must be higher",
         "  warning: too little torque in 1 interval; allow more time, or use gentler ramps, less load or a higher supply voltage",
         "    0.053133 to 0.146867 s: 63.9 mN*m short at 0.100000 s, 8000 steps/s, 346.7 needed of 282.8 mN*m",
         "    no ramp leaves enough torque; allow more time or reduce the load",
@@ -89,7 +89,7 @@ fn what_limits_a_moves_ramps_is_named() {
         assert_eq!((code, err.as_str()), (Some(0), ""));
         out
     };
-    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but they are above the working rate; allow more time\n";
+    let by_rate = "    the torque would suffice for ramps of 0.0004 to 0.2000 s, but those exceed the working rate; allow more time\n";
     let out = of(r#"{"cosine":{"ramp_s":0}}"#, r#"{"working_rate_hz":8000}"#);
     let without = "    enough torque without ramps, if the motor starts and stops at that rate\n";
     assert!(

@@ -12,7 +12,9 @@ pub(super) fn option(remedy: &Remedy) -> String {
         }
         Remedy::OtherEdge { motor, channel, inverted } => {
             let mark = if *inverted { "!" } else { "" };
-            format!("; if the driver steps where it begins, use STEP{motor}={mark}{channel} in the map")
+            format!(
+                "; if the driver steps at the start of a pulse, use STEP{motor}={mark}{channel} in the map"
+            )
         }
         Remedy::InvertLine { line, inverted: true } => format!(": map it with !, such as {line}=!CH1"),
         Remedy::InvertLine { line, inverted: false } => format!(": map it without !, such as {line}=CH1"),

@@ -23,23 +23,23 @@ use stepscope_core::{
 pub(crate) struct Arguments {
     /// Recording; `-` reads standard input
     ///
-    /// Value change dumps; sigrok and PulseView sessions, tables and UART annotations; tables of levels (Saleae, DSView,
-    /// WaveForms, Kingst, your own); decoded bytes; hex dumps (hexdump -C, xxd, od); serial logs with times; Klipper's
-    /// step commands; times and positions. Two recordings come with the command: recorded-step-table and
-    /// recorded-late-packet.
+    /// Reads value change dumps; sigrok and PulseView sessions, tables and UART annotations; tables of levels (Saleae,
+    /// DSView, WaveForms, Kingst, your own); decoded bytes; hex dumps (hexdump -C, xxd, od); serial logs with times;
+    /// Klipper's step commands; tables of times and positions. The command includes two recordings:
+    /// recorded-step-table and recorded-late-packet.
     #[arg(value_name = "RECORDING")]
     pub(super) file: PathBuf,
     /// Assign channels to signals, such as STEP0=CH1,DIR0=CH2,EN=!nEN
     ///
-    /// `!` inverts a channel; `#0` is the first one. Motors can share a DIR channel (DIR0=DIR,DIR1=DIR). In place of
-    /// STEP0: DEDGE0 for a driver that steps on both edges, CW0 and CCW0 for one pulse input per direction, A0 and B0
-    /// for a quadrature encoder. By default a map is proposed from names and behavior, and printed.
+    /// `!` inverts a channel; `#0` is the first one. Motors can share a DIR channel (DIR0=DIR,DIR1=DIR). Instead of
+    /// STEP0, use DEDGE0 for a driver that steps on both edges, CW0 and CCW0 for one pulse input per direction, or A0
+    /// and B0 for a quadrature encoder. By default, a map is proposed from names and behavior, and printed.
     #[arg(long, value_name = "MAP")]
     pub(super) map: Option<String>,
-    /// Count a step on both edges of STEP, as DEDGE in a map
+    /// Count steps on both edges of STEP, like DEDGE in a map
     #[arg(long)]
     pub(super) both_edges: bool,
-    /// Clock that times are converted to, in Hz (default: the file's own)
+    /// Clock for the conversion of times to cycles, in Hz (default: the file's own)
     #[arg(long, value_name = "HZ", value_parser = whole::<u32>(11..=1_000_000_000))]
     pub(super) clock: Option<u32>,
     /// Sample rate, in Hz, if the file does not contain it
@@ -56,13 +56,14 @@ pub(crate) struct Arguments {
     pub(super) base: Option<Base>,
     /// Compare with the run of this scenario: a JSON file or a preset's name
     ///
-    /// Reports missing, additional and late steps; exit code 3 if there are any. Bytes are compared if no channel steps.
+    /// Reports missing, extra and late steps, with exit code 3 if there are any. If no channel has steps, bytes are
+    /// compared.
     #[arg(long, value_name = "SCENARIO")]
     pub(super) against: Option<PathBuf>,
     /// Channel to compare, or to write with --steps
     #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel", value_parser = whole::<u8>(0..=15))]
     pub(super) channel: u8,
-    /// Step of the plan, from 0, at which both are aligned (default: the first that both have)
+    /// Step of the plan, from 0, to align both at (default: the first common step)
     #[arg(long, value_name = "STEP", requires = "against", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) align: Option<usize>,
     /// Maximum error of a step or byte, in us (default: one cycle of the slower clock)
@@ -70,15 +71,15 @@ pub(crate) struct Arguments {
     pub(super) within_us: Option<ExactMicroseconds>,
     /// Write the delay of each step or byte (CSV)
     ///
-    /// Missing and additional ones have rows, too.
+    /// Missing and extra ones also have rows.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
     /// Write a scenario that reproduces the recording
     ///
-    /// If RX has bytes, it sends them to the controllers of --against. Otherwise it makes the steps.
+    /// If RX has bytes, the scenario sends them to the controllers of --against. Otherwise it makes the steps.
     #[arg(short = 'o', long, alias = "scenario", value_name = "FILE")]
     pub(super) write_scenario: Option<PathBuf>,
-    /// Make the scenario from the steps even if RX has bytes
+    /// Make the scenario from steps even if RX has bytes
     #[arg(long, requires = "write_scenario")]
     pub(super) of_steps: bool,
     /// Maximum error of the scenario's steps, in us; larger errors need fewer segments
@@ -90,7 +91,7 @@ pub(crate) struct Arguments {
     /// Write the bytes of RX and TX (CSV)
     #[arg(long, value_name = "FILE")]
     pub(super) bytes: Option<PathBuf>,
-    /// Write the packets of RX and TX with their check and meaning (CSV)
+    /// Write the packets of RX and TX with their CRC status and meaning (CSV)
     ///
     /// `stepscope capture` can read the table again.
     #[arg(long, value_name = "FILE")]

@@ -111,7 +111,7 @@ fn scenario(
             base,
         )
         .map_err(|refused| {
-            arguments.wrong(format!("no scenario can be made of this recording: {refused}"))
+            arguments.wrong(format!("cannot make a scenario from this recording: {refused}"))
         })?;
     scenario_file::text(path, &scenario, "use --error-us with a larger error, which needs fewer segments")
 }

@@ -39,7 +39,7 @@ pub(super) fn print(
         writeln!(out, "{}", advice::line(line))?;
     }
     if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
-        writeln!(out, "no channel steps, and no line has bytes")?;
+        writeln!(out, "no channel has steps, and no line has bytes")?;
     }
     if !driven.is_empty() {
         writeln!(out, "torque")?;

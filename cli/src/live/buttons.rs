@@ -78,9 +78,9 @@ impl fmt::Display for NoLine {
             Self::Word(word) => write!(f, "{word}: unknown word or input; `help` lists them"),
             Self::Input(name) => write!(f, "{name}: unknown input; `help` lists them"),
             Self::Level(text) => write!(f, "{text}: not a level; use 0 or 1"),
-            Self::Time(text) => write!(f, "{text}: not a time; use one such as 100ms, 2.5s or 200us"),
+            Self::Time(text) => write!(f, "{text}: not a time; use a time such as 100ms, 2.5s or 200us"),
             Self::Steps(text) => write!(f, "{text}: not a number of steps; use a whole number, such as -20"),
-            Self::Count(word, usage) => write!(f, "{word}: incomplete; use `{usage}`"),
+            Self::Count(word, usage) => write!(f, "{word}: wrong number of words; use `{usage}`"),
         }
     }
 }

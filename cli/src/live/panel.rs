@@ -65,7 +65,7 @@ impl Panel {
             let Some(text) = self.lines.pop_front() else { break };
             if text.len() > MAX_LINE {
                 status.note(&format!(
-                    "a line of more than {MAX_LINE} bytes was ignored; `help` lists what is possible"
+                    "a line of more than {MAX_LINE} bytes was ignored; use the lines that `help` lists"
                 ));
                 continue;
             }

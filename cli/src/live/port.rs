@@ -113,12 +113,12 @@ fn written(result: io::Result<usize>) -> io::Result<usize> {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Rs485 {
-    /// The adapter does
+    /// By the adapter itself
     #[default]
     Auto,
-    /// The kernel does (TIOCSRS485)
+    /// By the kernel (TIOCSRS485)
     Kernel,
-    /// This command does, with RTS, up to 9600 baud
+    /// By this command with RTS, up to 9600 baud
     Rts,
 }
 
@@ -620,7 +620,7 @@ mod pty {
             self.warned = has;
             let line = self.baud;
             (has != line).then(|| {
-                format!("warning: the host set the port to {has} baud, but the line has {line}: a real controller would receive errors")
+                format!("warning: the host set the port to {has} baud, but the line has {line}; a real controller would receive framing errors")
             })
         }
 

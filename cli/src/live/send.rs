@@ -51,18 +51,18 @@ pub(crate) struct Arguments {
     /// Port to send to: a serial port, tcp:ADDRESS or pty:PATH
     #[arg(long, value_name = "PORT")]
     port: String,
-    /// Additional time for each reply, in ms, for the system and the adapter
+    /// Additional time limit of each reply, in ms, for the system and the adapter
     #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(0..=60_000))]
     slack: u64,
     /// Number of raw packets to send ahead, fewer than the queue holds
     ///
-    /// Packets that are late by no more than this number leave no gap.
+    /// Delays of up to this number of packets cause no gap.
     #[arg(long, value_name = "PACKETS", default_value_t = 0, value_parser = whole::<u8>(0..=254))]
     lead: u8,
-    /// What switches the direction of an RS-485 transceiver
+    /// Control of an RS-485 transceiver's direction
     #[arg(long, value_enum, default_value_t)]
     rs485: Rs485,
-    /// Expect an echo of the sent bytes and compare it
+    /// Expect and check an echo of the sent bytes
     #[arg(long)]
     echo: bool,
     #[command(flatten)]
@@ -81,13 +81,13 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     if experiment.segments().is_some() {
-        let why = "the scenario runs segments, so there are no ticks to send; use the engine ticks";
+        let why = "the scenario has segments, so there are no ticks to send; use the engine ticks";
         return Err(Failure::Option(format!("{}: {why}", path.display())));
     }
     let baud = experiment.baud();
     if arguments.rs485 == Rs485::Rts && baud > MAX_RTS_BAUD {
         return Err(Failure::Option(format!(
-            "--rs485: rts is too slow for {baud} baud; use it up to {MAX_RTS_BAUD} baud, or use kernel or auto"
+            "--rs485: rts is too slow for {baud} baud; use at most {MAX_RTS_BAUD} baud, or kernel or auto"
         )));
     }
     let is_raw = experiment.config().protocol() == Protocol::Raw;
@@ -99,7 +99,7 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         Job::Raw(raw::host(&experiment, arguments.lead)?)
     } else {
         Job::Framed(experiment.conversation(Instant(1)).ok_or_else(|| {
-            let why = "a line script has no known replies, so nothing can be confirmed; use a motion or packets as the source";
+            let why = "replies to a line script are unknown, so nothing can be confirmed; use a motion or packets as the source";
             Failure::Option(format!("{}: {why}", path.display()))
         })?)
     };
@@ -233,7 +233,7 @@ fn print(
     let mut write = || -> io::Result<()> {
         write!(out, "{report}")?;
         if let Some(errors) = wire.port.line_errors().filter(|errors| !errors.is_none()) {
-            writeln!(out, "line_errors {errors}; check that the other end is at {baud} baud")?;
+            writeln!(out, "line_errors {errors}; set the other end to {baud} baud")?;
         }
         if wire.collisions() > 0 {
             writeln!(

@@ -27,9 +27,8 @@ use stepscope_core::sim::session::{Pace, Session};
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// Its controllers and their line are served. Its packets are ignored, because the host is another program.
-    /// Stand-alone controllers have no line: lines on standard input, such as `press start 100ms`, operate their
-    /// buttons (`help` lists them).
+    /// Its own packets are ignored, because another program is the host. Stand-alone controllers have no serial line.
+    /// Operate their buttons with lines of text on standard input, such as `press start 100ms`; `help` lists them.
     scenario: PathBuf,
     /// Open a pseudo-terminal and print its path; LINK becomes a symbolic link to it
     #[cfg_attr(not(unix), arg(hide = true))]
@@ -37,7 +36,7 @@ pub(crate) struct Arguments {
     pty: Option<Option<PathBuf>>,
     /// Listen on an address, such as 127.0.0.1:4000 (port 0: any free port)
     ///
-    /// Serves one client at a time, with the raw bytes of the line.
+    /// Serves the raw bytes of the line to one client at a time.
     #[arg(long, value_name = "ADDRESS", value_parser = address)]
     tcp: Option<SocketAddr>,
     /// Allow addresses that other machines can reach
@@ -48,25 +47,25 @@ pub(crate) struct Arguments {
     port: Option<PathBuf>,
     /// Maximum delay of the model, in ms, before its clock is set back
     ///
-    /// If the clock was set back, the session ends with exit code 3.
+    /// Then the session ends with exit code 3.
     #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(1..=60_000))]
     lag: u64,
-    /// Speed of time, 0.001 to 100, or `max`
+    /// Speed relative to real time, 0.001 to 100, or `max`
     ///
-    /// With `max` bytes take no time, and the model continues when the host is silent for 10 ms.
+    /// With `max`, bytes take no time, and the model continues when the host has been silent for 10 ms.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = pace)]
     pace: Pacing,
     /// Record the session as a scenario, with its wall-clock times in NAME.session.json
     ///
-    /// The scenario is run again to check that it gives the same digest.
+    /// Runs the scenario again to check that the digest is the same.
     #[arg(short = 'o', long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Stop when the client disconnects
     ///
-    /// Stand-alone controllers stop when standard input has ended and nothing can change any more.
+    /// Stand-alone controllers stop when standard input has ended and nothing is pending.
     #[arg(long)]
     once: bool,
-    /// Show the status even if standard error is not a terminal
+    /// Show status even if standard error is not a terminal
     #[arg(long)]
     progress: bool,
 }
@@ -85,7 +84,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let files = || arguments.record.iter().chain(&beside).map(PathBuf::as_path);
     if let Some(path) = files().find(|path| !output::can_be_file(path)) {
         let detail =
-            "not a file, but a recording needs two: NAME.json and NAME.session.json; use --record NAME.json";
+            "not a file; a recording has two, NAME.json and NAME.session.json; use --record NAME.json";
         return Err(Failure::Output(path.to_owned(), detail));
     }
     let link = arguments.pty.iter().flatten().map(PathBuf::as_path);

@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
     ///
     /// If its source is not a motion, there is no ideal curve: the steps themselves are measured.
     pub(super) scenario: PathBuf,
-    /// Axis, or channel, from 0 (default: that of the scenario's analysis)
+    /// Axis or channel, from 0 (default: the scenario's analysis.axis)
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) axis: Option<usize>,
     /// Output format

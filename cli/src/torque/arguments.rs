@@ -14,13 +14,13 @@ pub(crate) struct Arguments {
     ///
     /// If its source is not a motion, the steps of its run are checked, with the motors of its plant.
     pub(super) scenario: PathBuf,
-    /// Axis, or channel, from 0 (default: all; of a curve, 0)
+    /// Axis or channel, from 0 (default: all; for a curve, 0)
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) axis: Option<usize>,
     /// Output format
     #[arg(long, value_enum, default_value = "text", conflicts_with_all = ["plant", "json"])]
     pub(super) format: Written,
-    /// Simulate the motors, too, even if it takes long, and compare both models
+    /// Also simulate the motors, even if it takes long, and compare both models
     #[arg(long)]
     pub(super) plant: bool,
     #[command(flatten)]

@@ -41,7 +41,7 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
         machine.load_mn_m()
     )?;
     if let Some(stated) = machine.working_rate() {
-        writeln!(out, "  working rate     {stated:.0} steps/s, as stated")?;
+        writeln!(out, "  working rate     {stated:.0} steps/s, as specified")?;
     }
     if let Some(least) = &demand.least {
         let margin = least.margin_mn_m();
@@ -49,7 +49,7 @@ pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
     }
     if demand.jump > 0.0 {
         let jump = demand.jump;
-        let higher = "the motor's start-stop rate has to be higher";
+        let higher = "the start-stop rate must be higher";
         match source {
             MotionSource::Plan(_) => writeln!(out, "  jump of speed    {jump:.0} steps/s at once; {higher}")?,
             MotionSource::Steps => {
@@ -116,7 +116,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
         let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
         write!(out, "    {from:.6} to {to:.6} s: {short:.1} mN*m short {}", moment(&found.worst))?;
         match found.times {
-            times if times > 1.0 => writeln!(out, "; so in {times:.0} periods")?,
+            times if times > 1.0 => writeln!(out, "; in {times:.0} periods")?,
             _ => writeln!(out)?,
         }
     }
@@ -164,7 +164,7 @@ fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Writ
     match found.too_fast_s {
         Some((shortest, longest)) => writeln!(
             out,
-            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but they are above the working rate; allow more time"
+            "    the torque would suffice for ramps of {shortest:.4} to {longest:.4} s, but those exceed the working rate; allow more time"
         ),
         None => writeln!(out, "    no ramp leaves enough torque; allow more time or reduce the load"),
     }
