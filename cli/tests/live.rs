@@ -648,7 +648,7 @@ fn a_jog_that_is_held_has_an_end_or_is_refused() {
     let scenario = |name: &str, inputs: &str, more: &str| {
         let controller =
             r#""debounce_cycles": 1000, "memory": { "byte_write_cycles": 10, "hold_up_cycles": 1000 }"#;
-        let axis = if more == "axis" { r#", "axis": { "max_switch_at": 50 }"# } else { "" };
+        let axis = if more == "axis" { r#", "axis": { "max_switch_at_steps": 50 }"# } else { "" };
         let end = if more == "end" { r#", "run_cycles": 16000000"# } else { "" };
         file(
             name,

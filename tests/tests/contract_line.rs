@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stepscope_core::{
     peripheral::{config::Protocol, protocol::State, signal::Record},
     scenario::{
-        ChannelSegments, Controller, DwellSegment, Line, LineScript, Problem, Scenario, Segment,
+        ChannelSegments, Controller, Direction, DwellSegment, Line, LineScript, Problem, Scenario, Segment,
         SegmentLists, Source, StepSegment,
     },
     sim::{Experiment, Run},
@@ -126,7 +126,7 @@ fn segments(case: &SegmentCase) -> Result<Experiment, Vec<Problem>> {
             count: steps,
             interval_q16: interval,
             add_q16: add,
-            dir: dir.into(),
+            direction: Direction::of_dir(dir),
         }),
         oracle::segments::Segment::Dwell(length_q16) => Segment::Dwell(DwellSegment { length_q16 }),
     };

@@ -288,7 +288,7 @@ fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
         let pulses: Vec<(f64, i8)> = (0..all.len())
             .map(|index| (made.time_s(&all[index]), Step::direction(&all, index) as i8))
             .collect();
-        let order = made.scenario.analysis.order;
+        let order = made.scenario.analysis.max_harmonic;
         let ideal = Spectrum::ideal(&made.experiment.plans()[0], order, 2048).expect("it lasts");
         let spectrum = Spectrum::of_pulses(&pulses, ideal.window, order);
         for spectrum in [&ideal, &spectrum] {

@@ -8,12 +8,12 @@ const OF_TORQUE = [
   "rated_current_a",
   "resistance_ohm",
   "inductance_mh",
-  "holding_torque_mn_m",
+  "holding_torque_mN_m",
   "rotor_inertia_g_cm2",
   "supply_v",
   "peak_current_a",
   "load_inertia_g_cm2",
-  "load_torque_mn_m",
+  "load_torque_mN_m",
   "working_rate_hz",
 ];
 
@@ -29,7 +29,7 @@ export function motorFields(kit, at, isDriven, name) {
     ...(isDriven
       ? [
           kit.part(`Friction and coupling of ${name}`, false, kit.block(at, rest)),
-          kit.part(`Driver of ${name}`, false, kit.block(`${at}.drive`, fields("Drive"))),
+          kit.part(`Driver of ${name}`, false, kit.block(`${at}.driver`, fields("Drive"))),
         ]
       : []),
   ];

@@ -1,13 +1,10 @@
-/** Fields of stand-alone controllers: warnings, and choices between 0 and 1. */
+/** Fields of stand-alone controllers: warnings, and levels as choices between 0 and 1. */
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {import("./field.js").Field} Field */
 
 /** What can be selected where the schema has 0 and 1. */
-export const CHOICES = {
-  direction: { 1: "1 (right)", 0: "0 (left)" },
-  level: { 0: "0", 1: "1" },
-};
+export const CHOICES = { level: { 0: "0", 1: "1" } };
 
 /** Fields with the warning of a value that is valid but may not be meant. @param {string} path @param {Field[]} given @returns {Field[]} */
 export function withWarnings(path, given) {
@@ -21,19 +18,12 @@ export function withWarnings(path, given) {
   }));
 }
 
-/** Fields of which those that are 0 or 1 are selected. @param {Kit} kit @param {string} path @param {Field[]} given @param {string[]} [keys]  Which those are; of jog, return and moves the level is an acceleration. */
-export function choiceBlock(
-  kit,
-  path,
-  given,
-  keys = /jog$|return$/.test(path) ? ["direction"] : ["direction", "level"],
-) {
+/** Fields; a level of 0 or 1 is selected. @param {Kit} kit @param {string} path @param {Field[]} given */
+export function choiceBlock(kit, path, given) {
   return kit.block(
     path,
     withWarnings(path, given).map((each) =>
-      keys.includes(each.key) && each.key in CHOICES
-        ? { ...each, kind: "choice", choices: CHOICES[/** @type {keyof typeof CHOICES} */ (each.key)] }
-        : each,
+      each.key === "level" ? { ...each, kind: "choice", choices: CHOICES.level } : each,
     ),
   );
 }

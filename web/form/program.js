@@ -43,8 +43,6 @@ function groupItem(kit, at, groups, index, whose) {
     button("✕", `Remove group ${index + 1}${whose}`, () => removeGroup(kit, list, index), groups.length === 1),
   );
   const given = fieldsOfKind("ProgramGroup", kind).map((each) => (each.key === "length" ? inUnits(each, at) : each));
-  // Of moves the level is an acceleration.
-  const isMove = kind === "move" || kind === "move_to";
   const own = `${path}.${kind}`;
   const more =
     kind === "move"
@@ -58,7 +56,7 @@ function groupItem(kit, at, groups, index, whose) {
     [
       head,
       ...(kind === "profile" ? more : []),
-      ...choiceBlock(kit, own, given, isMove ? ["direction"] : undefined),
+      ...choiceBlock(kit, own, given),
       ...(kind === "move" ? more : []),
     ],
     `ProgramGroup.${kind}`,

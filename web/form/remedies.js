@@ -111,7 +111,7 @@ function wantedOf(bus, least, isLineless) {
   return /** @type {any} */ ({
     ...times,
     step_period_cycles: ["Slot", slot],
-    boot_cycles: ["Self-test", Math.max(bus.boot_cycles, least("enable_wake"))],
+    self_test_cycles: ["Self-test", Math.max(bus.self_test_cycles, least("enable_wake"))],
   });
 }
 

@@ -7,7 +7,7 @@ import { whole } from "../state/json.js";
 const STEPS = /^(\d+)\s+(\d+)(?:\s+([-+−]?\d+))?(?:\s+(left|right))?$/i;
 const DWELL = /^dwell\s+(\d+)$/i;
 
-/** @typedef {{steps: {count: number | bigint, interval_q16: number | bigint, add_q16: number | bigint, dir: number}} | {dwell: {length_q16: number | bigint}}} Segment */
+/** @typedef {{steps: {count: number | bigint, interval_q16: number | bigint, add_q16: number | bigint, direction: "positive" | "negative"}} | {dwell: {length_q16: number | bigint}}} Segment */
 
 /** @param {any[]} segments */
 export function printSegments(segments) {
@@ -15,7 +15,7 @@ export function printSegments(segments) {
     .map(({ steps, dwell }) =>
       dwell
         ? `dwell ${dwell.length_q16}`
-        : [steps.count, steps.interval_q16, steps.add_q16, steps.dir === 1 ? "right" : "left"].join(" "),
+        : [steps.count, steps.interval_q16, steps.add_q16, steps.direction === "positive" ? "right" : "left"].join(" "),
     )
     .join("\n");
 }
@@ -41,11 +41,11 @@ export function readSegments(text) {
 /** @param {string} line @returns {Segment | null} */
 function readSegment(line) {
   const [, length] = DWELL.exec(line) ?? [];
-  const [, count, interval, add = "0", way = "right"] = STEPS.exec(line) ?? [];
+  const [, count, interval, add = "0", side = "right"] = STEPS.exec(line) ?? [];
   if (length === undefined && count === undefined) return null;
   const [first, interval_q16, add_q16] = [length ?? count, interval ?? "0", add.replace("−", "-").replace("+", "")].map(
     whole,
   );
   if (length !== undefined) return { dwell: { length_q16: first } };
-  return { steps: { count: first, interval_q16, add_q16, dir: way.toLowerCase() === "right" ? 1 : 0 } };
+  return { steps: { count: first, interval_q16, add_q16, direction: side.toLowerCase() === "right" ? "positive" : "negative" } };
 }

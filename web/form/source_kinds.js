@@ -13,9 +13,9 @@ export function sampleSegments() {
   return {
     start_cycle: 1,
     segments: [
-      { steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, dir: 1 } },
+      { steps: { count: 20, interval_q16: ms, add_q16: -ms / 32, direction: "positive" } },
       { dwell: { length_q16: 5 * ms } },
-      { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, dir: 0 } },
+      { steps: { count: 20, interval_q16: ms / 2, add_q16: 0, direction: "negative" } },
     ],
   };
 }
@@ -47,7 +47,7 @@ export function samplePackets({ line }, bus, address) {
 /** A script that sends them. @param {Scenario} scenario */
 export function sampleSends(scenario) {
   const { bus, line } = scenario;
-  const start = bus.boot_cycles + 1;
+  const start = bus.self_test_cycles + 1;
   const tick = bus.slots * bus.step_period_cycles;
   if (line.protocol !== "framed") {
     return samplePackets(scenario, bus, line.address).map((bytes, index) => ({

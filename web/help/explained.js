@@ -6,16 +6,15 @@ export const EXPLAINED = {
     "Samples",
     "Samples per period for the Fourier transform. They span exactly one period, so there is no leakage.",
   ],
-  "Analysis.order": ["Order", "Highest harmonic that the distortion (THD) includes."],
+  "Analysis.max_harmonic": ["Max harmonic", "Highest harmonic that the distortion (THD) includes."],
   "Analysis.sensor_hz": [
     "Sensor bandwidth",
-    "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the order.",
+    "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the number of harmonics.",
   ],
   "Axis.motor": [
     "Motor",
     "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.",
   ],
-  "Bus.boot_cycles": ["Self-test", "After reset the controller tests itself and drops what is sent."],
   "Bus.channels": ["Channel", "One motor driver with its STEP and DIR lines. All channels share EN."],
   "Bus.dir_hold_cycles": ["DIR hold", "DIR must be stable for this time after STEP falls."],
   "Bus.dir_line": [
@@ -42,6 +41,7 @@ export const EXPLAINED = {
     "Queue",
     "Ticks that wait in the controller, so motion continues while the host is busy. An empty queue during a motion is an underrun.",
   ],
+  "Bus.self_test_cycles": ["Self-test", "After reset the controller tests itself and drops what is sent."],
   "Bus.settle_cycles": [
     "Settling time (dp)",
     "Time that the supply current needs to settle after a step, Δt_p in RU 2704486. Staggered pulses are this far apart, or closer if the slot is too short.",
@@ -93,7 +93,7 @@ export const EXPLAINED = {
     "Forced level of the line. A long 0 is a break: the stop bit is missing, and the receiver reports a framing error.",
   ],
   "Glitch.start_cycle": ["Start", "First cycle, counted from reset."],
-  "Host.attempts": ["Attempts", "After this many attempts without a reply the host gives up the controller."],
+  "Host.max_attempts": ["Max attempts", "After this many attempts without a reply the host gives up the controller."],
   "Host.reply_timeout_cycles": [
     "Reply timeout",
     "Without a complete reply in this time the frame is sent again with the same sequence number, so it is not executed twice.",
@@ -126,7 +126,7 @@ export const EXPLAINED = {
     "Step generation",
     "Ticks: the host sends the number of steps of each tick (RU 2704486). Segments: the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).",
   ],
-  "Motor.holding_torque_mn_m": [
+  "Motor.holding_torque_mN_m": [
     "Holding torque",
     "Torque with both phases at the rated current. One phase at its peak has 1/√2 of it. The back-EMF follows from it.",
   ],
@@ -138,7 +138,7 @@ export const EXPLAINED = {
     "Load inertia",
     "Inertia of the load at the motor shaft. Behind a gear of n : 1 divide it by n².",
   ],
-  "Motor.load_torque_mn_m": [
+  "Motor.load_torque_mN_m": [
     "Load torque",
     "Torque that opposes the motion, such as friction or cutting. It helps when decelerating.",
   ],
@@ -257,8 +257,8 @@ export const EXPLAINED = {
   ],
   "SineSegments.period_s": ["Period", "Time T_k of one oscillation; its reciprocal is the frequency."],
   "SineSegments.periods": ["Periods", "Number of oscillations. The spectrum uses whole periods."],
+  "Staircase.acceleration_level": ["Acceleration level", "One of five accelerations: level times 1000 steps/s²."],
   "Staircase.distance": ["Distance", "Travel of the move, rounded to whole steps."],
-  "Staircase.level": ["Acceleration level", "One of five accelerations: level times 1000 steps/s²."],
   "Staircase.max_speed": ["Table ends above", "The table contains rates up to the first one above this."],
   "Staircase.short_move": [
     "Short moves",
@@ -269,7 +269,7 @@ export const EXPLAINED = {
     "Rate of the first step, v0 or f_1. A motor can start at any rate up to its start-stop rate.",
   ],
   "Staircase.top_speed": [
-    "Top speed",
+    "Max speed",
     "Rate of the plateau between the ramps, f_s. Above its pull-out rate a motor loses steps.",
   ],
   "StandAlone.debounce_cycles": [
@@ -280,28 +280,32 @@ export const EXPLAINED = {
     "Group",
     "A step of the program: a move by a length with speed, direction, acceleration and delay (Zhang 2012), or one of the additional kinds.",
   ],
-  "StandAlone.least_trust": [
-    "Trust",
-    "How reliable the position is. Confirmed (2): zero was set or found. Restored (1): it was confirmed, but the windings have been without current since. Lost (0): memory did not survive a power loss, or the motor jumped beyond its start-stop rate.",
-  ],
   "StandAlone.pulses_per_unit": [
     "Pulses per unit",
     "Pulses per unit of length (cm in Zhang 2012). It is measured on the machine, so it includes the errors of screw and gear.",
   ],
+  "StandAlone.required_position": [
+    "Required position",
+    "How reliable the position must be to start. Confirmed: zero was set or found. Restored: it was confirmed, but the windings have been without current since. Lost: memory did not survive a power loss, or the motor jumped beyond its start-stop rate.",
+  ],
   "StandAlone.start_speed_hz": [
     "Start-stop rate",
-    "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is then no longer trusted.",
+    "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is lost.",
   ],
   "TimingRules.dir_hold_ns": ["DIR hold", "From the rise of STEP to the next change of DIR."],
   "TimingRules.dir_setup_ns": ["DIR set-up", "From the last change of DIR to the rise of STEP."],
   "TimingRules.enable_wake_ns": ["EN wake-up", "From the rise of EN, or from reset, to the first step."],
   "TimingRules.step_high_ns": ["STEP high", "From the rise of STEP to its fall."],
   "TimingRules.step_low_ns": ["STEP low", "From the fall of STEP to its next rise."],
-  "Trapezoid.acceleration": [
-    "Acceleration",
-    "Change of speed per second. Its maximum is the motor torque minus the load torque, divided by the inertia.",
-  ],
   "Trapezoid.distance": ["Distance", "Travel of the move, rounded to whole steps."],
+  "Trapezoid.max_acceleration": [
+    "Max acceleration",
+    "Change of speed per second on the ramps. A motor reaches at most its torque minus the load torque, divided by the inertia.",
+  ],
+  "Trapezoid.max_speed": [
+    "Max speed",
+    "Rate of the plateau between the ramps, f_s. Above its pull-out rate a motor loses steps.",
+  ],
   "Trapezoid.method": [
     "Step times",
     "A small controller stores one pulse rate per step and loads a timer with clock / rate. Both are rounded to whole numbers, so each step is slightly early or late. Exact times have no such error.",
@@ -313,10 +317,6 @@ export const EXPLAINED = {
   "Trapezoid.timer_hz": [
     "Timer clock",
     "Clock of the timer that the controller reloads at every step. A slow clock makes step times coarse.",
-  ],
-  "Trapezoid.top_speed": [
-    "Top speed",
-    "Rate of the plateau between the ramps, f_s. Above its pull-out rate a motor loses steps.",
   ],
   "Wheel.full_step_deg": ["Full step", "Angle of one full step of the motor; usually 1.8°."],
   "Wheel.microsteps": [

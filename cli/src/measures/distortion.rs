@@ -17,7 +17,7 @@ pub(super) struct Distortion {
 impl Distortion {
     pub(super) fn of(plan: &AxisPlan, run: &Pulses<'_>, analysis: &Analysis) -> Option<Self> {
         let window = AnalysisWindow::of(plan).filter(|window| window.periodic)?;
-        let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length)?;
+        let ideal = Spectrum::ideal(plan, analysis.max_harmonic, analysis.fft_length)?;
         // Use the same order, which the number of samples may have limited.
         let pulses = Spectrum::of_pulses(&window.pulses_of(plan, run), window, ideal.order);
         Some(Self {

@@ -25,31 +25,31 @@ impl VirtualAxis {
     pub(crate) fn shift(&mut self, steps: i64) {
         let target = self.position.saturating_add(steps);
         self.position = if steps > 0 {
-            let end = self.axis.hard_max.unwrap_or(i64::MAX);
+            let end = self.axis.hard_max_steps.unwrap_or(i64::MAX);
             target.min(end).max(self.position)
         } else {
-            let end = self.axis.hard_min.unwrap_or(i64::MIN);
+            let end = self.axis.hard_min_steps.unwrap_or(i64::MIN);
             target.max(end).min(self.position)
         };
     }
 
     pub(crate) fn switches(&self) -> [(Signal, Option<bool>); 3] {
         let position = self.position;
-        let home = self.axis.home_from.zip(self.axis.home_to);
+        let home = self.axis.home_from_steps.zip(self.axis.home_to_steps);
         [
-            (Signal::LimitMin, self.axis.min_switch_at.map(|at| position <= at)),
-            (Signal::LimitMax, self.axis.max_switch_at.map(|at| position >= at)),
+            (Signal::LimitMin, self.axis.min_switch_at_steps.map(|at| position <= at)),
+            (Signal::LimitMax, self.axis.max_switch_at_steps.map(|at| position >= at)),
             (Signal::HomeSwitch, home.map(|(from, to)| (from..=to).contains(&position))),
         ]
     }
 
     /// Whether a move in this direction reaches a limit switch.
     pub(crate) fn has_switch_ahead(&self, right: bool) -> bool {
-        let Axis { min_switch_at, max_switch_at, hard_min, hard_max, .. } = self.axis;
+        let Axis { min_switch_at_steps, max_switch_at_steps, hard_min_steps, hard_max_steps, .. } = self.axis;
         if right {
-            max_switch_at.is_some_and(|at| hard_max.is_none_or(|end| at <= end))
+            max_switch_at_steps.is_some_and(|at| hard_max_steps.is_none_or(|end| at <= end))
         } else {
-            min_switch_at.is_some_and(|at| hard_min.is_none_or(|end| at >= end))
+            min_switch_at_steps.is_some_and(|at| hard_min_steps.is_none_or(|end| at >= end))
         }
     }
 
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn steps_into_an_end_are_lost() {
-        // Position, hard_min, hard_max, steps, position after.
+        // Position, hard_min_steps, hard_max_steps, steps, position after.
         let rows = [
             (0, None, None, 5, 5),
             (0, Some(-3), Some(4), 5, 4),
@@ -88,8 +88,8 @@ mod tests {
             (0, Some(5), Some(-5), 1, 0),
             (0, Some(5), Some(-5), -1, 0),
         ];
-        for (start_steps, hard_min, hard_max, steps, expected) in rows {
-            let axis = Axis { start_steps, hard_min, hard_max, ..Axis::default() };
+        for (start_steps, hard_min_steps, hard_max_steps, steps, expected) in rows {
+            let axis = Axis { start_steps, hard_min_steps, hard_max_steps, ..Axis::default() };
             let mut virtual_axis = VirtualAxis::new(Some(&axis));
             virtual_axis.shift(steps);
             assert_eq!(virtual_axis.position(), expected, "{axis:?} {steps}");
@@ -114,10 +114,10 @@ mod tests {
     #[test]
     fn switches_close_at_their_positions() {
         let axis = Axis {
-            min_switch_at: Some(-2),
-            max_switch_at: Some(2),
-            home_from: Some(0),
-            home_to: Some(1),
+            min_switch_at_steps: Some(-2),
+            max_switch_at_steps: Some(2),
+            home_from_steps: Some(0),
+            home_to_steps: Some(1),
             ..Axis::default()
         };
         for position in -3..=3 {

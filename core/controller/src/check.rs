@@ -121,7 +121,7 @@ impl Check {
         self.speed("start_speed_hz", parameters.start_speed_hz, parameters);
         self.max_speed(setup, parameters.max_speed_hz);
         self.range("level_hz_s", parameters.level_hz_s, &limits::LEVEL_HZ_S);
-        self.range("least_trust", parameters.least_trust, &limits::TRUST);
+        self.range("required_position", parameters.least_trust, &limits::TRUST);
         self.range("loops", parameters.loops, &limits::LOOPS);
         self.range("groups", parameters.groups.len() as i128, &limits::GROUPS);
         for (index, group) in parameters.groups.iter().enumerate() {
@@ -129,9 +129,9 @@ impl Check {
         }
         self.speed("jog.speed_hz", parameters.jog.speed_hz, parameters);
         self.speed("jog.fine_hz", parameters.jog.fine_hz, parameters);
-        self.range("jog.level", parameters.jog.level, &limits::LEVEL);
+        self.range("jog.acceleration_level", parameters.jog.level, &limits::LEVEL);
         self.speed("return.speed_hz", parameters.return_.speed_hz, parameters);
-        self.range("return.level", parameters.return_.level, &limits::LEVEL);
+        self.range("return.acceleration_level", parameters.return_.level, &limits::LEVEL);
         if let Some(home) = &parameters.home {
             self.home(parameters, home);
         }
@@ -167,7 +167,7 @@ impl Check {
                 self.range(path("move.length"), group.length, &limits::LENGTH);
                 self.range(path("move.direction"), group.direction, &limits::DIRECTION);
                 self.speed(path("move.speed_hz"), group.speed_hz, parameters);
-                self.range(path("move.level"), group.level, &limits::LEVEL);
+                self.range(path("move.acceleration_level"), group.level, &limits::LEVEL);
                 self.range(path("move.delay_ms"), group.delay_ms, &limits::DELAY_MS);
                 if let Some(until) = &group.until {
                     self.until(path("move.until.input"), until);
@@ -176,7 +176,7 @@ impl Check {
             Group::MoveTo(group) => {
                 self.range(path("move_to.length"), group.length, &limits::TARGET);
                 self.speed(path("move_to.speed_hz"), group.speed_hz, parameters);
-                self.range(path("move_to.level"), group.level, &limits::LEVEL);
+                self.range(path("move_to.acceleration_level"), group.level, &limits::LEVEL);
                 self.range(path("move_to.delay_ms"), group.delay_ms, &limits::DELAY_MS);
             }
             Group::Profile(group) => {
@@ -254,26 +254,30 @@ impl Check {
             }
         }
         self.range("home.pull_off_steps", home.pull_off_steps, &limits::PULL_OFF_STEPS);
-        self.range("home.travel_steps", home.travel_steps, &limits::TRAVEL_STEPS);
+        self.range("home.max_travel_steps", home.max_travel_steps, &limits::TRAVEL_STEPS);
         self.range("home.position_steps", home.position_steps, &limits::STEPS);
     }
 
     fn axis(&mut self, axis: &Axis) {
         let positions = [
             ("axis.start_steps", Some(axis.start_steps)),
-            ("axis.min_switch_at", axis.min_switch_at),
-            ("axis.max_switch_at", axis.max_switch_at),
-            ("axis.home_from", axis.home_from),
-            ("axis.home_to", axis.home_to),
-            ("axis.hard_min", axis.hard_min),
-            ("axis.hard_max", axis.hard_max),
+            ("axis.min_switch_at_steps", axis.min_switch_at_steps),
+            ("axis.max_switch_at_steps", axis.max_switch_at_steps),
+            ("axis.home_from_steps", axis.home_from_steps),
+            ("axis.home_to_steps", axis.home_to_steps),
+            ("axis.hard_min_steps", axis.hard_min_steps),
+            ("axis.hard_max_steps", axis.hard_max_steps),
         ];
         for (path, position) in positions {
             self.range(path, position.unwrap_or(0), &limits::STEPS);
         }
-        match (axis.home_from, axis.home_to) {
-            (Some(_), None) => self.refuse("axis.home_to", Refusal::HalfSwitch { missing: "home_to" }),
-            (None, Some(_)) => self.refuse("axis.home_from", Refusal::HalfSwitch { missing: "home_from" }),
+        match (axis.home_from_steps, axis.home_to_steps) {
+            (Some(_), None) => {
+                self.refuse("axis.home_to_steps", Refusal::HalfSwitch { missing: "home_to_steps" })
+            }
+            (None, Some(_)) => {
+                self.refuse("axis.home_from_steps", Refusal::HalfSwitch { missing: "home_from_steps" })
+            }
             _ => {}
         }
     }
@@ -332,9 +336,9 @@ fn forbidden(parameters: &Parameters, controller: usize, signal: Signal) -> Opti
         Signal::Power | Signal::Estop | Signal::Clear if controller != 0 => {
             return Some(Refusal::FirstControllers { signal });
         }
-        Signal::LimitMin => axis?.min_switch_at.map(|_| "min_switch_at"),
-        Signal::LimitMax => axis?.max_switch_at.map(|_| "max_switch_at"),
-        Signal::HomeSwitch => axis?.home_from.or(axis?.home_to).map(|_| "home_from"),
+        Signal::LimitMin => axis?.min_switch_at_steps.map(|_| "min_switch_at_steps"),
+        Signal::LimitMax => axis?.max_switch_at_steps.map(|_| "max_switch_at_steps"),
+        Signal::HomeSwitch => axis?.home_from_steps.or(axis?.home_to_steps).map(|_| "home_from_steps"),
         _ => None,
     };
     by.map(|by| Refusal::Driven { signal, by })

@@ -31,7 +31,7 @@ impl Controller {
         };
         let climb = Climb { table: self.table(1), top: 0, plateau_hz };
         let mut motion =
-            Motion::new(Purpose::Leg(leg), right, home.travel_steps.into(), climb, self.clock_hz);
+            Motion::new(Purpose::Leg(leg), right, home.max_travel_steps.into(), climb, self.clock_hz);
         if leg == Leg::Off && !self.inputs.level(home.switch) {
             motion.is_found = true;
             motion.rem = home.pull_off_steps.into();

@@ -142,7 +142,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         /// Steps away from the switch after it has opened, including the pending one.
         pub pull_off_steps: u32 = 20,
         /// Maximum steps of a leg.
-        pub travel_steps: u32 = 100_000,
+        pub max_travel_steps: u32 = 100_000,
         /// Position where the switch closes.
         pub position_steps: i64 = 0,
     }
@@ -157,16 +157,16 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         /// Initial position.
         pub start_steps: i64 = 0,
         /// `limit_min` is closed here and to the left.
-        pub min_switch_at: Option<i64> = None,
+        pub min_switch_at_steps: Option<i64> = None,
         /// `limit_max` is closed here and to the right.
-        pub max_switch_at: Option<i64> = None,
-        /// `home_switch` is closed from here to `home_to`; both or neither.
-        pub home_from: Option<i64> = None,
-        pub home_to: Option<i64> = None,
+        pub max_switch_at_steps: Option<i64> = None,
+        /// `home_switch` is closed from here to `home_to_steps`; both or neither.
+        pub home_from_steps: Option<i64> = None,
+        pub home_to_steps: Option<i64> = None,
         /// Left mechanical end.
-        pub hard_min: Option<i64> = None,
+        pub hard_min_steps: Option<i64> = None,
         /// Right mechanical end.
-        pub hard_max: Option<i64> = None,
+        pub hard_max_steps: Option<i64> = None,
     }
 
     pub struct Memory {
@@ -263,9 +263,9 @@ impl Parameters {
         };
         let driven = |signal| {
             self.axis.as_ref().is_some_and(|axis| match signal {
-                Signal::LimitMin => axis.min_switch_at.is_some(),
-                Signal::LimitMax => axis.max_switch_at.is_some(),
-                Signal::HomeSwitch => axis.home_from.is_some(),
+                Signal::LimitMin => axis.min_switch_at_steps.is_some(),
+                Signal::LimitMax => axis.max_switch_at_steps.is_some(),
+                Signal::HomeSwitch => axis.home_from_steps.is_some(),
                 _ => false,
             })
         };

@@ -214,7 +214,7 @@ impl fmt::Display for Warning {
             Self::ShortMove { steps, needed, given_hz, start_speed_hz } => write!(
                 f,
                 "{steps} steps are too short for {given_hz} Hz, which takes {needed} up and down: the whole move goes at \
-                 {start_speed_hz} Hz; a higher level needs fewer, and short_move \"turn_round\" goes up as far as they allow"
+                 {start_speed_hz} Hz; a higher level needs fewer, and short_move \"reverse\" goes up as far as they allow"
             ),
         }
     }

@@ -376,7 +376,7 @@ mod tests {
             (r#"{"bus":{"pulse_width_cycles":320,"dir_setup_cycles":0}}"#, &["bus.step_period_cycles"]),
             (
                 r#"{"analysis":{"axis":1,"order":1,"fft_length":15,"sensor_hz":0}}"#,
-                &["analysis.axis", "analysis.order", "analysis.fft_length", "analysis.sensor_hz"],
+                &["analysis.axis", "analysis.max_harmonic", "analysis.fft_length", "analysis.sensor_hz"],
             ),
             (
                 r#"{"analysis":{"fft_length":65537,"sensor_hz":1e10}}"#,

@@ -83,12 +83,12 @@ pub use schema::{
 };
 pub use schema::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use schema::{
-    Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
-    ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,
-    VirtualAxis, WaitGroup,
+    Direction, Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, PositionState,
+    ProfileGroup, ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch,
+    Until, VirtualAxis, WaitGroup,
 };
 pub use schema::{Parts, ToParts};
 pub use table::{BadTable, MAX_TABLE_BYTES};
 
 /// The newest scenario version, which is written.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;

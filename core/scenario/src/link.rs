@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn the_version_is_checked_before_the_crc() {
         let rows = [
-            ("c=3.z.anything.00000000", LinkError::Newer { given: 3, newest: VERSION }),
+            ("c=4.z.anything.00000000", LinkError::Newer { given: 4, newest: VERSION }),
             ("c=99", LinkError::Newer { given: 99, newest: VERSION }),
             ("c=1.z.AAAA.00000000", LinkError::Damaged),
             ("c=2.z.AAAA.00000000", LinkError::Damaged),

@@ -72,8 +72,8 @@ impl Scenario {
                 1 + u64::from(config.channels()) * 24 * (config.tick().0 / u64::from(config.slots()));
             if config.boot().0 < needed {
                 let path = match index {
-                    0 => "bus.boot_cycles".to_string(),
-                    _ => format!("controllers[{}].bus.boot_cycles", index - 1),
+                    0 => "bus.self_test_cycles".to_string(),
+                    _ => format!("controllers[{}].bus.self_test_cycles", index - 1),
                 };
                 let given = config.boot().0;
                 validator.add(&path, Cause::SelfTest { given, needed });
@@ -166,27 +166,27 @@ fn check_axes(axes: &[Axis], path: &str, validator: &mut Validator) {
 
 fn check_motor(motor: &Motor, here: &mut Validator) {
     let most = *limits::TORQUE_MN_M.end();
-    here.range("friction_mn_m", motor.friction_mn_m, limits::TORQUE_MN_M, "mN*m");
+    here.range("friction_mN_m", motor.friction_mn_m, limits::TORQUE_MN_M, "mN*m");
     if let Some(stiction) = motor.stiction_mn_m {
-        here.range("stiction_mn_m", stiction, motor.friction_mn_m..=most, "mN*m");
+        here.range("stiction_mN_m", stiction, motor.friction_mn_m..=most, "mN*m");
     }
-    here.range("viscous_un_m_s", motor.viscous_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
-    here.range("detent_torque_mn_m", motor.detent_torque_mn_m, 0.0..=0.5 * motor.holding_torque_mn_m, "mN*m");
-    here.range("gravity_torque_mn_m", motor.gravity_torque_mn_m, limits::SIGNED_TORQUE_MN_M, "mN*m");
-    here.range("sine_torque_mn_m", motor.sine_torque_mn_m, limits::TORQUE_MN_M, "mN*m");
+    here.range("viscous_uN_m_s", motor.viscous_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
+    here.range("detent_torque_mN_m", motor.detent_torque_mn_m, 0.0..=0.5 * motor.holding_torque_mn_m, "mN*m");
+    here.range("gravity_torque_mN_m", motor.gravity_torque_mn_m, limits::SIGNED_TORQUE_MN_M, "mN*m");
+    here.range("sine_torque_mN_m", motor.sine_torque_mn_m, limits::TORQUE_MN_M, "mN*m");
     here.range("sine_per_turn", motor.sine_per_turn, limits::SINE_PER_TURN, "");
     here.range("sine_phase_deg", motor.sine_phase_deg, limits::SINE_PHASE_DEG, "deg");
     if let Some(coupling) = motor.coupling_n_m_rad {
-        here.range("coupling_n_m_rad", coupling, limits::COUPLING_N_M_RAD, "N*m/rad");
+        here.range("coupling_N_m_rad", coupling, limits::COUPLING_N_M_RAD, "N*m/rad");
     }
-    here.range("coupling_un_m_s", motor.coupling_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
+    here.range("coupling_uN_m_s", motor.coupling_un_m_s, limits::VISCOUS_UN_M_S, "uN*m*s");
     let Drive { decay_share, off_us, blank_us, dac_levels, bridge_ohm, diode_v, .. } = motor.drive;
-    here.range("drive.decay_share", decay_share, limits::SHARE, "");
-    here.range("drive.off_us", off_us, limits::CHOPPER_US, "us");
-    here.range("drive.blank_us", blank_us, limits::CHOPPER_US, "us");
-    here.whole("drive.dac_levels", dac_levels.unwrap_or(1), limits::DAC_LEVELS, "");
-    here.range("drive.bridge_ohm", bridge_ohm, limits::BRIDGE_OHM, "ohm");
-    here.range("drive.diode_v", diode_v, limits::DIODE_V, "V");
+    here.range("driver.fast_decay_fraction", decay_share, limits::SHARE, "");
+    here.range("driver.off_time_us", off_us, limits::CHOPPER_US, "us");
+    here.range("driver.blanking_time_us", blank_us, limits::CHOPPER_US, "us");
+    here.whole("driver.dac_levels", dac_levels.unwrap_or(1), limits::DAC_LEVELS, "");
+    here.range("driver.bridge_ohm", bridge_ohm, limits::BRIDGE_OHM, "ohm");
+    here.range("driver.diode_v", diode_v, limits::DIODE_V, "V");
 }
 
 /// All motors of a plant share one supply.
@@ -283,6 +283,15 @@ fn motor(placed: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
     }
 }
 
+/// The scenario's name of a motor's field. Other fields have the same name or are checked before.
+fn scenario_name(field: &'static str) -> &'static str {
+    match field {
+        "holding_torque_mn_m" => "holding_torque_mN_m",
+        "load_torque_mn_m" => "load_torque_mN_m",
+        field => field,
+    }
+}
+
 fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validator) {
     let of_motor = refused.channel.and_then(|channel| placed.get(channel));
     let path = match (refused.refusal, of_motor) {
@@ -291,10 +300,7 @@ fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validato
         (Refusal::Range { field: field @ ("full_step_deg" | "microsteps"), .. }, Some(placed)) => {
             format!("{}.{field}", placed.mechanics_path)
         }
-        (Refusal::Range { field: "drive.decay.share", .. }, Some(placed)) => {
-            format!("{}.drive.decay_share", placed.path)
-        }
-        (Refusal::Range { field, .. }, Some(placed)) => format!("{}.{field}", placed.path),
+        (Refusal::Range { field, .. }, Some(placed)) => format!("{}.{}", placed.path, scenario_name(field)),
         (Refusal::Range { field: "supply_v", .. }, None) => {
             placed.first().map_or_else(String::new, |first| format!("{}.supply_v", first.path))
         }
@@ -336,10 +342,10 @@ mod tests {
                 ],
             ),
             (
-                motor(r#""friction_mn_m":-1,"drive":{"off_us":-2}"#),
+                motor(r#""friction_mN_m":-1,"driver":{"off_time_us":-2}"#),
                 &[
-                    "source.motion.axes[0].motor.friction_mn_m: -1 mN*m is out of range; give 0 to 1000000 mN*m",
-                    "source.motion.axes[0].motor.drive.off_us: -2 us is out of range; give 0 to 1000000 us",
+                    "source.motion.axes[0].motor.friction_mN_m: -1 mN*m is out of range; give 0 to 1000000 mN*m",
+                    "source.motion.axes[0].motor.driver.off_time_us: -2 us is out of range; give 0 to 1000000 us",
                 ],
             ),
             (
@@ -363,8 +369,8 @@ mod tests {
                 &["plant.motors[1].motor.supply_v: 36 V, but the first motor has 24 V"],
             ),
             (
-                r#"{"bus":{"boot_cycles":100},"plant":{"self_test":true}}"#.into(),
-                &["bus.boot_cycles: 100 cycles are too short for the self-test; give at least 7681"],
+                r#"{"bus":{"self_test_cycles":100},"plant":{"self_test":true}}"#.into(),
+                &["bus.self_test_cycles: 100 cycles are too short for the self-test; give at least 7681"],
             ),
         ];
         for (given, expected) in rows {

@@ -106,7 +106,7 @@ presets! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Kinds;
+    use crate::{Kinds, VERSION};
     use alloc::vec::Vec;
 
     #[test]
@@ -126,8 +126,8 @@ mod tests {
             .chain(CONTROLLER_PLANT_PRESETS)
             .collect();
         for (index, preset) in all.iter().enumerate() {
-            let scenario =
-                Scenario::from_json(preset.json).unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
+            let scenario = Scenario::from_json_of(preset.json, VERSION.into())
+                .unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));
             let lines: Vec<&str> = scenario.note.lines().collect();
             let [see, attempt] = lines[..] else { panic!("{}: two lines: {lines:?}", preset.id) };
             assert!(see.starts_with("See ") && attempt.starts_with("Try "), "{}: {lines:?}", preset.id);

@@ -5,7 +5,7 @@
 use crate::{
     Cause, Json, Problem, Validator,
     schema::{Field, Group, Limit, Type},
-    upgrade,
+    upgrade::{self, Rename},
 };
 use alloc::{
     borrow::ToOwned,
@@ -35,13 +35,13 @@ pub struct Reader {
     validator: Validator,
     /// The row of the current field.
     row: Option<&'static Field>,
-    /// Whether names of version 1 are accepted.
-    old_names: bool,
+    /// Version of the text, which decides which old names are accepted.
+    version: u32,
 }
 
 /// Returns all problems, at most [`stepscope_motion::MAX_PROBLEMS`].
-pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, old_names: bool) -> Vec<Problem> {
-    let mut reader = Reader { old_names, ..Reader::default() };
+pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, version: u32) -> Vec<Problem> {
+    let mut reader = Reader { version, ..Reader::default() };
     target.read(value, &mut reader);
     reader.validator.problems()
 }
@@ -130,67 +130,67 @@ impl Reader {
         true
     }
 
-    /// Missing fields keep their values; of duplicates the first counts. `fields` are those of `group`, in order.
+    /// Reads the fields of `group`; `targets` are in the group's order. Missing fields keep their values; of duplicates
+    /// the first counts.
     pub(super) fn fields(
         &mut self,
         value: Json<'_>,
         group: &'static Group,
-        fields: &mut [(&'static str, &mut dyn Read)],
+        targets: &mut [&mut dyn Read],
     ) -> bool {
-        let mut given: Vec<&'static str> = Vec::new();
+        let mut given = Vec::new();
         // A new name wins over the old one wherever it is in the text.
-        let mut older: Vec<(&'static str, &'static str, Json<'_>)> = Vec::new();
+        let mut renamed = Vec::new();
         let is_map = self.map(value, "an object with named fields", &mut |reader, name, value| {
-            if let Some((field, target)) = fields.iter_mut().find(|(field, _)| *field == name) {
-                reader.field(group, &mut given, (*field, *field), value, *target);
-            } else if let Some((old, new)) = reader.renamed(name, fields) {
-                older.push((old, new, value));
-            } else {
-                reader.unknown(name, fields);
+            let index = group.fields.iter().position(|field| field.name == name);
+            let target = index.and_then(|index| Some((index, targets.get_mut(index)?)));
+            match (target, upgrade::renamed_field(name, group)) {
+                (Some((index, target)), _) => reader.field(group, &mut given, (name, index), value, *target),
+                (None, Some(rename)) if reader.version <= rename.last_version => {
+                    renamed.push((rename, value))
+                }
+                (None, rename) => reader.unknown(name, group, rename),
             }
         });
-        for (old, new, value) in older {
-            match fields.iter_mut().find(|(field, _)| *field == new) {
-                Some((_, target)) if !given.contains(&new) || given.contains(&old) => {
-                    self.field(group, &mut given, (old, new), value, *target);
-                    given.push(new);
+        let current = given.clone();
+        for (rename, value) in renamed {
+            let index = group.fields.iter().position(|field| field.name == rename.new);
+            match index.and_then(|index| Some((index, targets.get_mut(index)?))) {
+                Some((index, target)) if !current.contains(&rename.new) => {
+                    self.field(group, &mut given, (rename.old, index), value, *target);
                 }
-                _ => self.unknown(old, fields),
+                _ => self.unknown(rename.old, group, Some(rename)),
             }
         }
         is_map
     }
 
+    /// Reads one field, unless the text has given its name before.
     fn field(
         &mut self,
         group: &'static Group,
         given: &mut Vec<&'static str>,
-        (called, name): (&'static str, &'static str),
+        (written, index): (&str, usize),
         value: Json<'_>,
         target: &mut dyn Read,
     ) {
-        if given.contains(&called) {
+        let Some(row) = group.fields.get(index) else { return };
+        if given.contains(&row.name) {
             let detail = "given twice; give it once".to_owned();
-            return self.validator.add(called, Cause::Type { detail });
+            return self.validator.add(written, Cause::Type { detail });
         }
-        given.push(called);
-        let row = group.fields.iter().find(|row| row.name == name);
-        self.below(row, name, value, target);
+        given.push(row.name);
+        self.below(Some(row), row.name, value, target);
     }
 
-    fn unknown(&mut self, name: &str, fields: &[(&'static str, &mut dyn Read)]) {
-        let names: Vec<&str> = fields.iter().map(|(field, _)| *field).collect();
-        let detail = format!("unknown field; use one of {}", names.join(", "));
+    fn unknown(&mut self, name: &str, group: &Group, rename: Option<&Rename>) {
+        let detail = match rename {
+            Some(Rename { new, last_version, .. }) => {
+                format!("unknown field; use {new}, its name since version {}", last_version + 1)
+            }
+            None => format!("unknown field; use one of {}", group.names()),
+        };
         self.validator.add(name, Cause::Type { detail });
-    }
-
-    fn renamed(
-        &self,
-        name: &str,
-        fields: &[(&'static str, &mut dyn Read)],
-    ) -> Option<(&'static str, &'static str)> {
-        let mut names = upgrade::FIELDS.iter().filter(|_| self.old_names);
-        names.find(|(old, new)| *old == name && fields.iter().any(|(field, _)| field == new)).copied()
     }
 
     /// A choice is an object with one key.
@@ -214,38 +214,49 @@ impl Reader {
         match first {
             Some((Ok(kind), content)) if count == 1 => return Some((kind, content)),
             Some((Err(name), _)) if count == 1 => {
-                let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
-                self.note(format!("unknown kind \u{201c}{name}\u{201d}; use one of {}", kinds.join(", ")));
+                self.note(format!("unknown kind \u{201c}{name}\u{201d}; use one of {}", group.names()));
             }
             _ => self.note(format!("a map of {count} keys; give {wanted}")),
         }
         None
     }
 
+    /// Returns the index of a word. Accepts old words and the numbers that some words replace.
     pub(super) fn word(&mut self, value: Json<'_>, words: &[&str]) -> Option<usize> {
+        let index_of = |text: &str| words.iter().position(|word| *word == text);
+        let renamed = |text: &str| {
+            let mut renames = upgrade::WORDS.iter().filter(|rename| rename.old == text);
+            renames.find_map(|rename| Some((index_of(rename.new)?, rename)))
+        };
+        let number = value.whole().filter(|(is_negative, _)| !is_negative).map(|(_, size)| size.to_string());
         let text = value.text();
-        let named = |text: &str| words.iter().position(|word| *word == text);
-        let found = text.as_deref().and_then(|text| {
-            let renamed = || upgrade::WORDS.iter().find(|(old, _)| self.old_names && *old == text);
-            named(text).or_else(|| named(renamed()?.1))
-        });
-        if found.is_none() {
-            self.refuse(value, &format!("one of {}", words.join(", ")));
+        let written = text.as_deref().or(number.as_deref()).unwrap_or_default();
+        match (index_of(written), renamed(written)) {
+            (Some(index), _) => return Some(index),
+            (None, Some((index, rename))) if self.version <= rename.last_version => return Some(index),
+            (None, Some((_, rename))) => self.note(format!(
+                "{} is not a word of this field; use {}, its name since version {}",
+                describe(value),
+                rename.new,
+                rename.last_version + 1
+            )),
+            (None, None) => {
+                self.refuse(value, &format!("one of {}", words.join(", ")));
+            }
         }
-        found
+        None
     }
 }
 
 /// The hint names the group's own kinds: `{"mm": 250}` is wrong where a segment is expected.
 fn wanted_of(group: &Group) -> String {
-    let kinds: Vec<&str> = group.fields.iter().map(|kind| kind.name).collect();
     let example = match group.fields.first() {
         Some(Field { name, ty: Type::Number, .. }) => format!("{{\"{name}\": 250}}"),
         Some(Field { name, ty: Type::List(_), .. }) => format!("{{\"{name}\": [\u{2026}]}}"),
         Some(Field { name, .. }) => format!("{{\"{name}\": {{\u{2026}}}}}"),
         None => "{}".to_owned(),
     };
-    format!("an object with one key ({}), such as {example}", kinds.join(", "))
+    format!("an object with one key ({}), such as {example}", group.names())
 }
 
 fn describe(value: Json<'_>) -> String {

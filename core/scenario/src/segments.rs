@@ -1,7 +1,7 @@
 //! Checks segment lists (DESIGN A8) and converts them for the segment engine, and back.
 
 use crate::{
-    Cause, ChannelSegments, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
+    Cause, ChannelSegments, Direction, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
     check::fit_channels,
 };
 use alloc::vec::Vec;
@@ -52,7 +52,7 @@ impl ChannelSegments {
                 count: steps.count,
                 interval: steps.interval_q16,
                 add: steps.add_q16,
-                right: steps.dir != 0,
+                right: steps.direction.is_positive(),
             },
             Segment::Dwell(dwell) => segment::Segment::Dwell(dwell.length_q16),
         });
@@ -64,7 +64,8 @@ impl From<&CheckedSegments> for SegmentLists {
     fn from(checked: &CheckedSegments) -> Self {
         let segment = |each: &segment::Segment| match *each {
             segment::Segment::Steps { count, interval, add, right } => {
-                Segment::Steps(StepSegment { count, interval_q16: interval, add_q16: add, dir: right.into() })
+                let direction = Direction::of_dir(right);
+                Segment::Steps(StepSegment { count, interval_q16: interval, add_q16: add, direction })
             }
             segment::Segment::Dwell(length_q16) => Segment::Dwell(DwellSegment { length_q16 }),
         };
@@ -107,10 +108,9 @@ mod tests {
                 ],
             ),
             (
-                r#"{"start_cycle":0,"segments":[{"steps":{"dir":2}}]}"#,
+                r#"{"start_cycle":0}"#,
                 &[
                     "source.segments.channels[0].start_cycle: 0 cycles is out of range; give 1 to 281474976710655 cycles",
-                    "source.segments.channels[0].segments[0].steps.dir: 2 is out of range; give 0 to 1",
                 ],
             ),
             (
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn segments_survive_their_canonical_form() {
-        let json = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12,"dir":0}},{"dwell":{"length_q16":18446744073709551615}},{"steps":{}}]}]}}}"#;
+        let json = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12,"direction":"negative"}},{"dwell":{"length_q16":18446744073709551615}},{"steps":{}}]}]}}}"#;
         let scenario = Scenario::from_json(json).expect("reads");
         assert_eq!(scenario.compact().to_string(), json);
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));

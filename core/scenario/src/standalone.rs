@@ -84,16 +84,19 @@ impl StandAlone {
             max_speed_hz: self.max_speed_hz,
             level_hz_s: self.level_hz_s,
             short_move: self.short_move,
-            least_trust: self.least_trust,
+            least_trust: self.required_position as u8,
             loops: self.loops.into(),
             groups,
             jog: parameters::Jog {
                 speed_hz: self.jog.speed_hz,
                 fine_hz: self.jog.fine_hz,
-                level: self.jog.level,
+                level: self.jog.acceleration_level,
                 release: self.jog.release,
             },
-            return_: parameters::Return { speed_hz: self.r#return.speed_hz, level: self.r#return.level },
+            return_: parameters::Return {
+                speed_hz: self.r#return.speed_hz,
+                level: self.r#return.acceleration_level,
+            },
             home: self.home.as_ref().map(Homing::plain),
             soft_limits: self.soft_limits.as_ref().map(SoftLimits::plain),
             axis: self.axis.as_ref().map(VirtualAxis::plain),
@@ -114,16 +117,16 @@ impl ProgramGroup {
         match self {
             Self::Move(group) => Group::Move(parameters::Move {
                 length: group.length,
-                direction: group.direction,
+                direction: group.direction.is_positive().into(),
                 speed_hz: group.speed_hz,
-                level: group.level,
+                level: group.acceleration_level,
                 delay_ms: group.delay_ms,
                 until: group.until.as_ref().map(Until::plain),
             }),
             Self::MoveTo(group) => Group::MoveTo(parameters::MoveTo {
                 length: group.length.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
                 speed_hz: group.speed_hz,
-                level: group.level,
+                level: group.acceleration_level,
                 delay_ms: group.delay_ms,
             }),
             Self::Profile(group) => {
@@ -153,7 +156,7 @@ impl ProfileGroup {
     fn plain(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> parameters::Profile {
         let mut profile = parameters::Profile {
             intervals: self.intervals_q16.clone(),
-            direction: self.direction,
+            direction: self.direction.is_positive().into(),
             delay_ms: self.delay_ms,
         };
         if let Some(motion) = &self.motion {
@@ -219,11 +222,11 @@ impl Homing {
     fn plain(&self) -> parameters::Home {
         parameters::Home {
             switch: self.switch.signal(),
-            direction: self.direction,
+            direction: self.direction.is_positive().into(),
             coarse_hz: self.coarse_hz,
             fine_hz: self.fine_hz,
             pull_off_steps: self.pull_off_steps,
-            travel_steps: self.travel_steps,
+            max_travel_steps: self.max_travel_steps,
             position_steps: self.position_steps,
         }
     }
@@ -239,12 +242,12 @@ impl VirtualAxis {
     fn plain(&self) -> parameters::Axis {
         parameters::Axis {
             start_steps: self.start_steps,
-            min_switch_at: self.min_switch_at,
-            max_switch_at: self.max_switch_at,
-            home_from: self.home_from,
-            home_to: self.home_to,
-            hard_min: self.hard_min,
-            hard_max: self.hard_max,
+            min_switch_at_steps: self.min_switch_at_steps,
+            max_switch_at_steps: self.max_switch_at_steps,
+            home_from_steps: self.home_from_steps,
+            home_to_steps: self.home_to_steps,
+            hard_min_steps: self.hard_min_steps,
+            hard_max_steps: self.hard_max_steps,
         }
     }
 }

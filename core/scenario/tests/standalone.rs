@@ -43,9 +43,9 @@ fn every_refusal_names_its_field_and_the_numbers() {
             ],
         ),
         (
-            r#"[{"axis":{"max_switch_at":5},"inputs":[{"cycle":9,"input":"limit_max"},{"cycle":4000,"input":"start"},{"cycle":4000,"input":"start","level":0}]}]"#,
+            r#"[{"axis":{"max_switch_at_steps":5},"inputs":[{"cycle":9,"input":"limit_max"},{"cycle":4000,"input":"start"},{"cycle":4000,"input":"start","level":0}]}]"#,
             &[
-                "{at}.inputs[0]: limit_max is driven by axis.max_switch_at; leave one of them out",
+                "{at}.inputs[0]: limit_max is driven by axis.max_switch_at_steps; leave one of them out",
                 "{at}.inputs[2]: start has two levels at cycle 4000; give one",
             ],
         ),
@@ -87,7 +87,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
 
 #[test]
 fn controllers_survive_their_canonical_form() {
-    let json = r#"{"source":{"standalone":[{"groups":[{"home":{}},{"move_to":{"length":-5}},{"profile":{"direction":0,"intervals_q16":[18446744073709551615]}}],"home":{},"inputs":[{"cycle":7,"input":"key_9"},{"push_steps":-3}],"memory":{"initial":"01ff","policy":"write_ahead"},"return":{"speed_hz":500},"short_move":"turn_round"}]}}"#;
+    let json = r#"{"source":{"standalone":[{"groups":[{"home":{}},{"move_to":{"length":-5}},{"profile":{"direction":"negative","intervals_q16":[18446744073709551615]}}],"home":{},"inputs":[{"cycle":7,"input":"key_9"},{"push_steps":-3}],"memory":{"initial":"01ff","policy":"write_ahead"},"return":{"speed_hz":500},"short_move":"reverse"}]}}"#;
     let scenario = Scenario::from_json(json).expect("reads");
     assert_eq!(scenario.compact().to_string(), json);
     assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));

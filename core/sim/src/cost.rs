@@ -127,7 +127,7 @@ impl Sends {
     /// controller again: an estimate, not a bound.
     fn framed(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Self {
         let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
-        let tries = if wrong { u64::from(checked.host.attempts) } else { 1 };
+        let tries = if wrong { u64::from(checked.host.max_attempts) } else { 1 };
         let repeats = tries * if checked.noise.host_crashes_ppm > 0 { controllers.len() as u64 } else { 1 };
         let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
         for plan in controllers.iter().filter(|plan| plan.has_ticks()) {

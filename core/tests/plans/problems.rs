@@ -32,7 +32,7 @@ fn every_problem_is_told_with_its_path() {
         r#"{"moves":[{"trapezoid":{"start_speed":{"steps_s":5000},"timer_hz":0}},{"trapezoid":{"timer_hz":3999}},{"trapezoid":{"start_speed":{"steps_s":0}}},{"trapezoid":{"start_speed":{"steps_s":0},"method":"exact"}}]}"#,
         &[
             "axis.moves[0].trapezoid.timer_hz: 0 Hz is out of range; give 1 to 4294967295 Hz",
-            "axis.moves[0].trapezoid.top_speed: a top speed of 4000 steps/s is under the start speed of 5000 steps/s; give a higher top speed or a lower start speed",
+            "axis.moves[0].trapezoid.max_speed: a top speed of 4000 steps/s is under the start speed of 5000 steps/s; give a higher top speed or a lower start speed",
             "axis.moves[1].trapezoid.timer_hz: a timer of 3999 Hz cannot make 4000 steps/s; give a timer of at least that rate",
             "axis.moves[2].trapezoid.start_speed: 0 steps/s is out of range; give 0.5 to 10000000 steps/s",
         ],

@@ -15,12 +15,12 @@ impl Room {
         if !self.s.en {
             return;
         }
-        // Reading: a step beyond `hard_min` or `hard_max` is not made; m stays.
+        // Reading: a step beyond `hard_min_steps` or `hard_max_steps` is not made; m stays.
         if self.s.dir {
-            if axis.hard_max.is_none_or(|most| self.s.place < most) {
+            if axis.hard_max_steps.is_none_or(|most| self.s.place < most) {
                 self.s.place += 1;
             }
-        } else if axis.hard_min.is_none_or(|least| self.s.place > least) {
+        } else if axis.hard_min_steps.is_none_or(|least| self.s.place > least) {
             self.s.place -= 1;
         }
     }
@@ -31,14 +31,14 @@ impl Room {
         if self.s.en {
             return;
         }
-        // Reading: a push ends at `hard_min` and `hard_max`, too.
+        // Reading: a push ends at `hard_min_steps` and `hard_max_steps`, too.
         let mut place = self.s.place + steps;
-        if let Some(most) = axis.hard_max
+        if let Some(most) = axis.hard_max_steps
             && steps > 0
         {
             place = place.min(most.max(self.s.place));
         }
-        if let Some(least) = axis.hard_min
+        if let Some(least) = axis.hard_min_steps
             && steps < 0
         {
             place = place.max(least.min(self.s.place));
@@ -50,14 +50,14 @@ impl Room {
     pub(super) fn axis_drives_switches(&mut self) {
         let axis = self.axis();
         let m = self.s.place;
-        let home = match (axis.home_from, axis.home_to) {
+        let home = match (axis.home_from_steps, axis.home_to_steps) {
             (Some(from), Some(to)) => Some(from <= m && m <= to),
             // Reading: one of the two alone drives nothing.
             _ => None,
         };
         let driven = [
-            (Input::LimitMin, axis.min_switch_at.map(|at| m <= at)),
-            (Input::LimitMax, axis.max_switch_at.map(|at| m >= at)),
+            (Input::LimitMin, axis.min_switch_at_steps.map(|at| m <= at)),
+            (Input::LimitMax, axis.max_switch_at_steps.map(|at| m >= at)),
             (Input::HomeSwitch, home),
         ];
         for (input, level) in driven {

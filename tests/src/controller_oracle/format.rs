@@ -180,7 +180,7 @@ impl Text {
             ("coarse_hz", of.coarse_hz.to_string(), "1000".into()),
             ("fine_hz", of.fine_hz.to_string(), "10".into()),
             ("pull_off_steps", of.pull_off_steps.to_string(), "20".into()),
-            ("travel_steps", of.travel_steps.to_string(), "100000".into()),
+            ("max_travel_steps", of.max_travel_steps.to_string(), "100000".into()),
             ("position_steps", of.position_steps.to_string(), "0".into()),
         ])
     }
@@ -188,12 +188,12 @@ impl Text {
     fn axis(&mut self, of: &Axis) -> String {
         self.map(&[
             ("start_steps", of.start_steps.to_string(), "0".into()),
-            ("min_switch_at", or_null(of.min_switch_at), "null".into()),
-            ("max_switch_at", or_null(of.max_switch_at), "null".into()),
-            ("home_from", or_null(of.home_from), "null".into()),
-            ("home_to", or_null(of.home_to), "null".into()),
-            ("hard_min", or_null(of.hard_min), "null".into()),
-            ("hard_max", or_null(of.hard_max), "null".into()),
+            ("min_switch_at_steps", or_null(of.min_switch_at_steps), "null".into()),
+            ("max_switch_at_steps", or_null(of.max_switch_at_steps), "null".into()),
+            ("home_from_steps", or_null(of.home_from_steps), "null".into()),
+            ("home_to_steps", or_null(of.home_to_steps), "null".into()),
+            ("hard_min_steps", or_null(of.hard_min_steps), "null".into()),
+            ("hard_max_steps", or_null(of.hard_max_steps), "null".into()),
         ])
     }
 

@@ -40,13 +40,13 @@ impl Room {
 
     fn begin_leg(&mut self, leg: Leg) {
         let Some(home) = &self.plan.controller.home else { return };
-        let Home { right: towards, coarse_hz, fine_hz, pull_off_steps, travel_steps, .. } = *home;
+        let Home { right: towards, coarse_hz, fine_hz, pull_off_steps, max_travel_steps, .. } = *home;
         let (right, rate_hz) = match leg {
             Leg::Seek => (towards, coarse_hz),
             Leg::Off => (!towards, coarse_hz),
             Leg::Fine | Leg::Return => (towards, fine_hz),
         };
-        let mut rem = i128::from(travel_steps);
+        let mut rem = i128::from(max_travel_steps);
         let mut found = false;
         if leg == Leg::Off && !self.switch() {
             found = true;
@@ -74,7 +74,7 @@ impl Room {
         match leg {
             Leg::Seek if switch => self.stop_at_once(),
             Leg::Off if !switch => {
-                // Reading: whatever is left of `travel_steps`.
+                // Reading: whatever is left of `max_travel_steps`.
                 if let Some(motion) = &mut self.s.motion {
                     motion.rem = pull_off;
                 }

@@ -162,7 +162,7 @@ pub struct Home {
     pub coarse_hz: i64,
     pub fine_hz: i64,
     pub pull_off_steps: i64,
-    pub travel_steps: i64,
+    pub max_travel_steps: i64,
     pub position_steps: i64,
 }
 
@@ -174,7 +174,7 @@ impl Default for Home {
             coarse_hz: 1000,
             fine_hz: 10,
             pull_off_steps: 20,
-            travel_steps: 100_000,
+            max_travel_steps: 100_000,
             position_steps: 0,
         }
     }
@@ -193,12 +193,12 @@ pub struct SoftLimits {
 #[expect(missing_docs, reason = "the format's words")]
 pub struct Axis {
     pub start_steps: i64,
-    pub min_switch_at: Option<i64>,
-    pub max_switch_at: Option<i64>,
-    pub home_from: Option<i64>,
-    pub home_to: Option<i64>,
-    pub hard_min: Option<i64>,
-    pub hard_max: Option<i64>,
+    pub min_switch_at_steps: Option<i64>,
+    pub max_switch_at_steps: Option<i64>,
+    pub home_from_steps: Option<i64>,
+    pub home_to_steps: Option<i64>,
+    pub hard_min_steps: Option<i64>,
+    pub hard_max_steps: Option<i64>,
 }
 
 /// When the journal is written (G7).

@@ -57,7 +57,7 @@ impl List<'_> {
             self.add("max_speed_hz");
         }
         self.range("level_hz_s", of.level_hz_s, 1, 1_000_000);
-        self.range("least_trust", i64::from(of.least_trust), 0, 2);
+        self.range("required_position", i64::from(of.least_trust), 0, 2);
         self.range("loops", of.loops, 1, 9999);
         self.range("groups", of.groups.len() as i64, 1, 50);
         for (at, group) in of.groups.iter().enumerate() {
@@ -65,14 +65,14 @@ impl List<'_> {
         }
         self.range("jog.speed_hz", of.jog.speed_hz, 10, max);
         self.range("jog.fine_hz", of.jog.fine_hz, 10, max);
-        self.range("jog.level", of.jog.level, 1, 5);
+        self.range("jog.acceleration_level", of.jog.level, 1, 5);
         self.range("return.speed_hz", of.return_to_zero.speed_hz, 10, max);
-        self.range("return.level", of.return_to_zero.level, 1, 5);
+        self.range("return.acceleration_level", of.return_to_zero.level, 1, 5);
         if let Some(home) = &of.home {
             self.range("home.coarse_hz", home.coarse_hz, 10, of.start_speed_hz);
             self.range("home.fine_hz", home.fine_hz, 10, of.start_speed_hz);
             self.range("home.pull_off_steps", home.pull_off_steps, 0, 1_000_000);
-            self.range("home.travel_steps", home.travel_steps, 1, 1_000_000_000);
+            self.range("home.max_travel_steps", home.max_travel_steps, 1, 1_000_000_000);
         }
         if let Some(limits) = &of.soft_limits
             && limits.min_steps > limits.max_steps
@@ -92,14 +92,14 @@ impl List<'_> {
                 let path = format!("groups[{at}].move");
                 self.range(&format!("{path}.length"), order.length, 0, 999_999);
                 self.range(&format!("{path}.speed_hz"), order.speed_hz, 10, max);
-                self.range(&format!("{path}.level"), order.level, 1, 5);
+                self.range(&format!("{path}.acceleration_level"), order.level, 1, 5);
                 self.range(&format!("{path}.delay_ms"), order.delay_ms, 0, 999_999);
             }
             Group::MoveTo { length, speed_hz, level, delay_ms } => {
                 let path = format!("groups[{at}].move_to");
                 self.range(&format!("{path}.length"), *length, -999_999, 999_999);
                 self.range(&format!("{path}.speed_hz"), *speed_hz, 10, max);
-                self.range(&format!("{path}.level"), *level, 1, 5);
+                self.range(&format!("{path}.acceleration_level"), *level, 1, 5);
                 self.range(&format!("{path}.delay_ms"), *delay_ms, 0, 999_999);
             }
             Group::Profile(profile) => {
@@ -148,11 +148,11 @@ impl List<'_> {
     fn inputs(&mut self, of: &Controller, index: usize) {
         let driven = |input: Input| {
             let axis = of.axis.clone().unwrap_or_default();
-            let Axis { min_switch_at, max_switch_at, home_from, home_to, .. } = axis;
+            let Axis { min_switch_at_steps, max_switch_at_steps, home_from_steps, home_to_steps, .. } = axis;
             match input {
-                Input::LimitMin => min_switch_at.is_some(),
-                Input::LimitMax => max_switch_at.is_some(),
-                Input::HomeSwitch => home_from.is_some() && home_to.is_some(),
+                Input::LimitMin => min_switch_at_steps.is_some(),
+                Input::LimitMax => max_switch_at_steps.is_some(),
+                Input::HomeSwitch => home_from_steps.is_some() && home_to_steps.is_some(),
                 _ => false,
             }
         };

@@ -14,8 +14,8 @@ use stepscope_core::{
     },
     peripheral::config::{Bus, DirLine, Distribution, Protocol, PulsePhasing},
     scenario::{
-        Analysis, ChannelSegments, Controller, CurrentSensor, DriverTiming, DwellSegment, Encoder, Glitch,
-        Hex, Host, Line, LineScript, Motion, MotionEngine, Noise, Packets, PlantMotor, PlantSettings,
+        Analysis, ChannelSegments, Controller, CurrentSensor, Direction, DriverTiming, DwellSegment, Encoder,
+        Glitch, Hex, Host, Line, LineScript, Motion, MotionEngine, Noise, Packets, PlantMotor, PlantSettings,
         Protection, Scenario, ScriptedSend, Segment, SegmentLists, Source, StepSegment, TimingRules,
     },
 };
@@ -37,7 +37,7 @@ pub fn typed() -> BoxedStrategy<Scenario> {
                 (line, controllers),
                 source,
                 (run_cycles, driver),
-                (axis, order, fft_length, sensor_hz),
+                (axis, max_harmonic, fft_length, sensor_hz),
             )| {
                 Scenario {
                     title,
@@ -47,7 +47,7 @@ pub fn typed() -> BoxedStrategy<Scenario> {
                     line,
                     source,
                     run_cycles,
-                    analysis: Analysis { axis, order, fft_length, sensor_hz },
+                    analysis: Analysis { axis, max_harmonic, fft_length, sensor_hz },
                     controllers,
                     driver_timing: driver,
                     ..Scenario::default()
@@ -192,10 +192,10 @@ fn line() -> BoxedStrategy<Line> {
 
 fn host() -> impl Strategy<Value = Host> {
     (small_or_any(8), prop::option::weighted(0.2, any::<u32>()), small_or_any(10)).prop_map(
-        |(ticks_per_frame, reply_timeout_cycles, attempts)| Host {
+        |(ticks_per_frame, reply_timeout_cycles, max_attempts)| Host {
             ticks_per_frame,
             reply_timeout_cycles,
-            attempts,
+            max_attempts,
         },
     )
 }
@@ -245,8 +245,11 @@ fn source() -> BoxedStrategy<Source> {
     let send = (small_or_any(1), hex.clone(), prop::option::weighted(0.2, frame))
         .prop_map(|(start_cycle, bytes, frame)| ScriptedSend { start_cycle, bytes, frame });
     let segment = prop_oneof![
-        3 => (small_or_any(1), small_or_any(16_000 << 16), small_or_any(0), small_or_any(1)).prop_map(
-            |(count, interval_q16, add_q16, dir)| Segment::Steps(StepSegment { count, interval_q16, add_q16, dir })
+        3 => (small_or_any(1), small_or_any(16_000 << 16), small_or_any(0), any::<bool>()).prop_map(
+            |(count, interval_q16, add_q16, right)| {
+                let direction = Direction::of_dir(right);
+                Segment::Steps(StepSegment { count, interval_q16, add_q16, direction })
+            }
         ),
         1 => small_or_any(0).prop_map(|length_q16| Segment::Dwell(DwellSegment { length_q16 })),
     ];

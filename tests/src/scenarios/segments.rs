@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use stepscope_core::{
     peripheral::config::Bus,
     scenario::{
-        ChannelSegments, DwellSegment, MotionEngine, Scenario, Segment, SegmentLists, Source, StepSegment,
+        ChannelSegments, Direction, DwellSegment, MotionEngine, Scenario, Segment, SegmentLists, Source,
+        StepSegment,
     },
 };
 
@@ -45,11 +46,13 @@ fn lists() -> impl Strategy<Value = Scenario> {
 
 fn list(least: u64) -> impl Strategy<Value = ChannelSegments> {
     let add = prop_oneof![Just(0), -0x4_0000..0x4_0000_i64];
-    let steps = (1..=9_u32, 0..0x20_0000_u64, add, 0..=1_u8).prop_map(move |(count, spare, add_q16, dir)| {
-        // A shrinking interval is still long enough at the end.
-        let room = if add_q16 < 0 { u64::from(count - 1) * add_q16.unsigned_abs() } else { 0 };
-        Segment::Steps(StepSegment { count, interval_q16: least + spare + room, add_q16, dir })
-    });
+    let steps =
+        (1..=9_u32, 0..0x20_0000_u64, add, any::<bool>()).prop_map(move |(count, spare, add_q16, right)| {
+            // A shrinking interval is still long enough at the end.
+            let room = if add_q16 < 0 { u64::from(count - 1) * add_q16.unsigned_abs() } else { 0 };
+            let (interval_q16, direction) = (least + spare + room, Direction::of_dir(right));
+            Segment::Steps(StepSegment { count, interval_q16, add_q16, direction })
+        });
     let dwell = (0..0x100_0000_u64).prop_map(|length_q16| Segment::Dwell(DwellSegment { length_q16 }));
     let segments = prop::collection::vec(prop_oneof![4 => steps, 1 => dwell], 0..8);
     (1..100_u64, segments).prop_map(|(start_cycle, segments)| ChannelSegments { start_cycle, segments })

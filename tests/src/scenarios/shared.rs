@@ -114,10 +114,10 @@ fn seal(send: &mut ScriptedSend, index: usize, address: u8) {
 
 fn host() -> impl Strategy<Value = Host> {
     (1..=32_u8, prop::option::weighted(0.2, 100..20_000_u32), 1..12_u8).prop_map(
-        |(ticks_per_frame, reply_timeout_cycles, attempts)| Host {
+        |(ticks_per_frame, reply_timeout_cycles, max_attempts)| Host {
             ticks_per_frame,
             reply_timeout_cycles,
-            attempts,
+            max_attempts,
         },
     )
 }

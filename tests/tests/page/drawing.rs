@@ -53,7 +53,10 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         }
         let harmonics: u32 =
             page.eval("Number(document.getElementById('harmonics').ariaRowCount) - 1").await?;
-        ensure!(harmonics >= u32::from(known.scenario.analysis.order), "{harmonics} harmonics in the table");
+        ensure!(
+            harmonics >= u32::from(known.scenario.analysis.max_harmonic),
+            "{harmonics} harmonics in the table"
+        );
         let note = page.text("#spectrum-note").await?;
         ensure!(note.contains("not periodic"), "one move has no distortion, and the note says so: {note}");
         Ok(())

@@ -23,12 +23,15 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         let (raw, framed) = (Known::of("{}")?, Known::of(FRAMED)?);
         page.open("").await?;
         page.until_digest(&raw.digest).await?;
-        ensure!(!page.visible(&field("line.host.attempts")).await?, "a raw line's host waits for nothing");
+        ensure!(
+            !page.visible(&field("line.host.max_attempts")).await?,
+            "a raw line's host waits for nothing"
+        );
         ensure!(classes(&page).await?.iter().all(|class| class.contains("packet")));
 
         page.choose(&field("line.protocol"), "framed").await?;
         page.until_digest(&framed.digest).await?;
-        ensure!(page.visible(&field("line.host.attempts")).await?, "the host's settings are hidden");
+        ensure!(page.visible(&field("line.host.max_attempts")).await?, "the host's settings are hidden");
         let ticks = framed.experiment.ticks_of(0).len();
         let health = page.text("#health").await?;
         assert_eq!(health.replace('\u{202f}', ""), format!("all {ticks} ticks done"));
@@ -68,7 +71,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         page.click("#undo").await?;
         page.until_digest(&raw.digest).await?;
         assert_eq!(page.text("#health").await?, "");
-        ensure!(!page.visible(&field("line.host.attempts")).await?);
+        ensure!(!page.visible(&field("line.host.max_attempts")).await?);
         page.click("#redo").await?;
         page.until_digest(&framed.digest).await
     })
@@ -116,7 +119,7 @@ fn a_host_that_gives_up_says_so_in_the_header() -> Result<()> {
 fn what_is_wrong_with_host_and_noise_is_said_at_its_field() -> Result<()> {
     let rows = [
         ("line.host.ticks_per_frame", "33", r#"{"line":{"host":{"ticks_per_frame":33}}}"#),
-        ("line.host.attempts", "0", r#"{"line":{"host":{"attempts":0}}}"#),
+        ("line.host.max_attempts", "0", r#"{"line":{"host":{"attempts":0}}}"#),
         ("line.host.reply_timeout_cycles", "0", r#"{"line":{"host":{"reply_timeout_cycles":0}}}"#),
         ("line.noise.host_crashes_ppm", "1000001", r#"{"line":{"noise":{"host_crashes_ppm":1000001}}}"#),
         ("line.noise.seed", "-1", r#"{"line":{"noise":{"seed":-1}}}"#),

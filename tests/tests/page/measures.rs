@@ -50,8 +50,8 @@ fn measured(known: &Known) -> (Measures, [Spectrum; 2]) {
     let (plan, analysis) = (&known.experiment.plans()[0], &known.scenario.analysis);
     let Source::Motion(motion) = &known.scenario.source else { panic!("a motion") };
     let stretch = AnalysisWindow::of(plan).expect("it takes time");
-    let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length).expect("it takes time");
-    let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, &run), stretch, analysis.order);
+    let ideal = Spectrum::ideal(plan, analysis.max_harmonic, analysis.fft_length).expect("it takes time");
+    let pulses = Spectrum::of_pulses(&stretch.pulses_of(plan, &run), stretch, analysis.max_harmonic);
     let spectra = [ideal, pulses].map(|spectrum| spectrum.filtered_by(analysis.sensor_hz));
     (Measures::of(plan, &run, motion.axes.first()), spectra)
 }

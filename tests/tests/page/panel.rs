@@ -29,7 +29,7 @@ const SHORTEST: u64 = 320_000;
 /// A controller with these inputs, looked at for a second.
 fn with_inputs(inputs: &str) -> Result<Known> {
     Known::of(&format!(
-        r#"{{"run_cycles":16000000,"source":{{"standalone":[{{"pulses_per_unit":565,"axis":{{"max_switch_at":1000}},"inputs":[{inputs}]}}]}}}}"#
+        r#"{{"run_cycles":16000000,"source":{{"standalone":[{{"pulses_per_unit":565,"axis":{{"max_switch_at_steps":1000}},"inputs":[{inputs}]}}]}}}}"#
     ))
 }
 
@@ -186,7 +186,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
         page.click("[data-input='jog_plus']").await?;
         page.until(&format!("{SAID}.includes('jog_plus already changes at 250 ms')")).await?;
         page.click("[data-input='limit_max']").await?;
-        page.until(&format!("{SAID}.includes('limit_max is driven by the axis (axis.max_switch_at)')"))
+        page.until(&format!("{SAID}.includes('limit_max is driven by the axis (axis.max_switch_at_steps)')"))
             .await?;
         page.ready().await?;
         until_run(&page, &known).await?;

@@ -76,7 +76,9 @@ fn percent_after(text: &str, word: &str) -> Result<f64> {
 async fn distortion(page: &Session, preset: &Preset, known: &Known) -> Result<bool> {
     let analysis = &known.scenario.analysis;
     let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { return Ok(false) };
-    let Some(ideal) = Spectrum::ideal(plan, analysis.order, analysis.fft_length) else { return Ok(false) };
+    let Some(ideal) = Spectrum::ideal(plan, analysis.max_harmonic, analysis.fft_length) else {
+        return Ok(false);
+    };
     if !ideal.window.periodic {
         return Ok(false);
     }

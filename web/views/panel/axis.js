@@ -35,12 +35,12 @@ export function createAxis(place, push) {
     const given = axis ?? {};
     const believed = at - error;
     const marks = [
-      given.min_switch_at,
-      given.max_switch_at,
-      given.home_from,
-      given.home_to,
-      given.hard_min,
-      given.hard_max,
+      given.min_switch_at_steps,
+      given.max_switch_at_steps,
+      given.home_from_steps,
+      given.home_to_steps,
+      given.hard_min_steps,
+      given.hard_max_steps,
       given.start_steps ?? 0,
     ];
     const known = [...marks.filter((mark) => typeof mark === "number"), at, believed];
@@ -71,11 +71,11 @@ export function createAxis(place, push) {
       };
       fill(
         rail,
-        ...zone("min switch", typeof given.min_switch_at === "number" ? low : null, given.min_switch_at),
-        ...zone("max switch", given.max_switch_at, typeof given.max_switch_at === "number" ? high : null),
-        ...zone("home switch", given.home_from, given.home_to),
-        ...mark("end", given.hard_min),
-        ...mark("end", given.hard_max),
+        ...zone("min switch", typeof given.min_switch_at_steps === "number" ? low : null, given.min_switch_at_steps),
+        ...zone("max switch", given.max_switch_at_steps, typeof given.max_switch_at_steps === "number" ? high : null),
+        ...zone("home switch", given.home_from_steps, given.home_to_steps),
+        ...mark("end", given.hard_min_steps),
+        ...mark("end", given.hard_max_steps),
         ...mark("nut", at),
         ...mark("believed", believed, "▽"),
       );

@@ -11,9 +11,9 @@ const MAX_INPUTS = 100_000;
 export function driven(axis) {
   const given = (/** @type {any} */ value) => value !== null && value !== undefined;
   return {
-    ...(given(axis?.min_switch_at) ? { limit_min: "axis.min_switch_at" } : {}),
-    ...(given(axis?.max_switch_at) ? { limit_max: "axis.max_switch_at" } : {}),
-    ...(given(axis?.home_from) && given(axis?.home_to) ? { home_switch: "axis.home_from" } : {}),
+    ...(given(axis?.min_switch_at_steps) ? { limit_min: "axis.min_switch_at_steps" } : {}),
+    ...(given(axis?.max_switch_at_steps) ? { limit_max: "axis.max_switch_at_steps" } : {}),
+    ...(given(axis?.home_from_steps) && given(axis?.home_to_steps) ? { home_switch: "axis.home_from_steps" } : {}),
   };
 }
 

@@ -32,7 +32,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, sweep);
   // A setting of the experiment, so that these numbers agree with the spectrum.
   const order = field("harmonics to", "", MIN_ORDER, { least: MIN_ORDER, most: MAX_ORDER, integer: true }, () =>
-    dispatch({ type: "edit", path: "analysis.order", value: order.value() }),
+    dispatch({ type: "edit", path: "analysis.max_harmonic", value: order.value() }),
   );
   const quantity = choice(
     "THD of",
@@ -194,7 +194,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   function render(state, before) {
     const isOtherSensor = targetOf(state).axis !== null && sensorHarmonics(state) !== sensor;
     if (isOtherSensor) sensor = sensorHarmonics(state);
-    const highest = Math.max(MIN_ORDER, Number(state.scenario.analysis?.order) || 0);
+    const highest = Math.max(MIN_ORDER, Number(state.scenario.analysis?.max_harmonic) || 0);
     if (highest !== shownOrder) {
       shownOrder = highest;
       order.set(highest);

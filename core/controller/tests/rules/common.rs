@@ -109,21 +109,21 @@ fn axis(random: &mut Random) -> Axis {
     let home = random.maybe(2, |random| (near(random), random.range(0, 12)));
     Axis {
         start_steps: near(random),
-        min_switch_at: random.maybe(3, |random| random.range(-120, -20)),
-        max_switch_at: random.maybe(3, |random| random.range(20, 120)),
-        home_from: home.map(|(from, _)| from),
-        home_to: home.map(|(from, len)| from + len),
-        hard_min: random.maybe(4, |random| random.range(-140, -40)),
-        hard_max: random.maybe(4, |random| random.range(40, 140)),
+        min_switch_at_steps: random.maybe(3, |random| random.range(-120, -20)),
+        max_switch_at_steps: random.maybe(3, |random| random.range(20, 120)),
+        home_from_steps: home.map(|(from, _)| from),
+        home_to_steps: home.map(|(from, len)| from + len),
+        hard_min_steps: random.maybe(4, |random| random.range(-140, -40)),
+        hard_max_steps: random.maybe(4, |random| random.range(40, 140)),
     }
 }
 
 fn inputs(random: &mut Random, is_first: bool, axis: Option<&Axis>, end: i64) -> Vec<Input> {
     let driven = |signal| {
         axis.is_some_and(|axis| match signal {
-            Signal::LimitMin => axis.min_switch_at.is_some(),
-            Signal::LimitMax => axis.max_switch_at.is_some(),
-            Signal::HomeSwitch => axis.home_from.is_some(),
+            Signal::LimitMin => axis.min_switch_at_steps.is_some(),
+            Signal::LimitMax => axis.max_switch_at_steps.is_some(),
+            Signal::HomeSwitch => axis.home_from_steps.is_some(),
             _ => false,
         })
     };
@@ -238,7 +238,7 @@ fn parameters(random: &mut Random, clock_hz: i64, pulse: PulseTimes, is_first: b
             coarse_hz: random.range(10, start_hz) as u32,
             fine_hz: random.range(10, start_hz) as u32,
             pull_off_steps: random.below(12) as u32,
-            travel_steps: random.range(1, 200) as u32,
+            max_travel_steps: random.range(1, 200) as u32,
             position_steps: if random.one_in(2) { 0 } else { random.range(-20, 20) },
         }),
         soft_limits: random.maybe(4, |random| SoftLimits {

@@ -93,9 +93,9 @@ fn parameters(random: &mut Random, max_hz: u32) -> Parameters {
         soft_limits: random.one_in(3).then_some(SoftLimits { min_steps: -(1 << 31), max_steps: 1 << 31 }),
         axis: random.one_in(2).then(|| Axis {
             start_steps: steps(random),
-            home_from: random.one_in(2).then_some(steps(random)),
-            hard_min: random.one_in(2).then_some(steps(random)),
-            hard_max: random.one_in(2).then_some(steps(random)),
+            home_from_steps: random.one_in(2).then_some(steps(random)),
+            hard_min_steps: random.one_in(2).then_some(steps(random)),
+            hard_max_steps: random.one_in(2).then_some(steps(random)),
             ..Axis::default()
         }),
         memory: Memory {
@@ -124,7 +124,7 @@ fn nothing_breaks_at_the_ends_of_the_ranges() {
         }
         let mut parameters = parameters(random, max_hz);
         if let Some(axis) = &mut parameters.axis {
-            axis.home_to = axis.home_from;
+            axis.home_to_steps = axis.home_from_steps;
         }
         let mut seen = Vec::new();
         parameters.inputs.retain(|input| {

@@ -122,7 +122,7 @@ fn zero_by_hand_is_sure_and_the_return_comes_back_to_it() {
 #[test]
 fn homing_seeks_goes_off_and_comes_back_slowly() {
     // The home switch is closed from place -5 to -3; the axis is at 0 and believes so.
-    let axis = Some(Axis { home_from: Some(-5), home_to: Some(-3), ..Axis::default() });
+    let axis = Some(Axis { home_from_steps: Some(-5), home_to_steps: Some(-3), ..Axis::default() });
     let home = Home { coarse_hz: 100, fine_hz: 50, pull_off_steps: 2, ..Home::default() };
     let row = |position_steps| {
         let home = Some(Home { position_steps, ..home.clone() });
@@ -140,7 +140,7 @@ fn homing_seeks_goes_off_and_comes_back_slowly() {
 
 #[test]
 fn homing_that_does_not_find_its_switch_is_an_alarm() {
-    let home = Some(Home { coarse_hz: 100, travel_steps: 5, ..Home::default() });
+    let home = Some(Home { coarse_hz: 100, max_travel_steps: 5, ..Home::default() });
     let inputs = presses(&[(30, Signal::Home)]);
     let parameters = Parameters { home, inputs, ..small() };
     let alone = run(parameters.clone());
@@ -155,7 +155,7 @@ fn homing_that_does_not_find_its_switch_is_an_alarm() {
 
 #[test]
 fn a_group_home_goes_on_from_zero() {
-    let axis = Some(Axis { home_from: Some(-5), home_to: Some(-3), ..Axis::default() });
+    let axis = Some(Axis { home_from_steps: Some(-5), home_to_steps: Some(-3), ..Axis::default() });
     let home = Some(Home { coarse_hz: 100, fine_hz: 50, pull_off_steps: 2, ..Home::default() });
     let groups = vec![Group::Home, to_the_right(4)];
     let run = pressed(Parameters { home, axis, groups, least_trust: 2, ..small() }, &[(30, Start)]);
@@ -235,7 +235,7 @@ fn power_e_stop_and_clear_are_for_all_and_the_bus_shows_the_and_of_en() {
 fn a_hand_moves_the_axis_while_the_motor_is_off() {
     let push = |at, steps| Input { cycle: Instant(at), change: Change::Push(steps) };
     let inputs = vec![push(50, 9), level(60, Estop, true), push(60, 9), push(61, 5), push(62, -20)];
-    let axis = Some(Axis { hard_min: Some(-10), ..Axis::default() });
+    let axis = Some(Axis { hard_min_steps: Some(-10), ..Axis::default() });
     let run = run(Parameters { inputs, axis, ..small() });
     assert_eq!((run.machine.axis_position(0), run.machine.axis_error(0)), (Some(-10), Some(-10)));
 }
@@ -243,7 +243,7 @@ fn a_hand_moves_the_axis_while_the_motor_is_off() {
 /// An axis that does not start at what memory says is where it was then: what counts is what happens later.
 #[test]
 fn before_a_zero_is_set_the_axis_error_counts_from_the_position_in_memory() {
-    let axis = Some(Axis { start_steps: 50, hard_max: Some(51), ..Axis::default() });
+    let axis = Some(Axis { start_steps: 50, hard_max_steps: Some(51), ..Axis::default() });
     let row = |inputs| {
         let run = run(Parameters { inputs, axis: axis.clone(), ..small() });
         (run.position(), run.machine.axis_position(0), run.machine.axis_error(0))

@@ -60,11 +60,11 @@ fn the_contracts_own_examples_are_refused_in_its_words() {
         ),
         (
             Parameters {
-                axis: Some(Axis { max_switch_at: Some(5), ..Axis::default() }),
+                axis: Some(Axis { max_switch_at_steps: Some(5), ..Axis::default() }),
                 inputs: vec![level(7, Signal::LimitMax, true)],
                 ..good()
             },
-            "controller 0: inputs[0]: limit_max is driven by axis.max_switch_at; leave one of them out",
+            "controller 0: inputs[0]: limit_max is driven by axis.max_switch_at_steps; leave one of them out",
         ),
         (
             Parameters {
@@ -106,7 +106,7 @@ fn each_other_rule_names_its_field() {
         (Parameters { pulses_per_unit: 0, ..good() }, "pulses_per_unit"),
         (Parameters { decimals: 4, ..good() }, "decimals"),
         (Parameters { start_speed_hz: 12_501, ..good() }, "start_speed_hz"),
-        (Parameters { least_trust: 3, ..good() }, "least_trust"),
+        (Parameters { least_trust: 3, ..good() }, "required_position"),
         (Parameters { loops: 10_000, ..good() }, "loops"),
         (Parameters { groups: vec![], ..good() }, "groups"),
         (Parameters { groups: until(Signal::LimitMin), ..good() }, "groups[0].move.until.input"),
@@ -124,7 +124,10 @@ fn each_other_rule_names_its_field() {
             Parameters { soft_limits: Some(SoftLimits { min_steps: 1, max_steps: 0 }), ..good() },
             "soft_limits.max_steps",
         ),
-        (Parameters { axis: Some(Axis { home_from: Some(1), ..Axis::default() }), ..good() }, "axis.home_to"),
+        (
+            Parameters { axis: Some(Axis { home_from_steps: Some(1), ..Axis::default() }), ..good() },
+            "axis.home_to_steps",
+        ),
         (Parameters { memory: memory(Initial::Bytes(vec![0; bytes + 1])), ..good() }, "memory.initial"),
         (Parameters { inputs: push(1_000_001), ..good() }, "inputs[0].push_steps"),
         (Parameters { inputs: vec![level(0, Signal::Ok, true)], ..good() }, "inputs[0].cycle"),
@@ -179,7 +182,7 @@ fn a_move_that_never_comes_to_its_speed_is_reported() {
         checked.warnings().first().map(ToString::to_string)
     };
     let warning = "controller 0: groups[1].move.speed_hz: 8399 steps are too short for 5000 Hz, which takes 8400 up and down: the \
-                whole move goes at 1000 Hz; a higher level needs fewer, and short_move \"turn_round\" goes up as far as they allow";
+                whole move goes at 1000 Hz; a higher level needs fewer, and short_move \"reverse\" goes up as far as they allow";
     assert_eq!(warned(8399, ShortMove::Document).as_deref(), Some(warning));
     assert_eq!(warned(8400, ShortMove::Document), None);
     assert_eq!(warned(8399, ShortMove::TurnRound), None);
@@ -187,7 +190,7 @@ fn a_move_that_never_comes_to_its_speed_is_reported() {
 
 #[test]
 fn a_live_input_is_held_to_the_rules_of_a_script() {
-    let axis = Some(Axis { max_switch_at: Some(9), ..Axis::default() });
+    let axis = Some(Axis { max_switch_at_steps: Some(9), ..Axis::default() });
     let inputs = vec![level(50, Signal::Clear, true)];
     let first = Parameters { inputs, axis, ..small() };
     let setup =
@@ -208,6 +211,6 @@ fn a_live_input_is_held_to_the_rules_of_a_script() {
     assert!(enter(20, 0, start).unwrap_err().contains("two levels"));
     assert!(enter(50, 0, Signal::Clear).unwrap_err().contains("two levels"));
     assert!(enter(60, 1, Signal::Clear).unwrap_err().contains("for all"));
-    assert!(enter(60, 0, Signal::LimitMax).unwrap_err().contains("axis.max_switch_at"));
+    assert!(enter(60, 0, Signal::LimitMax).unwrap_err().contains("axis.max_switch_at_steps"));
     assert_eq!(enter(60, 1, Signal::LimitMax), Ok(()));
 }

@@ -31,14 +31,14 @@ impl Spectra {
             }
             return Self::of_steps(scenario, run);
         };
-        let ideal = Spectrum::ideal(plan, analysis.order, analysis.fft_length);
-        let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.order);
+        let ideal = Spectrum::ideal(plan, analysis.max_harmonic, analysis.fft_length);
+        let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.max_harmonic);
         let note = if !window.periodic {
             "The motion is not periodic, so it has no harmonics and no THD.".to_owned()
-        } else if u32::from(analysis.order) * FOLDING > analysis.fft_length {
+        } else if u32::from(analysis.max_harmonic) * FOLDING > analysis.fft_length {
             format!(
                 "{} samples per period alias harmonics up to {}, mainly in the acceleration. Use more samples or a lower order.",
-                analysis.fft_length, analysis.order
+                analysis.fft_length, analysis.max_harmonic
             )
         } else {
             String::new()
@@ -56,7 +56,8 @@ impl Spectra {
             let note = format!("Channel {} makes fewer than two steps.", run.channel);
             return Self { note, ..Self::default() };
         };
-        let actual = Spectrum::of_pulses(&window.steps_within(run.steps, run.hz()), window, analysis.order);
+        let actual =
+            Spectrum::of_pulses(&window.steps_within(run.steps, run.hz()), window, analysis.max_harmonic);
         let note = if window.periodic {
             format!("Measured over {} periods between reversals, because there is no plan.", window.periods)
         } else {

@@ -43,20 +43,20 @@ pub struct DriveSheet {
     pub typical: &'static [&'static str],
 }
 
-const FRICTIONS: &[&str] = &["friction_mn_m", "viscous_un_m_s"];
-const FRICTIONS_AND_DETENT: &[&str] = &["detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
+const FRICTIONS: &[&str] = &["friction_mN_m", "viscous_uN_m_s"];
+const FRICTIONS_AND_DETENT: &[&str] = &["detent_torque_mN_m", "friction_mN_m", "viscous_uN_m_s"];
 
 const INERTIA_AND_FRICTIONS: &[&str] =
-    &["rotor_inertia_g_cm2", "detent_torque_mn_m", "friction_mn_m", "viscous_un_m_s"];
+    &["rotor_inertia_g_cm2", "detent_torque_mN_m", "friction_mN_m", "viscous_uN_m_s"];
 const ALL: &[&str] = &[
     "rated_current_a",
     "resistance_ohm",
     "inductance_mh",
-    "holding_torque_mn_m",
+    "holding_torque_mN_m",
     "rotor_inertia_g_cm2",
-    "detent_torque_mn_m",
-    "friction_mn_m",
-    "viscous_un_m_s",
+    "detent_torque_mN_m",
+    "friction_mN_m",
+    "viscous_uN_m_s",
 ];
 
 /// A 1.8 degree motor with the default friction in proportion to its holding torque.
@@ -200,7 +200,7 @@ pub const DRIVES: &[DriveSheet] = &[
         drive: Drive { diode_v: 1.2, ..CHIP },
         source: "data sheet 4988-DS: 0.32 Ω source and sink, off-time 30 µs, slow or mixed decay by itself, diodes at most \
                  1.2 V",
-        typical: &["decay_share", "blank_us"],
+        typical: &["fast_decay_fraction", "blanking_time_us"],
     },
     DriveSheet {
         id: "a4979",
@@ -208,7 +208,7 @@ pub const DRIVES: &[DriveSheet] = &[
         drive: Drive { bridge_ohm: 1.0, ..CHIP },
         source: "data sheet A4979-DS: 0.5 Ω source and sink, slow, mixed or automatic decay; times and shares are programmed, \
                  here as the A4988's",
-        typical: &["decay_share", "off_us", "blank_us", "diode_v"],
+        typical: &["fast_decay_fraction", "off_time_us", "blanking_time_us", "diode_v"],
     },
     DriveSheet {
         id: "drv8825",
@@ -216,7 +216,7 @@ pub const DRIVES: &[DriveSheet] = &[
         drive: Drive { decay_share: 0.75, blank_us: 3.75, bridge_ohm: 0.4, ..CHIP },
         source: "data sheet SLVSA73: mixed decay, fast up to 75 % of a period. The chip chops at a fixed frequency; the \
                  model has a fixed off-time, here about what is left of a period",
-        typical: &["off_us", "blank_us", "bridge_ohm", "diode_v"],
+        typical: &["off_time_us", "blanking_time_us", "bridge_ohm", "diode_v"],
     },
     DriveSheet {
         id: "tmc2209",
@@ -232,7 +232,7 @@ pub const DRIVES: &[DriveSheet] = &[
         },
         source: "data sheet rev. 1.09: 0.17 Ω each side, sine table of 8 bits; TOFF = 3, its own \
                  setting, is 9 to 10 µs at 12 MHz and comes twice a period. The hysteresis of SpreadCycle is not modeled, nor is StealthChop, which regulates a voltage",
-        typical: &["decay_share", "off_us", "blank_us", "diode_v"],
+        typical: &["fast_decay_fraction", "off_time_us", "blanking_time_us", "diode_v"],
     },
 ];
 

@@ -21,7 +21,8 @@ use stepscope_peripheral::{
     wire::bit_times::{BYTE_BITS, BitTimes},
 };
 use stepscope_scenario::{
-    ChannelSegments, Hex, LineScript, Problem, Scenario, ScriptedSend, SegmentLists, Source, TimingRules,
+    ChannelSegments, Direction, Hex, LineScript, Problem, Scenario, ScriptedSend, SegmentLists, Source,
+    TimingRules,
 };
 use stepscope_sim::replayed;
 
@@ -137,9 +138,12 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
 fn channel_list(list: &SegmentList) -> ChannelSegments {
     use stepscope_scenario::{DwellSegment, Segment as Written, StepSegment};
     let segment = |each: &Segment| match *each {
-        Segment::Steps { count, interval, add, right } => {
-            Written::Steps(StepSegment { count, interval_q16: interval, add_q16: add, dir: right.into() })
-        }
+        Segment::Steps { count, interval, add, right } => Written::Steps(StepSegment {
+            count,
+            interval_q16: interval,
+            add_q16: add,
+            direction: Direction::of_dir(right),
+        }),
         Segment::Dwell(length_q16) => Written::Dwell(DwellSegment { length_q16 }),
     };
     ChannelSegments { start_cycle: list.start.0, segments: list.segments.iter().map(segment).collect() }

@@ -11,15 +11,17 @@ use stepscope_peripheral::config::{Bus, limits};
 settings! {
     /// A scenario is one experiment as JSON. Files, share links and the page's form hold it. Every field has a
     /// default, so `{}` is a valid scenario. Unknown and duplicate fields are errors. Names contain the unit:
-    /// `_cycles` counts the peripheral's clock, `_s` is seconds, `_hz` is hertz. A choice is an object with one key
+    /// `_cycles` counts the peripheral's clock, `_s` is seconds, `_hz` is hertz; torques are written as in a data sheet
+    /// (`_mN_m`). A choice is an object with one key
     /// that names it: `{ "mm": 250 }`, `{ "cosine": { … } }`. A whole number may also be written as `16000000.0` or
     /// `16e6`.
     ///
     /// All problems of a scenario are reported at once, each with its path, the value and the allowed values.
-    /// Version 1, which had other names for a few fields, can still be read.
+    /// Versions 1 and 2, which had other names for some fields, can still be read. Without `version`, the names of all
+    /// versions are accepted. Directions may be written as 1 (positive) and 0 (negative).
     pub struct Scenario {
         /// Version of this format.
-        pub version: u32 = VERSION => label("Version").follows("1 or 2"),
+        pub version: u32 = VERSION => label("Version").follows("1 to 3"),
         /// Name of the experiment; part of the link.
         pub title: String = String::new() => label("Name")
             .length(0..=120, "characters")
@@ -66,9 +68,9 @@ settings! {
             .follows("0 to the number of axes - 1 (of channels if there are no axes)")
             .term("Axis", "Axis of the spectrum. Axis 0 drives channel 0."),
         /// Highest harmonic of the distortion.
-        pub order: u16 = 40 => label("Order")
+        pub max_harmonic: u16 = 40 => label("Max harmonic")
             .whole(2..=1000)
-            .term("Order", "Highest harmonic that the distortion (THD) includes.")
+            .term("Max harmonic", "Highest harmonic that the distortion (THD) includes.")
             .from(SINE),
         /// Samples per period of the ideal curve. Any number is coherent; powers of two are fastest.
         pub fft_length: u32 = 4096 => label("Samples per period")
@@ -81,7 +83,7 @@ settings! {
             .unit("Hz")
             .number(1e-3..=1e9)
             .empty("no sensor")
-            .term("Sensor bandwidth", "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the order.")
+            .term("Sensor bandwidth", "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the number of harmonics.")
             .from(OWN),
     }
 }

@@ -85,9 +85,9 @@ settings! {
             .from(OWN)
             .when_at("line.protocol", "framed"),
         /// Attempts per frame before the host gives up.
-        pub attempts: u8 = 10 => label("Attempts")
+        pub max_attempts: u8 = 10 => label("Max attempts")
             .whole(1..=255)
-            .term("Attempts", "After this many attempts without a reply the host gives up the controller.")
+            .term("Max attempts", "After this many attempts without a reply the host gives up the controller.")
             .from(OWN)
             .when_at("line.protocol", "framed"),
     }

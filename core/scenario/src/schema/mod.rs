@@ -55,9 +55,9 @@ pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
 pub use segments::{ChannelSegments, DwellSegment, Segment, SegmentLists, StepSegment};
 pub use source::{LineScript, Motion, MotionEngine, Packets, ScriptedSend, Source};
 pub use standalone::{
-    Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, ProfileGroup,
-    ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch, Until,
-    VirtualAxis, WaitGroup,
+    Direction, Eeprom, HomeGroup, Homing, Jog, JumpGroup, MoveGroup, MoveToGroup, PanelInput, PositionState,
+    ProfileGroup, ProgramGroup, RepeatGroup, ReturnToZero, Sensor, SetGroup, SoftLimits, StandAlone, Switch,
+    Until, VirtualAxis, WaitGroup,
 };
 pub(crate) use types::label;
 pub use types::{

@@ -33,7 +33,7 @@ fields! {
             .term("Inductance", "Inductance of one phase. At high rates the current cannot follow, so the torque falls.")
             .from(SONG),
         /// Holding torque, both phases at the rated current.
-        holding_torque_mn_m: f64 => label("Holding torque")
+        holding_torque_mn_m: f64 => label("Holding torque").named("holding_torque_mN_m")
             .unit("mN·m")
             .number(limits::HOLDING_TORQUE_MN_M)
             .term("Holding torque", "Torque with both phases at the rated current. One phase at its peak has 1/√2 of it. The back-EMF follows from it.")
@@ -64,7 +64,7 @@ fields! {
             .term("Load inertia", "Inertia of the load at the motor shaft. Behind a gear of n : 1 divide it by n².")
             .from(OWN),
         /// Torque of the load at the motor shaft.
-        load_torque_mn_m: f64 => label("Load torque")
+        load_torque_mn_m: f64 => label("Load torque").named("load_torque_mN_m")
             .unit("mN·m")
             .number(limits::LOAD_TORQUE_MN_M)
             .term("Load torque", "Torque that opposes the motion, such as friction or cutting. It helps when decelerating.")
@@ -77,27 +77,27 @@ fields! {
             .term("Working rate", "Highest rate known to work with the load, f_s. Song 2021 states 19200 Hz.")
             .from(SONG),
         /// Coulomb friction of the rotor.
-        friction_mn_m: f64 => label("Friction").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        friction_mn_m: f64 => label("Friction").named("friction_mN_m").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
         /// Friction at rest.
-        stiction_mn_m: Option<f64> => label("Stiction").only_if_set().unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
+        stiction_mn_m: Option<f64> => label("Stiction").named("stiction_mN_m").only_if_set().unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
         /// Friction proportional to the speed.
-        viscous_un_m_s: f64 => label("Viscous friction").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        viscous_un_m_s: f64 => label("Viscous friction").named("viscous_uN_m_s").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// Amplitude of the torque that holds the unpowered rotor.
-        detent_torque_mn_m: f64 => label("Detent torque").only_if_set().unit("mN·m").follows("0 to half the holding torque").from(OWN),
+        detent_torque_mn_m: f64 => label("Detent torque").named("detent_torque_mN_m").only_if_set().unit("mN·m").follows("0 to half the holding torque").from(OWN),
         /// A constant torque to the left.
-        gravity_torque_mn_m: f64 => label("Gravity").only_if_set().unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
+        gravity_torque_mn_m: f64 => label("Gravity").named("gravity_torque_mN_m").only_if_set().unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
         /// Amplitude of a torque that is periodic in the load angle.
-        sine_torque_mn_m: f64 => label("Periodic torque").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
+        sine_torque_mn_m: f64 => label("Periodic torque").named("sine_torque_mN_m").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
         /// Periods of the periodic torque per turn of the load.
         sine_per_turn: f64 => label("Periods per turn").only_if_set().number(plant::SINE_PER_TURN).from(OWN),
         /// Phase of the periodic torque.
         sine_phase_deg: f64 => label("Phase").only_if_set().unit("°").number(plant::SINE_PHASE_DEG).from(OWN),
         /// Stiffness of the coupling between rotor and load. With one they are two masses.
-        coupling_n_m_rad: Option<f64> => label("Coupling").only_if_set().unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
+        coupling_n_m_rad: Option<f64> => label("Coupling").named("coupling_N_m_rad").only_if_set().unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
         /// Damping of the coupling.
-        coupling_un_m_s: f64 => label("Coupling damping").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
+        coupling_un_m_s: f64 => label("Coupling damping").named("coupling_uN_m_s").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// Current control of the driver.
-        drive: Drive => label("Driver").only_if_set(),
+        drive: Drive => label("Driver").named("driver").only_if_set(),
     }
 }
 
@@ -105,15 +105,15 @@ fields! {
     /// Only used with `plant`.
     Drive {
         /// How the driver controls the phase currents.
-        regulator: Regulator => label("Regulator").from(SHEETS),
+        regulator: Regulator => label("Current control").named("current_control").from(SHEETS),
         /// How the current decays while the phase is off.
         decay: Decay => label("Decay").from(SHEETS),
-        /// Share of the off-time with fast decay, for mixed and automatic decay.
-        decay_share: f64 => label("Fast share").number(plant::SHARE).from(SHEETS),
-        /// Off-time of the chopper.
-        off_us: f64 => label("Off-time").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
+        /// Fraction of the off time with fast decay, for mixed and automatic decay.
+        decay_share: f64 => label("Fast decay fraction").named("fast_decay_fraction").number(plant::SHARE).from(SHEETS),
+        /// Off time of the chopper.
+        off_us: f64 => label("Off time").named("off_time_us").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
         /// Minimum on-time of the chopper.
-        blank_us: f64 => label("Blanking").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
+        blank_us: f64 => label("Blanking time").named("blanking_time_us").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
         /// Steps of the DAC from 0 to the peak current.
         dac_levels: Option<u16> => label("DAC steps").whole(plant::DAC_LEVELS).empty("not quantized").from(SHEETS),
         /// Resistance of the bridge in series with a phase.
@@ -127,7 +127,7 @@ words! {
     Regulator {
         /// average of an ideal chopper
         Averaged = "averaged", "averaged";
-        /// fixed off-time, evaluated at grid points
+        /// fixed off time, evaluated at grid points
         Chopper = "chopper", "chopper";
     }
     Decay {
@@ -135,7 +135,7 @@ words! {
         Slow = "slow", "slow";
         /// the supply opposes the current
         Fast = "fast", "fast";
-        /// fast for the fast share of the off-time, then slow
+        /// fast for the fast decay fraction of the off time, then slow
         Mixed = "mixed", "mixed";
         /// mixed if the target fell at the last step, slow if it rose
         Auto = "auto", "automatic";

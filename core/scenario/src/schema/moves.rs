@@ -33,7 +33,7 @@ fields! {
 kinds! {
     /// One move of an axis.
     Move {
-        /// Constant acceleration from the start speed to the top speed, plateau, constant deceleration. After k steps v =
+        /// Constant acceleration from the start speed to the maximum speed, plateau, constant deceleration. After k steps v =
         /// √(v0² + 2·a·x), where x is the travel of k steps.
         Trapezoid(Trapezoid) = "trapezoid" => label("Trapezoid").from(SONOBE),
         /// Speed rises in stairs of whole rates, each held for some steps (30, later 60, 90, …), so a short table covers a
@@ -80,18 +80,20 @@ const START_SPEED: Field = label("Start speed")
         "Rate of the first step, v0 or f_1. A motor can start at any rate up to its start-stop rate.",
     )
     .from(SONOBE);
-const TOP_SPEED: Field = label("Top speed")
+const MAX_SPEED: Field = label("Max speed")
     .unit("steps/s")
     .number(limits::TABLE_RATE_STEPS_S)
     .term(
-        "Top speed",
+        "Max speed",
         "Rate of the plateau between the ramps, f_s. Above its pull-out rate a motor loses steps.",
     )
     .from(ZHANG);
-const ACCELERATION: Field = label("Acceleration")
+/// The plateau of a staircase, whose `max_speed` is the end of its table.
+const TOP_SPEED: Field = Field { label: "Top speed", ..MAX_SPEED };
+const MAX_ACCELERATION: Field = label("Max acceleration")
     .unit("steps/s²")
     .number(limits::ACCELERATION_STEPS_S2)
-    .term("Acceleration", "Change of speed per second. Its maximum is the motor torque minus the load torque, divided by the inertia.")
+    .term("Max acceleration", "Change of speed per second on the ramps. A motor reaches at most its torque minus the load torque, divided by the inertia.")
     .from(SONOBE);
 const DURATION: Field = label("Duration")
     .unit("s")
@@ -125,9 +127,9 @@ fields! {
         /// Rate of the first step.
         start_speed: Speed => START_SPEED,
         /// Rate of the plateau, at least the start speed. Short moves do not reach it.
-        top_speed: Speed => TOP_SPEED.number(limits::SPEED_STEPS_S),
+        top_speed: Speed => MAX_SPEED.named("max_speed").number(limits::SPEED_STEPS_S),
         /// Also the deceleration.
-        acceleration: Acceleration => ACCELERATION,
+        acceleration: Acceleration => MAX_ACCELERATION.named("max_acceleration"),
         /// How step times are computed.
         method: TrapezoidMethod => label("Step times")
             .term("Step times", "A small controller stores one pulse rate per step and loads a timer with clock / rate. Both are rounded to whole numbers, so each step is slightly early or late. Exact times have no such error.")
@@ -144,10 +146,11 @@ fields! {
     Staircase {
         /// L in Zhang 2012. Negative moves left.
         distance: Distance => DISTANCE,
-        /// Rate of the plateau, f_s. At or below the start speed it is the rate of the whole move.
+        /// Rate of the plateau, f_s. At or below the start speed it is the rate of the whole move. (`max_speed` is the end
+        /// of the table.)
         top_speed: Speed => TOP_SPEED,
         /// Level times 1000 steps/s².
-        level: u8 => label("Acceleration level")
+        level: u8 => label("Acceleration level").named("acceleration_level")
             .number(limits::LEVEL)
             .term("Acceleration level", "One of five accelerations: level times 1000 steps/s².")
             .from(ZHANG),
@@ -295,7 +298,7 @@ words! {
     }
     ShortMove {
         /// the whole move at the start speed (Zhang 2012)
-        Document = "document", "at start speed";
+        Document = "at_start_speed", "at start speed";
         /// up to the highest row that fits, and down again
         Reverse = "reverse", "reverse at the highest row";
     }

@@ -41,12 +41,9 @@ macro_rules! rows {
     }) => {
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const FIELDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
-                    name: $crate::schema::rows::plain(stringify!($field)),
-                    doc: concat!($($field_doc),*),
-                    ty: <$ty as $crate::schema::Typed>::TYPE,
-                    ..$row
-                }),*];
+                const FIELDS: &[$crate::schema::Field] = &[$(
+                    $row.declared(stringify!($field), concat!($($field_doc),*), <$ty as $crate::schema::Typed>::TYPE)
+                ),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
                     doc: concat!($($doc, "\n"),*),
@@ -77,11 +74,7 @@ macro_rules! rows {
 
         impl $crate::Read for $name {
             fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
-                reader.fields(
-                    value,
-                    $crate::schema::rows::group::<Self>(),
-                    &mut [$(($crate::schema::rows::plain(stringify!($field)), &mut self.$field),)*],
-                )
+                reader.fields(value, $crate::schema::rows::group::<Self>(), &mut [$(&mut self.$field),*])
             }
 
             fn blank() -> Self {
@@ -119,12 +112,9 @@ macro_rules! kinds {
 
         impl $crate::schema::Typed for $name {
             const TYPE: $crate::schema::Type = {
-                const KINDS: &[$crate::schema::Field] = &[$($crate::schema::Field {
-                    name: $key,
-                    doc: concat!($($kind_doc),*),
-                    ty: <$ty as $crate::schema::Typed>::TYPE,
-                    ..$row
-                }),*];
+                const KINDS: &[$crate::schema::Field] = &[$(
+                    $row.declared($key, concat!($($kind_doc),*), <$ty as $crate::schema::Typed>::TYPE)
+                ),*];
                 const GROUP: &$crate::schema::Group = &$crate::schema::Group {
                     name: stringify!($name),
                     doc: concat!($($doc, "\n"),*),
@@ -233,17 +223,6 @@ macro_rules! word_enums {
 }
 
 use crate::schema::{Group, Type, Typed};
-
-/// Removes `r#`.
-pub(crate) const fn plain(name: &'static str) -> &'static str {
-    match name.as_bytes() {
-        [b'r', b'#', rest @ ..] => match core::str::from_utf8(rest) {
-            Ok(rest) => rest,
-            Err(_) => name,
-        },
-        _ => name,
-    }
-}
 
 const NONE: &Group = &Group {
     name: "",

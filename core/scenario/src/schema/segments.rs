@@ -3,7 +3,7 @@
 //! `_q16` counts 1/65536 cycle (48.16 fixed point), `_cycles` whole ones.
 
 use crate::schema::{
-    OWN, SONOBE, label,
+    Direction, OWN, SONOBE, label,
     rows::{choices, settings},
 };
 use alloc::vec::Vec;
@@ -61,8 +61,8 @@ settings! {
         pub interval_q16: u64 = 16_000 << 16 => label("Interval").unit("1/65536 cycle"),
         /// Change of each following interval.
         pub add_q16: i64 = 0 => label("Change").unit("1/65536 cycle"),
-        /// Level of DIR: 1 right, 0 left.
-        pub dir: u8 = 1 => label("DIR").whole(0..=1),
+        /// Level of DIR.
+        pub direction: Direction = Direction::Positive => label("Direction"),
     }
 }
 

@@ -49,7 +49,7 @@ settings! {
         pub decimals: u8 = 1 => label("Decimals").whole(whole(&limits::DECIMALS)).from(ZHANG),
         /// Lowest rate of the table, f_1. The motor starts at it.
         pub start_speed_hz: u32 = 1000 => label("Start-stop rate").unit("Hz").follows("10 to `max_speed_hz`")
-            .term("Start-stop rate", "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is then no longer trusted.")
+            .term("Start-stop rate", "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is lost.")
             .from(ZHANG),
         /// Maximum rate of all moves.
         pub max_speed_hz: u32 = 20_000 => label("Max speed").unit("Hz").follows("10 to 10^7, limited by the pulse times").from(ZHANG),
@@ -57,9 +57,9 @@ settings! {
         pub level_hz_s: u32 = 1000 => label("Acceleration of level 1").unit("Hz/s").whole(whole(&limits::LEVEL_HZ_S)).from(ZHANG),
         /// Moves that are too short for their speed.
         pub short_move: ShortMove = ShortMove::Document => label("Short moves").from(ZHANG),
-        /// Minimum trust in the position to start: 0 lost, 1 restored, 2 confirmed.
-        pub least_trust: u8 = 1 => label("Minimum trust").whole(whole(&limits::TRUST))
-            .term("Trust", "How reliable the position is. Confirmed (2): zero was set or found. Restored (1): it was confirmed, but the windings have been without current since. Lost (0): memory did not survive a power loss, or the motor jumped beyond its start-stop rate.")
+        /// Minimum state of the position to start.
+        pub required_position: PositionState = PositionState::Restored => label("Required position")
+            .term("Required position", "How reliable the position must be to start. Confirmed: zero was set or found. Restored: it was confirmed, but the windings have been without current since. Lost: memory did not survive a power loss, or the motor jumped beyond its start-stop rate.")
             .from(OWN),
         /// How often the program runs.
         pub loops: u16 = 1 => label("Loops").whole(whole(&limits::LOOPS)).from(ZHANG),
@@ -84,7 +84,37 @@ settings! {
     }
 }
 
+impl Direction {
+    /// The direction of a level of DIR.
+    #[must_use]
+    pub const fn of_dir(is_high: bool) -> Self {
+        if is_high { Self::Positive } else { Self::Negative }
+    }
+
+    /// Whether DIR is high.
+    #[must_use]
+    pub const fn is_positive(self) -> bool {
+        matches!(self, Self::Positive)
+    }
+}
+
 word_enums! {
+    /// The direction of a move or a step.
+    pub enum Direction {
+        /// left: DIR is low, positions fall
+        Negative = "negative", "left (negative)";
+        /// right: DIR is high, positions rise
+        Positive = "positive", "right (positive)";
+    }
+    /// How reliable the position of a controller is, in ascending order.
+    pub enum PositionState {
+        /// any position, also a lost one
+        Lost = "lost", "lost (any)";
+        /// restored from memory, or confirmed
+        Restored = "restored", "restored";
+        /// zero was set or found while the windings had current
+        Confirmed = "confirmed", "confirmed";
+    }
     /// A switch for homing.
     pub enum Switch {
         /// left limit switch
@@ -116,9 +146,9 @@ word_enums! {
 words! {
     ShortMove {
         /// the whole move at the start-stop rate
-        Document = "document", "start-stop rate";
+        Document = "at_start_speed", "start-stop rate";
         /// accelerate as far as possible, then decelerate
-        TurnRound = "turn_round", "up and down";
+        TurnRound = "reverse", "up and down";
     }
     Release {
         /// stops at once (Zhang 2012)
@@ -207,7 +237,7 @@ const fn speed(name: &'static str) -> Field {
 const LEVEL: Field = label("Acceleration level").whole(whole(&limits::LEVEL)).from(ZHANG);
 const DELAY: Field = label("Delay").unit("ms").whole(whole(&limits::DELAY_MS)).from(ZHANG);
 const ON: Field = label("Level").whole(0..=1);
-const DIRECTION: Field = label("Direction").whole(0..=1);
+const DIRECTION: Field = label("Direction");
 
 choices! {
     /// A group of the program.
@@ -236,12 +266,12 @@ settings! {
     pub struct MoveGroup {
         /// Digits of the display.
         pub length: u32 = 1000 => LENGTH.whole(whole(&limits::LENGTH)),
-        /// 1 right, 0 left.
-        pub direction: u8 = 1 => DIRECTION.from(ZHANG),
+        /// Direction of the move.
+        pub direction: Direction = Direction::Positive => DIRECTION.from(ZHANG),
         /// Rate of the plateau.
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
-        pub level: u8 = 3 => LEVEL,
+        pub acceleration_level: u8 = 3 => LEVEL,
         /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
         /// An input that ends it early.
@@ -267,7 +297,7 @@ settings! {
         /// Rate of the plateau.
         pub speed_hz: u32 = 5000 => SPEED,
         /// Level times `level_hz_s`.
-        pub level: u8 = 3 => LEVEL,
+        pub acceleration_level: u8 = 3 => LEVEL,
         /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
     }
@@ -281,8 +311,8 @@ settings! {
         /// Interval before each step, up to 1 000 000.
         pub intervals_q16: Vec<u64> = Vec::new() => label("One interval per line").unit("1/65536 cycle")
             .follows("at least the pulse times, at most 2^64 - 1; up to 1 000 000 lines"),
-        /// 1 right, 0 left; used with intervals.
-        pub direction: u8 = 1 => DIRECTION,
+        /// Direction of the steps; used with intervals.
+        pub direction: Direction = Direction::Positive => DIRECTION,
         /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
     }
@@ -348,7 +378,7 @@ settings! {
         /// Fine jog, in state DEBUG.
         pub fine_hz: u32 = 10 => speed("Fine speed"),
         /// Acceleration of the ramp at the end.
-        pub level: u8 = 3 => LEVEL,
+        pub acceleration_level: u8 = 3 => LEVEL,
         /// How a jog ends.
         pub release: Release = Release::AtOnce => label("Release").from(ZHANG),
     }
@@ -360,7 +390,7 @@ settings! {
         /// Rate of the plateau.
         pub speed_hz: u32 = 1000 => SPEED,
         /// Level times `level_hz_s`.
-        pub level: u8 = 3 => LEVEL,
+        pub acceleration_level: u8 = 3 => LEVEL,
     }
 }
 
@@ -369,8 +399,8 @@ settings! {
     pub struct Homing {
         /// Switch to search for.
         pub switch: Switch = Switch::HomeSwitch => label("Switch").from(OWN),
-        /// 1 right, 0 left.
-        pub direction: u8 = 0 => DIRECTION,
+        /// Direction of the search.
+        pub direction: Direction = Direction::Negative => DIRECTION,
         /// Rate towards the switch.
         pub coarse_hz: u32 = 1000 => label("Coarse rate").unit("Hz").follows("10 to `start_speed_hz`").from(OWN),
         /// Rate of the final approach.
@@ -378,7 +408,7 @@ settings! {
         /// Steps beyond the opening of the switch.
         pub pull_off_steps: u32 = 20 => label("Pull-off").unit("steps").whole(whole(&limits::PULL_OFF_STEPS)).from(OWN),
         /// Maximum steps of each approach.
-        pub travel_steps: u32 = 100_000 => label("Max travel").unit("steps").whole(whole(&limits::TRAVEL_STEPS)).from(OWN),
+        pub max_travel_steps: u32 = 100_000 => label("Max travel").unit("steps").whole(whole(&limits::TRAVEL_STEPS)).from(OWN),
         /// Position of the switch.
         pub position_steps: i64 = 0 => label("Position of the switch").unit("steps").signed(signed(&limits::STEPS)).from(OWN),
     }
@@ -404,17 +434,17 @@ settings! {
         /// Initial position.
         pub start_steps: i64 = 0 => axis_position("Start"),
         /// `limit_min` is 1 from here to the left.
-        pub min_switch_at: Option<i64> = None => axis_position("Left switch, up to").empty("the left limit switch is an input"),
+        pub min_switch_at_steps: Option<i64> = None => axis_position("Left switch, up to").empty("the left limit switch is an input"),
         /// `limit_max` is 1 from here to the right.
-        pub max_switch_at: Option<i64> = None => axis_position("Right switch, from").empty("the right limit switch is an input"),
+        pub max_switch_at_steps: Option<i64> = None => axis_position("Right switch, from").empty("the right limit switch is an input"),
         /// `home_switch` is 1 from here …
-        pub home_from: Option<i64> = None => axis_position("Home switch, from").empty("the home switch is an input"),
+        pub home_from_steps: Option<i64> = None => axis_position("Home switch, from").empty("the home switch is an input"),
         /// … to here. Use both or neither.
-        pub home_to: Option<i64> = None => axis_position("Home switch, to").empty("the home switch is an input"),
+        pub home_to_steps: Option<i64> = None => axis_position("Home switch, to").empty("the home switch is an input"),
         /// Hard stop on the left, where steps are lost.
-        pub hard_min: Option<i64> = None => axis_position("Left hard stop").empty("no hard stop"),
+        pub hard_min_steps: Option<i64> = None => axis_position("Left hard stop").empty("no hard stop"),
         /// Hard stop on the right.
-        pub hard_max: Option<i64> = None => axis_position("Right hard stop").empty("no hard stop"),
+        pub hard_max_steps: Option<i64> = None => axis_position("Right hard stop").empty("no hard stop"),
     }
 }
 

@@ -180,7 +180,36 @@ pub(crate) const fn label(label: &'static str) -> Field {
     }
 }
 
+/// Removes `r#`.
+const fn plain(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', rest @ ..] => match core::str::from_utf8(rest) {
+            Ok(rest) => rest,
+            Err(_) => name,
+        },
+        _ => name,
+    }
+}
+
+impl Group {
+    /// The names of its fields or kinds, as a list for messages.
+    pub(crate) fn names(&self) -> String {
+        self.fields.iter().map(|field| field.name).collect::<Vec<_>>().join(", ")
+    }
+}
+
 impl Field {
+    /// Completes a row. Without [`Self::named`] the name in JSON is the Rust name.
+    pub(crate) const fn declared(self, rust_name: &'static str, doc: &'static str, ty: Type) -> Self {
+        let name = if self.name.is_empty() { plain(rust_name) } else { self.name };
+        Self { name, doc, ty, ..self }
+    }
+
+    /// The name in JSON, where Rust spells names in another way.
+    pub(crate) const fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
     pub(crate) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }

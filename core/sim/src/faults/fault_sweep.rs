@@ -60,7 +60,7 @@ impl FaultSweep {
             Axis { moves: vec![Move::Cosine(cosine)], ..Axis::default() }
         };
         let mut line = Line { protocol, ..Line::default() };
-        line.host.attempts = u8::MAX;
+        line.host.max_attempts = u8::MAX;
         Scenario {
             bus: Bus { channels: 2, ..Bus::default() },
             line,

@@ -23,13 +23,13 @@ impl Script {
     pub(super) fn new(common: bool, case: &Case, controller: &Controller) -> Self {
         let axis = controller.axis.clone().unwrap_or_default();
         let mut free: Vec<Input> = (0..4).map(Input::In).collect();
-        if axis.min_switch_at.is_none() {
+        if axis.min_switch_at_steps.is_none() {
             free.push(Input::LimitMin);
         }
-        if axis.max_switch_at.is_none() {
+        if axis.max_switch_at_steps.is_none() {
             free.push(Input::LimitMax);
         }
-        if axis.home_from.is_none() {
+        if axis.home_from_steps.is_none() {
             free.push(Input::HomeSwitch);
         }
         let step = case.clock_hz / controller.max_speed_hz as u64 + 1;

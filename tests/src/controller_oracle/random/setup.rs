@@ -108,23 +108,23 @@ impl Dice {
     fn axis(&mut self) -> Axis {
         let mut axis = Axis { start_steps: self.whole(-150, 150), ..Axis::default() };
         if self.chance(60) {
-            axis.min_switch_at = Some(self.whole(-400, -120));
+            axis.min_switch_at_steps = Some(self.whole(-400, -120));
         }
         if self.chance(60) {
-            axis.max_switch_at = Some(self.whole(120, 400));
+            axis.max_switch_at_steps = Some(self.whole(120, 400));
         }
         if self.chance(70) {
             let from = self.whole(-250, 200);
-            axis.home_from = Some(from);
-            axis.home_to = Some(from + self.whole(0, 60));
+            axis.home_from_steps = Some(from);
+            axis.home_to_steps = Some(from + self.whole(0, 60));
         }
         if self.chance(40) {
-            axis.hard_min = Some(axis.min_switch_at.unwrap_or(-300) - self.whole(-3, 10));
+            axis.hard_min_steps = Some(axis.min_switch_at_steps.unwrap_or(-300) - self.whole(-3, 10));
         }
         if self.chance(40) {
-            axis.hard_max = Some(axis.max_switch_at.unwrap_or(300) + self.whole(-3, 10));
+            axis.hard_max_steps = Some(axis.max_switch_at_steps.unwrap_or(300) + self.whole(-3, 10));
         }
-        let (least, most) = (axis.hard_min.unwrap_or(-1000), axis.hard_max.unwrap_or(1000));
+        let (least, most) = (axis.hard_min_steps.unwrap_or(-1000), axis.hard_max_steps.unwrap_or(1000));
         axis.start_steps = axis.start_steps.clamp(least, most);
         axis
     }
@@ -133,17 +133,17 @@ impl Dice {
         let start = controller.start_speed_hz;
         let axis = controller.axis.clone().unwrap_or_default();
         let mut switches = vec![Input::HomeSwitch, Input::LimitMin, Input::LimitMax];
-        if axis.home_from.is_some() {
+        if axis.home_from_steps.is_some() {
             switches.extend([Input::HomeSwitch; 4]);
         }
-        if axis.min_switch_at.is_some() {
+        if axis.min_switch_at_steps.is_some() {
             switches.extend([Input::LimitMin; 2]);
         }
         let switch = self.pick(&switches);
         let mut right = match switch {
             Input::LimitMin => false,
             Input::LimitMax => true,
-            _ => axis.home_from.map_or_else(|| self.chance(50), |from| from > axis.start_steps),
+            _ => axis.home_from_steps.map_or_else(|| self.chance(50), |from| from > axis.start_steps),
         };
         if self.chance(10) {
             right = !right;
@@ -154,7 +154,7 @@ impl Dice {
             coarse_hz: self.whole((start / 3).max(10), start),
             fine_hz: self.whole((start / 8).max(10), start),
             pull_off_steps: self.pick(&[0, 1, 2, 5, 20, 30]),
-            travel_steps: self.pick(&[5, 100, 600, 1000, 2000]),
+            max_travel_steps: self.pick(&[5, 100, 600, 1000, 2000]),
             position_steps: if self.chance(50) { 0 } else { self.whole(-150, 150) },
         }
     }

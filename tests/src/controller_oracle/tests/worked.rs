@@ -179,7 +179,7 @@ fn problems_have_the_texts_paths() {
         Group::Repeat { first: 3, times: 2 },
         Group::Set { output: 0, level: true },
     ];
-    let axis = Axis { max_switch_at: Some(3), ..Axis::default() };
+    let axis = Axis { max_switch_at_steps: Some(3), ..Axis::default() };
     let mut inputs = presses(&[(4000, Input::Start)], 5);
     inputs.extend(presses(&[(4000, Input::Start)], 6));
     inputs.extend(held(Input::LimitMax, 1, 2));

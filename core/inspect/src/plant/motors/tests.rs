@@ -50,14 +50,14 @@ fn typical_figures_are_fields_of_the_scenario() {
     for (typical, path) in MOTORS
         .iter()
         .map(|sheet| (sheet.typical, ""))
-        .chain(DRIVES.iter().map(|sheet| (sheet.typical, "drive")))
+        .chain(DRIVES.iter().map(|sheet| (sheet.typical, "driver")))
     {
         for field in typical {
             let inner = match path {
                 "" => format!(r#"{{"{field}":1}}"#),
                 _ => format!(r#"{{"{path}":{{"{field}":1}}}}"#),
             };
-            let json = format!(r#"{{"plant":{{"motors":[{{"motor":{inner}}}]}}}}"#);
+            let json = format!(r#"{{"version":3,"plant":{{"motors":[{{"motor":{inner}}}]}}}}"#);
             assert!(Scenario::from_json(&json).is_ok(), "{field}");
         }
     }

@@ -18,7 +18,7 @@ pub(super) fn plan(
 ) -> Option<Staircase> {
     let steps = quantities.distance("distance", &given.distance);
     let top = quantities.speed_within("top_speed", &given.top_speed, limits::TABLE_RATE_STEPS_S);
-    let level = quantities.range("level", given.level.into(), limits::LEVEL, "");
+    let level = quantities.range("acceleration_level", given.level.into(), limits::LEVEL, "");
     let start = quantities.speed_within("start_speed", &given.start_speed, limits::TABLE_RATE_STEPS_S);
     let max = quantities.speed_within("max_speed", &given.max_speed, limits::TABLE_RATE_STEPS_S);
     if let (Some(start), Some(max)) = (start, max)
@@ -72,7 +72,7 @@ mod tests {
                 &[
                     "axis.moves[0].staircase.distance: 1 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
                     "axis.moves[0].staircase.top_speed: 0.4 steps/s is out of range; give 0.5 to 10000000 steps/s",
-                    "axis.moves[0].staircase.level: 6 is out of range; give 1 to 5",
+                    "axis.moves[0].staircase.acceleration_level: 6 is out of range; give 1 to 5",
                 ],
             ),
             (

@@ -60,8 +60,8 @@ fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<i6
     };
     let steps = quantities.distance("distance", &given.distance);
     let start = quantities.speed_within("start_speed", &given.start_speed, starts);
-    let top = quantities.speed("top_speed", &given.top_speed);
-    let acceleration = quantities.acceleration("acceleration", &given.acceleration);
+    let top = quantities.speed("max_speed", &given.top_speed);
+    let acceleration = quantities.acceleration("max_acceleration", &given.acceleration);
     let timer_hz = match given.method {
         TrapezoidMethod::Table => quantities.range("timer_hz", given.timer_hz.into(), limits::TIMER_HZ, "Hz"),
         TrapezoidMethod::Exact => Some(0.0),
@@ -69,7 +69,7 @@ fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<i6
     if let (Some(start), Some(top)) = (start, top)
         && top < start
     {
-        quantities.refuse("top_speed", Cause::TopBelowStart { top, start });
+        quantities.refuse("max_speed", Cause::TopBelowStart { top, start });
         return None;
     }
     timer_hz?;

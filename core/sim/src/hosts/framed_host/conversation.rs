@@ -77,7 +77,7 @@ impl Conversation {
         Self {
             bit,
             timeout: Cycles(timeout),
-            attempts: settings.attempts,
+            attempts: settings.max_attempts,
             peers: jobs.into_iter().map(|job| Peer::new(job, settings, start)).collect(),
             phase: Phase::Pausing { until: start },
             quiet_from: start,

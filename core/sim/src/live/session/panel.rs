@@ -115,7 +115,7 @@ mod tests {
     /// Ready after some 25 cycles, without debouncing; a program of 100 steps, a step every 1000 cycles.
     const QUICK: &str = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "self_test_cycles": 5, "debounce_cycles": 0,
         "max_speed_hz": 1000, "groups": [ { "move": { "length": 10, "speed_hz": 1000 } } ],
-        "axis": { "min_switch_at": -500 }, "memory": { "byte_write_cycles": 1, "hold_up_cycles": 40 } } ] } }"#;
+        "axis": { "min_switch_at_steps": -500 }, "memory": { "byte_write_cycles": 1, "hold_up_cycles": 40 } } ] } }"#;
 
     fn session(json: &str) -> Session {
         Session::new(&Scenario::from_json(json).expect("reads")).expect("no problems")
