@@ -193,7 +193,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
             alone.channels.iter().map(move |channel| {
                 json!({
                     "channel": channel, "t_step_cycles": t_step, "share": share, "rest_a": found.rest_a,
-                    "least_a": found.least_a, "greatest_a": found.greatest_a, "reached_cycles": found.reached,
+                    "least_a": found.min_a, "greatest_a": found.max_a, "reached_cycles": found.reached,
                     "settled_cycles": found.settled,
                 })
             })
@@ -213,8 +213,8 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
             "motor {}: {:.4} A at rest, {:.3} to {:.3} A after a step\n  reached  {}\n  settled  {}",
             channels(alone),
             found.rest_a,
-            found.least_a,
-            found.greatest_a,
+            found.min_a,
+            found.max_a,
             time(found.reached),
             time(found.settled)
         )
@@ -315,7 +315,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     });
     if common.json.json {
         let rows = rows.map(|(channel, rate, found)| {
-            json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": found.swing, "loses_steps": found.loses })
+            json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": found.peak_to_peak, "loses_steps": found.loses_steps })
         });
         let tables = Tables::of("resonance").with("resonance", rows);
         return output::write_new(&arguments.out.out, |out| tables.write(out));
@@ -323,7 +323,7 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     output::write_new(&arguments.out.out, |out| {
         writeln!(out, "channel,rate_full_steps_s,swing_full_steps,loses_steps")?;
         for (channel, rate, found) in rows {
-            writeln!(out, "{channel},{rate},{},{}", found.swing, u8::from(found.loses))?;
+            writeln!(out, "{channel},{rate},{},{}", found.peak_to_peak, u8::from(found.loses_steps))?;
         }
         Ok(())
     })

@@ -35,7 +35,7 @@ use stepscope_core::{
     },
     plant::{
         Observer, Plant,
-        measures::{MotorResult, PlantResult},
+        measures::{MotorResult, Peak, PlantResult},
         parameters::Setup,
         settling::Deviation,
     },
@@ -201,14 +201,8 @@ fn print<S: Sink, O: Observer>(
     writeln!(out, "plant digest     {:016x}", result.digest)?;
     writeln!(out, "points to        {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
     let (load, bus) = (&result.load_a, &result.bus_v);
-    writeln!(
-        out,
-        "supply current   {:.3} to {:.3} A, r.m.s. {:.3} A",
-        load.least,
-        load.greatest,
-        load.rms()
-    )?;
-    writeln!(out, "bus              {:.3} to {:.3} V", bus.least, bus.greatest)?;
+    writeln!(out, "supply current   {:.3} to {:.3} A, r.m.s. {:.3} A", load.min, load.max, load.rms())?;
+    writeln!(out, "bus              {:.3} to {:.3} V", bus.min, bus.max)?;
     if let Some(found) = &result.deviation {
         let Deviation { rest_a, above_a, below_a } = found;
         writeln!(
@@ -251,7 +245,7 @@ fn print<S: Sink, O: Observer>(
 
 fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_hz: u32) -> io::Result<()> {
     writeln!(out, "motor {channel}          {}", verdict(motor, clock_hz))?;
-    let (following, at) = motor.following_error;
+    let Peak { value: following, cycle: at } = motor.following_error;
     writeln!(out, "  following error {following:+.4} full steps at most, at {:.3} ms", ms(at, clock_hz))?;
     writeln!(
         out,

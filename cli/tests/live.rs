@@ -271,7 +271,7 @@ fn old_device(listener: &TcpListener) {
             }
             let answer = if kind == Kind::Positions { Err(Reason::UnknownKind) } else { Ok(kind) };
             let status = Status { state, free: 16, expected_seq: seq, faults: 0, ticks_done };
-            let _ = stream.write_all(&(Reply { address: frame.address, answer, status }).emit(None));
+            let _ = stream.write_all(&(Reply { address: frame.address, result: answer, status }).emit(None));
         }
     }
 }

@@ -61,7 +61,7 @@ fn a_table_of_a_shared_framed_line_has_the_hosts_sends_and_nothing_else() {
         }
         // A bit may become a delimiter and cut a frame, or be one no more and join two: each still begins in the host's.
         let is_hosts = |send: &ScriptedSend| {
-            let last = run.schedule().last_until(Instant(send.start_cycle));
+            let last = run.schedule().last_at_or_before(Instant(send.start_cycle));
             last.is_some_and(|last| {
                 let length = line_time(last.bytes.len() as u64, scenario.clock_hz, scenario.line.baud);
                 send.start_cycle < last.start.0 + length

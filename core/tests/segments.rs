@@ -87,7 +87,7 @@ impl Sink for Slice<'_> {
         self.0.push(record);
     }
 
-    fn paused(&self) -> bool {
+    fn is_paused(&self) -> bool {
         self.0.len() >= self.1
     }
 }

@@ -1,8 +1,9 @@
 //! Example firmware: a driver for the registers of the peripheral ([`stepscope_registers`]), without allocation or the
 //! standard library. It runs unchanged on a chip and, in tests, on the model.
 //!
-//! A motion is a sequence of ticks with one command per channel. Call [`Driver::fill`] often enough that the queue
-//! never runs empty.
+//! A motion is a sequence of ticks with one command per channel. Call [`Driver::fill`] often enough that the queue never
+//! runs empty.
+//!
 //! ```
 //! use stepscope_firmware::{Driver, ChannelCommand};
 //! use stepscope_registers::RegisterBus;
@@ -17,18 +18,20 @@
 //! }
 //! ```
 #![no_std]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 use core::fmt;
 use stepscope_registers::{
     RegisterBus, capabilities, control, faults, id, orders, position, push, result, slots, status, ticks_done,
 };
 
+/// Why an operation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
     /// No peripheral; the value of the ID register.
     NotFound(u32),
+    /// The version of the register map is not 1.
     UnknownVersion(u32),
+    /// The queue is full; try again.
     Full,
     /// More steps than slots per tick, or no such channel.
     TooManySteps,
@@ -36,6 +39,7 @@ pub enum Error {
     Busy,
     /// Stopped; call [`Driver::enable`] first.
     Stopped,
+    /// The peripheral returned an unknown result code.
     Unexpected(u32),
 }
 
@@ -45,18 +49,23 @@ impl fmt::Display for Error {
             Self::NotFound(id) => {
                 write!(f, "no peripheral: ID is {id:#010x}, not {:#010x}", id::MAGIC_STEP)
             }
-            Self::UnknownVersion(version) => write!(f, "register map {version}, this driver knows 1"),
+            Self::UnknownVersion(version) => {
+                write!(f, "register map version {version} is unknown; use version 1")
+            }
             Self::Full => f.write_str("the queue is full; try again"),
-            Self::TooManySteps => f.write_str("more steps than the tick has slots; give fewer"),
+            Self::TooManySteps => {
+                f.write_str("more steps than the tick has slots, or no such channel; use fewer")
+            }
             Self::Busy => f.write_str("busy; try again"),
-            Self::Stopped => f.write_str("stopped; enable first"),
-            Self::Unexpected(code) => write!(f, "unknown result {code}"),
+            Self::Stopped => f.write_str("stopped; call enable first"),
+            Self::Unexpected(code) => write!(f, "unknown result code {code}"),
         }
     }
 }
 
 impl core::error::Error for Error {}
 
+/// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChannelCommand {
     /// Right (DIR high) or left; sets DIR even without steps.
@@ -66,11 +75,13 @@ pub struct ChannelCommand {
 }
 
 impl ChannelCommand {
+    /// Steps to the right, 0 to the slots per tick.
     #[must_use]
     pub const fn right(steps: u8) -> Self {
         Self { right: true, steps }
     }
 
+    /// Steps to the left, 0 to the slots per tick.
     #[must_use]
     pub const fn left(steps: u8) -> Self {
         Self { right: false, steps }
@@ -82,6 +93,7 @@ impl ChannelCommand {
     }
 }
 
+/// A driver of the peripheral on the bus `B`.
 #[derive(Debug)]
 pub struct Driver<B> {
     bus: B,
@@ -103,6 +115,7 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
+    /// The bus, for registers that this driver does not use.
     pub const fn bus(&mut self) -> &mut B {
         &mut self.bus
     }
@@ -189,6 +202,7 @@ impl<B: RegisterBus> Driver<B> {
         }
     }
 
+    /// Ticks done since reset, wrapping.
     pub fn ticks_done(&mut self) -> u32 {
         self.bus.read(ticks_done::OFFSET)
     }

@@ -59,7 +59,7 @@ fn the_s_curves_move_is_followed_and_a_load_only_bends_it() {
         let result = run.results().remove(0);
         let turn = &result.motors[0];
         assert_eq!((turn.lost, turn.slips.len()), (0, 0), "{motor}");
-        near(turn.following_error.0.abs(), following, 0.003);
+        near(turn.following_error.value.abs(), following, 0.003);
         if rest != 0.0 {
             near(turn.state.x - turn.command, rest, 0.003);
         }
@@ -416,12 +416,12 @@ fn each_preset_shows_what_its_note_says() {
 
     let deviation = |json: &str| {
         let log = run(json, SensorLog::default()).into_parts().remove(0).1;
-        Deviation::of(&log.samples, log.steps[0], log.steps[4]).expect("samples").greatest_a()
+        Deviation::of(&log.samples, log.steps[0], log.steps[4]).expect("samples").max_a()
     };
     let staggered = preset("patent-2019-figure-2");
     let together = staggered.replace(r#""staggered""#, r#""simultaneous""#);
     near(deviation(&together) / deviation(staggered), 2.96, 0.05);
-    let measured = |json: &str| run(json, ()).results()[0].deviation.expect("ten steps").greatest_a();
+    let measured = |json: &str| run(json, ()).results()[0].deviation.expect("ten steps").max_a();
     near(measured(&together) / measured(staggered), 2.96, 0.05);
 
     let (_, overload, _) = result("patent-2019-overload");
@@ -435,7 +435,7 @@ fn each_preset_shows_what_its_note_says() {
     let motor = |id: &str| result(id).0.motors.remove(0);
     let turn = motor("song-2021-motor");
     assert_eq!((turn.lost, verdict(&turn, 16_000_000)), (0, "follows".to_owned()));
-    near(turn.following_error.0.abs(), 0.078, 0.003);
+    near(turn.following_error.value.abs(), 0.078, 0.003);
     let direct = motor("song-2021-direct-start");
     assert_eq!(direct.lost, 0);
     near(direct.overshoot.expect("it stepped"), 0.676, 0.02);
@@ -468,7 +468,7 @@ fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rot
     let commanded = 1619.0 / 16.0;
     let wrong = plant.state(0).expect("a motor").x - commanded;
     near(wrong, -8.0, 0.3);
-    assert!(off.0.abs() > 8.0, "{off:?}");
+    assert!(off.value.abs() > 8.0, "{off:?}");
 }
 
 #[test]

@@ -150,7 +150,7 @@ impl StandAlone {
     /// The same for at most `events` cycles with changes; returns whether that was enough.
     pub fn run_events(&mut self, until: Instant, events: u64, sink: &mut impl Sink) -> bool {
         for _ in 0..events {
-            if sink.paused() {
+            if sink.is_paused() {
                 return true;
             }
             let deadline = self.deadline();

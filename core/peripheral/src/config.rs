@@ -1,17 +1,17 @@
 //! The peripheral's configuration and its rules (DESIGN A4, A7).
 //!
-//! [`Bus`] and [`SerialLine`] are the request; [`Config`] is valid.
+//! [`Config::new`] validates a [`Bus`] and a [`SerialLine`]; a [`Config`] is always valid.
 //!
 //! ```
 //! use stepscope_peripheral::config::{Bus, Config, SerialLine};
 //!
 //! let bus = Bus { channels: 4, slots: 50, ..Bus::default() };
-//! let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("it holds");
+//! let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("valid values");
 //! assert_eq!(config.tick().0, 50 * 320);
 //!
 //! let bus = Bus { step_period_cycles: 60, ..bus };
 //! let problems = Config::new(16_000_000, &bus, &SerialLine::default()).unwrap_err();
-//! assert!(problems[0].to_string().contains("give a step period of at least 80"), "{}", problems[0]);
+//! assert!(problems[0].to_string().contains("use a step period of at least 80"), "{}", problems[0]);
 //! ```
 
 use crate::{
@@ -21,16 +21,18 @@ use crate::{
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 
+/// The receiver needs this many cycles per bit.
 const MIN_BIT_CYCLES: u64 = 11;
 
 /// The range of each number; [`Config::new`] has rules that combine several.
+#[allow(missing_docs, reason = "named like the fields of `Bus`")]
 pub mod limits {
     use crate::signal::MAX_CHANNELS;
     use core::ops::RangeInclusive;
 
     const MAX_CYCLES: u64 = 1_000_000_000;
 
-    /// A clock of 11 Hz can receive 1 baud.
+    /// Clock of the peripheral; at the minimum it can receive 1 baud.
     pub const CLOCK_HZ: RangeInclusive<u64> = super::MIN_BIT_CYCLES..=1_000_000_000;
     pub const CHANNELS: RangeInclusive<u64> = 1..=MAX_CHANNELS as u64;
     pub const SLOTS: RangeInclusive<u64> = 1..=127;
@@ -40,7 +42,7 @@ pub mod limits {
     pub const DIR_HOLD_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
     pub const SETTLE_CYCLES: RangeInclusive<u64> = 0..=MAX_CYCLES;
     pub const QUEUE_DEPTH: RangeInclusive<u64> = 1..=255;
-    /// 255 addresses all.
+    /// Address of a controller; 255 is the broadcast address.
     pub const ADDRESS: RangeInclusive<u64> = 0..=254;
 }
 
@@ -59,13 +61,16 @@ pub struct Bus {
     pub dir_setup_cycles: u32,
     /// H, time that DIR is held after STEP has fallen.
     pub dir_hold_cycles: u32,
+    /// Slots of a tick in which a channel steps.
     pub distribution: Distribution,
+    /// One DIR line per channel, or one for all.
     pub dir_line: DirLine,
+    /// When the pulses of a slot rise.
     pub pulse_phasing: PulsePhasing,
     /// dp, settling time of the drivers' supply current after a step (the patent's delta t_p): the maximum distance of
     /// staggered pulses.
     pub settle_cycles: u32,
-    /// 1 to 255 ticks.
+    /// Maximum ticks in the queue, 1 to 255.
     pub queue_depth: u8,
     /// Self-test after reset. Packets that end within it are dropped; framed ticks get BUSY.
     pub boot_cycles: u32,
@@ -95,35 +100,41 @@ impl Default for Bus {
 pub enum Distribution {
     /// The first `count` slots of the tick, as in RU 2704486.
     Burst,
+    /// Evenly spread over the tick.
     #[default]
     Spread,
 }
 
+/// The DIR lines of the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DirLine {
-    /// They change when a tick starts.
+    /// One per channel; they change when a tick starts.
     #[default]
     PerChannel,
-    /// It changes within each slot that has a step.
+    /// One for all channels; it changes within each slot that has a step.
     Common,
 }
 
 /// When the pulses of one slot rise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PulsePhasing {
+    /// All at once.
     #[default]
     Simultaneous,
     /// One after another, so that the drivers' current peaks do not add up.
     Staggered,
 }
 
+/// The serial line of a controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLine {
+    /// Bit rate of the host.
     pub baud: u32,
     /// Bit rate of the receiver if its clock differs from the host's.
     pub receiver_baud: Option<u32>,
     /// 0 to 254 if packets begin with an address; 0 by default on a framed line.
     pub address: Option<u8>,
+    /// How bytes form commands.
     pub protocol: Protocol,
 }
 
@@ -133,6 +144,7 @@ impl Default for SerialLine {
     }
 }
 
+/// How the bytes of the line form commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Protocol {
     /// Bytes with pauses between packets, as in RU 2704486.
@@ -142,10 +154,14 @@ pub enum Protocol {
     Framed,
 }
 
+/// The field to change; it displays as a path such as `bus.slots`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
+    /// The clock.
     ClockHz,
+    /// A field of [`Bus`].
     Bus(&'static str),
+    /// A field of [`SerialLine`].
     Line(&'static str),
 }
 
@@ -159,7 +175,9 @@ impl fmt::Display for Field {
     }
 }
 
+/// A broken rule and the field to change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "named like their types")]
 pub struct ConfigProblem {
     pub field: Field,
     pub error: ConfigError,
@@ -173,23 +191,22 @@ impl fmt::Display for ConfigProblem {
 
 impl core::error::Error for ConfigProblem {}
 
-/// A broken rule, with its numbers.
+/// A broken rule, with its numbers. Times are in cycles, rates in baud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "names of times and rates")]
 pub enum ConfigError {
+    /// A number is out of its range.
     Range {
         given: u64,
-        least: u64,
-        most: u64,
+        min: u64,
+        max: u64,
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    BitTooShort {
-        bit_cycles: u64,
-        baud: u32,
-        clock_hz: u32,
-        max_baud: u32,
-    },
+    /// The clock is too slow for the bit rate.
+    BitTooShort { bit_cycles: u64, baud: u32, clock_hz: u32, max_baud: u32 },
+    /// The pulses of a slot do not fit in it.
     PulseTooLong {
         width: u64,
         setup: u64,
@@ -198,42 +215,37 @@ pub enum ConfigError {
         needed: u64,
         /// Pulses per slot, one after another.
         pulses: u64,
-        of: &'static str,
+        /// How they are placed in the slot, in words.
+        phasing: &'static str,
         period: u64,
     },
     /// Staggered pulses on a common DIR line are closer than one lasts.
-    SettleTooShort {
-        settle: u64,
-        width: u64,
-        setup: u64,
-        hold: u64,
-        needed: u64,
-    },
+    SettleTooShort { settle: u64, width: u64, setup: u64, hold: u64, needed: u64 },
 }
 
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Range { given, least, most, unit } => {
+            Self::Range { given, min, max, unit } => {
                 let space = if unit.is_empty() { "" } else { " " };
-                write!(f, "{given}{space}{unit} is out of range; give {least}")?;
-                if least < most {
-                    write!(f, " to {most}")?;
+                write!(f, "{given}{space}{unit} is out of range; use {min}")?;
+                if min < max {
+                    write!(f, " to {max}")?;
                 }
                 write!(f, "{space}{unit}")
             }
             Self::BitTooShort { bit_cycles, baud, clock_hz, max_baud } => write!(
                 f,
-                "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles a bit, the receiver needs 11; give at most {max_baud} baud or a faster clock"
+                "{baud} baud at {clock_hz} Hz is {bit_cycles} cycles per bit; the receiver needs {MIN_BIT_CYCLES}; use at most {max_baud} baud, or a faster clock"
             ),
-            Self::PulseTooLong { width, setup, hold, needed, pulses, of, period } => write!(
+            Self::PulseTooLong { width, setup, hold, needed, pulses, phasing, period } => write!(
                 f,
-                "a pulse needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} cycles, {pulses} in a slot ({of}), the slot has {period}; give a step period of at least {} or shorter times",
+                "a pulse needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} cycles; a slot of {period} cycles must hold {pulses} ({phasing}); use a step period of at least {}, or shorter times",
                 needed * pulses
             ),
             Self::SettleTooShort { settle, width, setup, hold, needed } => write!(
                 f,
-                "{settle} cycles from pulse to pulse, but one needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed} on a common DIR line; give at least {needed} or shorter times"
+                "{settle} cycles between pulses are too short: a pulse on a common DIR line needs width {width} + max(setup {setup} + hold {hold}, 1) = {needed}; use at least {needed}, or shorter times"
             ),
         }
     }
@@ -269,38 +281,15 @@ impl Config {
         has_ticks: bool,
     ) -> Result<Self, Vec<ConfigProblem>> {
         let mut rules = Rules::default();
-        rules.range(Field::ClockHz, clock_hz, limits::CLOCK_HZ, "Hz");
-        rules.range(Field::Bus("channels"), bus.channels, limits::CHANNELS, "");
-        rules.range(Field::Bus("slots"), bus.slots, limits::SLOTS, "");
-        for (name, given, range) in [
-            ("step_period_cycles", bus.step_period_cycles, limits::STEP_PERIOD_CYCLES),
-            ("pulse_width_cycles", bus.pulse_width_cycles, limits::PULSE_WIDTH_CYCLES),
-            ("dir_setup_cycles", bus.dir_setup_cycles, limits::DIR_SETUP_CYCLES),
-            ("dir_hold_cycles", bus.dir_hold_cycles, limits::DIR_HOLD_CYCLES),
-        ] {
-            rules.range(Field::Bus(name), given, range, "cycles");
-        }
-        rules.range(Field::Bus("queue_depth"), bus.queue_depth, limits::QUEUE_DEPTH, "ticks");
-        if let Some(address) = line.address {
-            rules.range(Field::Line("address"), address, limits::ADDRESS, "");
-        }
-        rules.range(Field::Bus("settle_cycles"), bus.settle_cycles, limits::SETTLE_CYCLES, "cycles");
+        rules.ranges(clock_hz, bus, line);
         if has_ticks {
             pulses_fit(bus, &mut rules);
-        }
-        let baud = line.receiver_baud.unwrap_or(line.baud);
-        let field = Field::Line(if line.receiver_baud.is_some() { "receiver_baud" } else { "baud" });
-        let (bit_cycles, max_baud) = (bit_cycles(clock_hz, baud.max(1)), max_baud(clock_hz));
-        if !has_ticks {
-        } else if baud == 0 {
-            rules.range(field, baud, 1..=max_baud.max(1).into(), "baud");
-        } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= *limits::CLOCK_HZ.start() {
-            rules.add(field, ConfigError::BitTooShort { bit_cycles, baud, clock_hz, max_baud });
+            rules.bit_rate(clock_hz, line);
         }
         rules.end(Self {
             clock_hz,
             bus: bus.clone(),
-            baud,
+            baud: line.receiver_baud.unwrap_or(line.baud),
             protocol: line.protocol,
             address: match line.protocol {
                 Protocol::Raw => line.address,
@@ -309,20 +298,13 @@ impl Config {
         })
     }
 
-    pub(crate) const fn bus(&self) -> &Bus {
+    /// The valid bus.
+    pub const fn bus(&self) -> &Bus {
         &self.bus
     }
 
     pub(crate) const fn step_period(&self) -> u64 {
         self.bus.step_period_cycles as u64
-    }
-
-    pub(crate) const fn settle(&self) -> u64 {
-        self.bus.settle_cycles as u64
-    }
-
-    pub(crate) const fn distribution(&self) -> Distribution {
-        self.bus.distribution
     }
 
     /// The same controller with another bus.
@@ -337,85 +319,67 @@ impl Config {
         Self::new(self.clock_hz, bus, &line)
     }
 
-    #[must_use]
+    /// Clock of the peripheral.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
     /// Channels in use, 1 to 16.
-    #[must_use]
     pub const fn channels(&self) -> u8 {
         self.bus.channels
     }
 
-    #[must_use]
+    /// How bytes form commands.
     pub const fn protocol(&self) -> Protocol {
         self.protocol
     }
 
     /// The controller's address, if packets begin with one; always on a framed line.
-    #[must_use]
     pub const fn address(&self) -> Option<u8> {
         self.address
     }
 
     /// Slots per tick, 1 to 127.
-    #[must_use]
     pub const fn slots(&self) -> u8 {
         self.bus.slots
     }
 
     /// Length of a tick, M*Ts.
-    #[must_use]
     pub const fn tick(&self) -> Cycles {
         Cycles(self.bus.slots as u64 * self.step_period())
     }
 
-    #[must_use]
+    /// End of the self-test.
     pub const fn boot(&self) -> Instant {
         Instant(self.bus.boot_cycles as u64)
     }
 
-    #[must_use]
+    /// Maximum ticks in the queue, 1 to 255.
     pub const fn queue_depth(&self) -> u8 {
         self.bus.queue_depth
     }
 
-    /// One DIR line per channel, or one for all channels.
-    #[must_use]
-    pub const fn dir_line(&self) -> DirLine {
-        self.bus.dir_line
-    }
-
-    #[must_use]
-    pub const fn pulse_phasing(&self) -> PulsePhasing {
-        self.bus.pulse_phasing
-    }
-
-    #[must_use]
+    /// Bit rate of replies: the receiver's.
     pub const fn reply_baud(&self) -> u32 {
         self.baud
     }
 
     /// The receiver's bit time B.
-    #[must_use]
     pub const fn bit(&self) -> Cycles {
         Cycles(bit_cycles(self.clock_hz, if self.baud == 0 { 1 } else { self.baud }))
     }
 
     /// Bit time of a receiver at `baud`; 0 counts as 1 baud.
-    #[must_use]
     pub fn bit_of(clock_hz: u32, baud: u32) -> Cycles {
         Cycles(bit_cycles(clock_hz, baud.max(1)))
     }
 
     /// Bytes of a packet: one per channel, and the address on an addressed raw line.
-    #[must_use]
     pub const fn packet_len(&self) -> usize {
         self.bus.channels as usize + self.packet_address().is_some() as usize
     }
 
-    #[must_use]
+    /// The address in raw packets; `None` on a framed line.
     pub const fn packet_address(&self) -> Option<u8> {
         match self.protocol {
             Protocol::Raw => self.address,
@@ -424,6 +388,7 @@ impl Config {
     }
 }
 
+/// Collects broken rules.
 #[derive(Default)]
 struct Rules {
     broken: Vec<ConfigProblem>,
@@ -437,8 +402,42 @@ impl Rules {
     fn range(&mut self, field: Field, given: impl Into<u64>, range: RangeInclusive<u64>, unit: &'static str) {
         let given = given.into();
         if !range.contains(&given) {
-            let (least, most) = range.into_inner();
-            self.add(field, ConfigError::Range { given, least, most, unit });
+            let (min, max) = range.into_inner();
+            self.add(field, ConfigError::Range { given, min, max, unit });
+        }
+    }
+
+    /// The rules for single numbers.
+    fn ranges(&mut self, clock_hz: u32, bus: &Bus, line: &SerialLine) {
+        self.range(Field::ClockHz, clock_hz, limits::CLOCK_HZ, "Hz");
+        self.range(Field::Bus("channels"), bus.channels, limits::CHANNELS, "");
+        self.range(Field::Bus("slots"), bus.slots, limits::SLOTS, "");
+        for (name, given, range) in [
+            ("step_period_cycles", bus.step_period_cycles, limits::STEP_PERIOD_CYCLES),
+            ("pulse_width_cycles", bus.pulse_width_cycles, limits::PULSE_WIDTH_CYCLES),
+            ("dir_setup_cycles", bus.dir_setup_cycles, limits::DIR_SETUP_CYCLES),
+            ("dir_hold_cycles", bus.dir_hold_cycles, limits::DIR_HOLD_CYCLES),
+        ] {
+            self.range(Field::Bus(name), given, range, "cycles");
+        }
+        self.range(Field::Bus("queue_depth"), bus.queue_depth, limits::QUEUE_DEPTH, "ticks");
+        if let Some(address) = line.address {
+            self.range(Field::Line("address"), address, limits::ADDRESS, "");
+        }
+        self.range(Field::Bus("settle_cycles"), bus.settle_cycles, limits::SETTLE_CYCLES, "cycles");
+    }
+
+    /// The receiver's clock must be fast enough for its bit rate.
+    fn bit_rate(&mut self, clock_hz: u32, line: &SerialLine) {
+        let (field, baud) = match line.receiver_baud {
+            Some(baud) => (Field::Line("receiver_baud"), baud),
+            None => (Field::Line("baud"), line.baud),
+        };
+        let (bit_cycles, max_baud) = (bit_cycles(clock_hz, baud.max(1)), max_baud(clock_hz));
+        if baud == 0 {
+            self.range(field, baud, 1..=max_baud.max(1).into(), "baud");
+        } else if bit_cycles < MIN_BIT_CYCLES && u64::from(clock_hz) >= *limits::CLOCK_HZ.start() {
+            self.add(field, ConfigError::BitTooShort { bit_cycles, baud, clock_hz, max_baud });
         }
     }
 
@@ -458,7 +457,7 @@ fn pulses_fit(bus: &Bus, rules: &mut Rules) {
         u64::from(bus.settle_cycles),
     );
     let needed = width + (setup + hold).max(1);
-    let (pulses, of) = match (bus.pulse_phasing, bus.dir_line) {
+    let (pulses, phasing) = match (bus.pulse_phasing, bus.dir_line) {
         (PulsePhasing::Simultaneous, DirLine::PerChannel) => (1, "all channels at once"),
         (PulsePhasing::Simultaneous, DirLine::Common) => (2, "left, then right, on a common DIR line"),
         (PulsePhasing::Staggered, _) => (u64::from(bus.channels.max(1)), "one channel after another"),
@@ -466,7 +465,7 @@ fn pulses_fit(bus: &Bus, rules: &mut Rules) {
     if needed > period / pulses {
         rules.add(
             Field::Bus("step_period_cycles"),
-            ConfigError::PulseTooLong { width, setup, hold, needed, pulses, of, period },
+            ConfigError::PulseTooLong { width, setup, hold, needed, pulses, phasing, period },
         );
     }
     if bus.pulse_phasing == PulsePhasing::Staggered && bus.dir_line == DirLine::Common && settle < needed {
@@ -483,7 +482,6 @@ const fn bit_cycles(clock_hz: u32, baud: u32) -> u64 {
 }
 
 /// The highest rate whose bit time is at least 11 cycles.
-#[must_use]
 pub const fn max_baud(clock_hz: u32) -> u32 {
     (2 * clock_hz as u64 / (2 * MIN_BIT_CYCLES - 1)) as u32
 }
@@ -511,7 +509,7 @@ mod tests {
     use alloc::vec;
 
     #[test]
-    fn the_receivers_bit_time_is_rounded_to_the_nearest_cycle() {
+    fn rounds_the_bit_time_to_the_nearest_cycle() {
         let rows =
             vec![(16_000_000, 115_200, 139), (1000, 50, 20), (1000, 300, 3), (105, 10, 11), (104, 10, 10)];
         for (clock_hz, baud, expected) in rows {

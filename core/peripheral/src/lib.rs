@@ -1,5 +1,5 @@
-//! The motion peripheral, to the clock cycle (DESIGN A1 to A8): serial line, packet decoder, queue, step-pulse
-//! generator and a driver bus of 16 channels. It depends on no motion, file or host.
+//! A model of the motion peripheral with clock-cycle accuracy (DESIGN A1 to A8): serial line, packet decoder, queue,
+//! step-pulse generator and a driver bus of 16 channels. It depends on no motion, file or host.
 //!
 //! Modules in order; each may use those to its left:
 //!
@@ -7,8 +7,8 @@
 //! units, protocol, signal, segment, config -> wire -> device -> trace
 //! ```
 //!
-//! Bytes go over [`wire`] into a [`device::Device`], which reports its signals to a [`signal::Sink`]; [`trace`] has the
-//! digest by which two runs are compared.
+//! Bytes arrive over [`wire`] at a [`device::Device`], which sends its signals to a [`signal::Sink`]; [`trace`] has the
+//! digest that identifies a run.
 //!
 //! ```
 //! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::Device, signal::Record, units::Instant};
@@ -19,7 +19,6 @@
 //! assert_eq!(trace.len(), 1); // only reset: no sender
 //! ```
 #![cfg_attr(not(test), no_std)]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

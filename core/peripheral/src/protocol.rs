@@ -7,7 +7,7 @@
 //! assert_eq!(Kind::parse(5), Some(Kind::Stop));
 //! assert_eq!(Reason::QueueFull.name(), "QUEUE_FULL");
 //! assert_eq!(FrameOutcome::Queued(3).to_string(), "3 ticks queued");
-//! assert_eq!(FrameOutcome::Short.answer(), None); // invalid frames get no reply
+//! assert_eq!(FrameOutcome::Short.reply_result(), None); // invalid frames get no reply
 //! ```
 
 use core::fmt;
@@ -15,8 +15,8 @@ use core::fmt;
 /// Maximum ticks in one TICKS frame.
 pub const MAX_TICKS: u8 = 32;
 
-/// Declares the meanings of a byte, each with its value and its name.
-macro_rules! meanings {
+/// Declares enums of byte values with their protocol names.
+macro_rules! byte_enums {
     ($($(#[$meta:meta])* pub enum $name:ident {
         $($(#[$variant_meta:meta])* $variant:ident = $byte:literal $word:literal,)*
     })*) => {$(
@@ -28,9 +28,10 @@ macro_rules! meanings {
         }
 
         impl $name {
+            /// All variants in the order of their bytes.
             pub const ALL: &[Self] = &[$(Self::$variant),*];
 
-            #[must_use]
+            /// The variant of a byte; `None` if it has none.
             pub const fn parse(byte: u8) -> Option<Self> {
                 match byte {
                     $($byte => Some(Self::$variant),)*
@@ -38,7 +39,7 @@ macro_rules! meanings {
                 }
             }
 
-            #[must_use]
+            /// Its name in the protocol, such as `QUEUE_FULL`.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)*
@@ -48,7 +49,8 @@ macro_rules! meanings {
     )*};
 }
 
-meanings! {
+byte_enums! {
+    /// The kind of a frame.
     pub enum Kind {
         /// Queue ticks.
         Ticks = 1 "TICKS",
@@ -62,9 +64,11 @@ meanings! {
         Stop = 5 "STOP",
         /// Set the expected sequence number to 0 and clear the fault flags.
         Resync = 6 "RESYNC",
+        /// Request a reply with the position counters.
         Positions = 7 "POSITIONS",
     }
 
+    /// Why a frame was refused.
     pub enum Reason {
         /// Neither the expected sequence number nor a repetition of the one before it.
         BadSeq = 1 "BAD_SEQ",
@@ -76,13 +80,17 @@ meanings! {
         Busy = 4 "BUSY",
         /// Stopped: ENABLE is needed first.
         Stopped = 5 "STOPPED",
+        /// The body does not fit the kind or the number of channels.
         BadBody = 6 "BAD_BODY",
+        /// No such kind.
         UnknownKind = 7 "UNKNOWN_KIND",
     }
 
+    /// State of the controller.
     pub enum State {
         /// In the self-test after reset.
         Busy = 0 "BUSY",
+        /// Idle.
         Ready = 1 "READY",
         /// A tick runs or waits.
         Moving = 2 "MOVING",
@@ -94,22 +102,26 @@ meanings! {
 /// The status in every reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
+    /// State of the controller.
     pub state: State,
     /// Free places in the queue.
     pub free: u8,
     /// Sequence number expected in the next TICKS.
     pub expected_seq: u8,
+    /// Bits of [`Faults`](crate::device::Faults).
     pub faults: u16,
-    /// Wrapping.
+    /// Ticks done since reset, wrapping.
     pub ticks_done: u32,
 }
 
 /// A reply; the counters of POSITIONS are [`Positions`](crate::signal::Positions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reply {
+    /// Address of the controller.
     pub address: u8,
     /// The executed kind, or the reason of the refusal.
-    pub answer: Result<Kind, Reason>,
+    pub result: Result<Kind, Reason>,
+    /// Status after the frame.
     pub status: Status,
 }
 
@@ -120,14 +132,19 @@ pub enum FrameOutcome {
     Queued(u8),
     /// Acknowledged again, but not queued again.
     Repeated,
-    Taken(Kind),
+    /// Executed.
+    Executed(Kind),
     /// Refused; only fault flags changed.
     Refused(Reason),
+    /// It was for another controller.
     OtherAddress,
     /// Invalid COBS, or too short.
     Short,
+    /// Its CRC is wrong.
     BadCrc {
+        /// The received CRC.
         found: u32,
+        /// The CRC of the content.
         expected: u32,
     },
     /// Too long; bytes are dropped up to the next delimiter.
@@ -135,12 +152,11 @@ pub enum FrameOutcome {
 }
 
 impl FrameOutcome {
-    /// The reply to it, if there is one.
-    #[must_use]
-    pub const fn answer(self) -> Option<Result<Kind, Reason>> {
+    /// The result in the reply; `None` for frames without a reply.
+    pub const fn reply_result(self) -> Option<Result<Kind, Reason>> {
         match self {
             Self::Queued(_) | Self::Repeated => Some(Ok(Kind::Ticks)),
-            Self::Taken(kind) => Some(Ok(kind)),
+            Self::Executed(kind) => Some(Ok(kind)),
             Self::Refused(reason) => Some(Err(reason)),
             Self::OtherAddress | Self::Short | Self::BadCrc { .. } | Self::Overlong => None,
         }
@@ -153,7 +169,7 @@ impl fmt::Display for FrameOutcome {
             Self::Queued(1) => f.write_str("1 tick queued"),
             Self::Queued(ticks) => write!(f, "{ticks} ticks queued"),
             Self::Repeated => f.write_str("repeated: acknowledged, not queued again"),
-            Self::Taken(kind) => write!(f, "{} done", kind.name()),
+            Self::Executed(kind) => write!(f, "{} done", kind.name()),
             Self::Refused(reason) => write!(f, "refused: {}", reason.name()),
             Self::OtherAddress => f.write_str("another address"),
             Self::Short => f.write_str("dropped: SHORT_PACKET"),
@@ -167,7 +183,7 @@ impl fmt::Display for FrameOutcome {
 
 impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.answer {
+        match self.result {
             Ok(kind) => write!(f, "ACK {}", kind.name())?,
             Err(reason) => write!(f, "NAK {}", reason.name())?,
         }
@@ -183,31 +199,31 @@ mod tests {
     use alloc::{string::ToString, vec::Vec};
 
     #[test]
-    fn a_byte_means_what_the_contracts_table_says() {
+    fn bytes_have_the_names_of_the_contract() {
         let kinds = ["TICKS", "ENABLE", "DISABLE", "STATUS", "STOP", "RESYNC", "POSITIONS"];
         let reasons =
             ["BAD_SEQ", "QUEUE_FULL", "TOO_MANY_STEPS", "BUSY", "STOPPED", "BAD_BODY", "UNKNOWN_KIND"];
         let states = ["BUSY", "READY", "MOVING", "STOPPED"];
         for byte in 0..=u8::MAX {
-            let one = |names: &[&'static str], first: u8| {
+            let name = |names: &[&'static str], first: u8| {
                 byte.checked_sub(first).and_then(|index| names.get(usize::from(index))).copied()
             };
-            assert_eq!(Kind::parse(byte).map(Kind::name), one(&kinds, 1), "kind {byte}");
-            assert_eq!(Reason::parse(byte).map(Reason::name), one(&reasons, 1), "reason {byte}");
-            assert_eq!(State::parse(byte).map(State::name), one(&states, 0), "state {byte}");
+            assert_eq!(Kind::parse(byte).map(Kind::name), name(&kinds, 1), "kind {byte}");
+            assert_eq!(Reason::parse(byte).map(Reason::name), name(&reasons, 1), "reason {byte}");
+            assert_eq!(State::parse(byte).map(State::name), name(&states, 0), "state {byte}");
         }
         assert_eq!(Kind::ALL.iter().map(|&kind| kind as u8).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6, 7]);
         assert_eq!(Reason::ALL.len(), 7);
     }
 
     #[test]
-    fn what_became_of_a_frame_has_its_text_and_its_answer() {
+    fn each_outcome_has_its_text_and_reply() {
         let ticks = Some(Ok(Kind::Ticks));
         let rows = [
             (FrameOutcome::Queued(1), "1 tick queued", ticks),
             (FrameOutcome::Queued(32), "32 ticks queued", ticks),
             (FrameOutcome::Repeated, "repeated: acknowledged, not queued again", ticks),
-            (FrameOutcome::Taken(Kind::Stop), "STOP done", Some(Ok(Kind::Stop))),
+            (FrameOutcome::Executed(Kind::Stop), "STOP done", Some(Ok(Kind::Stop))),
             (FrameOutcome::Refused(Reason::BadSeq), "refused: BAD_SEQ", Some(Err(Reason::BadSeq))),
             (FrameOutcome::OtherAddress, "another address", None),
             (FrameOutcome::Short, "dropped: SHORT_PACKET", None),
@@ -218,17 +234,17 @@ mod tests {
             ),
             (FrameOutcome::Overlong, "dropped: OVERLONG", None),
         ];
-        for (outcome, text, answer) in rows {
-            assert_eq!((outcome.to_string().as_str(), outcome.answer()), (text, answer));
+        for (outcome, text, result) in rows {
+            assert_eq!((outcome.to_string().as_str(), outcome.reply_result()), (text, result));
         }
     }
 
     #[test]
-    fn a_reply_names_its_answer_and_all_of_its_status() {
+    fn a_reply_prints_its_result_and_status() {
         let status = Status { state: State::Moving, free: 3, expected_seq: 7, faults: 0x82, ticks_done: 12 };
-        let text = |answer| Reply { address: 1, answer, status }.to_string();
-        let rest = "MOVING, 3 free, seq 7, faults 0x82, 12 ticks done";
-        assert_eq!(text(Ok(Kind::Ticks)), alloc::format!("ACK TICKS: {rest}"));
-        assert_eq!(text(Err(Reason::Busy)), alloc::format!("NAK BUSY: {rest}"));
+        let text = |result| Reply { address: 1, result, status }.to_string();
+        let expected = "MOVING, 3 free, seq 7, faults 0x82, 12 ticks done";
+        assert_eq!(text(Ok(Kind::Ticks)), alloc::format!("ACK TICKS: {expected}"));
+        assert_eq!(text(Err(Reason::Busy)), alloc::format!("NAK BUSY: {expected}"));
     }
 }

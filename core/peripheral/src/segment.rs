@@ -7,8 +7,8 @@
 //! dwell       next += dwell
 //! ```
 //!
-//! The intervals of a segment grow by a constant, so its extremes are the first and the last interval, and its length is
-//! a closed form: validation takes the same time for any number of steps.
+//! The intervals of a segment grow by a constant, so the first or last interval is the shortest, and the length has a
+//! closed form: validation takes the same time for any number of steps.
 //!
 //! ```
 //! use stepscope_peripheral::{segment::{CheckedSegments, PulseTimes, Refusal, Segment, SegmentList}, units::{Cycles,
@@ -38,30 +38,34 @@ pub const FRACTION_BITS: u32 = 16;
 /// The last cycle of 48.16 fixed point.
 pub const LAST_CYCLE: Instant = Instant(u64::MAX >> FRACTION_BITS);
 
+/// Steps of one channel, or a pause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Segment {
     /// Steps at intervals that grow by a constant.
     Steps {
+        /// Number of steps, at least 1.
         count: u32,
-        /// In 1/65536 cycle, before the first step.
+        /// Time before the first step, in 1/65536 cycle.
         interval: u64,
-        /// In 1/65536 cycle, added after each step.
+        /// Added to the interval after each step, in 1/65536 cycle.
         add: i64,
         /// DIR level; right is 1.
         right: bool,
     },
-    /// In 1/65536 cycle; 0 is allowed.
+    /// A pause in 1/65536 cycle; 0 is allowed.
     Dwell(u64),
 }
 
 /// The segments of one channel, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SegmentList {
-    /// Cycle 1 or later.
+    /// Start of the first segment, cycle 1 or later.
     pub start: Instant,
+    /// The segments in order.
     pub segments: Vec<Segment>,
 }
 
+/// Times of a step pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
     /// W: time that STEP is high.
@@ -73,38 +77,44 @@ pub struct PulseTimes {
 }
 
 impl PulseTimes {
-    /// W + max(H + D, 1): the minimum interval.
-    #[must_use]
+    /// The minimum step interval, W + max(H + D, 1).
     pub const fn min_interval(self) -> Cycles {
         let around = self.hold.0.saturating_add(self.setup.0);
         Cycles(self.width.0.saturating_add(if around == 0 { 1 } else { around }))
     }
 }
 
+/// Why a list of segments is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
+    /// There are more lists than channels.
     NoChannel,
-    /// Before cycle 1, or after [`LAST_CYCLE`].
+    /// The start is before cycle 1, or after [`LAST_CYCLE`].
     Start,
+    /// A segment has 0 steps.
     NoSteps,
     /// An interval is too short for a pulse or exceeds 64 bits.
     Interval {
+        /// The first such step of the segment, from 0.
         step: u32,
         /// In 1/65536 cycle.
         interval: i128,
     },
     /// The last step or the end of a dwell exceeds 64 bits.
     End {
-        /// In 1/65536 cycle.
+        /// The time in 1/65536 cycle.
         next: i128,
     },
 }
 
+/// A refusal and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused {
+    /// Index of the list.
     pub channel: usize,
-    /// `None` where the list itself is refused.
+    /// Index of the segment; `None` where the list itself is refused.
     pub segment: Option<usize>,
+    /// The reason.
     pub refusal: Refusal,
 }
 
@@ -115,7 +125,8 @@ pub struct CheckedSegments {
     pulse: PulseTimes,
     lists: Vec<SegmentList>,
     steps: u64,
-    turns: u64,
+    /// Changes of DIR.
+    dir_changes: u64,
     end: Instant,
 }
 
@@ -125,7 +136,7 @@ impl CheckedSegments {
     /// bad interval takes no time.
     pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, max: usize) -> Result<Self, Vec<Refused>> {
         let mut refused = Vec::new();
-        let mut all = Self { pulse, lists: Vec::new(), steps: 0, turns: 0, end: Instant::RESET };
+        let mut all = Self { pulse, lists: Vec::new(), steps: 0, dir_changes: 0, end: Instant::RESET };
         for (channel, list) in lists.iter().enumerate() {
             all.validate(list, &mut |segment, refusal| {
                 let refusal = if channel < MAX_CHANNELS { refusal } else { Refusal::NoChannel };
@@ -155,14 +166,14 @@ impl CheckedSegments {
             match *segment {
                 Segment::Steps { count: 0, .. } => refuse(Some(index), Refusal::NoSteps),
                 Segment::Steps { count, interval, add, right } => {
-                    if let Some((step, interval)) = self.first_bad(count, interval, add) {
+                    if let Some((step, interval)) = self.first_invalid(count, interval, add) {
                         refuse(Some(index), Refusal::Interval { step, interval });
                         continue;
                     }
                     next += length(count, interval, add);
                     last_step = Some(next);
                     self.steps = self.steps.saturating_add(count.into());
-                    self.turns += u64::from(right != level);
+                    self.dir_changes += u64::from(right != level);
                     level = right;
                 }
                 Segment::Dwell(dwell) => next += i128::from(dwell),
@@ -178,15 +189,15 @@ impl CheckedSegments {
     }
 
     /// The first step with an invalid interval, and the interval.
-    fn first_bad(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
+    fn first_invalid(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
         let min = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
         let max = i128::from(u64::MAX);
         let at = |step: u32| i128::from(interval) + i128::from(step) * i128::from(add);
-        let is_bad = |step: u32| !(min..=max).contains(&at(step));
+        let is_invalid = |step: u32| !(min..=max).contains(&at(step));
         let (first, last) = (at(0), count.saturating_sub(1));
-        let step = if is_bad(0) {
+        let step = if is_invalid(0) {
             0
-        } else if !is_bad(last) {
+        } else if !is_invalid(last) {
             return None;
         } else if add < 0 {
             ((first - min) / -i128::from(add) + 1) as u32
@@ -194,45 +205,44 @@ impl CheckedSegments {
             ((max - first) / i128::from(add) + 1) as u32
         };
         debug_assert!(
-            is_bad(step) && !step.checked_sub(1).is_some_and(is_bad),
+            is_invalid(step) && !step.checked_sub(1).is_some_and(is_invalid),
             "step {step} is not the first"
         );
         Some((step, at(step)))
     }
 
-    #[must_use]
+    /// Times of a step pulse.
     pub const fn pulse(&self) -> PulseTimes {
         self.pulse
     }
 
-    #[must_use]
+    /// The lists of channels 0, 1, ….
     pub fn lists(&self) -> &[SegmentList] {
         &self.lists
     }
 
-    #[must_use]
+    /// Returns the lists.
     pub fn into_lists(self) -> Vec<SegmentList> {
         self.lists
     }
 
-    #[must_use]
+    /// Steps of all channels.
     pub const fn steps(&self) -> u64 {
         self.steps
     }
 
     /// Maximum number of records: the first, two per step, and one per change of DIR.
-    #[must_use]
     pub const fn max_records(&self) -> u64 {
-        self.steps.saturating_mul(2).saturating_add(self.turns).saturating_add(1)
+        self.steps.saturating_mul(2).saturating_add(self.dir_changes).saturating_add(1)
     }
 
     /// The last cycle in which a signal changes; 0 without steps.
-    #[must_use]
     pub const fn end(&self) -> Instant {
         self.end
     }
 }
 
+/// Length of a segment in 1/65536 cycle.
 fn length(count: u32, interval: u64, add: i64) -> i128 {
     let count = i128::from(count);
     count * i128::from(interval) + i128::from(add) * (count * (count - 1) / 2)
@@ -245,7 +255,7 @@ mod tests {
 
     const PULSE: PulseTimes = PulseTimes { width: Cycles(3), setup: Cycles(2), hold: Cycles(1) };
     /// (W + max(H + D, 1)) << 16
-    const LEAST: u64 = 6 << 16;
+    const MIN: u64 = 6 << 16;
 
     fn steps(count: u32, interval: u64, add: i64) -> Segment {
         Segment::Steps { count, interval, add, right: true }
@@ -258,27 +268,27 @@ mod tests {
     }
 
     #[test]
-    fn each_rule_is_held_to_its_last_number() {
+    fn each_limit_is_accepted_and_one_beyond_is_refused() {
         let interval = |step, interval| Refusal::Interval { step, interval };
-        let least = i128::from(LEAST);
-        // start, segment, what is refused of it
+        let min = i128::from(MIN);
+        // Start, segment, refusal.
         let rows = [
             (0, Segment::Dwell(0), Some((None, Refusal::Start))),
             (LAST_CYCLE.0, Segment::Dwell(0xffff), None),
             (LAST_CYCLE.0 + 1, Segment::Dwell(0), Some((None, Refusal::Start))),
             (LAST_CYCLE.0, Segment::Dwell(0x1_0000), Some((Some(0), Refusal::End { next: 1 << 64 }))),
-            (1, steps(0, LEAST, 0), Some((Some(0), Refusal::NoSteps))),
-            (1, steps(1, LEAST, i64::MIN), None),
-            (1, steps(1, LEAST - 1, 0), Some((Some(0), interval(0, least - 1)))),
-            (1, steps(4, LEAST + 3, -1), None),
-            (1, steps(5, LEAST + 3, -1), Some((Some(0), interval(4, least - 1)))),
-            (1, steps(9, LEAST + 3, -2), Some((Some(0), interval(2, least - 1)))),
-            (1, steps(u32::MAX, LEAST, 0), None),
-            (1, steps(u32::MAX, LEAST + u64::from(u32::MAX) - 1, -1), None),
+            (1, steps(0, MIN, 0), Some((Some(0), Refusal::NoSteps))),
+            (1, steps(1, MIN, i64::MIN), None),
+            (1, steps(1, MIN - 1, 0), Some((Some(0), interval(0, min - 1)))),
+            (1, steps(4, MIN + 3, -1), None),
+            (1, steps(5, MIN + 3, -1), Some((Some(0), interval(4, min - 1)))),
+            (1, steps(9, MIN + 3, -2), Some((Some(0), interval(2, min - 1)))),
+            (1, steps(u32::MAX, MIN, 0), None),
+            (1, steps(u32::MAX, MIN + u64::from(u32::MAX) - 1, -1), None),
             (
                 1,
-                steps(u32::MAX, LEAST + u64::from(u32::MAX) - 2, -1),
-                Some((Some(0), interval(u32::MAX - 1, least - 1))),
+                steps(u32::MAX, MIN + u64::from(u32::MAX) - 2, -1),
+                Some((Some(0), interval(u32::MAX - 1, min - 1))),
             ),
         ];
         for (start, segment, expected) in rows {
@@ -287,26 +297,26 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_and_a_time_that_leave_64_bits_are_told_apart() {
-        let most = i128::from(u64::MAX);
+    fn intervals_and_times_beyond_64_bits_are_different_refusals() {
+        let max = i128::from(u64::MAX);
         let found = refusals(1, vec![steps(2, u64::MAX - 0x10_0000, i64::MAX)]);
-        let interval = most - 0x10_0000 + i128::from(i64::MAX);
+        let interval = max - 0x10_0000 + i128::from(i64::MAX);
         assert_eq!(found, [(Some(0), Refusal::Interval { step: 1, interval })]);
         let found = refusals(1, vec![steps(2, u64::MAX - 0x10_0000, 0)]);
-        assert_eq!(found, [(Some(0), Refusal::End { next: 2 * (most - 0x10_0000) + 0x1_0000 })]);
+        assert_eq!(found, [(Some(0), Refusal::End { next: 2 * (max - 0x10_0000) + 0x1_0000 })]);
         // Two steps of half the time each, to the last 65536th.
         let half = (u64::MAX - 0x1_0000) / 2;
         assert_eq!(refusals(1, vec![steps(2, half, 0), Segment::Dwell(1)]), []);
         let found = refusals(1, vec![steps(2, half, 0), Segment::Dwell(2), Segment::Dwell(5)]);
-        assert_eq!(found, [(Some(1), Refusal::End { next: most + 1 })]);
-        // The greatest numbers that there are.
+        assert_eq!(found, [(Some(1), Refusal::End { next: max + 1 })]);
+        // The maximum numbers do not overflow.
         let found = refusals(1, vec![steps(u32::MAX, u64::MAX, i64::MAX), steps(u32::MAX, 0, i64::MIN)]);
         assert_eq!(found.len(), 2);
     }
 
     #[test]
-    fn a_step_takes_a_pulse_and_what_dir_needs_around_it_or_a_cycle() {
-        // W, D, H, the least interval.
+    fn minimum_interval_has_the_pulse_and_dir_times_or_one_cycle() {
+        // W, D, H, minimum interval.
         let rows = [(1, 0, 0, 2), (3, 2, 1, 6), (3, 0, 1, 4), (3, 1, 0, 4), (u64::MAX, 5, 5, u64::MAX)];
         for (width, setup, hold, expected) in rows {
             let pulse = PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(hold) };
@@ -315,19 +325,19 @@ mod tests {
     }
 
     #[test]
-    fn what_a_run_makes_is_known_before() {
-        let turn = |right| Segment::Steps { count: 10, interval: LEAST, add: 0, right };
+    fn steps_records_and_end_are_known_before_the_run() {
+        let ten_steps = |right| Segment::Steps { count: 10, interval: MIN, add: 0, right };
         let list = |start, segments| SegmentList { start: Instant(start), segments };
         let lists = vec![
-            list(5, vec![turn(false), turn(true), turn(true), Segment::Dwell(1 << 40)]),
+            list(5, vec![ten_steps(false), ten_steps(true), ten_steps(true), Segment::Dwell(1 << 40)]),
             list(1, vec![Segment::Dwell(7)]),
-            list(100, vec![turn(true)]),
+            list(100, vec![ten_steps(true)]),
         ];
         let lists = CheckedSegments::new(PULSE, lists, 100).unwrap();
         assert_eq!((lists.steps(), lists.max_records()), (40, 1 + 80 + 2));
         assert_eq!(lists.end(), Instant(5 + 30 * 6 + 3));
-        let many = vec![list(1, vec![]); 17];
-        let refused = CheckedSegments::new(PULSE, many, 100).unwrap_err();
+        let lists = vec![list(1, vec![]); 17];
+        let refused = CheckedSegments::new(PULSE, lists, 100).unwrap_err();
         assert_eq!(refused, [Refused { channel: 16, segment: None, refusal: Refusal::NoChannel }]);
     }
 }

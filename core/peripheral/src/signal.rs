@@ -3,22 +3,24 @@
 //! ```
 //! use stepscope_peripheral::{signal::{Levels, Record, Sink}, units::Instant};
 //!
-//! /// Counts falling edges of EN.
+//! /// A sink that counts falling edges of EN.
 //! #[derive(Default)]
-//! struct PowerCuts(u32, bool);
+//! struct PowerCuts {
+//!     count: u32,
+//!     is_powered: bool,
+//! }
 //!
 //! impl Sink for PowerCuts {
 //!     fn record(&mut self, record: Record) {
-//!         let powered = record.levels.has(Levels::EN);
-//!         self.0 += u32::from(self.1 && !powered);
-//!         self.1 = powered;
+//!         let was_powered = std::mem::replace(&mut self.is_powered, record.levels.has(Levels::EN));
+//!         self.count += u32::from(was_powered && !self.is_powered);
 //!     }
 //! }
 //!
 //! let mut cuts = PowerCuts::default();
 //! cuts.record(Record { cycle: Instant(0), levels: Levels::RESET });
 //! cuts.record(Record { cycle: Instant(9), levels: Levels(Levels::RX | Levels::TX) });
-//! assert_eq!(cuts.0, 1);
+//! assert_eq!(cuts.count, 1);
 //! ```
 
 use crate::{
@@ -27,6 +29,7 @@ use crate::{
 };
 use alloc::vec::Vec;
 
+/// Channels of the driver bus.
 pub const MAX_CHANNELS: usize = 16;
 
 /// Levels of all signals in one cycle.
@@ -43,28 +46,31 @@ pub const MAX_CHANNELS: usize = 16;
 pub struct Levels(pub u64);
 
 impl Levels {
+    /// Bit of channel 0's DIR.
     pub const DIR_SHIFT: u32 = 16;
+    /// Mask of EN, high while the windings are powered.
     pub const EN: u64 = 1 << 32;
+    /// Mask of RX.
     pub const RX: u64 = 1 << 33;
+    /// Mask of TX.
     pub const TX: u64 = 1 << 34;
-    /// DE, high while the controller drives the line.
+    /// Mask of DE, high while the controller drives the line.
     pub const DE: u64 = 1 << 35;
+    /// Levels at reset: windings powered, line idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
     const SIGNALS: u32 = 2 * MAX_CHANNELS as u32 + 4;
 
     /// STEP levels, channel 0 in bit 0.
-    #[must_use]
     pub const fn step(self) -> u16 {
         self.0 as u16
     }
 
     /// DIR levels, channel 0 in bit 0.
-    #[must_use]
     pub const fn dir(self) -> u16 {
         (self.0 >> Self::DIR_SHIFT) as u16
     }
 
-    #[must_use]
+    /// Whether all signals of `mask` are high.
     pub const fn has(self, mask: u64) -> bool {
         self.0 & mask == mask
     }
@@ -74,7 +80,7 @@ const _: () = assert!(MAX_CHANNELS == u16::BITS as usize && Levels::DIR_SHIFT ==
 const _: () = assert!(Levels::EN | Levels::RX | Levels::TX | Levels::DE == 0xf << (2 * MAX_CHANNELS));
 const _: () = assert!(Levels::DE == 1 << (Levels::SIGNALS - 1));
 
-#[must_use]
+/// Name of a signal such as `STEP0`; `None` above bit 35.
 pub fn name(bit: u32) -> Option<alloc::string::String> {
     match bit {
         0..=15 => Some(alloc::format!("STEP{bit}")),
@@ -91,7 +97,9 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Record {
+    /// First cycle with these levels.
     pub cycle: Instant,
+    /// Levels of all signals.
     pub levels: Levels,
 }
 
@@ -105,8 +113,7 @@ pub struct Positions {
 }
 
 impl Positions {
-    /// `None` unless there are 1 to 16.
-    #[must_use]
+    /// The counters of channels 0, 1, …; `None` unless there are 1 to 16.
     pub fn new(counters: &[i32]) -> Option<Self> {
         let mut all = [0; MAX_CHANNELS];
         let used = all.get_mut(..counters.len()).filter(|used| !used.is_empty())?;
@@ -114,86 +121,110 @@ impl Positions {
         Some(Self { counters: all, channels: counters.len() as u8 })
     }
 
-    #[must_use]
+    /// One counter per channel, in steps.
     pub fn as_slice(&self) -> &[i32] {
         self.counters.get(..usize::from(self.channels)).unwrap_or_default()
     }
 }
 
-/// An event besides changes of signals.
+/// An event that is not a change of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
+#[allow(missing_docs, reason = "only fields whose names say all")]
 pub enum Event {
+    /// A byte was received.
     Byte {
-        /// Cycle of its start bit.
-        seen: Instant,
+        /// Cycle in which its start bit was detected.
+        start: Instant,
         byte: u8,
     },
     /// The stop bit of a byte was low.
     FramingError {
-        seen: Instant,
-        /// Whether bytes are dropped up to the next gap, as on a raw line.
-        drops: bool,
+        /// Cycle in which its start bit was detected.
+        start: Instant,
+        /// Bytes are dropped up to the next gap, as on a raw line.
+        is_dropping: bool,
     },
-    /// A gap cut a packet short, or ended the dropping of bytes.
+    /// A gap in the bytes of a raw line.
     Gap {
-        short: bool,
+        /// It cut a packet short; else it ended the dropping of bytes.
+        cuts_packet: bool,
     },
+    /// The byte completed a raw packet.
     Packet(PacketOutcome),
     /// The byte completed a frame, or exceeded its maximum length.
     Frame(FrameOutcome),
+    /// A reply was scheduled.
     Reply {
+        /// Its first start bit.
         start: Instant,
+        /// The end of its last stop bit, where DE falls.
         end: Instant,
         reply: Reply,
+        /// The counters in a reply to POSITIONS.
         positions: Option<Positions>,
     },
     /// This controller and another node drive the line at the same time.
     Collision,
+    /// A tick with steps ended and none followed (framed protocol only).
     Underrun,
+    /// Firmware queued a tick.
     Pushed,
     /// Firmware or an overload stopped the controller and cleared the queue.
     Stopped,
+    /// A tick left the queue and started.
     TickStart {
         /// One byte per channel.
         commands: [u8; MAX_CHANNELS],
     },
+    /// A tick ended.
     TickEnd,
     /// The panel of a stand-alone controller changed.
     Panel {
         controller: u8,
+        /// Lamps, digits and state, as bits.
         word: u64,
-        /// In steps.
+        /// Position of the axis in steps.
         position: i64,
-        /// In display digits.
+        /// Displayed value in units of its last digit.
         display: i64,
     },
     /// The raw level of a stand-alone controller's input changed.
     Input {
         controller: u8,
-        /// Its number in the controller crate.
+        /// The number of the input in the controller crate.
         input: u8,
         level: bool,
     },
 }
 
+/// What became of a raw packet; all but `Queued` drop it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketOutcome {
+    /// It became a tick in the queue.
     Queued,
+    /// It was for another controller.
     OtherAddress,
+    /// It ended during the self-test.
     Booting,
+    /// The controller is stopped.
     Stopped,
+    /// A byte requests more steps than a tick has slots.
     TooManySteps,
+    /// The queue has no free place.
     QueueFull,
 }
 
 /// Receives the records of a run in order, and the events between them.
 pub trait Sink {
+    /// Receives the levels from a cycle on.
     fn record(&mut self, record: Record);
 
+    /// Receives an event in cycle `_at`.
     fn event(&mut self, _at: Instant, _event: Event) {}
 
-    fn paused(&self) -> bool {
+    /// Whether the run should return before its end; asked between cycles.
+    fn is_paused(&self) -> bool {
         false
     }
 }
@@ -220,8 +251,8 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
         self.1.event(at, event);
     }
 
-    fn paused(&self) -> bool {
-        self.0.paused() || self.1.paused()
+    fn is_paused(&self) -> bool {
+        self.0.is_paused() || self.1.is_paused()
     }
 }
 
@@ -238,8 +269,8 @@ impl<S: Sink> Sink for Option<S> {
         }
     }
 
-    fn paused(&self) -> bool {
-        self.as_ref().is_some_and(Sink::paused)
+    fn is_paused(&self) -> bool {
+        self.as_ref().is_some_and(Sink::is_paused)
     }
 }
 
@@ -256,8 +287,8 @@ impl<S: Sink> Sink for &mut S {
         (**self).event(at, event);
     }
 
-    fn paused(&self) -> bool {
-        (**self).paused()
+    fn is_paused(&self) -> bool {
+        (**self).is_paused()
     }
 }
 
@@ -280,7 +311,7 @@ mod tests {
     use alloc::vec;
 
     #[test]
-    fn every_bit_has_the_contracts_name() {
+    fn each_bit_has_its_signal_name() {
         let rows = [
             (0, Some("STEP0")),
             (15, Some("STEP15")),
@@ -298,23 +329,23 @@ mod tests {
     }
 
     #[test]
-    fn levels_are_read_by_their_bits() {
+    fn levels_select_signals_by_bit() {
         let levels = Levels(Levels::EN | Levels::DE | 0xa55a_1234);
         assert_eq!((levels.step(), levels.dir()), (0x1234, 0xa55a));
         assert!(levels.has(Levels::EN) && levels.has(Levels::EN | Levels::DE));
         assert!(!levels.has(Levels::EN | Levels::TX) && !levels.has(Levels::RX));
-        assert_eq!(Levels::RESET, Levels(0x7_0000_0000), "powered, and the line idle");
+        assert_eq!(Levels::RESET, Levels(0x7_0000_0000), "powered, line idle");
     }
 
-    /// Takes everything, and may want to pause.
+    /// Stores records and events; paused if `is_full`.
     #[derive(Default)]
-    struct Taken {
+    struct Stored {
         records: Vec<Record>,
         events: Vec<(Instant, Event)>,
         is_full: bool,
     }
 
-    impl Sink for Taken {
+    impl Sink for Stored {
         fn record(&mut self, record: Record) {
             self.records.push(record);
         }
@@ -323,45 +354,43 @@ mod tests {
             self.events.push((at, event));
         }
 
-        fn paused(&self) -> bool {
+        fn is_paused(&self) -> bool {
             self.is_full
         }
     }
 
-    const MORE: [Record; 2] = [
+    const RECORDS: [Record; 3] = [
+        Record { cycle: Instant(3), levels: Levels::RESET },
         Record { cycle: Instant(4), levels: Levels(Levels::EN) },
         Record { cycle: Instant(9), levels: Levels::RESET },
     ];
 
-    fn give(sink: &mut impl Sink) -> bool {
-        sink.record(Record { cycle: Instant(3), levels: Levels::RESET });
-        MORE.into_iter().for_each(|record| sink.record(record));
+    /// Returns whether the sink is paused afterwards.
+    fn send_all(sink: &mut impl Sink) -> bool {
+        RECORDS.into_iter().for_each(|record| sink.record(record));
         sink.event(Instant(4), Event::TickEnd);
-        sink.paused()
+        sink.is_paused()
     }
 
     #[test]
-    fn sinks_that_stand_for_others_hand_everything_on() {
-        let full = || Taken { is_full: true, ..Taken::default() };
+    fn composed_sinks_forward_records_events_and_pauses() {
+        let full = || Stored { is_full: true, ..Stored::default() };
         for (first, second, expected) in [
-            (Taken::default(), Taken::default(), false),
-            (full(), Taken::default(), true),
-            (Taken::default(), full(), true),
+            (Stored::default(), Stored::default(), false),
+            (full(), Stored::default(), true),
+            (Stored::default(), full(), true),
         ] {
             let mut both = (first, Some(second));
-            assert_eq!(give(&mut &mut both), expected);
-            let (first, second) = (both.0, both.1.expect("it is there"));
-            for taken in [first, second] {
-                assert_eq!(
-                    taken.records,
-                    [Record { cycle: Instant(3), levels: Levels::RESET }, MORE[0], MORE[1]]
-                );
-                assert_eq!(taken.events, [(Instant(4), Event::TickEnd)]);
+            assert_eq!(send_all(&mut &mut both), expected);
+            let (first, second) = (both.0, both.1.expect("the second sink"));
+            for stored in [first, second] {
+                assert_eq!(stored.records, RECORDS);
+                assert_eq!(stored.events, [(Instant(4), Event::TickEnd)]);
             }
         }
-        assert!(!give(&mut None::<Taken>), "nobody asks for a pause");
+        assert!(!send_all(&mut None::<Stored>), "no sink, no pause");
         let mut trace = vec![];
-        assert!(!give(&mut trace));
-        assert_eq!(trace, [Record { cycle: Instant(3), levels: Levels::RESET }, MORE[0], MORE[1]]);
+        assert!(!send_all(&mut trace));
+        assert_eq!(trace, RECORDS);
     }
 }

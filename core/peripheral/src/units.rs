@@ -12,6 +12,7 @@
 
 use core::ops::{Add, AddAssign, Sub};
 
+/// A span of device time in clock cycles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cycles(pub u64);
 
@@ -20,17 +21,17 @@ pub struct Cycles(pub u64);
 pub struct Instant(pub u64);
 
 impl Instant {
-    /// Nothing starts before cycle 1.
+    /// Cycle 0. Nothing starts before cycle 1.
     pub const RESET: Self = Self(0);
     /// Deadline of an event that never happens.
     pub const NEVER: Self = Self(u64::MAX);
 
-    #[must_use]
+    /// The following cycle.
     pub const fn next(self) -> Self {
         Self(self.0 + 1)
     }
 
-    #[must_use]
+    /// Time since reset in s, for display only.
     pub fn seconds(self, clock_hz: u32) -> f64 {
         self.0 as f64 / f64::from(clock_hz)
     }
@@ -62,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_and_spans_are_told_apart_and_summed() {
+    fn points_and_spans_add_and_subtract() {
         let mut at = Instant(7);
         assert_eq!((at + Cycles(5), Instant(12) - at, at.next()), (Instant(12), Cycles(5), Instant(8)));
         at += Cycles(3);

@@ -1,4 +1,4 @@
-//! Which configurations hold (DESIGN A4, A7), each rule to its last number, and what a checked one tells of itself.
+//! The rules for configurations (DESIGN A4, A7) at their limits, and the values of a valid configuration.
 
 use stepscope_peripheral::{
     config::{
@@ -37,12 +37,12 @@ fn fields(clock_hz: u32, bus: &Bus, line: &SerialLine) -> Vec<Field> {
 }
 
 #[test]
-fn the_pulses_of_a_slot_fit_in_it_to_the_last_cycle() {
+fn pulses_may_fill_their_slot_but_not_exceed_it() {
     use {
         DirLine::{Common, PerChannel},
         PulsePhasing::{Simultaneous, Staggered},
     };
-    // Mode, the shortest slot and settling time that hold.
+    // Mode, minimum slot and settling time.
     let rows = [
         (PerChannel, Simultaneous, 6, 0),
         (Common, Simultaneous, 12, 0),
@@ -59,7 +59,7 @@ fn the_pulses_of_a_slot_fit_in_it_to_the_last_cycle() {
             assert_eq!(fields(CLOCK_HZ, &close, &line()), [Field::Bus("settle_cycles")], "{close:?}");
         }
     }
-    // Without set-up and hold a cycle is left between two pulses: L = W + 1.
+    // Without set-up and hold times a cycle remains between two pulses: L = W + 1.
     let bare = Bus { dir_setup_cycles: 0, dir_hold_cycles: 0, step_period_cycles: 4, ..BUS };
     assert_eq!(fields(CLOCK_HZ, &bare, &line()), []);
     let problems = Config::new(CLOCK_HZ, &Bus { step_period_cycles: 3, ..bare }, &line()).unwrap_err();
@@ -69,22 +69,22 @@ fn the_pulses_of_a_slot_fit_in_it_to_the_last_cycle() {
         hold: 0,
         needed: 4,
         pulses: 1,
-        of: "all channels at once",
+        phasing: "all channels at once",
         period: 3,
     };
     assert_eq!(problems, [ConfigProblem { field: Field::Bus("step_period_cycles"), error }]);
     assert_eq!(
         problems[0].to_string(),
-        "bus.step_period_cycles: a pulse needs width 3 + max(setup 0 + hold 0, 1) = 4 cycles, 1 in a slot (all channels at \
-         once), the slot has 3; give a step period of at least 4 or shorter times"
+        "bus.step_period_cycles: a pulse needs width 3 + max(setup 0 + hold 0, 1) = 4 cycles; a slot of 3 cycles must hold 1 \
+         (all channels at once); use a step period of at least 4, or shorter times"
     );
 }
 
 #[test]
-fn every_number_is_held_to_its_range() {
+fn each_number_is_limited_to_its_range() {
     const SECOND: u32 = 1_000_000_000;
     type Row<'a> = (u32, Bus, SerialLine, &'a [Field]);
-    // What is given, what is refused of it.
+    // Configuration, refused fields.
     let rows: [Row<'_>; 14] = [
         (CLOCK_HZ, BUS, line(), &[]),
         (CLOCK_HZ, Bus { channels: 16, ..BUS }, line(), &[]),
@@ -117,8 +117,8 @@ fn every_number_is_held_to_its_range() {
 }
 
 #[test]
-fn a_bit_has_eleven_cycles_at_least() {
-    // Clock, rate, B = floor((2*clock + rate)/(2*rate)), the highest rate of the clock.
+fn a_bit_has_at_least_11_cycles() {
+    // Clock, rate, B = floor((2*clock + rate)/(2*rate)), maximum rate of the clock.
     let rows = [
         (105, 10, Some(11), 10),
         (104, 10, None, 9),
@@ -126,30 +126,30 @@ fn a_bit_has_eleven_cycles_at_least() {
         (16_000_000, 1_523_809, Some(11), 1_523_809),
         (16_000_000, 1_523_810, None, 1_523_809),
     ];
-    for (clock_hz, baud, bit, most) in rows {
+    for (clock_hz, baud, bit, max) in rows {
         let config = Config::new(clock_hz, &BUS, &SerialLine { baud, ..line() });
         assert_eq!(config.as_ref().ok().map(Config::bit), bit.map(Cycles), "{baud} at {clock_hz}");
-        assert_eq!(max_baud(clock_hz), most);
+        assert_eq!(max_baud(clock_hz), max);
         if let Err(problems) = config {
-            let numbers = format!("{baud} baud at {clock_hz} Hz is 10 cycles a bit, the receiver needs 11");
+            let numbers = format!("{baud} baud at {clock_hz} Hz is 10 cycles per bit; the receiver needs 11");
             let text = problems[0].to_string();
-            assert!(text.contains(&numbers) && text.contains(&format!("at most {most} baud")), "{text}");
+            assert!(text.contains(&numbers) && text.contains(&format!("at most {max} baud")), "{text}");
         }
     }
     assert_eq!(Config::bit_of(1000, 300), Cycles(3));
 }
 
 #[test]
-fn a_bus_that_segments_drive_has_no_slots_and_hears_nothing() {
+fn rules_for_slots_and_bit_rates_do_not_apply_to_segments() {
     let tight = Bus { step_period_cycles: 2, ..BUS };
-    let mute = SerialLine { baud: 0, ..line() };
-    assert!(Config::of_segments(CLOCK_HZ, &tight, &mute).is_ok());
-    assert!(Config::of_segments(CLOCK_HZ, &Bus { slots: 0, ..tight }, &mute).is_err());
+    let silent = SerialLine { baud: 0, ..line() };
+    assert!(Config::of_segments(CLOCK_HZ, &tight, &silent).is_ok());
+    assert!(Config::of_segments(CLOCK_HZ, &Bus { slots: 0, ..tight }, &silent).is_err());
 }
 
 #[test]
 fn a_checked_configuration_derives_its_values() {
-    // Protocol, address given; of the controller and of packets, bytes of a packet.
+    // Protocol, address: given, of the controller, in packets; bytes per packet.
     let rows = [
         (Protocol::Raw, None, None, None, 3),
         (Protocol::Raw, Some(9), Some(9), Some(9), 4),
@@ -158,7 +158,7 @@ fn a_checked_configuration_derives_its_values() {
     ];
     for (protocol, given, address, of_packets, len) in rows {
         let serial = SerialLine { protocol, address: given, receiver_baud: Some(9_000), ..line() };
-        let config = Config::new(CLOCK_HZ, &BUS, &serial).expect("it holds");
+        let config = Config::new(CLOCK_HZ, &BUS, &serial).expect("a valid configuration");
         assert_eq!(
             (config.address(), config.packet_address(), config.packet_len()),
             (address, of_packets, len)
@@ -166,7 +166,7 @@ fn a_checked_configuration_derives_its_values() {
         assert_eq!((config.clock_hz(), config.channels(), config.protocol()), (CLOCK_HZ, 3, protocol));
         assert_eq!((config.slots(), config.tick(), config.boot()), (4, Cycles(120), Instant(7)));
         assert_eq!((config.queue_depth(), config.reply_baud(), config.bit()), (5, 9_000, Cycles(111)));
-        assert_eq!((config.dir_line(), config.pulse_phasing()), (BUS.dir_line, BUS.pulse_phasing));
+        assert_eq!(config.bus(), &BUS);
         let times = PulseTimes { width: Cycles(3), setup: Cycles(2), hold: Cycles(1) };
         assert_eq!((PulseTimes::from(&config), PulseTimes::from(&BUS)), (times, times));
     }

@@ -1,11 +1,11 @@
-//! In which order a TICKS frame is validated (DESIGN A6), walked from its first reason to its last:
+//! The order in which the rules for a TICKS frame are checked (DESIGN A6):
 //!
 //! ```text
 //! BAD_BODY > repeat > BAD_SEQ > STOPPED > BUSY > TOO_MANY_STEPS > QUEUE_FULL > queued
 //! ```
 //!
-//! For each two neighbours a frame for which both hold, which gets the first one's answer; then the same with the first
-//! put right, which shows that the second did hold.
+//! For each two neighbors there is a frame that breaks both rules and gets the first result, and one that breaks only the
+//! second rule and gets the second result.
 
 use std::rc::Rc;
 use stepscope_peripheral::{
@@ -23,12 +23,12 @@ use stepscope_peripheral::{
 
 const CLOCK_HZ: u32 = 1_600_000;
 const BAUD: u32 = 100_000;
-/// From the start of a frame to that of the next: more than any of them takes.
+/// From the start of a frame to the start of the next: longer than any frame.
 const APART: u64 = 30 * 10 * 16;
 /// Longer than any row lasts.
 const LONG: u32 = 100_000;
 
-/// A tick has four slots and the queue two entries; what is queued goes on for longer than a row lasts.
+/// Four slots per tick and two places in the queue; a tick lasts longer than a row.
 const BUS: Bus = Bus {
     channels: 1,
     slots: 4,
@@ -43,10 +43,10 @@ const BUS: Bus = Bus {
     queue_depth: 2,
     boot_cycles: 0,
 };
-/// The same in its self-test.
+/// The same during the self-test.
 const BOOTING: Bus = Bus { boot_cycles: LONG, ..BUS };
 
-/// What became of the frames, and what was replied.
+/// Outcomes of the frames, and the replies.
 #[derive(Default)]
 struct Log {
     outcomes: Vec<FrameOutcome>,
@@ -67,13 +67,13 @@ impl Sink for Log {
 
 /// A frame's kind and its body.
 type Sent<'a> = (Kind, &'a [u8]);
-/// The bus, what came before, the body of TICKS (sequence number, count, commands), what becomes of it, and the faults.
+/// The bus, earlier frames, the body of TICKS (sequence number, count, commands), its outcome, and the faults.
 type Case<'a> = (&'a Bus, &'a [Sent<'a>], &'a [u8], FrameOutcome, Faults);
 
-/// Sends the frames of `before` to all, which is never answered, and then TICKS with this body to the controller.
+/// Broadcasts the frames of `before`, and then sends TICKS with this body to the controller.
 fn send_ticks(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults) {
     let serial = SerialLine { baud: BAUD, protocol: Protocol::Framed, ..SerialLine::default() };
-    let config = Config::new(CLOCK_HZ, bus, &serial).expect("it holds");
+    let config = Config::new(CLOCK_HZ, bus, &serial).expect("a valid configuration");
     let mut schedule = Schedule::default();
     let frames = before.iter().map(|(kind, body)| emit(ALL, *kind as u8, body));
     let frames = frames.chain([emit(0, Kind::Ticks as u8, body)]);
@@ -90,29 +90,29 @@ fn send_ticks(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults)
         }
         device.run(line.level(true), line.next_change().min(end), &mut log);
     }
-    assert_eq!(log.outcomes.len(), before.len() + 1, "each frame is validated");
-    let outcome = *log.outcomes.last().expect("the last one, too");
-    let answers: Vec<_> = log.replies.iter().map(|reply| Some(reply.answer)).collect();
-    assert_eq!(answers, [outcome.answer()], "the one frame for this controller alone is answered");
+    assert_eq!(log.outcomes.len(), before.len() + 1, "one outcome per frame");
+    let outcome = *log.outcomes.last().expect("an outcome");
+    let results: Vec<_> = log.replies.iter().map(|reply| Some(reply.result)).collect();
+    assert_eq!(results, [outcome.reply_result()], "only the frame for this controller gets a reply");
     (outcome, device.faults())
 }
 
 #[test]
-fn of_two_reasons_that_hold_at_once_the_earlier_is_reported() {
+fn of_two_broken_rules_the_first_in_the_order_is_reported() {
     let refused = FrameOutcome::Refused;
     let taken: Sent = (Kind::Ticks, &[0, 1, 1]);
     let [stop, enable, resync]: [Sent; 3] =
         [Kind::Stop, Kind::Enable, Kind::Resync].map(|kind| (kind, &[][..]));
     let none = Faults::default();
 
-    // A case for which both reasons hold, and one for which only the second does.
+    // A frame that breaks both rules, and one that breaks only the second.
     let rows: [[Case; 2]; 7] = [
-        // Two ticks are said and one is there, in a repeat.
+        // The count is two, but there is one tick; the sequence number is a repetition.
         [
             (&BUS, &[taken], &[0, 2, 1], refused(Reason::BadBody), none),
             (&BUS, &[taken], &[0, 1, 1], FrameOutcome::Repeated, none),
         ],
-        // A repeat never has the expected number; without a TICKS since RESYNC the one before it is no repeat.
+        // After RESYNC no sequence number is a repetition.
         [
             (&BUS, &[taken], &[0, 1, 1], FrameOutcome::Repeated, none),
             (&BUS, &[taken, resync], &[255, 1, 1], refused(Reason::BadSeq), Faults::BAD_SEQ),
@@ -143,13 +143,13 @@ fn of_two_reasons_that_hold_at_once_the_earlier_is_reported() {
     for (bus, before, body, outcome, faults) in rows.into_iter().flatten() {
         assert_eq!(send_ticks(bus, before, body), (outcome, faults), "{before:?}, then TICKS {body:?}");
     }
-    // Each row's second is the next one's first.
-    assert!(rows.windows(2).all(|pair| pair[0][1].3 == pair[1][0].3), "the walk has no gap");
+    // The second outcome of each row is the first of the next row.
+    assert!(rows.windows(2).all(|pair| pair[0][1].3 == pair[1][0].3), "the chain has no gap");
 }
 
 #[test]
-fn a_frame_for_which_every_later_reason_holds_is_refused_for_its_sequence_number() {
-    // Stopped, in the self-test, five steps in four slots, three ticks for two entries.
+fn a_wrong_sequence_number_takes_precedence_over_all_later_rules() {
+    // Also stopped, in the self-test, five steps in four slots, and three ticks for two places.
     let body = Ticks::emit(1, 1, &[5, 5, 5]);
     let (outcome, faults) = send_ticks(&BOOTING, &[(Kind::Stop, &[])], &body);
     assert_eq!((outcome, faults), (FrameOutcome::Refused(Reason::BadSeq), Faults::BAD_SEQ));

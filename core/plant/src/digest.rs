@@ -3,11 +3,13 @@
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
+/// In grid points.
 const PERIOD: u32 = 20;
 
 #[derive(Clone)]
 pub(crate) struct Digest {
     hasher: XxHash64,
+    /// Grid points until the next one counts.
     wait: u32,
 }
 
@@ -24,7 +26,8 @@ impl core::fmt::Debug for Digest {
 }
 
 impl Digest {
-    pub(crate) fn is_due(&mut self) -> bool {
+    /// Counts a grid point; returns whether it belongs to the digest.
+    pub(crate) fn count_point(&mut self) -> bool {
         self.wait -= 1;
         let is_due = self.wait == 0;
         if is_due {

@@ -8,31 +8,40 @@ use crate::{
 /// What a driver applies to a phase in one (sub-)step.
 #[derive(Clone, Copy)]
 pub(crate) struct Applied {
+    /// Voltage in V.
     pub(crate) v: f64,
+    /// No current flows.
     pub(crate) is_open: bool,
     /// The current reaches 0 through the diodes by the end of the step.
-    pub(crate) ends: bool,
+    pub(crate) reaches_zero: bool,
 }
 
 impl Applied {
     const fn voltage(v: f64) -> Self {
-        Self { v, is_open: false, ends: false }
+        Self { v, is_open: false, reaches_zero: false }
     }
 }
 
-/// Back EMF, current and the constants of a (sub-)step.
+/// A phase at the start of a (sub-)step.
 #[derive(Clone, Copy)]
 pub(crate) struct PhaseInput {
+    /// Back EMF in V.
     pub(crate) e: f64,
+    /// Current in A.
     pub(crate) i: f64,
+    /// Resistance in ohm.
     pub(crate) r: f64,
+    /// Voltage in V per A of change within the step.
     pub(crate) ra: f64,
+    /// Bus voltage in V.
     pub(crate) bus: f64,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Phase {
+    /// Target current in A.
     pub(crate) target: f64,
+    /// Share of fast decay.
     pub(crate) share: f64,
     chopper: Chopper,
 }
@@ -40,6 +49,7 @@ pub(crate) struct Phase {
 #[derive(Clone, Copy, Debug, Default)]
 struct Chopper {
     is_off: bool,
+    /// Grid steps in this on-time or off-time.
     count: u32,
     /// The current has passed 0 in this off-time.
     has_passed: bool,
@@ -47,6 +57,7 @@ struct Chopper {
     part: f64,
 }
 
+/// In grid steps, at least 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChopperTimes {
     off: u32,
@@ -82,6 +93,7 @@ impl Phase {
         Self { target, share, chopper }
     }
 
+    /// An ideal chopper: the target is reached within the step, as far as the bus voltage allows.
     fn averaged(&self, input: &PhaseInput) -> Applied {
         let t = self.target;
         let mut v = input.e + input.r * input.i + (t - input.i) * input.ra;
@@ -100,15 +112,17 @@ impl Phase {
 
     /// Sign of the target or, for target 0, of the current.
     fn direction(&self, i: f64) -> f64 {
-        let given = if self.target == 0.0 { i } else { self.target };
-        if given < 0.0 { -1.0 } else { 1.0 }
+        let decisive = if self.target == 0.0 { i } else { self.target };
+        if decisive < 0.0 { -1.0 } else { 1.0 }
     }
 
+    /// A real chopper in its present state.
     fn chopped(&self, input: &PhaseInput) -> Applied {
         let part = self.chopper.part;
         Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(input.i) * input.bus) })
     }
 
+    /// Decides the state of the chopper at a grid point with the current `i`.
     fn decide(&mut self, times: ChopperTimes, i: f64) {
         let along = self.direction(i) * i;
         let fast = || round_half_up(self.share * f64::from(times.off));
@@ -139,7 +153,7 @@ impl Phase {
             return if input.e.abs() > against {
                 Applied::voltage(sign(input.e) * against)
             } else {
-                Applied { v: 0.0, is_open: true, ends: false }
+                Applied { v: 0.0, is_open: true, reaches_zero: false }
             };
         }
         let v = -sign(input.i) * against;
@@ -147,7 +161,7 @@ impl Phase {
         let (is_nearer, is_beyond) =
             if input.i > 0.0 { (zero > v, zero > 0.0) } else { (zero < v, zero < 0.0) };
         if is_nearer {
-            Applied { v: if is_beyond { 0.0 } else { zero }, is_open: false, ends: true }
+            Applied { v: if is_beyond { 0.0 } else { zero }, is_open: false, reaches_zero: true }
         } else {
             Applied::voltage(v)
         }
@@ -156,13 +170,17 @@ impl Phase {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Driver {
+    /// Commanded position in microsteps.
     pub(crate) commanded: i64,
     microsteps: i64,
+    /// Peak current in A.
     peak: f64,
+    /// Levels of the digital-to-analog converter.
     levels: Option<f64>,
     decay: CurrentDecay,
     regulator: CurrentControl,
     times: ChopperTimes,
+    /// Forward voltage of two diodes in V.
     pub(crate) diodes: f64,
     pub(crate) phases: [Phase; 2],
 }
@@ -188,6 +206,7 @@ impl Driver {
         driver
     }
 
+    /// Commanded position in full steps.
     pub(crate) fn command(&self) -> f64 {
         self.commanded as f64 / self.microsteps as f64
     }

@@ -7,7 +7,7 @@ use crate::{
     state::State,
 };
 
-/// Sums since the start in J; `copper` still lacks the factor R/3.
+/// Sums since the start in J; [`Self::balance`] multiplies `copper` by R/3.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EnergyAccount {
     pub(crate) bus: f64,
@@ -22,6 +22,7 @@ pub(crate) struct EnergyAccount {
 /// Energies of a motor since the start of the run in J: bus = copper + friction + viscous + diodes + load + stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
+    /// Energy taken from the bus.
     pub bus: f64,
     /// Losses in windings and bridge.
     pub copper: f64,
@@ -29,6 +30,7 @@ pub struct EnergyBalance {
     pub friction: f64,
     /// Losses to viscous friction and the damping of the coupling.
     pub viscous: f64,
+    /// Losses in the diodes of the bridge.
     pub diodes: f64,
     /// Work against gravity and the sinusoidal torque of the load.
     pub load: f64,
@@ -39,8 +41,7 @@ pub struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Part of the turnover that the balance does not explain.
-    #[must_use]
+    /// Share of the turnover that the balance does not account for; near 0 if the grid is fine enough.
     pub fn error(&self) -> f64 {
         let spent = self.copper + self.friction + self.viscous + self.diodes + self.load + self.stored;
         if self.turnover > 0.0 { (self.bus - spent).abs() / self.turnover } else { 0.0 }

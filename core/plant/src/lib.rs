@@ -1,10 +1,10 @@
 //! Drivers, motors, supply and sensors on the STEP, DIR and EN edges of a bus (PLANT.md, Part F).
 //!
-//! The crate knows channels, levels and cycles, but no packets, motions or files. It computes with + - * / on f64 in the
-//! order of the contract, so every target gives the same bits.
+//! The crate depends on channels, levels and cycles, but on no packets, motions or files. It computes with + - * / on f64 in
+//! the order of the contract, so every target gives the same bits.
 //!
 //! ```text
-//! parameters, limits -> constants -> driver, supply, sensors -> rotor (one sub-step) -> plant (the grid)
+//! parameters, limits -> motor_constants -> driver, supply, sensors -> rotor (one sub-step) -> plant (the grid)
 //! ```
 //!
 //! ```
@@ -12,7 +12,7 @@
 //! use stepscope_plant::{Plant, parameters::{MotorModel, Setup}};
 //!
 //! let motor = MotorModel { microsteps: 1, ..MotorModel::default() };
-//! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("it holds");
+//! let mut plant = Plant::new(&Setup { motors: vec![motor], ..Setup::default() }).expect("a valid setup");
 //! // One full step to the right in cycle 1600, then 100 ms to settle.
 //! let levels = Levels(Levels::RESET.0 | 1 << Levels::DIR_SHIFT | 1);
 //! plant.record(Record { cycle: Instant(1600), levels }, &mut ());
@@ -20,7 +20,6 @@
 //! assert!((plant.state(0).expect("a motor").x - 1.0).abs() < 0.05);
 //! ```
 #![cfg_attr(not(test), no_std)]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 
@@ -53,7 +52,7 @@ pub use energy::EnergyBalance;
 pub use lost_steps::Slip;
 pub use plant::{Observer, Plant, PointEvents};
 pub use refusal::{Refusal, Refused};
-pub use sensors::Chain;
+pub use sensors::SignalChain;
 pub use sincos::sincos;
-pub use stability::Measure;
+pub use stability::Criterion;
 pub use state::State;

@@ -1,18 +1,18 @@
 //! Running measures of a plant (PLANT F8): following error, slips, overshoot, settling after the last step, currents, voltage.
 //!
-//! The final position is known only at the end. Until then `Tail` saves, of the positions since the last STEP, those above
-//! (below) all later ones: the last position too far from the end is one of them, wherever the end is.
+//! When a rotor settled depends on its final position, which is known only at the end. `Tail` saves the positions since the
+//! last STEP that are above (below) all later ones: only these can be the last one outside of the final tolerance.
 //!
 //! ```
 //! use stepscope_plant::{Plant, measures::Measures, parameters::{MotorModel, Setup}};
 //!
 //! let setup = Setup { motors: vec![MotorModel::default()], ..Setup::default() };
-//! let mut plant = Plant::new(&setup).expect("it holds");
+//! let mut plant = Plant::new(&setup).expect("a valid setup");
 //! let mut measures = Measures::new(&plant);
 //! plant.advance(16_000, &mut measures);
 //! let result = measures.result(&plant);
 //! assert_eq!((result.motors[0].lost, result.motors[0].overshoot), (0, None));
-//! assert_eq!((result.bus_v.least, result.bus_v.greatest), (24.0, 24.0));
+//! assert_eq!((result.bus_v.min, result.bus_v.max), (24.0, 24.0));
 //! ```
 
 use crate::{
@@ -27,53 +27,55 @@ use alloc::vec::Vec;
 
 /// Maximum number of slips saved with their cycles; all are counted.
 pub const MAX_SLIPS: usize = 10_000;
-/// Maximum distance from the final position of a settled rotor, in full steps.
-pub const SETTLED: f64 = 0.05;
+/// Maximum distance of a settled rotor from its final position, in full steps.
+const SETTLED: f64 = 0.05;
 
 /// Minimum, maximum and root mean square of a value over grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    pub least: f64,
-    pub greatest: f64,
+    /// Minimum; infinite before the first point.
+    pub min: f64,
+    /// Maximum; minus infinity before the first point.
+    pub max: f64,
     squares: f64,
     points: u64,
 }
 
 impl Default for Extremes {
     fn default() -> Self {
-        Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY, squares: 0.0, points: 0 }
+        Self { min: f64::INFINITY, max: f64::NEG_INFINITY, squares: 0.0, points: 0 }
     }
 }
 
 impl Extremes {
     fn add(&mut self, value: f64) {
-        if value < self.least {
-            self.least = value;
+        if value < self.min {
+            self.min = value;
         }
-        if value > self.greatest {
-            self.greatest = value;
+        if value > self.max {
+            self.max = value;
         }
         self.squares += value * value;
         self.points += 1;
     }
 
     /// Root mean square; 0 before the first point.
-    #[must_use]
     pub fn rms(&self) -> f64 {
         if self.points == 0 { 0.0 } else { square_root(self.squares / self.points as f64) }
     }
 
     /// Largest absolute value; 0 before the first point.
-    #[must_use]
     pub fn peak(&self) -> f64 {
-        if self.points == 0 { 0.0 } else { self.greatest.max(-self.least) }
+        if self.points == 0 { 0.0 } else { self.max.max(-self.min) }
     }
 }
 
-/// Positions of a rotor since its last STEP that can decide when it has settled.
+/// Positions of a rotor since its last STEP that can decide when it has settled, with their cycles.
 #[derive(Clone, Debug, Default)]
 struct Tail {
+    /// Each is above all later positions.
     above: Vec<(u64, f64)>,
+    /// Each is below all later positions.
     below: Vec<(u64, f64)>,
 }
 
@@ -94,55 +96,70 @@ impl Tail {
         self.below.push((cycle, x));
     }
 
-    /// The last cycle in which it was more than `off` from `end`.
-    fn last_off(&self, end: f64, off: f64) -> Option<u64> {
-        let above = self.above.iter().rev().find(|&&(_, x)| x - end > off);
-        let below = self.below.iter().rev().find(|&&(_, x)| end - x > off);
+    /// The last cycle in which the position was more than `tolerance` away from `end`.
+    fn last_outside(&self, end: f64, tolerance: f64) -> Option<u64> {
+        let above = self.above.iter().rev().find(|&&(_, x)| x - end > tolerance);
+        let below = self.below.iter().rev().find(|&&(_, x)| end - x > tolerance);
         above.into_iter().chain(below).map(|&(cycle, _)| cycle).max()
     }
 }
 
+/// The last step of a motor, and the extremes of its position since then.
 #[derive(Clone, Debug)]
-struct AfterStep {
+struct LastStep {
     cycle: u64,
     right: bool,
-    least: f64,
-    greatest: f64,
+    min: f64,
+    max: f64,
 }
 
 #[derive(Clone, Debug, Default)]
 struct MotorMeasures {
-    worst: (f64, u64),
-    fastest: (f64, u64),
-    fastest_load: f64,
+    following_error: Peak,
+    max_speed: Peak,
+    max_load_speed: f64,
     currents: [Extremes; 2],
     slips: Vec<Slip>,
     slip_count: u64,
     first_slip_step: Option<u64>,
-    last: Option<AfterStep>,
+    last_step: Option<LastStep>,
     tail: Tail,
 }
 
+/// An observer that measures all motors and the supply.
 #[derive(Clone, Debug, Default)]
 pub struct Measures {
     motors: Vec<MotorMeasures>,
     load: Extremes,
     bus: Extremes,
     collapsed: Option<u64>,
-    /// Sum and number of the sensor readings before the first step.
-    rest: (f64, u64),
+    /// Sum and number of the readings of the current sensor before the first step.
+    rest_readings: f64,
+    rest_points: u64,
     has_stepped: bool,
     /// Steps per motor, and the sensor readings from the first motor's fifth step on.
     steps: Vec<u64>,
     sensor: Extremes,
 }
 
-/// The deviation starts with this step of the first motor, and needs at least `MIN_STEPS` of each motor.
-const FIRST_STEPS: u64 = 5;
+/// The deviation starts with this step of the first motor.
+const FIRST_MEASURED_STEP: u64 = 5;
+/// Minimum steps of each motor for a deviation.
 const MIN_STEPS: u64 = 8;
 
+/// An extreme value and its grid point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peak {
+    /// The value.
+    pub value: f64,
+    /// The cycle of its grid point.
+    pub cycle: u64,
+}
+
+/// The measures of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorResult {
+    /// Its state at the end.
     pub state: State,
     /// Commanded position in full steps.
     pub command: f64,
@@ -150,30 +167,36 @@ pub struct MotorResult {
     pub lost: i64,
     /// The first [`MAX_SLIPS`] slips of four full steps.
     pub slips: Vec<Slip>,
+    /// Number of all slips.
     pub slip_count: u64,
     /// Steps before the first slip.
     pub first_slip_step: Option<u64>,
-    /// Command minus position where their distance is maximal, in full steps, and the cycle.
-    pub following_error: (f64, u64),
-    /// Maximum speed of the rotor without sign in full steps/s, and the cycle.
-    pub fastest: (f64, u64),
-    /// Maximum speed of the load; without a coupling the rotor's.
-    pub fastest_load: f64,
+    /// Command minus position where their distance is maximal, in full steps.
+    pub following_error: Peak,
+    /// Maximum speed of the rotor without sign, in full steps/s.
+    pub max_speed: Peak,
+    /// Maximum speed of the load without sign, in full steps/s; without a coupling the rotor's.
+    pub max_load_speed: f64,
     /// Distance beyond the last command in the direction of the last step, in full steps; `None` without a step.
     pub overshoot: Option<f64>,
-    /// Cycles from the last STEP until it stays within 0.05 full steps of its final position; `None` without a step.
+    /// Cycles from the last step until the rotor stays within 0.05 full steps of its final position; `None` without a step.
     pub settling: Option<u64>,
+    /// Cycle of the last step.
     pub last_step: Option<u64>,
     /// Larger peak of both phase currents in A.
     pub phase_peak_a: f64,
     /// Root mean square of both phase currents in A.
     pub phase_rms_a: f64,
+    /// Energies since the start.
     pub energy: EnergyBalance,
 }
 
+/// The measures of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantResult {
+    /// The last grid point.
     pub cycle: u64,
+    /// Digest of all points.
     pub digest: u64,
     /// One per channel.
     pub motors: Vec<MotorResult>,
@@ -190,7 +213,6 @@ pub struct PlantResult {
 
 impl Measures {
     /// Measures from the plant's first point on.
-    #[must_use]
     pub fn new(plant: &Plant) -> Self {
         let motors = alloc::vec![MotorMeasures::default(); plant.motors()];
         let mut new = Self { motors, steps: alloc::vec![0; plant.motors()], ..Self::default() };
@@ -199,7 +221,6 @@ impl Measures {
     }
 
     /// The measures so far.
-    #[must_use]
     pub fn result(&self, plant: &Plant) -> PlantResult {
         PlantResult {
             cycle: plant.cycle(),
@@ -218,17 +239,16 @@ impl Measures {
     }
 
     fn deviation(&self) -> Option<Deviation> {
-        let enough = self.steps.iter().all(|&steps| steps >= MIN_STEPS);
-        if !enough || self.rest.1 == 0 || self.sensor.points == 0 {
+        let has_enough_steps = self.steps.iter().all(|&steps| steps >= MIN_STEPS);
+        if !has_enough_steps || self.rest_points == 0 || self.sensor.points == 0 {
             return None;
         }
-        let rest_a = self.rest.0 / self.rest.1 as f64;
-        let (above_a, below_a) = (self.sensor.greatest - rest_a, rest_a - self.sensor.least);
+        let rest_a = self.rest_readings / self.rest_points as f64;
+        let (above_a, below_a) = (self.sensor.max - rest_a, rest_a - self.sensor.min);
         Some(Deviation { rest_a, above_a: above_a.max(0.0), below_a: below_a.max(0.0) })
     }
 
     /// The first [`MAX_SLIPS`] slips of a motor so far.
-    #[must_use]
     pub fn slips(&self, channel: usize) -> &[Slip] {
         self.motors.get(channel).map_or(&[], |motor| &motor.slips)
     }
@@ -238,7 +258,7 @@ impl MotorMeasures {
     fn result(&self, plant: &Plant, channel: usize) -> MotorResult {
         let state = plant.state(channel).copied().unwrap_or_default();
         let command = plant.command(channel);
-        let last = self.last.as_ref();
+        let last = self.last_step.as_ref();
         let [a, b] = self.currents;
         let points = (a.points + b.points).max(1) as f64;
         MotorResult {
@@ -248,13 +268,12 @@ impl MotorMeasures {
             slips: self.slips.clone(),
             slip_count: self.slip_count,
             first_slip_step: self.first_slip_step,
-            following_error: self.worst,
-            fastest: self.fastest,
-            fastest_load: self.fastest_load,
-            overshoot: last
-                .map(|last| if last.right { last.greatest - command } else { command - last.least }),
+            following_error: self.following_error,
+            max_speed: self.max_speed,
+            max_load_speed: self.max_load_speed,
+            overshoot: last.map(|last| if last.right { last.max - command } else { command - last.min }),
             settling: last.map(|last| {
-                self.tail.last_off(state.x, SETTLED).map_or(0, |cycle| cycle.saturating_sub(last.cycle))
+                self.tail.last_outside(state.x, SETTLED).map_or(0, |cycle| cycle.saturating_sub(last.cycle))
             }),
             last_step: last.map(|last| last.cycle),
             phase_peak_a: a.peak().max(b.peak()),
@@ -265,21 +284,21 @@ impl MotorMeasures {
 
     fn point(&mut self, state: &State, command: f64, cycle: u64) {
         let error = command - state.x;
-        if error.abs() > self.worst.0.abs() {
-            self.worst = (error, cycle);
+        if error.abs() > self.following_error.value.abs() {
+            self.following_error = Peak { value: error, cycle };
         }
-        if state.w.abs() > self.fastest.0 {
-            self.fastest = (state.w.abs(), cycle);
+        if state.w.abs() > self.max_speed.value {
+            self.max_speed = Peak { value: state.w.abs(), cycle };
         }
-        self.fastest_load = self.fastest_load.max(state.w_load.abs());
+        self.max_load_speed = self.max_load_speed.max(state.w_load.abs());
         self.currents[0].add(state.i_a);
         self.currents[1].add(state.i_b);
-        if let Some(last) = &mut self.last {
-            if state.x < last.least {
-                last.least = state.x;
+        if let Some(last) = &mut self.last_step {
+            if state.x < last.min {
+                last.min = state.x;
             }
-            if state.x > last.greatest {
-                last.greatest = state.x;
+            if state.x > last.max {
+                last.max = state.x;
             }
             self.tail.add(cycle, state.x);
         }
@@ -297,8 +316,9 @@ impl Observer for Measures {
         self.load.add(plant.load_a());
         let reading = plant.current_sensor().filtered();
         if !self.has_stepped {
-            self.rest = (self.rest.0 + reading, self.rest.1 + 1);
-        } else if self.steps.first().is_some_and(|&steps| steps >= FIRST_STEPS) {
+            self.rest_readings += reading;
+            self.rest_points += 1;
+        } else if self.steps.first().is_some_and(|&steps| steps >= FIRST_MEASURED_STEP) {
             self.sensor.add(reading);
         }
         self.bus.add(plant.bus_v());
@@ -325,8 +345,7 @@ impl Observer for Measures {
         for (channel, motor) in self.motors.iter_mut().enumerate() {
             if rises >> channel & 1 != 0 {
                 let right = right >> channel & 1 != 0;
-                motor.last =
-                    Some(AfterStep { cycle, right, least: f64::INFINITY, greatest: f64::NEG_INFINITY });
+                motor.last_step = Some(LastStep { cycle, right, min: f64::INFINITY, max: f64::NEG_INFINITY });
                 motor.tail.clear();
             }
         }

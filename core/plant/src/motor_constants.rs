@@ -6,17 +6,22 @@ use crate::{
 };
 use core::f64::consts::{SQRT_2, TAU};
 
-pub(crate) const DEGREE: f64 = 0.017_453_292_519_943_295;
+const DEGREE: f64 = 0.017_453_292_519_943_295;
 pub(crate) const TURN: f64 = TAU;
 
 #[derive(Clone, Debug)]
 pub(crate) struct MotorConstants {
+    /// Full step in rad.
     pub(crate) g: f64,
+    /// Force per A of a phase.
     pub(crate) k: f64,
+    /// Resistance of a phase with its bridge in ohm.
     pub(crate) r: f64,
+    /// Inductance of a phase in H.
     pub(crate) l: f64,
     /// Mass of the rotor; without a coupling also of the load.
     pub(crate) m: f64,
+    /// Viscous friction.
     pub(crate) b: f64,
     pub(crate) detent: f64,
     pub(crate) load: Load,
@@ -29,11 +34,13 @@ pub(crate) struct MotorConstants {
 pub(crate) struct Load {
     gravity: f64,
     sine: f64,
+    /// Quarter turns of the sine per full step, and at 0.
     rate: f64,
     phase: f64,
 }
 
 impl Load {
+    /// Force of the load at position `y`.
     pub(crate) fn at(&self, y: f64) -> f64 {
         let mut force = 0.0;
         if self.gravity != 0.0 {
@@ -97,12 +104,13 @@ impl MotorConstants {
         }
     }
 
+    /// Force of the detent, from the sine and cosine of the electrical angle.
     pub(crate) fn detent(&self, sn: f64, cs: f64) -> f64 {
         self.detent * (2.0 * (2.0 * sn * cs) * (1.0 - 2.0 * sn * sn))
     }
 
     /// Force on a rotor at rest at `x`.
-    pub(crate) fn force_at_rest(&self, x: f64, i_a: f64, i_b: f64) -> f64 {
+    fn force_at_rest(&self, x: f64, i_a: f64, i_b: f64) -> f64 {
         let (sn, cs) = sincos(x + 0.5);
         let mut force = self.k * cs * i_b - self.k * sn * i_a;
         if self.detent != 0.0 {
@@ -130,12 +138,15 @@ impl MotorConstants {
     }
 }
 
+/// A (sub-)step: with a constant voltage u across a phase, its current changes by a*u, and its mean by b*u.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
+    /// Length in s, and its half.
     pub(crate) h: f64,
     pub(crate) hh: f64,
     pub(crate) a: f64,
     pub(crate) b: f64,
+    /// 1/a.
     pub(crate) ra: f64,
 }
 

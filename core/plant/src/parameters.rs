@@ -8,19 +8,22 @@
 //!
 //! let drive = DriverModel { regulator: CurrentControl::Chopper, ..DriverModel::default() };
 //! let setup = Setup { motors: vec![MotorModel { microsteps: 1, drive, ..MotorModel::default() }], ..Setup::default() };
-//! let plant = Plant::new(&setup).expect("it holds");
+//! let plant = Plant::new(&setup).expect("a valid setup");
 //! assert_eq!(plant.step_cycles(), 16, "a grid step is 1 us with a chopper");
 //! ```
+
+#![allow(missing_docs, reason = "fields whose names state quantity and unit")]
 
 use alloc::vec::Vec;
 use stepscope_peripheral::parameters;
 
+/// How a driver regulates the current of a phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CurrentControl {
     /// The mean of an ideal chopper.
     #[default]
     Averaged,
-    /// Fixed off-time, decided at grid points.
+    /// A chopper with fixed off-time that switches at grid points.
     Chopper,
 }
 
@@ -40,7 +43,6 @@ pub enum CurrentDecay {
 
 impl CurrentDecay {
     /// The fast share before the first step, 0..=1.
-    #[must_use]
     pub const fn first_share(self) -> f64 {
         match self {
             Self::Slow => 0.0,
@@ -51,8 +53,11 @@ impl CurrentDecay {
 }
 
 parameters! { (Clone, Debug, PartialEq)
+    /// The driver of a motor.
     pub struct DriverModel {
+        /// How it regulates the current.
         pub regulator: CurrentControl = CurrentControl::Averaged,
+        /// How fast the current decays.
         pub decay: CurrentDecay = CurrentDecay::Fast,
         /// Off-time of a chopper.
         pub off_us: f64 = 20.0,
@@ -167,15 +172,13 @@ parameters! { (Clone, Debug, PartialEq)
 
 impl Setup {
     /// Cycles per grid step: `step_cycles`, or 5 us, or 1 us with a chopper, at least one.
-    #[must_use]
     pub fn grid_cycles(&self) -> u32 {
         let chops = self.motors.iter().any(|motor| motor.drive.regulator == CurrentControl::Chopper);
         let per_second = if chops { 1_000_000 } else { 200_000 };
         self.step_cycles.unwrap_or((self.clock_hz / per_second).max(1))
     }
 
-    /// The motor of one channel by itself on this supply, without overload protection: what searches run.
-    #[must_use]
+    /// The motor of one channel by itself on this supply, without overload protection, for searches; `None` without it.
     pub fn single_motor(&self, channel: usize) -> Option<Self> {
         let motor = self.motors.get(channel)?.clone();
         Some(Self { motors: alloc::vec![motor], protection: None, ..self.clone() })
@@ -184,7 +187,6 @@ impl Setup {
 
 impl MotorModel {
     /// Steps per turn, rounded.
-    #[must_use]
     pub fn steps_per_turn(&self) -> u64 {
         (360.0 / self.full_step_deg * f64::from(self.microsteps) + 0.5) as u64
     }

@@ -13,7 +13,7 @@ use crate::{
     parameters::Setup,
     refusal::{Refusal, Refused, validate},
     rotor::Rotor,
-    sensors::{Chain, Encoder},
+    sensors::{Encoder, SignalChain},
     state::State,
     supply::Supply,
 };
@@ -28,13 +28,14 @@ use stepscope_peripheral::signal::{Levels, Record};
 pub struct Plant {
     clock_hz: f64,
     step_cycles: u64,
+    /// Grid step in s.
     h: f64,
     /// Cycle of the point before the current grid step.
     point: u64,
     levels: Levels,
     motors: Vec<Rotor>,
     supply: Supply,
-    current: Chain,
+    current: SignalChain,
     encoders: Vec<Encoder>,
     encoder_period: u32,
     encoder_wait: u32,
@@ -48,8 +49,11 @@ pub struct Plant {
 /// What happened at the latest point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PointEvents {
+    /// The current sensor made a conversion.
     pub converted: bool,
+    /// The encoders were read.
     pub encoded: bool,
+    /// The conversion completed an overload.
     pub overload: bool,
 }
 
@@ -65,7 +69,6 @@ pub trait Observer {
     fn steps(&mut self, _cycle: u64, _rises: u16, _right: u16) {}
 }
 
-/// Ignores everything.
 impl Observer for () {
     fn point(&mut self, _: &Plant) {}
 }
@@ -131,7 +134,7 @@ struct Overload {
 }
 
 impl Overload {
-    fn convert(&mut self, cycle: u64, is_over: bool) {
+    fn add_conversion(&mut self, cycle: u64, is_over: bool) {
         self.in_a_row = if is_over { self.in_a_row.saturating_add(1) } else { 0 };
         self.latest = [self.latest[1], (cycle, is_over)];
     }
@@ -146,8 +149,9 @@ impl Overload {
 
 #[derive(Clone, Debug)]
 struct Accelerometer {
-    chain: Chain,
-    before: f64,
+    chain: SignalChain,
+    /// Speed of the load at the last point.
+    last_speed: f64,
 }
 
 impl Plant {
@@ -174,7 +178,7 @@ impl Plant {
             Encoder::new(&setup.encoder, channel as u64, motor.full_step_deg)
         };
         let accelerometers = setup.accelerometer.iter().flat_map(|chain| {
-            let one = Accelerometer { chain: Chain::new(chain, h, 0.0), before: 0.0 };
+            let one = Accelerometer { chain: SignalChain::new(chain, h, 0.0), last_speed: 0.0 };
             core::iter::repeat_n(one, motors.len())
         });
         Ok(Self {
@@ -183,7 +187,7 @@ impl Plant {
             h,
             point: 0,
             levels: Levels::RESET,
-            current: Chain::new(&setup.current_sensor, h, supply.i_load),
+            current: SignalChain::new(&setup.current_sensor, h, supply.i_load),
             encoders: setup.motors.iter().enumerate().map(encoder).collect(),
             encoder_period: setup.encoder.period_steps,
             encoder_wait: setup.encoder.period_steps,
@@ -202,7 +206,7 @@ impl Plant {
         })
     }
 
-    /// Sets the levels from a cycle on. Records come in order.
+    /// Sets the levels from a cycle on. Records must be in order.
     pub fn record(&mut self, record: Record, observer: &mut dyn Observer) {
         let cycle = record.cycle.0;
         self.advance(cycle, observer);
@@ -234,12 +238,14 @@ impl Plant {
         }
     }
 
+    /// Runs up to the last grid point at or before `cycle`.
     pub fn advance(&mut self, cycle: u64, observer: &mut dyn Observer) {
         while self.next_point() <= cycle {
             self.grid_step(observer);
         }
     }
 
+    /// Runs to the next grid point.
     fn grid_step(&mut self, observer: &mut dyn Observer) {
         let (powered, bus) = (self.levels.has(Levels::EN), self.supply.v);
         let mut energy = 0.0;
@@ -250,19 +256,7 @@ impl Plant {
         self.point += self.step_cycles;
         self.events =
             PointEvents { converted: self.current.advance(self.supply.i_load), ..PointEvents::default() };
-        self.encoder_wait -= 1;
-        if self.encoder_wait == 0 {
-            self.encoder_wait = self.encoder_period;
-            self.events.encoded = true;
-            for (encoder, motor) in self.encoders.iter_mut().zip(&self.motors) {
-                encoder.read(motor.state.x);
-            }
-        }
-        for (accelerometer, motor) in self.accelerometers.iter_mut().zip(&self.motors) {
-            let (w, before) = (motor.state.w_load, accelerometer.before);
-            accelerometer.before = w;
-            accelerometer.chain.advance((w - before) / self.h * motor.constants.g);
-        }
+        self.read_encoders_and_accelerometers();
         if powered {
             for (channel, (motor, lost)) in self.motors.iter_mut().zip(&mut self.lost).enumerate() {
                 let error = motor.driver.command() - motor.state.x;
@@ -273,10 +267,10 @@ impl Plant {
         }
         if let Some(overload) = self.overload.as_mut().filter(|_| self.events.converted) {
             let is_over = self.current.reading() >= overload.threshold_a;
-            overload.convert(self.point, is_over);
+            overload.add_conversion(self.point, is_over);
             self.events.overload = overload.in_a_row == overload.samples;
         }
-        if self.digest.is_due() {
+        if self.digest.count_point() {
             self.digest_point();
         }
         observer.point(self);
@@ -284,6 +278,22 @@ impl Plant {
             for motor in &mut self.motors {
                 motor.driver.decide(motor.state.i_a, motor.state.i_b);
             }
+        }
+    }
+
+    fn read_encoders_and_accelerometers(&mut self) {
+        self.encoder_wait -= 1;
+        if self.encoder_wait == 0 {
+            self.encoder_wait = self.encoder_period;
+            self.events.encoded = true;
+            for (encoder, motor) in self.encoders.iter_mut().zip(&self.motors) {
+                encoder.read(motor.state.x);
+            }
+        }
+        for (accelerometer, motor) in self.accelerometers.iter_mut().zip(&self.motors) {
+            let speed = motor.state.w_load;
+            let last_speed = core::mem::replace(&mut accelerometer.last_speed, speed);
+            accelerometer.chain.advance((speed - last_speed) / self.h * motor.constants.g);
         }
     }
 
@@ -301,93 +311,86 @@ impl Plant {
     }
 
     /// Cycle of the latest point.
-    #[must_use]
     pub const fn cycle(&self) -> u64 {
         self.point
     }
 
-    #[must_use]
+    /// Cycles per grid step.
     pub const fn step_cycles(&self) -> u64 {
         self.step_cycles
     }
 
-    #[must_use]
+    /// Clock of the bus.
     pub const fn clock_hz(&self) -> f64 {
         self.clock_hz
     }
 
-    #[must_use]
+    /// Number of motors.
     pub fn motors(&self) -> usize {
         self.motors.len()
     }
 
     /// A motor's state at the latest point, or after its latest sub-step. `None` without such a channel.
-    #[must_use]
     pub fn state(&self, channel: usize) -> Option<&State> {
         self.motors.get(channel).map(|motor| &motor.state)
     }
 
     /// Commanded position in full steps; 0 without such a channel.
-    #[must_use]
     pub fn command(&self, channel: usize) -> f64 {
         self.motors.get(channel).map_or(0.0, |motor| motor.driver.command())
     }
 
     /// Lost full steps of a motor so far; positive where it lost steps to the right.
-    #[must_use]
     pub fn lost(&self, channel: usize) -> i64 {
-        self.lost.get(channel).map_or(0, |lost| 4 * lost.lost)
+        self.lost.get(channel).map_or(0, |lost| lost.full_steps())
     }
 
-    #[must_use]
+    /// Whether EN is high.
     pub const fn is_powered(&self) -> bool {
         self.levels.has(Levels::EN)
     }
 
-    #[must_use]
+    /// Bus voltage in V.
     pub const fn bus_v(&self) -> f64 {
         self.supply.v
     }
 
-    #[must_use]
+    /// Current of all drivers in the last grid step, in A.
     pub const fn load_a(&self) -> f64 {
         self.supply.i_load
     }
 
     /// Whether the bus is at 1/16 of the source voltage or less.
-    #[must_use]
     pub const fn has_collapsed(&self) -> bool {
         self.supply.has_collapsed
     }
 
-    #[must_use]
-    pub const fn current_sensor(&self) -> &Chain {
+    /// The sensor of the supply current, in A.
+    pub const fn current_sensor(&self) -> &SignalChain {
         &self.current
     }
 
     /// The latest code of a motor's encoder, 0..=4095.
-    #[must_use]
     pub fn encoder(&self, channel: usize) -> u16 {
         self.encoders.get(channel).map_or(0, |encoder| encoder.code)
     }
 
     /// The accelerometer on a motor's load, in rad/s^2, if there is one.
-    #[must_use]
-    pub fn accelerometer(&self, channel: usize) -> Option<&Chain> {
+    pub fn accelerometer(&self, channel: usize) -> Option<&SignalChain> {
         self.accelerometers.get(channel).map(|accelerometer| &accelerometer.chain)
     }
 
-    #[must_use]
+    /// What happened at the latest point.
     pub const fn events(&self) -> PointEvents {
         self.events
     }
 
-    #[must_use]
+    /// A motor's energies since the start; `None` without such a channel.
     pub fn energy(&self, channel: usize) -> Option<EnergyBalance> {
         self.motors.get(channel).map(|motor| motor.energy.balance(&motor.constants, &motor.state))
     }
 
-    #[must_use]
+    /// Digest of all points so far; it identifies a run of the plant.
     pub fn digest(&self) -> u64 {
         self.digest.value()
     }

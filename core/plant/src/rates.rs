@@ -2,7 +2,7 @@
 //! motor and its own edges.
 //!
 //! ```text
-//! start-stop   | | | | | |            some steps at one rate, then 0.2 s of rest
+//! start-stop   | | | | | |            steps at one rate, then 0.2 s of rest
 //! pull-out     |   |  | ||||||||||    s(t) = a*t^2/2 up to the rate, then 0.1 s of it
 //! resonance    | | | | | | | | |      0.6 s of one rate; the second half is measured
 //! ```
@@ -27,21 +27,23 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-pub const FIRST_STEP: u64 = 1600;
+/// Cycle of the first step of a trial.
+const FIRST_STEP: u64 = 1600;
 /// Rest after a start-stop trial, in s.
-pub const REST_S: f64 = 0.2;
+const REST_S: f64 = 0.2;
 /// Time at the end rate of a ramp, in s.
-pub const HOLD_S: f64 = 0.1;
+const HOLD_S: f64 = 0.1;
 /// Default acceleration of a ramp in steps/s^2.
 pub const RAMP_STEPS_S2: f64 = 200_000.0;
 /// Time per rate of the resonance map, in s.
-pub const MAP_S: f64 = 0.6;
+const MAP_S: f64 = 0.6;
 
+// Rates in steps/s.
 const FIRST_RATE: f64 = 4000.0;
-/// The search fails below this rate.
 const MIN_RATE: f64 = 500.0;
 const MAX_RATE: f64 = 5e6;
-const NEAR: f64 = 1.002;
+/// The search ends when the lowest failing rate is at most this factor above the highest passing one.
+const PRECISION: f64 = 1.002;
 
 /// A search for the highest rate that holds: doubled until one fails, then bisected geometrically.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,17 +54,16 @@ pub struct Search {
 
 impl Search {
     /// The next rate to try in steps/s; `None` at the end.
-    #[must_use]
     pub fn rate(&self) -> Option<f64> {
         match (self.holds, self.fails) {
             (None, None) => Some(FIRST_RATE),
             (None, Some(fails)) => (fails > MIN_RATE).then_some(MIN_RATE),
             (Some(holds), None) => (holds < MAX_RATE).then_some(2.0 * holds),
-            (Some(holds), Some(fails)) => (fails > NEAR * holds).then(|| square_root(holds * fails)),
+            (Some(holds), Some(fails)) => (fails > PRECISION * holds).then(|| square_root(holds * fails)),
         }
     }
 
-    /// Reports whether that rate holds.
+    /// Reports whether the rate of [`Self::rate`] holds.
     pub fn report(&mut self, holds: bool) {
         let Some(rate) = self.rate() else { return };
         if holds {
@@ -73,13 +74,11 @@ impl Search {
     }
 
     /// The highest rate that held in steps/s; `None` if not even 500 did.
-    #[must_use]
     pub const fn found(&self) -> Option<f64> {
         self.holds
     }
 
     /// Progress of the search, 0..=1.
-    #[must_use]
     pub fn progress(&self) -> f64 {
         match (self.holds, self.fails) {
             // A factor of two needs nine to ten bisections.
@@ -99,13 +98,13 @@ pub fn search<E>(mut holds: impl FnMut(f64) -> Result<bool, E>) -> Result<Option
     Ok(search.found())
 }
 
-/// Rises of STEP at a constant rate: the k-th is round(k*clock_hz/rate) cycles after [`FIRST_STEP`].
+/// Cycles of the rises of STEP at a constant rate in steps/s: the k-th is round(k*clock_hz/rate) cycles after the first.
 pub fn even(clock_hz: u32, rate: f64, steps: u64) -> impl Iterator<Item = u64> {
     let cycles = f64::from(clock_hz);
     (0..steps).map(move |k| FIRST_STEP + (k as f64 * cycles / rate + 0.5) as u64)
 }
 
-/// Rises of STEP on a ramp of `a` steps/s^2 to a rate that is held for `hold_s`: step k where s(t) = k - 1/2.
+/// Cycles of the rises of STEP on a ramp of `a` steps/s^2 to a rate that is held for `hold_s`: step k where s(t) = k - 1/2.
 pub fn ramp(clock_hz: u32, rate: f64, a: f64, hold_s: f64) -> impl Iterator<Item = u64> {
     let (cycles, ramp_s) = (f64::from(clock_hz), rate / a);
     let ramp_steps = 0.5 * a * ramp_s * ramp_s;
@@ -142,7 +141,7 @@ fn trial<O: Observer>(
     Ok(plant)
 }
 
-fn span(setup: &Setup, seconds: f64) -> u64 {
+fn cycles_of(setup: &Setup, seconds: f64) -> u64 {
     (f64::from(setup.clock_hz) * seconds + 0.5) as u64
 }
 
@@ -150,79 +149,89 @@ fn span(setup: &Setup, seconds: f64) -> u64 {
 /// Errors: those of the plant.
 pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
-    let after = span(setup, REST_S);
+    let after = cycles_of(setup, REST_S);
     let plant = trial(setup, even(setup.clock_hz, rate, steps), after, &mut slipped)?;
     let error = plant.command(0) - plant.state(0).map_or(0.0, |state| state.x);
-    Ok(!slipped.has && error.abs() < 1.0)
+    Ok(!slipped.has_slipped && error.abs() < 1.0)
 }
 
-/// Whether a ramp of `a` steps/s^2 brings the motor of channel 0 to a rate and it stays there.
+/// Whether the motor of channel 0 follows a ramp of `a` steps/s^2 to a rate, and holds this rate.
 /// Errors: those of the plant.
 pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
     trial(setup, ramp(setup.clock_hz, rate, a, HOLD_S), 0, &mut slipped)?;
-    Ok(!slipped.has)
+    Ok(!slipped.has_slipped)
 }
 
+/// Oscillation of a motor at one rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resonance {
     /// Peak-to-peak value of rate*t - x in the second half, in full steps.
-    pub swing: f64,
-    pub loses: bool,
+    pub peak_to_peak: f64,
+    /// It lost steps.
+    pub loses_steps: bool,
 }
 
 /// Runs the motor of channel 0 at a constant rate in steps/s for 0.6 s.
 /// Errors: those of the plant.
 pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
     let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
-    // Steps continue to the end, so that the last part is no standstill.
+    // Steps continue to the end, so that the motor does not stop before.
     let steps = (rate * MAP_S) as u64 + 1;
-    let from = FIRST_STEP + span(setup, 0.5 * MAP_S);
-    let to = FIRST_STEP + span(setup, MAP_S);
-    let mut swing =
-        Swing { per_cycle: rate / microsteps / f64::from(setup.clock_hz), from, to, ..Swing::default() };
+    let from = FIRST_STEP + cycles_of(setup, 0.5 * MAP_S);
+    let to = FIRST_STEP + cycles_of(setup, MAP_S);
+    let mut observer = Oscillation {
+        per_cycle: rate / microsteps / f64::from(setup.clock_hz),
+        from,
+        to,
+        ..Oscillation::default()
+    };
     let rises = || even(setup.clock_hz, rate, steps).take_while(|&rise| rise < to);
     let last = rises().last().unwrap_or(FIRST_STEP);
-    trial(setup, rises(), to.saturating_sub(last), &mut swing)?;
-    Ok(Resonance { swing: (swing.greatest - swing.least).max(0.0), loses: swing.slipped.has })
+    trial(setup, rises(), to.saturating_sub(last), &mut observer)?;
+    Ok(Resonance {
+        peak_to_peak: (observer.max - observer.min).max(0.0),
+        loses_steps: observer.slipped.has_slipped,
+    })
 }
 
 #[derive(Default)]
 struct Slipped {
-    has: bool,
+    has_slipped: bool,
 }
 
 impl Observer for Slipped {
     fn point(&mut self, _: &Plant) {}
 
     fn slip(&mut self, _: usize, _: crate::Slip) {
-        self.has = true;
+        self.has_slipped = true;
     }
 }
 
-struct Swing {
+/// Measures rate*t - x within a range of cycles.
+struct Oscillation {
     per_cycle: f64,
     from: u64,
     to: u64,
-    least: f64,
-    greatest: f64,
+    min: f64,
+    max: f64,
     slipped: Slipped,
 }
 
-impl Default for Swing {
+impl Default for Oscillation {
     fn default() -> Self {
-        let (least, greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-        Self { per_cycle: 0.0, from: 0, to: 0, least, greatest, slipped: Slipped::default() }
+        let (min, max) = (f64::INFINITY, f64::NEG_INFINITY);
+        Self { per_cycle: 0.0, from: 0, to: 0, min, max, slipped: Slipped::default() }
     }
 }
 
-impl Observer for Swing {
+impl Observer for Oscillation {
     fn point(&mut self, plant: &Plant) {
         let cycle = plant.cycle();
         if let Some(state) = plant.state(0).filter(|_| cycle > self.from && cycle <= self.to) {
             let error = (cycle - FIRST_STEP) as f64 * self.per_cycle - state.x;
-            self.least = self.least.min(error);
-            self.greatest = self.greatest.max(error);
+            self.min = self.min.min(error);
+            self.max = self.max.max(error);
         }
     }
 

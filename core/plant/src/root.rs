@@ -15,26 +15,28 @@ pub(crate) fn square_root(x: f64) -> f64 {
     let (fraction, exponent) = (bits & ((1 << 52) - 1), (bits >> 52) as i32);
     let (significand, exponent) =
         if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
-    let up = significand.leading_zeros() as i32 - 11;
-    let (significand, exponent) = (significand << up, exponent - up);
+    // Normalizes numbers below the smallest normal one.
+    let shift = significand.leading_zeros() as i32 - 11;
+    let (significand, exponent) = (significand << shift, exponent - shift);
     let odd = exponent & 1;
     let m = u128::from(significand) << (56 + odd);
     let half_exponent = (exponent - odd - 56) / 2;
-    let root = whole_root(m);
+    let root = integer_root(m);
     let sticky = u64::from(u128::from(root) * u128::from(root) != m);
     // Between 2^54 and 2^55; the conversion rounds to 53 bits, ties to even.
     let rounded = ((root << 1) | sticky) as f64;
     rounded * power_of_two(half_exponent - 1)
 }
 
-fn whole_root(m: u128) -> u64 {
-    let (mut rest, mut root, mut bit) = (m, 0_u128, 1_u128 << 126);
+/// The integer part of the root, bit by bit.
+fn integer_root(m: u128) -> u64 {
+    let (mut remainder, mut root, mut bit) = (m, 0_u128, 1_u128 << 126);
     while bit > m {
         bit >>= 2;
     }
     while bit != 0 {
-        if rest >= root + bit {
-            rest -= root + bit;
+        if remainder >= root + bit {
+            remainder -= root + bit;
             root = (root >> 1) + bit;
         } else {
             root >>= 1;
@@ -54,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_root_has_the_bits_of_the_platforms() {
+    fn the_root_equals_that_of_the_platform() {
         let grid = (0..200_000_u64).map(|i| f64::from_bits(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1));
         let near_one = (0..2000).map(|i| 1.0 + f64::from(i) * f64::EPSILON);
         let special = [

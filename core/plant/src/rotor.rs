@@ -129,8 +129,8 @@ impl Rotor {
         let w_m = 0.5 * (w + w_1);
         let (t_a, t_b) = (u_a - k_a * w_m, u_b - k_b * w_m);
         let (mean_a, mean_b) = (i_a + b_a * t_a, i_b + b_b * t_b);
-        let next_a = if a.ends { 0.0 } else { i_a + a_a * t_a };
-        let next_b = if b.ends { 0.0 } else { i_b + a_b * t_b };
+        let next_a = if a.reaches_zero { 0.0 } else { i_a + a_a * t_a };
+        let next_b = if b.reaches_zero { 0.0 } else { i_b + a_b * t_b };
         state.i_a = next_a;
         state.i_b = next_b;
         state.x = y + w_1 * hh;

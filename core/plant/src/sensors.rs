@@ -7,18 +7,22 @@ use crate::{
 };
 use alloc::vec::Vec;
 
+/// Low-pass filters and a converter behind a sensor.
 #[derive(Clone, Debug)]
-pub struct Chain {
+pub struct SignalChain {
+    /// Output of each filter.
     poles: Vec<f64>,
+    /// Share by which an output approaches its input in a grid step.
     factor: f64,
     adc_steps: u32,
+    /// Grid steps until the next conversion.
     wait: u32,
     lsb: f64,
     adc_max: f64,
     code: i32,
 }
 
-impl Chain {
+impl SignalChain {
     /// A chain in steady state at the input `steady`, on a grid of `h` seconds.
     pub(crate) fn new(chain: &SensorChain, h: f64, steady: f64) -> Self {
         let mut new = Self {
@@ -34,6 +38,7 @@ impl Chain {
         new
     }
 
+    /// Runs one grid step; returns whether a conversion was made.
     pub(crate) fn advance(&mut self, input: f64) -> bool {
         let mut input = input;
         for s in &mut self.poles {
@@ -54,18 +59,16 @@ impl Chain {
     }
 
     /// Output of the last filter.
-    #[must_use]
     pub fn filtered(&self) -> f64 {
         self.poles.last().copied().unwrap_or(0.0)
     }
 
-    #[must_use]
+    /// Code of the latest conversion.
     pub const fn code(&self) -> i32 {
         self.code
     }
 
     /// Value of the latest conversion.
-    #[must_use]
     pub fn reading(&self) -> f64 {
         f64::from(self.code) * self.lsb
     }
@@ -78,6 +81,7 @@ pub(crate) struct Encoder {
     noise: f64,
     hysteresis: f64,
     random: SplitMix64,
+    /// Angle in codes, after the play.
     out: f64,
     pub(crate) code: u16,
 }
@@ -113,6 +117,7 @@ fn floor(x: f64) -> i64 {
     whole - i64::from(whole as f64 > x)
 }
 
+/// A generator of random numbers.
 #[derive(Clone, Debug)]
 struct SplitMix64(u64);
 
@@ -143,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn an_encoder_follows_with_its_play_and_wraps_at_a_turn() {
+    fn an_encoder_has_play_and_wraps_after_one_turn() {
         let given = parameters::Encoder { hysteresis_lsb: 2.0, ..parameters::Encoder::default() };
         let mut encoder = Encoder::new(&given, 0, 1.8);
         let step = 4096.0 / 200.0;
@@ -156,9 +161,9 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_of_two_poles_settles_at_its_input_and_its_converter_ends_at_the_greatest_code() {
+    fn a_chain_settles_at_its_input_and_its_code_saturates() {
         let given = SensorChain { poles: 2, adc_steps: 3, adc_max: 50, ..SensorChain::default() };
-        let mut chain = Chain::new(&given, 5e-6, 0.5);
+        let mut chain = SignalChain::new(&given, 5e-6, 0.5);
         assert_eq!((chain.code(), chain.filtered()), (20, 0.5));
         let converts: Vec<bool> = (0..6).map(|_| chain.advance(0.5)).collect();
         assert_eq!(converts, [false, false, true, false, false, true]);

@@ -21,6 +21,7 @@ pub const REST_STEPS: u64 = 10;
 /// A reading of the current sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
+    /// Its grid point.
     pub cycle: u64,
     /// In A, or in codes of the converter; results have the same unit.
     pub current: f64,
@@ -29,13 +30,16 @@ pub struct Sample {
 /// The supply current around one step of a motor at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepResponse {
+    /// Mean before the step.
     pub rest_a: f64,
-    pub least_a: f64,
-    pub greatest_a: f64,
-    /// Cycles from the rise of STEP to the first sample, from the maximum on, that is at most a share of the peak above
-    /// rest: the default. `None` if not within a step period, or if no sample differs from rest.
+    /// Minimum after the step.
+    pub min_a: f64,
+    /// Maximum after the step.
+    pub max_a: f64,
+    /// Cycles from the rise of STEP to the first sample after the maximum that is at most a share of the peak above rest.
+    /// `None` if not within a step period, or if no sample differs from rest.
     pub reached: Option<u64>,
-    /// Cycles to the last sample that is off by more than that share. `None` if it is the last of all, or if no sample
+    /// Cycles to the last sample that differs by more than this share. `None` if no sample follows it, or if no sample
     /// differs from rest.
     pub settled: Option<u64>,
 }
@@ -43,7 +47,6 @@ pub struct StepResponse {
 impl StepResponse {
     /// Measures samples around a rise of STEP in cycle `rise`: from `from` up to it, and `t_step` cycles after it.
     /// `None` without samples on one side.
-    #[must_use]
     pub fn of(samples: &[Sample], from: u64, rise: u64, t_step: u64, share: f64) -> Option<Self> {
         let within = |after: u64, to: u64| {
             samples.iter().filter(move |sample| sample.cycle > after && sample.cycle <= to)
@@ -51,33 +54,33 @@ impl StepResponse {
         let rest_a = mean(within(from, rise))?;
         let after: Vec<Sample> = within(rise, rise.saturating_add(t_step)).copied().collect();
         let first = after.first()?;
-        let (mut least_a, mut greatest_a, mut t_max) = (first.current, first.current, 0);
+        let (mut min_a, mut max_a, mut t_max) = (first.current, first.current, 0);
         for (index, sample) in after.iter().enumerate() {
-            least_a = least_a.min(sample.current);
-            if sample.current > greatest_a {
-                (greatest_a, t_max) = (sample.current, index);
+            min_a = min_a.min(sample.current);
+            if sample.current > max_a {
+                (max_a, t_max) = (sample.current, index);
             }
         }
-        let peak = (greatest_a - rest_a).abs().max((least_a - rest_a).abs());
+        let peak = (max_a - rest_a).abs().max((min_a - rest_a).abs());
         let since = |sample: &Sample| sample.cycle - rise;
         let is_back = |sample: &&Sample| peak > 0.0 && sample.current - rest_a <= share * peak;
         let reached = after.iter().skip(t_max).find(is_back).map(since);
         let last_off = after.iter().rposition(|sample| (sample.current - rest_a).abs() > share * peak);
         let settled =
             last_off.filter(|index| index + 1 < after.len()).and_then(|index| after.get(index)).map(since);
-        Some(Self { rest_a, least_a, greatest_a, reached, settled })
+        Some(Self { rest_a, min_a, max_a, reached, settled })
     }
 }
 
-/// The mean of samples; `None` of none. Summing differences from the first gives equal samples exactly their value, so that
+/// The mean of samples; `None` without samples. Summing differences from the first gives equal samples exactly their value, so that
 /// a constant current has no peak.
-#[must_use]
 pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
     let first = samples.next()?.current;
     let (sum, count) = samples.fold((0.0, 1_u32), |(sum, count), s| (sum + (s.current - first), count + 1));
     Some(first + sum / f64::from(count))
 }
 
+/// Deviation of the supply current while motors step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// Mean at rest in A.
@@ -89,8 +92,7 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Of samples: those up to `first_step` are at rest, those after `from` count.
-    #[must_use]
+    /// From samples: those up to cycle `first_step` are at rest, those after cycle `from` are measured.
     pub fn of(samples: &[Sample], first_step: u64, from: u64) -> Option<Self> {
         let rest_a = mean(samples.iter().filter(|sample| sample.cycle <= first_step))?;
         let off = samples.iter().filter(|sample| sample.cycle > from).map(|sample| sample.current - rest_a);
@@ -98,8 +100,8 @@ impl Deviation {
         Some(Self { rest_a, above_a, below_a: -below })
     }
 
-    #[must_use]
-    pub const fn greatest_a(&self) -> f64 {
+    /// The larger of both, in A.
+    pub const fn max_a(&self) -> f64 {
         self.above_a.max(self.below_a)
     }
 }
@@ -107,6 +109,7 @@ impl Deviation {
 /// Records the readings of the current sensor.
 #[derive(Clone, Debug, Default)]
 pub struct SensorLog {
+    /// One per grid point.
     pub samples: Vec<Sample>,
     /// Rises of STEP of channel 0.
     pub steps: Vec<u64>,

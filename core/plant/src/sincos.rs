@@ -18,7 +18,7 @@ const TERMS: [[f64; 2]; 7] = [
 /// From 2^51 on, the last bits of the sum with [`ROUND`] are not those of the integer.
 const FAR: f64 = 2_251_799_813_685_248.0;
 
-/// The nearest integer, ties to even; |q| below 2^51.
+/// The nearest integer, ties to even, for |q| below 2^51.
 pub(crate) fn nearest(q: f64) -> f64 {
     (q + ROUND) - ROUND
 }
@@ -29,7 +29,6 @@ pub(crate) fn nearest(q: f64) -> f64 {
 /// assert_eq!(stepscope_plant::sincos(1.0), (1.0, 0.0));
 /// assert!((stepscope_plant::sincos(0.5).0 - 0.5_f64.sqrt()).abs() < 1e-11);
 /// ```
-#[must_use]
 pub fn sincos(q: f64) -> (f64, f64) {
     let t = q + ROUND;
     let n = t - ROUND;
@@ -41,10 +40,10 @@ pub fn sincos(q: f64) -> (f64, f64) {
     // 3*2^51 has zeros in the last bits, so those of the sum are the integer's.
     let quarter = if n > -FAR && n < FAR { t.to_bits() & 3 } else { far_quarter(n) };
     let (sine, cosine) = if quarter & 1 == 0 { (s, c) } else { (c, s) };
-    let negative = |is| (is as u64) << 63;
+    let sign_bit = |is_negative| (is_negative as u64) << 63;
     (
-        f64::from_bits(sine.to_bits() ^ negative(quarter & 2 != 0)),
-        f64::from_bits(cosine.to_bits() ^ negative((quarter + 1) & 2 != 0)),
+        f64::from_bits(sine.to_bits() ^ sign_bit(quarter & 2 != 0)),
+        f64::from_bits(cosine.to_bits() ^ sign_bit((quarter + 1) & 2 != 0)),
     )
 }
 
@@ -88,7 +87,7 @@ mod tests {
             let q = f64::from(i) * 0.0137;
             let (s, c) = sincos(q);
             let turned = q * core::f64::consts::FRAC_PI_2;
-            #[expect(clippy::disallowed_methods, reason = "a second opinion, in a test")]
+            #[expect(clippy::disallowed_methods, reason = "an independent result, in a test")]
             let expected = turned.sin_cos();
             assert!((s - expected.0).abs() < 2e-11 && (c - expected.1).abs() < 2e-11, "{q}: {s} {c}");
         }
@@ -112,10 +111,10 @@ mod tests {
     }
 
     #[test]
-    fn the_exponential_is_that_of_the_mathematics_library() {
+    fn one_minus_exp_equals_that_of_the_platform() {
         for i in 0..400 {
             let z = f64::from(i) * 0.03;
-            #[expect(clippy::disallowed_methods, reason = "a second opinion, in a test")]
+            #[expect(clippy::disallowed_methods, reason = "an independent result, in a test")]
             let expected = -(-z).exp_m1();
             assert!((one_minus_exp(z) - expected).abs() < 1e-14, "{z}");
         }

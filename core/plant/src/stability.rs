@@ -1,5 +1,5 @@
-//! Whether the grid is fine enough for the equations (PLANT F3): four numbers per motor, each at most 0.25, and the natural
-//! frequency of a rotor held by its currents.
+//! Criteria for a grid that is fine enough for the equations (PLANT F3): four numbers per motor, each at most 0.25. Also the
+//! natural frequency of a rotor held by its currents.
 //!
 //! ```
 //! use stepscope_plant::{parameters::MotorModel, stability::Natural};
@@ -25,7 +25,6 @@ pub struct Natural {
 
 impl Natural {
     /// Of a motor at its peak current.
-    #[must_use]
     pub fn of(motor: &MotorModel) -> Self {
         let constants = MotorConstants::new(motor);
         let inertia = constants.m / (constants.g * constants.g);
@@ -39,7 +38,7 @@ impl Natural {
 
 /// A number that limits the grid step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
+pub enum Criterion {
     /// R*h/L: the currents.
     Electrical,
     /// 2*pi*f_n*h: the rotor in the field of its currents.
@@ -50,8 +49,8 @@ pub enum Measure {
     Damper,
 }
 
-impl Measure {
-    #[must_use]
+impl Criterion {
+    /// Its formula.
     pub const fn formula(self) -> &'static str {
         match self {
             Self::Electrical => "R*h/L",
@@ -63,7 +62,7 @@ impl Measure {
 }
 
 /// The numbers of a motor on a grid of `h` seconds.
-pub(crate) fn measures(motor: &MotorModel, h: f64) -> impl Iterator<Item = (Measure, f64)> {
+pub(crate) fn criteria(motor: &MotorModel, h: f64) -> impl Iterator<Item = (Criterion, f64)> {
     let constants = MotorConstants::new(motor);
     let natural = Natural::of(motor).frequency_hz;
     let (spring, damper) = constants.coupling.as_ref().map_or((0.0, 0.0), |c| {
@@ -71,10 +70,10 @@ pub(crate) fn measures(motor: &MotorModel, h: f64) -> impl Iterator<Item = (Meas
         (h * square_root(c.stiffness * masses), h * c.damping * masses)
     });
     [
-        (Measure::Electrical, constants.r * h / constants.l),
-        (Measure::Rotor, TURN * natural * h),
-        (Measure::Spring, spring),
-        (Measure::Damper, damper),
+        (Criterion::Electrical, constants.r * h / constants.l),
+        (Criterion::Rotor, TURN * natural * h),
+        (Criterion::Spring, spring),
+        (Criterion::Damper, damper),
     ]
     .into_iter()
 }

@@ -1,5 +1,6 @@
 //! Positions, speeds and currents of a motor (PLANT F2).
 
+/// The state of a motor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     /// Position of the rotor in full steps.

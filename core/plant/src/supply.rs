@@ -4,10 +4,13 @@ use crate::{parameters, root::square_root};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Supply {
+    /// Bus voltage in V.
     pub(crate) v: f64,
     /// Current of the drivers in the last grid step, in A.
     pub(crate) i_load: f64,
+    /// Idle current of all drivers in A.
     idle: f64,
+    /// Grid step in s.
     h: f64,
     supply_v: f64,
     source_ohm: f64,
@@ -26,6 +29,7 @@ impl Supply {
             let hc = h / (uf / 1e6);
             (hc, 0.5 * hc / source_ohm)
         });
+        // With a buffer, the bus is where the source supplies exactly the power of the windings.
         let v = if buffer.is_some() {
             let v_i = supply_v - source_ohm * idle;
             0.5 * (v_i + square_root(v_i * v_i - 4.0 * source_ohm * first_power))
@@ -38,7 +42,7 @@ impl Supply {
         (!v.is_nan()).then_some(new)
     }
 
-    /// Advances to the next point, after a grid step in which the motors took `energy` J.
+    /// Advances to the next point, after a grid step in which the motors took `energy` J; implicit midpoint rule.
     pub(crate) fn advance(&mut self, energy: f64) {
         self.i_load = energy / (self.v * self.h) + self.idle;
         let Some((hc, gg)) = self.buffer else { return };

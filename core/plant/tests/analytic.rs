@@ -26,7 +26,7 @@ fn rings(setup: &Setup, off: f64, cycles: u64) -> Vec<f64> {
     positions
 }
 
-/// Times of the rises through 0, in samples, and the greatest value between them.
+/// Times of the rises through 0, in samples, and the max value between them.
 fn periods(positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut rises = vec![];
     for (index, pair) in positions.windows(2).enumerate() {
@@ -55,7 +55,7 @@ fn a_small_swing_has_its_frequency_and_decrement() {
     near_part(decrement, 0.1182, 0.01);
 }
 
-/// Where the spectrum of `positions` has its greatest value within a fiftieth of `guess`, in Hz.
+/// Where the spectrum of `positions` has its max value within a fiftieth of `guess`, in Hz.
 fn frequency(positions: &[f64], guess: f64) -> f64 {
     let mean = positions.iter().sum::<f64>() / positions.len() as f64;
     let power = |hz: f64| {

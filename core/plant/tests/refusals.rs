@@ -11,63 +11,63 @@ fn refused(setup: &Setup) -> Vec<String> {
 }
 
 #[test]
-fn each_refusal_names_the_field_the_number_and_what_to_give() {
+fn each_error_states_the_field_the_value_and_the_fix() {
     let coupled =
         MotorModel { coupling_n_m_rad: Some(1e5), load_inertia_g_cm2: 10.0, ..MotorModel::default() };
     let rows: Vec<(Setup, &str)> = vec![
-        (Setup::default(), "motors: 0 is out of range; give 1 to 16"),
+        (Setup::default(), "motors: 0 is out of range; use 1 to 16"),
         (
             one(MotorModel { friction_mn_m: -1.0, ..MotorModel::default() }),
-            "motor 0: friction_mn_m: -1 is out of range; give 0 to 1000000",
+            "motor 0: friction_mn_m: -1 is out of range; use 0 to 1000000",
         ),
         (
             one(MotorModel { stiction_mn_m: Some(4.0), ..MotorModel::default() }),
-            "motor 0: stiction_mn_m: 4 is out of range; give 5 to 1000000",
+            "motor 0: stiction_mn_m: 4 is out of range; use 5 to 1000000",
         ),
         (
             one(MotorModel { detent_torque_mn_m: 201.0, ..MotorModel::default() }),
-            "motor 0: detent_torque_mn_m: 201 is out of range; give 0 to 200",
+            "motor 0: detent_torque_mn_m: 201 is out of range; use 0 to 200",
         ),
         (
             one(MotorModel {
                 drive: DriverModel { decay: CurrentDecay::Mixed(1.5), ..DriverModel::default() },
                 ..MotorModel::default()
             }),
-            "motor 0: drive.decay.share: 1.5 is out of range; give 0 to 1",
+            "motor 0: drive.decay.share: 1.5 is out of range; use 0 to 1",
         ),
         (
             Setup {
                 supply: Supply { source_ohm: f64::NAN, ..Supply::default() },
                 ..one(MotorModel::default())
             },
-            "source_ohm: NaN is out of range; give 0.001 to 100",
+            "source_ohm: NaN is out of range; use 0.001 to 100",
         ),
         (
             one(MotorModel { inductance_mh: 0.03, ..MotorModel::default() }),
-            "motor 0: R*h/L is 0.267 at grid steps of 80 cycles; at most 0.25 is exact enough: give a smaller \
+            "motor 0: R*h/L is 0.267 at grid steps of 80 cycles, above the maximum of 0.25; use a smaller \
              step_cycles, or more inductance",
         ),
         (
             one(MotorModel { rotor_inertia_g_cm2: 0.05, ..MotorModel::default() }),
-            "motor 0: 2*pi*f_n*h is 0.266 at grid steps of 80 cycles; at most 0.25 is exact enough: give a smaller \
+            "motor 0: 2*pi*f_n*h is 0.266 at grid steps of 80 cycles, above the maximum of 0.25; use a smaller \
              step_cycles, or more inertia",
         ),
         (
             one(coupled.clone()),
-            "motor 0: h*sqrt(C*(1/M + 1/M_l)) is 1.748 at grid steps of 80 cycles; at most 0.25 is exact enough: give \
-             a smaller step_cycles, or more inertia or a softer coupling",
+            "motor 0: h*sqrt(C*(1/M + 1/M_l)) is 1.748 at grid steps of 80 cycles, above the maximum of 0.25; \
+             use a smaller step_cycles, more inertia, or a softer coupling",
         ),
         (
             one(MotorModel { coupling_n_m_rad: Some(1.0), coupling_un_m_s: 1e8, ..coupled }),
-            "motor 0: h*Cd*(1/M + 1/M_l) is 611.111 at grid steps of 80 cycles; at most 0.25 is exact enough: give a \
-             smaller step_cycles, or more inertia or less damping of the coupling",
+            "motor 0: h*Cd*(1/M + 1/M_l) is 611.111 at grid steps of 80 cycles, above the maximum of 0.25; use a \
+             smaller step_cycles, more inertia, or less damping of the coupling",
         ),
         (
             Setup {
                 supply: Supply { source_ohm: 50.0, buffer_uf: Some(100.0), ..Supply::default() },
                 ..one(MotorModel::default())
             },
-            "through 50 ohm the supply cannot give the 3.6 W that the motors take at rest; give a smaller source_ohm",
+            "50 ohm is too high to supply the 3.6 W of the motors at rest; use a smaller source_ohm",
         ),
     ];
     for (setup, expected) in rows {

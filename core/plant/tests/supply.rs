@@ -32,18 +32,18 @@ fn a_bus_at_rest_stays_where_the_source_and_the_windings_have_it() {
 
 #[test]
 fn a_source_that_takes_nothing_back_lets_the_bus_rise_when_the_motors_brake() {
-    let greatest = |source_sinks| {
+    let max = |source_sinks| {
         let setup = buffered(Supply { source_sinks, ..Supply::default() });
         let mut measures = Measures::new(&Plant::new(&setup).expect("it holds"));
         let plant = run(&setup, &[off()], 160_000, &mut measures);
         // The windings' current has gone back into the buffer: L*I^2/2 of both together.
         assert_eq!((plant.state(0).expect("a motor").i_a, plant.state(0).expect("a motor").i_b), (0.0, 0.0));
         near(plant.energy(0).expect("a motor").error(), 0.0, 1e-5);
-        measures.result(&plant).bus_v.greatest
+        measures.result(&plant).bus_v.max
     };
     // 4.8 mJ into 100 uF at 24 V, less what the windings and diodes lose: some 1.8 V.
-    near(greatest(false), 25.7, 0.2);
-    near(greatest(true), 24.1, 0.1);
+    near(max(false), 25.7, 0.2);
+    near(max(true), 24.1, 0.1);
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
     let result = measures.result(&plant);
     let at = result.collapsed.expect("it collapses");
     assert!(at > 16_000 && at < 160_000, "{at}");
-    assert_eq!(result.bus_v.least, 1.5);
+    assert_eq!(result.bus_v.min, 1.5);
 }
 
 #[test]

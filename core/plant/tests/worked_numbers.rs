@@ -164,19 +164,19 @@ fn resonance_of_full_half_and_sixteenth_steps() {
         rates::resonance(&setup, full_steps_s * f64::from(microsteps)).expect("it holds")
     };
     let rungs = || (5..=100).map(|rung| 4.0 * f64::from(rung));
-    let loses: Vec<f64> = rungs().filter(|&rate| at(1, rate).loses).collect();
+    let loses: Vec<f64> = rungs().filter(|&rate| at(1, rate).loses_steps).collect();
     println!("{loses:?}");
     near(loses[0], 208.0, 4.0);
     near(loses[loses.len() - 1], 252.0, 4.0);
     assert!(loses.windows(2).all(|pair| pair[1] - pair[0] == 4.0), "{loses:?}");
     let (peak, swing) = rungs()
-        .map(|rate| (rate, at(2, rate).swing))
+        .map(|rate| (rate, at(2, rate).peak_to_peak))
         .fold((0.0, 0.0), |most, rung| if rung.1 > most.1 { rung } else { most });
     near(peak, 120.0, 4.0);
     near(swing, 1.96, 0.05);
     for rate in rungs() {
         let found = at(16, rate);
-        assert!(found.swing < 0.05 && !found.loses, "{rate}: {found:?}");
+        assert!(found.peak_to_peak < 0.05 && !found.loses_steps, "{rate}: {found:?}");
     }
 }
 
@@ -198,8 +198,8 @@ fn the_patents_figure_1_one_step_of_the_patent_set() {
     for position in [0, 1, 20, 40, 79] {
         let found = one_step(&patent_plant(1), position);
         near_part(found.rest_a, 0.2167, 0.01);
-        near_part(found.least_a, -0.481, 0.01);
-        near(found.greatest_a, 0.922, 0.017);
+        near_part(found.min_a, -0.481, 0.01);
+        near(found.max_a, 0.922, 0.017);
         near(found.reached.expect("it falls") as f64 / HZ * 1e3, 0.515, 0.006);
         near(found.settled.expect("it settles") as f64 / HZ * 1e3, 0.512, 0.008);
     }
@@ -230,14 +230,14 @@ fn the_patents_figure_2_four_motors_together_and_staggered() {
     near(together.below_a, 2.96, 0.03);
     near(staggered.above_a, 1.07, 0.02);
     near(staggered.below_a, 0.81, 0.02);
-    near(together.greatest_a() / staggered.greatest_a(), 2.96, 0.05);
+    near(together.max_a() / staggered.max_a(), 2.96, 0.05);
 }
 
 #[test]
 fn the_default_motor_in_full_steps_has_nearly_the_same_ratio_but_a_hump_of_its_own() {
     let setup = Setup { motors: vec![full_steps(); 4], ..Setup::default() };
     let [together, staggered] = deviations(&setup);
-    near(together.greatest_a() / staggered.greatest_a(), 2.92, 0.04);
+    near(together.max_a() / staggered.max_a(), 2.92, 0.04);
     let step = one_step(&one(full_steps()), 0);
     near_part(step.reached.expect("it falls") as f64 / HZ * 1e3, 1.19, 0.01);
     assert_eq!(step.settled, None);
@@ -284,12 +284,12 @@ fn a_chopper_at_rest() {
         );
         let late = &currents[20_000..];
         near_part(late.iter().sum::<f64>() / late.len() as f64, mean, 0.005);
-        let (least, most) = late.iter().fold((9.0_f64, 0.0_f64), |(l, m), &i| (l.min(i), m.max(i)));
+        let (min, most) = late.iter().fold((9.0_f64, 0.0_f64), |(l, m), &i| (l.min(i), m.max(i)));
         // Each period has one turn from rising to falling.
         let turns = late.windows(3).filter(|w| w[1] > w[0] && w[1] >= w[2]).count();
         near_part(turns as f64 / (late.len() as f64 / 1e6) / 1e3, khz, 0.01);
         if let Some(swing) = swing {
-            near_part(most - least, swing, 0.03);
+            near_part(most - min, swing, 0.03);
         }
     }
 }
@@ -301,7 +301,7 @@ fn small_currents_do_not_decay_slowly() {
         (chopped(CurrentDecay::Mixed(0.31)), -0.0093, 0.0084),
         (chopped(CurrentDecay::Slow), -0.284, 0.158),
     ];
-    for (drive, least, most) in rows {
+    for (drive, min, most) in rows {
         let motor =
             MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 30_000.0, drive, ..MotorModel::default() };
         let rises: Vec<u64> = (1..=129).map(|k| k * 160_000).collect();
@@ -318,7 +318,7 @@ fn small_currents_do_not_decay_slowly() {
         assert_eq!(errors.len(), 66);
         let (found_least, found_most) =
             errors.iter().fold((9.0_f64, -9.0_f64), |(l, m), &e| (l.min(e), m.max(e)));
-        near_part(found_least, least, 0.2);
+        near_part(found_least, min, 0.2);
         near_part(found_most, most, 0.2);
     }
 }
@@ -330,7 +330,7 @@ fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
     let after = [(100, 0.5), (110, 3.0), (120, 1.5), (130, 1.3), (140, 0.5), (150, 1.1)];
     let samples: Vec<Sample> = rest.chain(after.map(|(c, i)| sample(c, i))).collect();
     let found = StepResponse::of(&samples, 0, 95, 60, 0.2).expect("samples");
-    assert_eq!((found.rest_a, found.least_a, found.greatest_a), (1.0, 0.5, 3.0));
+    assert_eq!((found.rest_a, found.min_a, found.max_a), (1.0, 0.5, 3.0));
     assert_eq!((found.reached, found.settled), (Some(35), Some(45)));
     let cut = StepResponse::of(&samples, 0, 95, 45, 0.2).expect("samples");
     assert_eq!((cut.reached, cut.settled), (Some(35), None), "the last one is still off");

@@ -308,7 +308,7 @@ fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validato
     };
     if !validator.has(&path) {
         match refused.refusal {
-            Refusal::Range { given, least, greatest, .. } => {
+            Refusal::Range { given, min: least, max: greatest, .. } => {
                 validator.add(&path, ValueError::Range { given, least, most: greatest, unit: "" });
             }
             _ => validator.add(&path, Cause::Plant(refused)),
@@ -358,7 +358,7 @@ mod tests {
             ),
             (
                 r#"{"plant":{"buffer_uf":100,"source_ohm":50}}"#.into(),
-                &["plant.source_ohm: through 50 ohm the supply cannot give the 3.6 W"],
+                &["plant.source_ohm: 50 ohm is too high to supply the 3.6 W"],
             ),
             (
                 r#"{"bus":{"channels":2},"plant":{"motors":[{},{"motor":{"supply_v":36,"inductance_mh":0.0001}}]},"source":{"packets":{}}}"#.into(),

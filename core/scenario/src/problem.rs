@@ -132,7 +132,7 @@ impl From<motion::Cause> for Cause {
 impl From<ConfigError> for Cause {
     fn from(error: ConfigError) -> Self {
         match error {
-            ConfigError::Range { given, least, most, unit } => {
+            ConfigError::Range { given, min: least, max: most, unit } => {
                 let (given, least, most) = (given as f64, least as f64, most as f64);
                 Self::Value(ValueError::Range { given, least, most, unit })
             }

@@ -114,7 +114,7 @@ impl Controllers {
 
     pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
         if let Some(device) = self.bus.device_mut(controller) {
-            device.settles_in(found);
+            device.set_settling_time(found);
         }
     }
 }

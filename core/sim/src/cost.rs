@@ -207,7 +207,7 @@ fn max_received(checked: &CheckedScenario, config: &Config, bytes: usize) -> u64
 /// Two records per pulse, or per slot where pulses coincide, and the changes of DIR.
 fn records_of(config: &Config, pulses: u64) -> u64 {
     let slots = pulses.min(u64::from(config.slots()));
-    match (config.pulse_phasing(), config.dir_line()) {
+    match (config.bus().pulse_phasing, config.bus().dir_line) {
         (PulsePhasing::Simultaneous, DirLine::PerChannel) => 2 * slots + 1,
         (PulsePhasing::Simultaneous, DirLine::Common) => 6 * slots,
         (PulsePhasing::Staggered, DirLine::PerChannel) => 2 * pulses + 1,

@@ -337,7 +337,7 @@ mod tests {
                 self.0.push(record);
             }
 
-            fn paused(&self) -> bool {
+            fn is_paused(&self) -> bool {
                 self.0.len() >= 50
             }
         }

@@ -196,7 +196,7 @@ impl<S: Sink> Sink for Slice<'_, S> {
         self.sink.event(at, event);
     }
 
-    fn paused(&self) -> bool {
+    fn is_paused(&self) -> bool {
         self.left == 0
     }
 }

@@ -19,7 +19,7 @@ impl Cost {
         let mut tried = StandAlone::new(controllers);
         let mut counted = Counted(0);
         let until = run.map_or(Instant::NEVER, |Cycles(run)| Instant(run));
-        let is_short = tried.run_events(until, MAX_TRIED_EVENTS, &mut counted) && !counted.paused();
+        let is_short = tried.run_events(until, MAX_TRIED_EVENTS, &mut counted) && !counted.is_paused();
         if let Some(work) = tried.work() {
             let path = format!("source.standalone[{}].groups", work.controller);
             return Err(vec![Problem::new(path, Cause::Work(work))]);
@@ -52,7 +52,7 @@ impl Sink for Counted {
         self.0 += 1;
     }
 
-    fn paused(&self) -> bool {
+    fn is_paused(&self) -> bool {
         self.0 > BUDGET_RECORDS
     }
 }

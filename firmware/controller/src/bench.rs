@@ -1,12 +1,12 @@
 //! A simulated chip for tests: button presses, recorded pins, an EEPROM with write times, a limit switch, and late
-//! interrupts. Time passes only in [`Bench::sleep`]. With timely interrupts its edges equal the simulation's.
+//! interrupts. Time passes only in [`Bench::sleep`]. Without late interrupts its edges equal those of the simulation.
 //!
 //! ```
 //! use stepscope_controller::{chip::Chip, parameters::Setup};
 //! use stepscope_controller_firmware::bench::Bench;
 //! use stepscope_peripheral::{signal::Record, units::Instant};
 //!
-//! let checked = Setup::default().check().expect("the defaults hold");
+//! let checked = Setup::default().check().expect("valid defaults");
 //! let mut bench = Bench::new(&checked, [], Vec::<Record>::new());
 //! bench.begin_byte(3, 0x20);
 //! // The chip requested tick 7 and wakes two ticks late.
@@ -41,6 +41,7 @@ struct Byte {
     begun: u64,
 }
 
+/// The simulated chip; `S` receives the edges of its pins.
 #[derive(Clone, Debug)]
 pub struct Bench<S> {
     now: u64,
@@ -48,10 +49,13 @@ pub struct Bench<S> {
     /// The next one last.
     presses: Vec<Input>,
     pins: Option<Levels>,
+    /// Receives the edges of the pins.
     pub sink: S,
+    /// Changes of the panel so far.
     pub shown: Vec<PanelRecord>,
     memory: Vec<u8>,
     writing: Option<Byte>,
+    /// Write time of the EEPROM per byte, in ticks.
     pub byte_write_ticks: u64,
     /// Position of the axis in steps.
     pub position: i64,
@@ -95,7 +99,7 @@ impl<S: Sink> Bench<S> {
 
     /// Cuts the power in this tick: a byte being written is cut, and all pins fall in the next tick.
     pub fn power_off(&mut self) {
-        self.settle();
+        self.complete_write();
         if let Some(Byte { address, byte, begun }) = self.writing.take()
             && let Some(cell) = self.memory.get_mut(address)
             && self.now > begun
@@ -107,13 +111,15 @@ impl<S: Sink> Bench<S> {
         self.write_pins(Levels(Levels::RX | Levels::TX));
     }
 
+    /// Levels of the inputs, with the home switch at the present position.
     fn with_switch(&self) -> RawLevels {
         self.home_switch.map_or(self.levels, |(from, to)| {
             self.levels.with(Signal::HomeSwitch, (from..=to).contains(&self.position))
         })
     }
 
-    fn settle(&mut self) {
+    /// Completes a write whose time has passed.
+    fn complete_write(&mut self) {
         let done = self.writing.take_if(|writing| writing.begun + self.byte_write_ticks <= self.now);
         if let Some(Byte { address, byte, .. }) = done
             && let Some(cell) = self.memory.get_mut(address)
@@ -154,18 +160,18 @@ impl<S: Sink> Chip for Bench<S> {
     }
 
     fn read_byte(&mut self, address: usize) -> u8 {
-        self.settle();
+        self.complete_write();
         self.memory.get(address).copied().unwrap_or(ERASED)
     }
 
     fn begin_byte(&mut self, address: usize, byte: u8) {
-        self.settle();
+        self.complete_write();
         debug_assert!(self.writing.is_none(), "a byte is being written");
         self.writing = Some(Byte { address, byte, begun: self.now });
     }
 
     fn is_writing(&mut self) -> bool {
-        self.settle();
+        self.complete_write();
         self.writing.is_some()
     }
 }

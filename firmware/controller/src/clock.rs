@@ -1,5 +1,5 @@
-//! Extends a timer of up to 32 bits to 64. Read it at least once per turn of the counter; [`Clock::nap`] limits sleeps
-//! accordingly.
+//! Extends a timer of up to 32 bits to 64. Read it at least once per turn of the counter; [`Clock::sleep_time`] limits
+//! sleeps accordingly.
 //!
 //! ```
 //! use stepscope_controller_firmware::clock::Clock;
@@ -12,6 +12,7 @@
 
 use stepscope_peripheral::units::{Cycles, Instant};
 
+/// A timer of 64 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     mask: u32,
@@ -35,7 +36,7 @@ impl Clock {
 
     /// Time to sleep until `wake`, at most half a turn of the counter.
     #[must_use]
-    pub fn nap(&self, wake: Option<Instant>) -> Cycles {
+    pub fn sleep_time(&self, wake: Option<Instant>) -> Cycles {
         let max = u64::from(self.mask / 2);
         Cycles(wake.map_or(max, |wake| wake.0.saturating_sub(self.tick).min(max)))
     }
@@ -46,26 +47,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_timer_of_any_width_is_counted_on_over_many_rounds() {
+    fn ticks_continue_over_many_turns_of_a_timer_of_any_width() {
         for bits in [8, 16, 24, 32] {
             let (mut clock, mut tick) = (Clock::new(bits), 0_u64);
-            let round = 1_u64 << bits;
-            for step in [0, 1, round - 1, round / 2, round / 3, round - 1, 7] {
+            let turn = 1_u64 << bits;
+            for step in [0, 1, turn - 1, turn / 2, turn / 3, turn - 1, 7] {
                 tick += step;
-                assert_eq!(clock.tick((tick % round) as u32), Instant(tick), "{bits} bits, {step}");
+                assert_eq!(clock.tick((tick % turn) as u32), Instant(tick), "{bits} bits, {step}");
             }
         }
     }
 
     #[test]
-    fn nobody_sleeps_through_a_round_of_the_counter() {
+    fn sleep_times_are_at_most_half_a_turn_of_the_counter() {
         let mut clock = Clock::new(24);
         let now = clock.tick(1000).0;
         for (wake, expected) in
             [(Some(now + 50), 50), (Some(now), 0), (Some(3), 0), (Some(now + (1 << 30)), 0x7f_ffff)]
         {
-            assert_eq!(clock.nap(wake.map(Instant)), Cycles(expected));
+            assert_eq!(clock.sleep_time(wake.map(Instant)), Cycles(expected));
         }
-        assert_eq!(clock.nap(None), Cycles(0x7f_ffff));
+        assert_eq!(clock.sleep_time(None), Cycles(0x7f_ffff));
     }
 }

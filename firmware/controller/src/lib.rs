@@ -2,7 +2,6 @@
 #![doc = ""]
 #![doc = include_str!("../README.md")]
 #![no_std]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

@@ -47,10 +47,11 @@ pub fn levels(contacts: &[Contact], port: u32) -> RawLevels {
     })
 }
 
-// Bits of the output port.
+/// STEP in the output port.
 pub const STEP: u32 = 1 << 0;
+/// DIR in the output port.
 pub const DIR: u32 = 1 << 1;
-/// The driver's enable input, active low.
+/// The driver's enable input in the output port, active low.
 pub const NOT_EN: u32 = 1 << 2;
 
 /// Value of the output port.
@@ -75,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_contact_keeps_its_level() {
+    fn signals_without_a_contact_keep_their_default_level() {
         let levels = levels(&[Contact::opens(Signal::LimitMax, 31)], 1 << 31);
         assert!(levels.level(Signal::Power) && levels.level(Signal::LimitMax));
         assert!(!levels.level(Signal::Start));

@@ -1,6 +1,6 @@
-//! The program on the simulated chip: the simulation's edges and panel; late interrupts only delay edges; a correct
-//! memory after any power cut.
-#![allow(clippy::expect_used, reason = "what is refused fails the test")]
+//! Runs the program on the simulated chip: edges and panel equal those of the simulation, late interrupts only delay edges,
+//! and the memory is correct after any power cut.
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use core::ops::ControlFlow;
 use stepscope_controller::{
@@ -52,17 +52,17 @@ fn cases() -> [Case; 8] {
     ]
 }
 
-/// Splits a scenario without axis and script from its script: the chip has its own.
+/// The setup of a scenario without its axis, and its script of inputs: the chip gets both separately.
 fn split(json: &str) -> (CheckedSetup, Vec<Input>) {
-    let experiment = Experiment::from_json(json).expect("it has no problems");
-    let mut setup = experiment.stand_alone().expect("it has controllers").setup();
+    let experiment = Experiment::from_json(json).expect("a valid scenario");
+    let mut setup = experiment.stand_alone().expect("controllers").setup();
     let inputs = std::mem::take(&mut setup.controllers[0].inputs);
     setup.controllers[0].axis = None;
-    (setup.check().expect("it holds"), inputs)
+    (setup.check().expect("a valid setup"), inputs)
 }
 
 fn checked(parameters: Parameters) -> CheckedSetup {
-    Setup { controllers: vec![parameters], ..Setup::default() }.check().expect("it holds")
+    Setup { controllers: vec![parameters], ..Setup::default() }.check().expect("a valid setup")
 }
 
 fn level(cycle: u64, signal: Signal, level: bool) -> Input {
@@ -75,9 +75,9 @@ fn start() -> [Input; 2] {
 }
 
 /// Repeatable random numbers (xorshift64).
-struct Dice(u64);
+struct Random(u64);
 
-impl Dice {
+impl Random {
     fn below(&mut self, limit: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -87,20 +87,20 @@ impl Dice {
 }
 
 #[test]
-fn the_pins_and_the_panel_of_a_chip_are_those_of_the_simulation() {
+fn pins_and_panel_equal_those_of_the_simulation() {
     for (json, digest, status) in cases() {
         let (checked, inputs) = split(json);
         let mut chip = Bench::new(&checked, inputs, Digest::default());
-        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
         assert_eq!(format!("{:016x}", chip.sink.value()), digest.trim(), "{json}");
         let panels = format!("panels {:016x}", panel::digest([chip.shown.as_slice()]));
-        assert!(status.lines().any(|line| line == panels), "{panels} is not that of {json}");
+        assert!(status.lines().any(|line| line == panels), "{panels} differs from {json}");
         assert_eq!(runner.lateness().total.0, 0);
     }
 }
 
 #[test]
-fn a_chip_that_dies_and_starts_anew_has_the_same_edges() {
+fn a_power_cut_and_restart_have_the_edges_of_the_simulation() {
     let (checked, inputs) = split(POWER_CUT.0);
     let (dies, back) = (Instant(11_200_000 + 3_200_000), Instant(27_200_000));
     let mut chip = Bench::new(&checked, inputs, Digest::default());
@@ -111,39 +111,39 @@ fn a_chip_that_dies_and_starts_anew_has_the_same_edges() {
             if chip.now() == dies { ControlFlow::Break(()) } else { chip.sleep(wake, 0) }
         },
     )
-    .expect("it runs");
+    .expect("one controller");
     chip.power_off();
     // It wakes in the cycle after power returns, like a machine without power.
     while chip.now() <= back {
         let _ = chip.sleep(Some(Instant(back.0 + 1)), 0);
         chip.inputs();
     }
-    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
     assert_eq!(format!("{:016x}", chip.sink.value()), POWER_CUT.1.trim());
     assert_eq!(runner.machine().position(0).map(i64::from), Some(chip.position));
 }
 
 #[test]
-fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
+fn late_interrupts_delay_edges_without_losing_or_crowding_them() {
     let (checked, inputs) = split(PROGRAM.0);
     let mut in_time = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
-    run(&mut in_time, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    run(&mut in_time, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
     // From less than a pulse to more than a step interval.
-    for most in [30, 500, 20_000] {
-        let mut dice = Dice(most);
+    for max_late in [30, 500, 20_000] {
+        let mut random = Random(max_late);
         let mut chip = Bench::new(&checked, inputs.clone(), Vec::<Record>::new());
         let mut totals = Vec::new();
         let runner = run(&mut chip, &checked, |chip, runner, wake| {
             totals.resize(chip.sink.len(), runner.lateness().total.0);
-            chip.sleep(wake, dice.below(most + 1))
+            chip.sleep(wake, random.below(max_late + 1))
         })
-        .expect("it runs");
-        assert_eq!(chip.sink.len(), in_time.sink.len(), "{most}");
+        .expect("one controller");
+        assert_eq!(chip.sink.len(), in_time.sink.len(), "{max_late}");
         assert_eq!((chip.position, runner.machine().position(0)), (in_time.position, Some(0)));
         let lateness = runner.lateness();
-        assert!(lateness.worst.0 <= most && lateness.total >= lateness.worst && lateness.total.0 > 0);
+        assert!(lateness.worst.0 <= max_late && lateness.total >= lateness.worst && lateness.total.0 > 0);
 
-        // In the machine's own time all edges after the press stay the same, however late it is.
+        // Without the lateness all edges after the press have the same cycles.
         let cycle = |index: usize| (chip.sink[index].cycle.0 - totals[index]).cast_signed();
         let press = cycle(1) - in_time.sink[1].cycle.0.cast_signed();
         for (index, (edge, expected)) in chip.sink.iter().zip(&in_time.sink).enumerate().skip(1) {
@@ -157,12 +157,12 @@ fn late_interrupts_make_edges_late_and_no_edge_is_lost_or_too_close() {
 }
 
 #[test]
-fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
-    let mut dice = Dice(2012);
+fn the_eeprom_is_correct_after_a_power_cut_in_any_tick() {
+    let mut random = Random(2012);
     let (mut known, mut lost) = (0, 0);
     for policy in [Policy::PowerLoss, Policy::WriteAhead] {
         for round in 0..400 {
-            // A byte takes 1000 ticks by the data sheet; test twice that, too.
+            // The data sheet allows 1000 ticks per byte; the test uses up to twice as many.
             let memory =
                 Memory { policy, byte_write_cycles: 1000, hold_up_cycles: 18_000, ..Memory::default() };
             let long = Move { length: 5, speed_hz: 1000, delay_ms: 3, ..Move::default() };
@@ -176,23 +176,23 @@ fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
                 ..Parameters::default()
             });
             // Start at tick 30 000; the program ends about 2.4 million later. The cut may be announced.
-            let (cut, is_announced) = (20_000 + dice.below(4_000_000), round % 2 == 0);
+            let (cut, is_announced) = (20_000 + random.below(4_000_000), round % 2 == 0);
             let mut inputs = vec![level(30_000, Signal::Start, true), level(40_000, Signal::Start, false)];
             if is_announced {
                 inputs.push(level(cut, Signal::Power, false));
             }
             let mut chip = Bench::new(&checked, inputs, Digest::default());
-            chip.byte_write_ticks = 500 + dice.below(1500);
-            let dies = cut + if is_announced { dice.below(36_000) } else { 0 };
-            let most = [1, 30, 2000][round % 3];
+            chip.byte_write_ticks = 500 + random.below(1500);
+            let dies = cut + if is_announced { random.below(36_000) } else { 0 };
+            let max_late = [1, 30, 2000][round % 3];
             run(&mut chip, &checked, |chip, _, wake| {
                 let wake = wake.map_or(dies, |wake| wake.0.min(dies));
-                let slept = chip.sleep(Some(Instant(wake)), dice.below(most));
+                let slept = chip.sleep(Some(Instant(wake)), random.below(max_late));
                 if chip.now().0 >= dies { ControlFlow::Break(()) } else { slept }
             })
-            .expect("it runs");
+            .expect("one controller");
             chip.power_off();
-            let runner = Runner::power_up(chip.now(), &checked, &mut chip).expect("it runs");
+            let runner = Runner::power_up(chip.now(), &checked, &mut chip).expect("one controller");
             match runner.machine().believed_after_power_up(0) {
                 Some((position, 1..)) => {
                     assert_eq!(i64::from(position), chip.position, "{policy:?} {round}: cut in {cut}");
@@ -202,11 +202,11 @@ fn what_the_eeprom_says_after_a_cut_in_any_tick_is_true() {
             }
         }
     }
-    assert!(known > 100 && lost > 100, "both are to be seen: {known} known, {lost} lost");
+    assert!(known > 100 && lost > 100, "both outcomes must occur: {known} known, {lost} lost");
 }
 
 #[test]
-fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
+fn no_step_rises_before_a_slow_eeprom_has_stored_the_opening_record() {
     for policy in [Policy::PowerLoss, Policy::WriteAhead] {
         let memory = Memory { policy, byte_write_cycles: 1000, ..Memory::default() };
         let group = Group::Move(Move { length: 1, ..Move::default() });
@@ -214,7 +214,7 @@ fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
         let inputs = [level(10_000, Signal::Start, true), level(400_000, Signal::Start, false)];
         let mut chip = Bench::new(&checked, inputs, Vec::<Record>::new());
         chip.byte_write_ticks = 50_000;
-        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
         let first = chip.sink.iter().find(|edge| edge.levels.step() != 0).map(|edge| edge.cycle.0);
         // With `power_loss` the record is written in the self-test, during the press.
         let expected = (policy == Policy::WriteAhead).then_some(10_000 + 16 * 50_000);
@@ -225,56 +225,65 @@ fn no_step_rises_before_a_slow_eeprom_has_the_opening_record() {
 }
 
 #[test]
-fn what_is_held_at_power_up_is_no_press_and_an_emergency_stop_keeps_the_driver_off() {
+fn buttons_held_at_power_up_are_no_presses_but_an_emergency_stop_disables_the_driver() {
     let rows = [(Signal::Start, State::Ready, true), (Signal::Estop, State::Alarm, false)];
     for (signal, expected, is_on) in rows {
         let checked = checked(Parameters::default());
         let mut chip = Bench::new(&checked, [level(0, signal, true)], Vec::<Record>::new());
-        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
         assert_eq!(runner.machine().state(0), Some(expected), "{signal:?}");
         assert!(chip.sink.iter().all(|edge| edge.levels.has(Levels::EN) == is_on && edge.levels.step() == 0));
     }
 }
 
 #[test]
-fn a_limit_switch_that_is_closed_at_power_up_counts() {
+fn a_limit_switch_closed_at_power_up_raises_an_alarm() {
     let checked = checked(Parameters::default());
     let closed = level(0, Signal::LimitMax, true);
     let mut chip = Bench::new(&checked, start().into_iter().chain([closed]), Digest::default());
-    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("it runs");
+    let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, 0)).expect("one controller");
     assert_eq!((runner.machine().alarm(0), chip.position), (Some(Alarm::Limit), 0));
 }
 
 #[test]
-fn an_emergency_stop_acts_at_once_however_late_the_chip_is() {
+fn an_emergency_stop_takes_effect_at_the_next_poll() {
     let checked = checked(Parameters::default());
-    for most in [0, 7, 3000, 100_000] {
+    for max_late in [0, 7, 3000, 100_000] {
         let pressed = 12_345_678;
         let inputs = start().into_iter().chain([level(pressed, Signal::Estop, true)]);
-        let (mut chip, mut dice) = (Bench::new(&checked, inputs, Vec::<Record>::new()), Dice(7));
-        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, dice.below(most + 1))).expect("it runs");
-        let off = chip.sink.iter().find(|edge| !edge.levels.has(Levels::EN)).expect("it stops");
-        assert!((pressed + 1..=pressed + 1 + 2 * most).contains(&off.cycle.0), "{most}: {}", off.cycle.0);
+        let (mut chip, mut random) = (Bench::new(&checked, inputs, Vec::<Record>::new()), Random(7));
+        run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, random.below(max_late + 1)))
+            .expect("one controller");
+        let off = chip.sink.iter().find(|edge| !edge.levels.has(Levels::EN)).expect("EN falls");
+        assert!(
+            (pressed + 1..=pressed + 1 + 2 * max_late).contains(&off.cycle.0),
+            "{max_late}: {}",
+            off.cycle.0
+        );
         assert_eq!((off.levels.step(), chip.sink.last()), (0, Some(off)));
     }
 }
 
 #[test]
-fn homing_to_a_real_switch_finds_its_position() {
+fn homing_finds_the_position_of_a_real_switch() {
     let json = include_str!("../../../core/scenario/presets/controller-homing.json");
-    for most in [0, 40, 5000] {
+    for max_late in [0, 40, 5000] {
         let (checked, inputs) = split(json);
-        let (mut chip, mut dice) = (Bench::new(&checked, inputs, Digest::default()), Dice(9));
+        let (mut chip, mut random) = (Bench::new(&checked, inputs, Digest::default()), Random(9));
         (chip.position, chip.home_switch) = (800, Some((-30, 0)));
-        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, dice.below(most + 1)))
-            .expect("it runs");
+        let runner = run(&mut chip, &checked, |chip, _, wake| chip.sleep(wake, random.below(max_late + 1)))
+            .expect("one controller");
         let machine = runner.machine();
-        assert_eq!((machine.position(0), machine.trust(0), chip.position), (Some(0), Some(2), 0), "{most}");
+        assert_eq!(
+            (machine.position(0), machine.trust(0), chip.position),
+            (Some(0), Some(2), 0),
+            "{max_late}"
+        );
     }
 }
 
 #[test]
-fn a_program_that_goes_round_for_ever_does_not_stop_a_chip_and_fills_no_memory() {
+fn an_endless_program_neither_blocks_the_chip_nor_fills_its_memory() {
     let groups = vec![Group::Jump(Jump::default())];
     let checked = checked(Parameters { groups, debounce_cycles: 0, ..Parameters::default() });
     let (mut chip, mut polls) = (Bench::new(&checked, start(), Digest::default()), 0);
@@ -282,18 +291,18 @@ fn a_program_that_goes_round_for_ever_does_not_stop_a_chip_and_fills_no_memory()
         polls += 1;
         if polls > 1_100_000 { ControlFlow::Break(()) } else { chip.sleep(wake, 0) }
     })
-    .expect("it runs");
+    .expect("one controller");
     let machine = runner.machine();
     assert_eq!((machine.state(0), machine.work(), machine.panel(0).len()), (Some(State::Running), None, 0));
 }
 
 #[test]
-fn a_chip_has_one_controller_and_real_switches() {
+fn several_controllers_and_virtual_axes_are_refused() {
     let two = Setup { channels: 2, controllers: vec![Parameters::default(); 2], ..Setup::default() };
     let axis = Parameters { axis: Some(Axis::default()), ..Parameters::default() };
     for (checked, expected, text) in [
         (
-            two.check().expect("it holds"),
+            two.check().expect("a valid setup"),
             NotRunnable::Controllers(2),
             "2 controllers; a chip runs one: give it its own",
         ),
@@ -307,14 +316,14 @@ fn a_chip_has_one_controller_and_real_switches() {
 }
 
 #[test]
-fn a_poll_too_early_or_twice_in_a_tick_changes_nothing() {
+fn early_and_repeated_polls_have_no_effect() {
     let (checked, inputs) = split(POWER_CUT.0);
     let mut chip = Bench::new(&checked, inputs, Digest::default());
-    let mut dice = Dice(3);
+    let mut random = Random(3);
     run(&mut chip, &checked, |chip, _, wake| {
-        let early = wake.map(|wake| Instant(wake.0 - dice.below(wake.0 - chip.now().0 + 1)));
+        let early = wake.map(|wake| Instant(wake.0 - random.below(wake.0 - chip.now().0 + 1)));
         chip.sleep(early, 0)
     })
-    .expect("it runs");
+    .expect("one controller");
     assert_eq!(format!("{:016x}", chip.sink.value()), POWER_CUT.1.trim());
 }

@@ -84,7 +84,7 @@ impl Board {
     fn sleep(&mut self, wake: Option<Instant>) {
         let panel = self.panel;
         let now = self.now();
-        let until = now + self.clock.nap(wake);
+        let until = now + self.clock.sleep_time(wake);
         while self.now() < until && self.panel == panel {}
     }
 

@@ -108,7 +108,7 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
         page.until_equal(COUNT, &json!(format!("0 of {all} on the line"))).await?;
         page.choose("#packets-by-outcome", "good").await?;
         let replies =
-            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Reply(reply) if reply.answer.is_ok()));
+            with(&|row| matches!(log.rows()[row].outcome, RowOutcome::Reply(reply) if reply.result.is_ok()));
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", replies.len()))).await?;
         page.picture("packets-filtered").await
     })

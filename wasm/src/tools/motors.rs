@@ -126,11 +126,11 @@ impl ValidatedScenario {
         let found: Vec<_> =
             rates.map(|rate| resonance(&setup, rate)).collect::<Result<_, _>>().map_err(refused)?;
         let result = Object::new();
-        numbers(&result, "swing", &found.iter().map(|one| one.swing).collect::<Vec<_>>());
+        numbers(&result, "swing", &found.iter().map(|one| one.peak_to_peak).collect::<Vec<_>>());
         numbers(
             &result,
             "loses",
-            &found.iter().map(|one| f64::from(u8::from(one.loses))).collect::<Vec<_>>(),
+            &found.iter().map(|one| f64::from(u8::from(one.loses_steps))).collect::<Vec<_>>(),
         );
         Ok(result)
     }
@@ -151,8 +151,8 @@ impl ValidatedScenario {
         let cycles = |cycles: Option<u64>| cycles.map(|cycles| cycles as f64);
         for (name, value) in [
             ("rest_a", Some(found.rest_a)),
-            ("least_a", Some(found.least_a)),
-            ("greatest_a", Some(found.greatest_a)),
+            ("least_a", Some(found.min_a)),
+            ("greatest_a", Some(found.max_a)),
             ("reached_cycles", cycles(found.reached)),
             ("settled_cycles", cycles(found.settled)),
             ("slot_cycles", Some(slot as f64)),

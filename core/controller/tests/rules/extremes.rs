@@ -25,7 +25,7 @@ impl Sink for Few {
         self.0 = self.0.saturating_sub(1);
     }
 
-    fn paused(&self) -> bool {
+    fn is_paused(&self) -> bool {
         self.0 == 0
     }
 }

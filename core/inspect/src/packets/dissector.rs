@@ -64,7 +64,7 @@ impl Head {
         let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
         match outcome {
             RowOutcome::Reply(reply) => {
-                let kind = reply.answer.map_or(NAK, |kind| kind as u8 | ACK);
+                let kind = reply.result.map_or(NAK, |kind| kind as u8 | ACK);
                 return Some(Self { address: reply.address, kind });
             }
             RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => return None,
@@ -169,7 +169,7 @@ impl Content {
                 None => content.overhead.push((at, byte)),
             }
         }
-        content.whole = range.is_empty() || reader.is_whole();
+        content.whole = range.is_empty() || reader.is_complete();
         content.offsets.push(range.end);
         content
     }
@@ -243,7 +243,7 @@ fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
 
 fn reply_fields(reply: &Reply, positions: Option<&Positions>, add: &mut Add<'_>) {
     let mut at = 2;
-    if let Err(reason) = reply.answer {
+    if let Err(reason) = reply.result {
         add("reason".into(), 2..3, reason_to_text(reason));
         at = 3;
     }

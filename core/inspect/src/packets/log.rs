@@ -232,7 +232,7 @@ impl PacketLog {
             _ => 0,
         };
         self.waiting.extend(core::iter::repeat_n(Some(self.rows.len()), queued));
-        if outcome == RowOutcome::Frame(FrameOutcome::Taken(Kind::Stop)) {
+        if outcome == RowOutcome::Frame(FrameOutcome::Executed(Kind::Stop)) {
             self.stop(end);
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
@@ -262,21 +262,21 @@ impl Sink for PacketLog {
 
     fn event(&mut self, at: Instant, event: Event) {
         match event {
-            Event::Byte { seen, byte } => {
+            Event::Byte { start: seen, byte } => {
                 self.open.get_or_insert(seen);
                 self.bytes.push(byte);
                 self.seen.push(seen);
                 self.last = at;
             }
             // On a framed line only the byte is missing, and the CRC detects that.
-            Event::FramingError { seen, drops: false } => self.broken.push(seen),
-            Event::FramingError { seen, .. } => {
+            Event::FramingError { start: seen, is_dropping: false } => self.broken.push(seen),
+            Event::FramingError { start: seen, .. } => {
                 self.broken.push(seen);
                 self.open.get_or_insert(seen);
                 self.close(at, RowOutcome::Framing);
                 self.ignoring = true;
             }
-            Event::Gap { short } => {
+            Event::Gap { cuts_packet: short } => {
                 if self.open.is_some() {
                     self.close(at, if short { RowOutcome::Short } else { RowOutcome::Ignored });
                 }
@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
         let packet =
-            |seen| [Event::Byte { seen: Instant(seen), byte: 1 }, Event::Packet(PacketOutcome::Queued)];
+            |seen| [Event::Byte { start: Instant(seen), byte: 1 }, Event::Packet(PacketOutcome::Queued)];
         let [start, pushed] = [Event::TickStart { commands: [0; 16] }, Event::Pushed];
         let (first, second) = (packet(10), packet(20));
         let events = [first[0], first[1], pushed, second[0], second[1], start, start, Event::Stopped];
@@ -353,10 +353,10 @@ mod tests {
             faults: 0,
             ticks_done: 3,
         };
-        let reply = Reply { address: 1, answer: Ok(Kind::Ticks), status };
+        let reply = Reply { address: 1, result: Ok(Kind::Ticks), status };
         let mut log = PacketLog::default();
         for seen in [10, 200] {
-            log.event(Instant(seen + 5), Event::Byte { seen: Instant(seen), byte: seen as u8 });
+            log.event(Instant(seen + 5), Event::Byte { start: Instant(seen), byte: seen as u8 });
             log.event(Instant(seen + 6), Event::Frame(FrameOutcome::Queued(1)));
             let (start, end) = (Instant(seen + 50), Instant(seen + 90));
             log.event(Instant(seen + 6), Event::Reply { start, end, reply, positions: None });
@@ -414,9 +414,9 @@ mod tests {
     fn finished_rows_are_sorted_with_their_bytes_and_ticks() {
         let mut log = PacketLog::default();
         let events = [
-            (20, Event::Byte { seen: Instant(10), byte: 1 }),
+            (20, Event::Byte { start: Instant(10), byte: 1 }),
             (25, Event::Collision),
-            (30, Event::Byte { seen: Instant(22), byte: 2 }),
+            (30, Event::Byte { start: Instant(22), byte: 2 }),
             (30, Event::Packet(PacketOutcome::Queued)),
             (31, Event::TickStart { commands: [0; 16] }),
         ];
@@ -447,7 +447,7 @@ mod tests {
         };
 
         let mut log = PacketLog::default();
-        log.event(Instant(15), Event::Byte { seen: Instant(10), byte: 0x85 });
+        log.event(Instant(15), Event::Byte { start: Instant(10), byte: 0x85 });
         log.event(Instant(15), Event::Packet(PacketOutcome::Queued));
         assert_eq!(
             (log.rows()[0].outcome, log.bytes(0)),

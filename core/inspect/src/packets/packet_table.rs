@@ -131,7 +131,7 @@ impl<'a> PacketTable<'a> {
     /// Whether another controller sent a row of a framed line: neither the host nor a forced level began it.
     fn is_of_another_controller(&self, index: usize, row: &LoggedPacket) -> bool {
         let first = self.log.seen(index).first().copied().unwrap_or(row.start);
-        let of_host = self.run.schedule().last_until(first + self.own.bit()).is_some_and(|send| {
+        let of_host = self.run.schedule().last_at_or_before(first + self.own.bit()).is_some_and(|send| {
             let sent = self.host_times().bytes(send.bytes.len() as u64);
             first <= send.start + sent
         });

@@ -110,7 +110,7 @@ pub fn agreement(
         (true, true) | (false, false) => None,
         (true, false) => {
             let rate = slips.rate(channel, clock_hz);
-            Some(why_it_slips(machine, demand, motor, rate, (result.bus_v.least, setup.supply.supply_v)))
+            Some(why_it_slips(machine, demand, motor, rate, (result.bus_v.min, setup.supply.supply_v)))
         }
         (false, true) => Some(why_it_follows(machine, demand, found)),
     };
@@ -179,7 +179,7 @@ fn why_it_follows(machine: &Machine, demand: &Demand, found: &MotorResult) -> St
         "the shortage lasts {:.2} ms in all; the rotor falls behind by up to {:.2} full steps and recovers before it loses \
          any",
         1e3 * lasts,
-        found.following_error.0.abs()
+        found.following_error.value.abs()
     )
 }
 

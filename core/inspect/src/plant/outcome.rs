@@ -13,7 +13,7 @@ use stepscope_peripheral::{
 };
 use stepscope_plant::{
     Plant, Refused,
-    measures::MotorResult,
+    measures::{MotorResult, Peak},
     parameters::Setup,
     settling::{REST_STEPS, SensorLog, StepResponse},
 };
@@ -30,8 +30,8 @@ const TURN_DEG: f64 = 360.0;
 pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
     let motor = setup.motors.get(channel)?;
     let step_s = f64::from(setup.grid_cycles()) / f64::from(setup.clock_hz);
-    let (fastest, cycle) = found.fastest;
-    let (of_rotor, of_load) = (fastest * step_s, found.fastest_load * step_s);
+    let Peak { value: fastest, cycle } = found.max_speed;
+    let (of_rotor, of_load) = (fastest * step_s, found.max_load_speed * step_s);
     let half_turning = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
     let what = if of_rotor > HALF_PERIOD {
         format!(
@@ -70,8 +70,8 @@ pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
             format!("slips and recovers; first at {:.2} ms in step {step}", ms(slip.cycle))
         }
         Some(slip) => format!("loses {lost} full steps, first at {:.2} ms in step {step}", ms(slip.cycle)),
-        None if motor.following_error.0.abs() >= FAR => {
-            format!("follows, up to {:.2} full steps behind", motor.following_error.0.abs())
+        None if motor.following_error.value.abs() >= FAR => {
+            format!("follows, up to {:.2} full steps behind", motor.following_error.value.abs())
         }
         None => "follows".to_string(),
     }

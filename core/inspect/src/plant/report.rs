@@ -4,7 +4,7 @@ use crate::plant::outcome::{energy_left_over, too_coarse, verdict};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_plant::{
-    measures::{MotorResult, PlantResult},
+    measures::{MotorResult, Peak, PlantResult},
     parameters::Setup,
 };
 use stepscope_sim::{Experiment, Run};
@@ -108,13 +108,13 @@ fn whole(result: &PlantResult, controller: usize, clock_hz: f64, overload_cycle:
         controller,
         digest: format!("{:016x}", result.digest),
         cycle: result.cycle,
-        load_least_a: load.least,
-        load_greatest_a: load.greatest,
+        load_least_a: load.min,
+        load_greatest_a: load.max,
         load_rms_a: load.rms(),
         deviation_above_a: result.deviation.map(|found| found.above_a),
         deviation_below_a: result.deviation.map(|found| found.below_a),
-        bus_least_v: bus.least,
-        bus_greatest_v: bus.greatest,
+        bus_least_v: bus.min,
+        bus_greatest_v: bus.max,
         collapsed_at_s: result.collapsed.map(|cycle| cycle as f64 / clock_hz),
         overload_cycle,
     }
@@ -122,7 +122,7 @@ fn whole(result: &PlantResult, controller: usize, clock_hz: f64, overload_cycle:
 
 fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
     let clock_hz = f64::from(setup.clock_hz);
-    let (error, at) = motor.following_error;
+    let Peak { value: error, cycle: at } = motor.following_error;
     let energy = &motor.energy;
     Motor {
         channel,
@@ -145,7 +145,7 @@ fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
         load_j: energy.load,
         stored_j: energy.stored,
         energy_error: energy.error(),
-        fastest_full_steps_s: motor.fastest.0,
+        fastest_full_steps_s: motor.max_speed.value,
         grid_too_coarse: too_coarse(setup, channel, motor),
         energy_left_over: energy_left_over(motor),
     }

@@ -1,5 +1,5 @@
-//! The state shared by frames (DESIGN A6), raw packets (A5) and registers: queue and sequencer, EN, STOPPED, fault flags.
-//! Commands act in a cycle p after everything else in it; EN, STEP and tick starts follow from p + 1 on.
+//! Executes the commands of frames (DESIGN A6), raw packets (A5) and registers: queue and sequencer, EN, STOPPED, faults.
+//! A command is executed in a cycle p after everything else in it; EN, STEP and tick starts follow from p + 1 on.
 
 use crate::device::{Faults, sequencer::Sequencer, transceiver::Transceiver};
 use crate::{
@@ -33,7 +33,7 @@ impl Executor {
         }
     }
 
-    /// Whether `ticks` ticks with these commands can be queued in cycle `now`: all or none.
+    /// Checks whether `ticks` ticks with these commands can be queued in cycle `now`: all or none.
     pub(super) fn admit(&mut self, now: Instant, commands: &[u8], ticks: usize) -> Result<(), Reason> {
         self.assert_idle_if_stopped();
         if self.stopped {
@@ -73,7 +73,7 @@ impl Executor {
     }
 
     fn assert_idle_if_stopped(&self) {
-        debug_assert!(!(self.stopped && self.sequencer.is_moving()), "it moves while it is stopped");
+        debug_assert!(!(self.stopped && self.sequencer.is_moving()), "a tick runs or waits while stopped");
     }
 
     /// Changes the timing; the caller has checked that no tick runs or waits.

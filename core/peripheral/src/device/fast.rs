@@ -1,4 +1,4 @@
-//! The fast speed (DESIGN A2): from event to event, with the same trace as cycle by cycle.
+//! Runs from event to event (DESIGN A2), with the same trace as cycle by cycle.
 //!
 //! ```text
 //! cycle    0 1 2 3 4 5 6 7 8 9 …
@@ -27,8 +27,7 @@ impl Device {
         sequencer.deadline().min(transceiver.deadline()).min(gap).min(receiver)
     }
 
-    /// Number of cycles without change while the line keeps its level; `None` for ever.
-    #[must_use]
+    /// Number of cycles without change while the line keeps its level; `None` without a limit.
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
             Instant::NEVER => None,
@@ -45,7 +44,7 @@ impl Device {
     /// Runs up to cycle `until` with the line at `line`; with [`Instant::NEVER`], until nothing can change any more
     /// ([`Self::last_active`] then returns the last change). Stops early when the sink pauses.
     pub fn run(&mut self, line: bool, until: Instant, sink: &mut impl Sink) {
-        while self.now < until && !sink.paused() {
+        while self.now < until && !sink.is_paused() {
             if line == self.line {
                 let next = self.deadline();
                 if next >= until {
@@ -60,12 +59,12 @@ impl Device {
         }
     }
 
-    #[must_use]
+    /// The last cycle in which something could change.
     pub const fn last_active(&self) -> Instant {
-        self.last
+        self.last_active
     }
 
-    /// If idle, makes `now` the next cycle; else does nothing.
+    /// Makes `now` the next cycle if nothing can change any more; else does nothing.
     pub fn finish(&mut self, now: Instant) {
         if self.at_rest() {
             self.now = now;
@@ -73,7 +72,6 @@ impl Device {
     }
 
     /// Whether nothing can change any more while the line keeps its level.
-    #[must_use]
     pub fn at_rest(&self) -> bool {
         self.deadline() == Instant::NEVER
     }

@@ -2,6 +2,7 @@
 
 use stepscope_registers::faults;
 
+/// All fault bits.
 const KNOWN: u16 = {
     let (mut bits, mut flags) = (0, faults::REGISTER.fields);
     while let [flag, rest @ ..] = flags {
@@ -16,9 +17,11 @@ const KNOWN: u16 = {
 pub struct Faults(u16);
 
 impl Faults {
+    /// A stop bit was low.
     pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
     /// A gap cut a packet short, or a frame was invalid COBS or decoded to fewer than 6 bytes.
     pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
+    /// The CRC of a frame was wrong.
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
@@ -35,6 +38,7 @@ impl Faults {
     /// The self-test found no settling time on some channel.
     pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
+    /// All faults.
     pub const ALL: Self = Self::from_bits(u16::MAX);
 
     pub(super) const fn set(&mut self, fault: Self) {
@@ -45,28 +49,27 @@ impl Faults {
         self.0 &= !which.0;
     }
 
-    /// Unknown bits are ignored.
-    #[must_use]
+    /// The faults of these bits; unknown bits are ignored.
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits & KNOWN)
     }
 
-    #[must_use]
+    /// The faults in either.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    #[must_use]
+    /// Bits as in the register FAULTS.
     pub const fn bits(self) -> u16 {
         self.0
     }
 
     /// Whether all faults of `other` are set.
-    #[must_use]
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
+    /// Names of the faults that are set, lowest bit first.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         let flags = faults::REGISTER.fields.iter();
         flags.filter(move |flag| u32::from(self.0) & flag.mask() != 0).map(|flag| flag.name)
@@ -79,7 +82,7 @@ mod tests {
     use alloc::vec::Vec;
 
     #[test]
-    fn each_fault_has_the_contracts_bit_and_name() {
+    fn each_fault_has_the_bit_and_name_of_its_register() {
         let rows = [
             (Faults::FRAMING, "FRAMING"),
             (Faults::SHORT_PACKET, "SHORT_PACKET"),
@@ -96,15 +99,11 @@ mod tests {
             assert_eq!((fault.bits(), fault.names().collect::<Vec<_>>()), (1 << bit, vec![name]));
         }
         assert_eq!(Faults::ALL.names().count(), rows.len());
-        assert_eq!(
-            Faults::from_bits(0xfc00 | Faults::CRC.bits()),
-            Faults::CRC,
-            "bits of no fault are left out"
-        );
+        assert_eq!(Faults::from_bits(0xfc00 | Faults::CRC.bits()), Faults::CRC, "unknown bits are ignored");
     }
 
     #[test]
-    fn faults_are_set_united_and_cleared_one_by_one() {
+    fn faults_are_set_merged_and_cleared_independently() {
         let mut faults = Faults::default();
         faults.set(Faults::CRC);
         faults.set(Faults::BAD_SEQ);

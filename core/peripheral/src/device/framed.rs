@@ -18,8 +18,8 @@ pub(super) struct FramedProtocol {
     channels: u8,
     deframer: Deframer,
     expected_seq: u8,
-    /// A TICKS frame was accepted since reset or RESYNC, so its sequence number marks a repetition.
-    taken: bool,
+    /// A TICKS frame was accepted since reset or RESYNC; a frame with its sequence number is a repetition.
+    has_accepted: bool,
 }
 
 impl FramedProtocol {
@@ -29,7 +29,7 @@ impl FramedProtocol {
             channels: config.channels(),
             deframer: Deframer::default(),
             expected_seq: 0,
-            taken: false,
+            has_accepted: false,
         }
     }
 
@@ -37,8 +37,9 @@ impl FramedProtocol {
         self.expected_seq
     }
 
+    /// Takes a byte in cycle `now`, executes the frame that it completes, and schedules the reply.
     pub(super) fn byte(&mut self, now: Instant, byte: u8, executor: &mut Executor, sink: &mut impl Sink) {
-        let Self { address, channels, deframer, expected_seq, taken } = self;
+        let Self { address, channels, deframer, expected_seq, has_accepted } = self;
         let (address, channels) = (*address, *channels);
         let mut is_own = false;
         let outcome = match deframer.byte(byte) {
@@ -60,15 +61,15 @@ impl FramedProtocol {
             }
             Some(Deframed::Frame(frame)) => {
                 is_own = frame.address != ALL;
-                Execution { now, channels, expected_seq, taken, executor }.frame(frame)
+                Execution { now, channels, expected_seq, has_accepted, executor }.frame(frame)
             }
         };
         sink.event(now, Event::Frame(outcome));
-        if let Some(answer) = outcome.answer().filter(|_| is_own) {
-            let reply = Reply { address, answer, status: executor.status(now, *expected_seq) };
-            // Those at the end of this cycle: the sequencer runs before the byte.
+        if let Some(result) = outcome.reply_result().filter(|_| is_own) {
+            let reply = Reply { address, result, status: executor.status(now, *expected_seq) };
+            // Positions at the end of this cycle: the sequencer runs before the byte.
             let positions = executor.sequencer.positions();
-            let positions = positions.get(..usize::from(channels)).filter(|_| answer == Ok(Kind::Positions));
+            let positions = positions.get(..usize::from(channels)).filter(|_| result == Ok(Kind::Positions));
             let positions = positions.and_then(Positions::new);
             let (start, end) = executor.transceiver.reply(now, &reply.emit(positions.as_ref()));
             sink.event(now, Event::Reply { start, end, reply, positions });
@@ -76,11 +77,12 @@ impl FramedProtocol {
     }
 }
 
+/// Executes one frame.
 struct Execution<'a> {
     now: Instant,
     channels: u8,
     expected_seq: &'a mut u8,
-    taken: &'a mut bool,
+    has_accepted: &'a mut bool,
     executor: &'a mut Executor,
 }
 
@@ -98,19 +100,19 @@ impl Execution<'_> {
             Kind::Disable if !self.executor.disable(self.now) => return FrameOutcome::Refused(Reason::Busy),
             Kind::Stop => self.executor.stop(self.now),
             Kind::Resync => {
-                (*self.expected_seq, *self.taken) = (0, false);
+                (*self.expected_seq, *self.has_accepted) = (0, false);
                 self.executor.clear_faults(Faults::ALL);
             }
             Kind::Ticks | Kind::Disable | Kind::Status | Kind::Positions => {}
         }
-        FrameOutcome::Taken(kind)
+        FrameOutcome::Executed(kind)
     }
 
     fn ticks(&mut self, body: &[u8]) -> FrameOutcome {
         let Some(ticks) = Ticks::parse(body, self.channels) else {
             return FrameOutcome::Refused(Reason::BadBody);
         };
-        if *self.taken && ticks.seq == self.expected_seq.wrapping_sub(1) {
+        if *self.has_accepted && ticks.seq == self.expected_seq.wrapping_sub(1) {
             return FrameOutcome::Repeated;
         }
         if ticks.seq != *self.expected_seq {
@@ -123,7 +125,7 @@ impl Execution<'_> {
         for tick in ticks.iter() {
             self.executor.sequencer.push(self.now, tick);
         }
-        (*self.expected_seq, *self.taken) = (self.expected_seq.wrapping_add(1), true);
+        (*self.expected_seq, *self.has_accepted) = (self.expected_seq.wrapping_add(1), true);
         FrameOutcome::Queued(ticks.count() as u8)
     }
 }

@@ -1,4 +1,4 @@
-//! The motion peripheral, to the clock cycle (DESIGN A2 to A7).
+//! The motion peripheral with clock-cycle accuracy (DESIGN A2 to A7).
 //!
 //! [`Device::clock`] runs one cycle; [`Device::run`] skips cycles without change. Both give the same trace.
 //!
@@ -57,12 +57,15 @@ use executor::Executor;
 use framed::FramedProtocol;
 use latches::Latches;
 
+/// The peripheral, driven by frames, raw packets or registers.
 #[derive(Clone, Debug)]
 pub struct Device {
+    /// The next cycle to run.
     now: Instant,
-    last: Instant,
-    /// The line as others drive it, and as the receiver samples it.
+    last_active: Instant,
+    /// The line as others drive it.
     line: bool,
+    /// The line as the receiver samples it: high while this controller drives it.
     rx: bool,
     levels: Levels,
     receiver: Receiver,
@@ -79,19 +82,16 @@ enum Framing {
 
 impl Device {
     /// A peripheral before cycle 0.
-    #[must_use]
     pub fn new(config: &Config) -> Self {
         Self {
             now: Instant::RESET,
-            last: Instant::RESET,
+            last_active: Instant::RESET,
             line: true,
             rx: true,
             levels: Levels(0),
             receiver: Receiver::new(config.bit()),
             framing: match config.protocol() {
-                Protocol::Raw => {
-                    Framing::Raw(Unpacker::new(config.channels(), config.address(), config.bit()))
-                }
+                Protocol::Raw => Framing::Raw(Unpacker::new(config)),
                 Protocol::Framed => Framing::Framed(FramedProtocol::new(config)),
             },
             executor: Executor::new(config),
@@ -99,24 +99,22 @@ impl Device {
         }
     }
 
-    #[must_use]
+    /// The next cycle to run.
     pub const fn now(&self) -> Instant {
         self.now
     }
 
     /// Position counters: +1 per rising STEP edge with DIR 1, -1 with DIR 0.
-    #[must_use]
     pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.executor.sequencer.positions()
     }
 
     /// Ticks done, wrapping.
-    #[must_use]
     pub const fn ticks_done(&self) -> u32 {
         self.executor.sequencer.ticks_done()
     }
 
-    #[must_use]
+    /// Faults so far; RESYNC or firmware clears them.
     pub const fn faults(&self) -> Faults {
         self.executor.faults()
     }
@@ -133,9 +131,9 @@ impl Device {
         if let Framing::Raw(unpacker) = &mut self.framing
             && now == unpacker.deadline()
         {
-            let short = unpacker.gap();
-            sink.event(now, Event::Gap { short });
-            if short {
+            let cuts_packet = unpacker.gap();
+            sink.event(now, Event::Gap { cuts_packet });
+            if cuts_packet {
                 self.executor.fault(Faults::SHORT_PACKET);
             }
         }
@@ -143,17 +141,17 @@ impl Device {
             Some(RxEvent::Byte(byte)) => self.byte(byte, sink),
             Some(RxEvent::FramingError) => {
                 self.executor.fault(Faults::FRAMING);
-                let drops = if let Framing::Raw(unpacker) = &mut self.framing {
+                let is_dropping = if let Framing::Raw(unpacker) = &mut self.framing {
                     unpacker.framing_error(now);
                     true
                 } else {
                     false
                 };
-                sink.event(now, Event::FramingError { seen: self.receiver.seen(), drops });
+                sink.event(now, Event::FramingError { start: self.receiver.start(), is_dropping });
             }
             None => {}
         }
-        (self.now, self.last) = (now.next(), now);
+        (self.now, self.last_active) = (now.next(), now);
         let levels = self.current_levels();
         if levels != self.levels {
             self.levels = levels;
@@ -169,7 +167,7 @@ impl Device {
 
     fn byte(&mut self, byte: u8, sink: &mut impl Sink) {
         let now = self.now;
-        sink.event(now, Event::Byte { seen: self.receiver.seen(), byte });
+        sink.event(now, Event::Byte { start: self.receiver.start(), byte });
         let outcome = match &mut self.framing {
             Framing::Framed(protocol) => return protocol.byte(now, byte, &mut self.executor, sink),
             Framing::Raw(unpacker) => match unpacker.byte(now, byte) {
@@ -195,7 +193,6 @@ impl Device {
     }
 
     /// The status that a reply in the last cycle would contain; `None` on a raw line.
-    #[must_use]
     pub fn status(&self) -> Option<Status> {
         match &self.framing {
             Framing::Framed(protocol) => Some(self.executor.status(self.before(), protocol.expected_seq())),
@@ -212,7 +209,6 @@ impl Device {
     }
 
     /// TX in cycle [`Self::now`] if this controller drives the line in it, else `None`.
-    #[must_use]
     pub fn driven(&self) -> Option<bool> {
         let (levels, _) = self.executor.transceiver.in_cycle(self.now);
         levels.has(Levels::DE).then(|| levels.has(Levels::TX))
@@ -220,7 +216,6 @@ impl Device {
 
     /// A cycle up to which this controller drives the line as in [`Self::now`] while others keep it at `line`;
     /// [`Instant::NEVER`] if it never changes.
-    #[must_use]
     pub fn next_driven(&self, line: bool) -> Instant {
         if !self.replies() {
             return Instant::NEVER;

@@ -1,4 +1,4 @@
-//! The model on a firmware's bus: code written for [`RegisterBus`] runs on it unchanged.
+//! The model as a [`RegisterBus`]: firmware runs on it unchanged.
 
 use crate::device::Device;
 use crate::{
@@ -32,21 +32,21 @@ pub struct ModelBus<S> {
 
 impl<S: Sink> ModelBus<S> {
     /// A peripheral before cycle 0; each access takes `access` cycles, at least 1.
-    #[must_use]
     pub fn new(config: &Config, access: Cycles, sink: S) -> Self {
         Self { device: Device::new(config), access: access.max(Cycles(1)), sink }
     }
 
-    #[must_use]
+    /// The peripheral.
     pub const fn device(&self) -> &Device {
         &self.device
     }
 
-    #[must_use]
+    /// The sink with the trace so far.
     pub const fn sink(&self) -> &S {
         &self.sink
     }
 
+    /// Lets time pass without an access.
     pub fn wait(&mut self, cycles: Cycles) {
         let until = Instant(self.device.now().0.saturating_add(cycles.0));
         self.device.run(true, until, &mut Unpaused(&mut self.sink));
@@ -75,31 +75,34 @@ mod tests {
     use alloc::vec::Vec;
     use stepscope_registers::{orders, push, status, ticks_done};
 
-    /// Pauses at once, and is asked to in vain.
+    /// A sink that always requests a pause, which a bus ignores.
     #[derive(Default)]
-    struct Pausing(Vec<Record>, u32);
+    struct Pausing {
+        trace: Vec<Record>,
+        events: u32,
+    }
 
     impl Sink for Pausing {
         fn record(&mut self, record: Record) {
-            self.0.record(record);
+            self.trace.record(record);
         }
 
         fn event(&mut self, _: Instant, _: Event) {
-            self.1 += 1;
+            self.events += 1;
         }
 
-        fn paused(&self) -> bool {
+        fn is_paused(&self) -> bool {
             true
         }
     }
 
     #[test]
-    fn time_passes_with_accesses_and_waits_and_with_nothing_else() {
+    fn time_passes_only_with_accesses_and_waits() {
         let bus = Bus { slots: 4, boot_cycles: 0, ..Bus::default() };
         let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("it holds");
-        // Cycles of an access as given, and as they are.
-        for (given, access) in [(0, 1), (1, 1), (8, 8)] {
-            let mut bus = ModelBus::new(&config, Cycles(given), Pausing::default());
+        // Cycles per access, requested and actual.
+        for (requested, access) in [(0, 1), (1, 1), (8, 8)] {
+            let mut bus = ModelBus::new(&config, Cycles(requested), Pausing::default());
             bus.write(orders::OFFSET, 0x82);
             bus.write(push::OFFSET, 0);
             assert_eq!(bus.device().now(), Instant(2 * access));
@@ -110,7 +113,8 @@ mod tests {
             assert_eq!(bus.read(ticks_done::OFFSET), 1);
             assert_eq!(bus.device().positions()[0], 2);
             let sink = bus.sink();
-            assert_eq!((sink.0.len(), sink.1), (1 + 1 + 4, 3), "reset, DIR, two pulses; pushed, start, end");
+            assert_eq!(sink.trace.len(), 1 + 1 + 4, "reset, DIR, two pulses");
+            assert_eq!(sink.events, 3, "pushed, tick start, tick end");
         }
     }
 }

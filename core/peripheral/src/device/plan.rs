@@ -1,4 +1,4 @@
-//! STEP and DIR of one tick, planned when it starts (DESIGN A7).
+//! Plans STEP and DIR of one tick when it starts (DESIGN A7).
 //!
 //! ```text
 //! slot k starts at s = c0 + k*Ts
@@ -37,6 +37,7 @@ pub(super) struct Change {
 pub(super) struct Plan {
     config: Config,
     pulse: PulseTimes,
+    /// DIR of all channels to the right.
     all_right: Lines,
     commands: Tick,
     /// Invariant: offsets rise and stay within the tick; no two in a row have the same lines.
@@ -77,22 +78,22 @@ impl Plan {
         self.changes.clear();
         let right = mask(self.commands.map(|byte| ChannelCommand::parse(byte).right));
         let dir = Lines::from(right) << Levels::DIR_SHIFT & self.all_right;
-        let (slots, dir_line) = (self.config.slots(), self.config.dir_line());
+        let (slots, dir_line) = (self.config.slots(), self.config.bus().dir_line);
         if dir_line == DirLine::PerChannel {
             self.push(0, dir);
         }
-        let mut firing = Firing::new(&self.commands, slots, self.config.distribution());
+        let mut firing = Firing::new(&self.commands, slots, self.config.bus().distribution);
         for slot in 0..slots {
             let start = u64::from(slot) * self.config.step_period();
             let fires = firing.slot(slot);
-            match (dir_line, self.config.pulse_phasing()) {
+            match (dir_line, self.config.bus().pulse_phasing) {
                 _ if fires == 0 => {}
                 (DirLine::PerChannel, PulsePhasing::Simultaneous) => {
-                    self.pulse(start + self.pulse.setup.0, fires, dir);
+                    self.add_pulse(start + self.pulse.setup.0, fires, dir);
                 }
-                (DirLine::PerChannel, PulsePhasing::Staggered) => self.staggered(start, fires, dir),
-                (DirLine::Common, PulsePhasing::Simultaneous) => self.common(start, fires, right),
-                (DirLine::Common, PulsePhasing::Staggered) => self.common_staggered(start, fires, right),
+                (DirLine::PerChannel, PulsePhasing::Staggered) => self.add_staggered(start, fires, dir),
+                (DirLine::Common, PulsePhasing::Simultaneous) => self.add_common(start, fires, right),
+                (DirLine::Common, PulsePhasing::Staggered) => self.add_common_staggered(start, fires, right),
             }
         }
         debug_assert!(
@@ -107,29 +108,32 @@ impl Plan {
     }
 
     /// A pulse on the channels of `fires`; DIR stays at `dir`.
-    fn pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
+    fn add_pulse(&mut self, rise: u64, fires: u16, dir: Lines) {
         if fires != 0 {
             self.push(rise, dir | Lines::from(fires));
             self.push(rise + self.pulse.width.0, dir);
         }
     }
 
-    fn distance(&self, fires: u16) -> u64 {
-        self.config.settle().min(self.config.step_period() / u64::from(fires.count_ones().max(1)))
+    /// d: time between staggered pulses.
+    fn stagger_cycles(&self, fires: u16) -> u64 {
+        u64::from(self.config.bus().settle_cycles)
+            .min(self.config.step_period() / u64::from(fires.count_ones().max(1)))
     }
 
-    fn common(&mut self, start: u64, fires: u16, right: u16) {
+    /// The channels to the left, then those to the right.
+    fn add_common(&mut self, start: u64, fires: u16, right: u16) {
         let PulseTimes { width, setup, hold } = self.pulse;
         let second = start + setup.0 + width.0 + hold.0;
         self.push(start, 0);
-        self.pulse(start + setup.0, fires & !right, 0);
+        self.add_pulse(start + setup.0, fires & !right, 0);
         self.push(second, self.all_right);
-        self.pulse(second + setup.0, fires & right, self.all_right);
+        self.add_pulse(second + setup.0, fires & right, self.all_right);
     }
 
     /// One channel after another in ascending order; pulses closer than W overlap.
-    fn staggered(&mut self, start: u64, fires: u16, dir: Lines) {
-        let (distance, width) = (self.distance(fires), self.pulse.width.0);
+    fn add_staggered(&mut self, start: u64, fires: u16, dir: Lines) {
+        let (distance, width) = (self.stagger_cycles(fires), self.pulse.width.0);
         let first = start + self.pulse.setup.0;
         let pulses = || channels(fires).zip(0_u64..).map(|(bit, j)| (bit, first + j * distance));
         let (mut rises, mut falls) = (pulses().peekable(), pulses().peekable());
@@ -150,14 +154,14 @@ impl Plan {
     }
 
     /// Channels to the left, then to the right, each in ascending order; L <= d, so pulses do not overlap.
-    fn common_staggered(&mut self, start: u64, fires: u16, right: u16) {
-        let (distance, all_right) = (self.distance(fires), self.all_right);
+    fn add_common_staggered(&mut self, start: u64, fires: u16, right: u16) {
+        let (distance, all_right) = (self.stagger_cycles(fires), self.all_right);
         let left = channels(fires & !right).map(|bit| (bit, 0));
-        let order = left.chain(channels(fires & right).map(|bit| (bit, all_right)));
-        for ((bit, dir), j) in order.zip(0_u64..) {
+        let sequence = left.chain(channels(fires & right).map(|bit| (bit, all_right)));
+        for ((bit, dir), j) in sequence.zip(0_u64..) {
             let at = start + j * distance;
             self.push(at, dir);
-            self.pulse(at + self.pulse.setup.0, bit as u16, dir);
+            self.add_pulse(at + self.pulse.setup.0, bit as u16, dir);
         }
     }
 
@@ -170,12 +174,13 @@ impl Plan {
     }
 }
 
+/// Distributes the steps of each channel over the slots of a tick.
 struct Firing {
     counts: [u8; MAX_CHANNELS],
     slots: u8,
     distribution: Distribution,
-    /// `spread` steps in slot k if floor(((k+1)*c + h)/M) > floor((k*c + h)/M) with h = floor(M/2), so each channel
-    /// has the remainder (k*c + h) mod M.
+    /// (k*c + h) mod M of each channel: with `Spread` it steps in slot k if floor(((k+1)*c + h)/M) >
+    /// floor((k*c + h)/M), where c is its count, M the slots and h = floor(M/2).
     remainders: [u8; MAX_CHANNELS],
 }
 
@@ -202,10 +207,12 @@ impl Firing {
     }
 }
 
+/// Channel 0 in bit 0.
 fn mask(channels: [bool; MAX_CHANNELS]) -> u16 {
     (0..).zip(channels).map(|(channel, is_set)| u16::from(is_set) << channel).sum()
 }
 
+/// The STEP line of each channel in `fires`.
 fn channels(fires: u16) -> impl Iterator<Item = Lines> {
     (0..MAX_CHANNELS).map(|channel| 1 << channel).filter(move |bit| Lines::from(fires) & bit != 0)
 }

@@ -25,6 +25,7 @@ const _: () = {
     assert!(State::Stopped as u32 == map::status::STATE_STOPPED);
 };
 
+/// Index within an array of registers.
 fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
     let within = register.offset <= offset && offset < register.end() && offset.is_multiple_of(4);
     within.then_some((offset.wrapping_sub(register.offset) / 4) as usize)
@@ -32,7 +33,6 @@ fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
 
 impl Device {
     /// Reads the register at the byte offset in the last clocked cycle; 0 if there is none.
-    #[must_use]
     pub fn read(&self, offset: u32) -> u32 {
         let (latches, config) = (&self.latches, &self.latches.config);
         if let Some(index) = index(&map::position::REGISTER, offset) {
@@ -64,7 +64,7 @@ impl Device {
             return;
         }
         // `finish` must not set a time before an access.
-        self.last = self.before();
+        self.last_active = self.before();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_commands(index, value);
         }
@@ -84,6 +84,7 @@ impl Device {
         }
     }
 
+    /// Executes the highest command bit of CONTROL.
     fn command(&mut self, value: u32, sink: &mut impl Sink) {
         let now = self.before();
         self.latches.result = if map::control::STOP.is_set(value) {
@@ -102,6 +103,7 @@ impl Device {
         };
     }
 
+    /// Applies the latched timing; returns the code for RESULT.
     fn retime(&mut self) -> u32 {
         if self.executor.sequencer.is_moving() {
             return Reason::Busy as u32;
@@ -145,7 +147,7 @@ impl Device {
 
 fn capabilities(config: &Config) -> u32 {
     use map::capabilities::{CHANNELS, DIR_LINE, PROTOCOL, QUEUE_DEPTH, VERSION};
-    let dir_line = match config.dir_line() {
+    let dir_line = match config.bus().dir_line {
         DirLine::PerChannel => map::capabilities::DIR_LINE_PER_CHANNEL,
         DirLine::Common => map::capabilities::DIR_LINE_COMMON,
     };

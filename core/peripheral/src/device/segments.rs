@@ -16,7 +16,7 @@ use crate::{
 };
 use alloc::{rc::Rc, vec::Vec};
 
-/// The engine.
+/// Runs validated segments.
 ///
 /// ```
 /// use std::rc::Rc;
@@ -26,7 +26,7 @@ use alloc::{rc::Rc, vec::Vec};
 /// let pulse = PulseTimes { width: Cycles(4), setup: Cycles(2), hold: Cycles(0) };
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };
 /// let list = SegmentList { start: Instant(1), segments: vec![steps] };
-/// let lists = CheckedSegments::new(pulse, vec![list], 1).expect("it keeps the rules");
+/// let lists = CheckedSegments::new(pulse, vec![list], 1).expect("valid segments");
 /// let mut engine = SegmentEngine::new(Rc::new(lists));
 /// let mut trace: Vec<Record> = Vec::new();
 /// engine.run(Instant::NEVER, &mut trace);
@@ -46,15 +46,17 @@ pub struct SegmentEngine {
 
 #[derive(Clone, Copy, Debug)]
 struct Channel {
+    /// Segments begun.
     begun: usize,
-    left: u32,
+    /// Steps of the current segment that are not scheduled yet.
+    remaining: u32,
     interval: u64,
     add: i64,
     /// Time of the pending step (A8's `next`).
     next: u64,
     position: i32,
     right: bool,
-    turn: Instant,
+    dir_change: Instant,
     rise: Instant,
     fall: Instant,
     /// Last fall + H: DIR must not change before.
@@ -65,13 +67,13 @@ impl Channel {
     fn new(list: &SegmentList) -> Self {
         let mut channel = Self {
             begun: 0,
-            left: 0,
+            remaining: 0,
             interval: 0,
             add: 0,
             next: list.start.0 << FRACTION_BITS,
             position: 0,
             right: false,
-            turn: Instant::NEVER,
+            dir_change: Instant::NEVER,
             rise: Instant::NEVER,
             fall: Instant::NEVER,
             held: Instant::RESET,
@@ -81,36 +83,38 @@ impl Channel {
     }
 
     fn due(&self) -> Instant {
-        self.fall.min(self.turn).min(self.rise)
+        self.fall.min(self.dir_change).min(self.rise)
     }
 
     fn schedule_step(&mut self, segments: &[Segment]) {
         self.rise = Instant::NEVER;
-        while self.left == 0 {
+        while self.remaining == 0 {
             let Some(segment) = segments.get(self.begun) else { return };
             self.begun += 1;
             match *segment {
                 Segment::Dwell(dwell) => self.next += dwell,
                 Segment::Steps { count, interval, add, right } => {
-                    (self.left, self.interval, self.add) = (count, interval, add);
+                    (self.remaining, self.interval, self.add) = (count, interval, add);
                     if right != self.right {
                         self.right = right;
-                        self.turn = Instant(self.next >> FRACTION_BITS).max(self.held);
+                        self.dir_change = Instant(self.next >> FRACTION_BITS).max(self.held);
                     }
                 }
             }
         }
-        self.left -= 1;
+        self.remaining -= 1;
         self.next += self.interval;
         self.interval = self.interval.wrapping_add_signed(self.add);
         self.rise = Instant(self.next >> FRACTION_BITS);
-        debug_assert!(self.turn == Instant::NEVER || self.turn <= self.rise, "DIR changes after the rise");
+        debug_assert!(
+            self.dir_change == Instant::NEVER || self.dir_change <= self.rise,
+            "DIR changes after the rise"
+        );
     }
 }
 
 impl SegmentEngine {
     /// An engine before cycle 0.
-    #[must_use]
     pub fn new(lists: Rc<CheckedSegments>) -> Self {
         Self {
             channels: lists.lists().iter().map(Channel::new).collect(),
@@ -122,18 +126,19 @@ impl SegmentEngine {
         }
     }
 
-    #[must_use]
+    /// The next cycle to run.
     pub const fn now(&self) -> Instant {
         self.now
     }
 
-    #[must_use]
+    /// Position counters in steps since reset.
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         let mut positions = [0; MAX_CHANNELS];
         positions.iter_mut().zip(&self.channels).for_each(|(position, channel)| *position = channel.position);
         positions
     }
 
+    /// Runs one cycle and returns its levels.
     pub fn clock(&mut self, sink: &mut impl Sink) -> Levels {
         let now = self.now;
         debug_assert!(now <= self.deadline, "{:?} was skipped", self.deadline);
@@ -159,8 +164,8 @@ impl SegmentEngine {
                     channel.fall = Instant::NEVER;
                     self.levels.0 &= !step;
                 }
-                if channel.turn == now {
-                    channel.turn = Instant::NEVER;
+                if channel.dir_change == now {
+                    channel.dir_change = Instant::NEVER;
                     self.levels.0 ^= step << Levels::DIR_SHIFT;
                 }
                 if channel.rise == now {
@@ -183,19 +188,18 @@ impl SegmentEngine {
         }
         self.overloaded = true;
         for channel in &mut self.channels {
-            (channel.turn, channel.rise, channel.fall) = (Instant::NEVER, Instant::NEVER, Instant::NEVER);
+            (channel.dir_change, channel.rise, channel.fall) =
+                (Instant::NEVER, Instant::NEVER, Instant::NEVER);
         }
         self.deadline = self.now;
     }
 
-    /// OVERLOAD or none.
-    #[must_use]
+    /// OVERLOAD after [`Self::overload`], else none.
     pub const fn faults(&self) -> Faults {
         if self.overloaded { Faults::OVERLOAD } else { Faults::from_bits(0) }
     }
 
-    /// Number of cycles without change; `None` for ever.
-    #[must_use]
+    /// Number of cycles without change; `None` without a limit.
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline {
             Instant::NEVER => None,
@@ -203,6 +207,7 @@ impl SegmentEngine {
         }
     }
 
+    /// Skips cycles without change, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         let target = Instant(self.now.0.saturating_add(cycles.0));
         self.now = target.min(self.deadline);
@@ -211,7 +216,7 @@ impl SegmentEngine {
     /// Runs up to cycle `until`; with [`Instant::NEVER`], up to and including the last change. Stops early when the
     /// sink pauses.
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
-        while self.now < until && !sink.paused() {
+        while self.now < until && !sink.is_paused() {
             if self.deadline >= until {
                 if until != Instant::NEVER {
                     self.now = until;
@@ -223,7 +228,7 @@ impl SegmentEngine {
         }
     }
 
-    #[must_use]
+    /// Whether nothing can change any more.
     pub const fn at_rest(&self) -> bool {
         self.deadline.0 == Instant::NEVER.0
     }

@@ -1,5 +1,5 @@
-//! Reactions to a plant's sensors (PLANT F7): stop on overload, and measure the settling time of the supply current during
-//! boot.
+//! Reactions to the sensors of a plant (PLANT F7): stop on overload, and the self-test, which measures the settling time of
+//! the supply current during boot.
 //!
 //! ```text
 //! channel i, S = 1 + i*24*Ts
@@ -20,8 +20,10 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-const STEPS_PER_CHANNEL: u64 = 24;
-const REST_STEPS: u64 = 10;
+/// Length of one channel's part, in Ts.
+const PART_PERIODS: u64 = 24;
+/// Rest before the first pulse, in Ts.
+const REST_PERIODS: u64 = 10;
 
 /// One channel's part of a self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,27 +37,27 @@ pub struct SelfTest {
 }
 
 impl SelfTest {
-    #[must_use]
+    /// The part of a channel.
     pub const fn of(config: &Config, channel: u8) -> Self {
         let step = config.step_period();
-        let start = 1 + channel as u64 * STEPS_PER_CHANNEL * step;
-        Self { start: Instant(start), rise: Instant(start + REST_STEPS * step), step: Cycles(step) }
+        let start = 1 + channel as u64 * PART_PERIODS * step;
+        Self { start: Instant(start), rise: Instant(start + REST_PERIODS * step), step: Cycles(step) }
     }
 
     /// Minimum boot time for all parts.
-    #[must_use]
     pub const fn boot(config: &Config) -> Cycles {
-        Cycles(1 + config.channels() as u64 * STEPS_PER_CHANNEL * config.step_period())
+        Cycles(1 + config.channels() as u64 * PART_PERIODS * config.step_period())
     }
 }
 
+/// Levels of STEP and DIR during the self-test; offsets count from reset.
 fn changes(config: &Config) -> Vec<Change> {
     let (mut changes, mut lines): (Vec<Change>, Lines) = (Vec::new(), 0);
     let pulse = PulseTimes::from(config);
     let before = pulse.setup.0.max(1);
     for channel in 0..config.channels() {
         let SelfTest { rise: Instant(rise), step: Cycles(step), .. } = SelfTest::of(config, channel);
-        let own = match config.dir_line() {
+        let own = match config.bus().dir_line {
             DirLine::PerChannel => 1 << channel,
             DirLine::Common => !(!0 << config.channels()),
         };
@@ -74,21 +76,20 @@ fn changes(config: &Config) -> Vec<Change> {
 
 impl Device {
     /// A peripheral before cycle 0 with a self-test during boot, which must last [`SelfTest::boot`]. The caller measures
-    /// and reports the result with [`Self::settles_in`].
-    #[must_use]
+    /// and reports the result with [`Self::set_settling_time`].
     pub fn with_self_test(config: &Config) -> Self {
         let mut device = Self::new(config);
-        device.executor.sequencer.test(changes(config));
+        device.executor.sequencer.start_self_test(changes(config));
         device
     }
 
     /// Sets the measured settling time dp at the end of the latest cycle. If a channel has none, dp is Ts and fault
     /// SELF_TEST is set. On a common DIR line dp is at least one pulse with DIR around it.
-    pub fn settles_in(&mut self, found: Option<Cycles>) {
+    pub fn set_settling_time(&mut self, found: Option<Cycles>) {
         let config = &self.latches.config;
         let bus = config.bus().clone();
         let around = bus.dir_setup_cycles.saturating_add(bus.dir_hold_cycles).max(1);
-        let min = match config.dir_line() {
+        let min = match config.bus().dir_line {
             DirLine::PerChannel => 0,
             DirLine::Common => bus.pulse_width_cycles.saturating_add(around),
         };
@@ -123,7 +124,7 @@ mod tests {
     use crate::config::SerialLine;
 
     #[test]
-    fn channels_are_looked_at_one_after_another_and_the_boot_ends_with_the_last() {
+    fn channels_are_tested_one_after_another_during_boot() {
         let bus = Bus { channels: 3, step_period_cycles: 320, ..Bus::default() };
         let config = Config::new(16_000_000, &bus, &SerialLine::default()).unwrap();
         for (channel, start) in [(0, 1), (1, 1 + 24 * 320), (2, 1 + 48 * 320)] {

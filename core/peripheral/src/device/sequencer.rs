@@ -24,11 +24,13 @@ pub(super) struct Sequencer {
     queue: VecDeque<Tick>,
     plan: Plan,
     running: Option<Running>,
-    /// The rest of a self-test, the next change last.
-    /// Invariant: while there is any, no tick runs, because the self-test ends with the boot.
+    /// Remaining changes of a self-test, the next one last.
+    /// Invariant: no tick runs until it is empty, because the self-test ends with the boot.
     self_test: Vec<Change>,
-    halt: bool,
-    framed: bool,
+    /// STOP came in the last cycle, so STEP falls in this one.
+    halts: bool,
+    /// On a framed line an underrun is a fault.
+    is_framed: bool,
     faults: Faults,
     /// Next cycle in which the sequencer acts; [`Instant::NEVER`] when idle.
     /// Invariant: no later cycle is clocked.
@@ -40,8 +42,9 @@ pub(super) struct Sequencer {
 
 #[derive(Clone, Copy, Debug)]
 struct Running {
-    c0: Instant,
+    start: Instant,
     end: Instant,
+    /// Index of the next change of the plan.
     next: usize,
 }
 
@@ -54,8 +57,8 @@ impl Sequencer {
             plan: Plan::new(config),
             running: None,
             self_test: Vec::new(),
-            halt: false,
-            framed: config.protocol() == Protocol::Framed,
+            halts: false,
+            is_framed: config.protocol() == Protocol::Framed,
             faults: Faults::default(),
             deadline: Instant::NEVER,
             lines: 0,
@@ -65,7 +68,7 @@ impl Sequencer {
     }
 
     /// Plays these changes during boot; their offsets count from reset.
-    pub(super) fn test(&mut self, mut changes: Vec<Change>) {
+    pub(super) fn start_self_test(&mut self, mut changes: Vec<Change>) {
         changes.reverse();
         self.deadline = changes.last().map_or(Instant::NEVER, |first| Instant(first.offset));
         self.self_test = changes;
@@ -102,7 +105,7 @@ impl Sequencer {
 
     /// Changes the timing; the caller has checked that no tick runs or waits.
     pub(super) fn retime(&mut self, config: &Config) {
-        debug_assert!(!self.is_moving(), "another timing while a tick runs or waits");
+        debug_assert!(!self.is_moving(), "the timing changes while a tick runs or waits");
         self.tick = config.tick();
         self.plan = Plan::new(config);
     }
@@ -120,7 +123,7 @@ impl Sequencer {
         self.running = None;
         self.queue.clear();
         self.self_test.clear();
-        self.halt = true;
+        self.halts = true;
         self.deadline = now.next();
     }
 
@@ -133,32 +136,33 @@ impl Sequencer {
         debug_assert!(self.queue.len() <= self.depth, "more ticks wait than the queue holds");
         while self.deadline == now {
             match self.running {
-                Some(running) => self.follow(running, now, sink),
-                None if self.halt => self.halt(now),
-                None if !self.self_test.is_empty() => self.follow_test(),
-                None => self.begin(now, sink),
+                Some(running) => self.apply_change(running, now, sink),
+                None if self.halts => self.halt(now),
+                None if !self.self_test.is_empty() => self.apply_test_change(),
+                None => self.start_tick(now, sink),
             }
         }
     }
 
     /// Applies the change of the plan due in cycle `now`, or ends the tick.
-    fn follow(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
+    fn apply_change(&mut self, running: Running, now: Instant, sink: &mut impl Sink) {
         match self.plan.changes().get(running.next) {
-            Some(change) if running.c0 + Cycles(change.offset) == now => {
+            Some(change) if running.start + Cycles(change.offset) == now => {
                 self.set_lines(change.lines);
-                self.go_on(Running { next: running.next + 1, ..running });
+                self.schedule_change(Running { next: running.next + 1, ..running });
             }
-            _ => self.end(now, sink),
+            _ => self.end_tick(now, sink),
         }
     }
 
-    fn follow_test(&mut self) {
+    fn apply_test_change(&mut self) {
         if let Some(change) = self.self_test.pop() {
             self.set_lines(change.lines);
         }
         self.deadline = self.self_test.last().map_or(Instant::NEVER, |next| Instant(next.offset));
     }
 
+    /// Sets STEP and DIR, and counts rising edges of STEP.
     fn set_lines(&mut self, lines: Lines) {
         let mut rising = lines & !self.lines & STEPS;
         while rising != 0 {
@@ -171,40 +175,40 @@ impl Sequencer {
         self.lines = lines;
     }
 
-    fn go_on(&mut self, running: Running) {
+    fn schedule_change(&mut self, running: Running) {
         let change = self.plan.changes().get(running.next);
         self.deadline =
-            change.map_or(running.end, |change| running.c0 + Cycles(change.offset)).min(running.end);
+            change.map_or(running.end, |change| running.start + Cycles(change.offset)).min(running.end);
         self.running = Some(running);
     }
 
     fn halt(&mut self, now: Instant) {
-        self.halt = false;
+        self.halts = false;
         self.lines &= !STEPS;
-        self.next_tick(now);
+        self.schedule_tick(now);
     }
 
-    fn next_tick(&mut self, now: Instant) {
+    fn schedule_tick(&mut self, now: Instant) {
         self.deadline = if self.queue.is_empty() { Instant::NEVER } else { now };
     }
 
-    fn end(&mut self, now: Instant, sink: &mut impl Sink) {
+    fn end_tick(&mut self, now: Instant, sink: &mut impl Sink) {
         sink.event(now, Event::TickEnd);
         self.ticks_done = self.ticks_done.wrapping_add(1);
         self.running = None;
-        self.next_tick(now);
-        if self.framed && self.queue.is_empty() && self.plan.has_steps() {
+        self.schedule_tick(now);
+        if self.is_framed && self.queue.is_empty() && self.plan.has_steps() {
             self.faults.set(Faults::UNDERRUN);
             sink.event(now, Event::Underrun);
         }
     }
 
-    fn begin(&mut self, now: Instant, sink: &mut impl Sink) {
+    fn start_tick(&mut self, now: Instant, sink: &mut impl Sink) {
         self.deadline = Instant::NEVER;
         if let Some(tick) = self.queue.pop_front() {
             sink.event(now, Event::TickStart { commands: tick });
             self.plan.set(tick);
-            self.go_on(Running { c0: now, end: now + self.tick, next: 0 });
+            self.schedule_change(Running { start: now, end: now + self.tick, next: 0 });
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Signals that a frame changes (DESIGN A6): EN, and the reply on TX with DE around it.
+//! The signals EN, TX and DE (DESIGN A6): drivers on or off, and replies.
 //!
 //! ```text
 //! p            p + 10*B    p + 11*B                     t + floor(10*clock_hz/receiver_baud)
@@ -22,14 +22,17 @@ pub(super) struct Transceiver {
     baud: u32,
     bit: Cycles,
     levels: u64,
+    /// Cycle of the next change of EN, and its level.
     enable: Option<(Instant, bool)>,
-    /// At most one: the receiver is deaf while it is sent, and no frame can end before it starts.
+    /// At most one: the receiver ignores the line during a reply, and no frame can end before the reply starts.
     reply: Option<Reply>,
+    /// Next cycle in which a signal may change.
     next: Instant,
 }
 
 #[derive(Clone, Debug)]
 struct Reply {
+    /// Rise and fall of DE.
     rise: Instant,
     fall: Instant,
     sender: Sender,
@@ -85,9 +88,9 @@ impl Transceiver {
             while reply.sender.next_edge() == now {
                 reply.sender.pass();
             }
-            let (tx, over) = (reply.sender.level(), reply.fall == now);
+            let (tx, is_over) = (reply.sender.level(), reply.fall == now);
             self.set(Levels::TX, tx);
-            if over {
+            if is_over {
                 self.set(Levels::DE, false);
                 self.reply = None;
             }

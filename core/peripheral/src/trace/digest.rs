@@ -4,6 +4,7 @@ use crate::signal::{Record, Sink};
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
+/// Computes the digest of the records that it receives.
 #[derive(Clone)]
 pub struct Digest {
     hasher: XxHash64,
@@ -18,17 +19,16 @@ impl Default for Digest {
 
 impl Digest {
     /// The digest; print it with `{:016x}`.
-    #[must_use]
     pub fn value(&self) -> u64 {
         self.hasher.finish()
     }
 
-    #[must_use]
+    /// Number of records so far.
     pub const fn records(&self) -> u64 {
         self.records
     }
 
-    #[must_use]
+    /// The digest of a whole trace.
     pub fn of(records: &[Record]) -> u64 {
         let mut digest = Self::default();
         records.iter().for_each(|record| digest.record(*record));
@@ -51,7 +51,7 @@ mod tests {
     use alloc::vec::Vec;
 
     #[test]
-    fn the_digest_is_xxh64_of_the_records_bytes() {
+    fn the_digest_is_xxh64_of_the_bytes_of_the_records() {
         let records: Vec<Record> =
             (0..1000).map(|i| Record { cycle: Instant(i * 7), levels: Levels(i << 30 | 5) }).collect();
         for count in [0, 1, 255, 256, 257, 1000] {

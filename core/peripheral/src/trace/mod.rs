@@ -10,7 +10,7 @@
 //! assert_eq!(steps(&trace, 0)[0].position, 1);
 //!
 //! let mut text = String::new();
-//! trace.iter().for_each(|&record| write_record(&mut text, record).expect("a string takes it"));
+//! trace.iter().for_each(|&record| write_record(&mut text, record).expect("strings do not fail"));
 //! let read: Vec<Record> = text.lines().map(|line| parse_line(line).expect("a record")).collect();
 //! assert_eq!(Digest::of(&read), Digest::of(&trace));
 //! ```
@@ -28,13 +28,13 @@ use crate::{
     units::Instant,
 };
 
-#[must_use]
+/// Levels in cycle `at`; those of reset before the first record.
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     let after = trace.partition_point(|record| record.cycle <= at);
     after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }
 
-/// Signals shown by exports: STEP and DIR of each channel, then EN, RX, TX, DE.
+/// Bits of the signals in exports: STEP and DIR of each channel, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
     let channels = 0..u32::from(channels);
     channels.flat_map(|channel| [channel, 16 + channel]).chain(32..36)

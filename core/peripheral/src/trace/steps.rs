@@ -3,28 +3,29 @@
 use crate::signal::Record;
 use alloc::vec::Vec;
 
+/// One step of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
+    /// Cycle in which STEP rises.
     pub cycle: u64,
-    /// In steps from the start of the trace.
+    /// Position after it, in steps from the start of the trace.
     pub position: i32,
 }
 
 impl Step {
-    /// +1 to the right, -1 to the left.
-    #[must_use]
+    /// Direction of step `index`: +1 to the right, -1 to the left.
     pub fn direction(steps: &[Self], index: usize) -> i32 {
         let before = index.checked_sub(1).and_then(|i| steps.get(i)).map_or(0, |step| step.position);
         steps.get(index).map_or(0, |step| step.position - before)
     }
 }
 
-#[must_use]
+/// The steps of a channel.
 pub fn steps(trace: &[Record], channel: u8) -> Vec<Step> {
     steps_in(trace, channel).collect()
 }
 
-/// The same as an iterator.
+/// The steps of a channel as an iterator.
 pub fn steps_in(trace: &[Record], channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
     // A trace may start within a pulse.
@@ -47,14 +48,14 @@ mod tests {
     use crate::{signal::Levels, units::Instant};
 
     #[test]
-    fn a_recording_that_begins_in_a_pulse_has_no_step_there() {
+    fn a_pulse_that_is_high_at_the_start_is_no_step() {
         let trace = [(0, 1), (5, 0), (9, 1)];
         let trace = trace.map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
         assert_eq!(steps(&trace, 0), [Step { cycle: 9, position: -1 }]);
     }
 
     #[test]
-    fn a_step_counts_by_the_direction_in_its_own_cycle() {
+    fn a_step_has_the_direction_of_its_cycle() {
         let right = 1 << 17;
         let trace = [(0, 0), (5, right | 2), (6, right), (9, 2), (10, 0), (12, 2 | 1), (13, 2), (14, 0)]
             .map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });

@@ -11,12 +11,13 @@ pub fn write_record(out: &mut impl fmt::Write, record: Record) -> fmt::Result {
     writeln!(out, "{:x} {:x}", record.cycle.0, record.levels.0)
 }
 
+/// A line that is not a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParseError;
 
 impl fmt::Display for ParseError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("not a record; a line has a cycle and levels in hexadecimal, a space between")
+        f.write_str("not a record; use the cycle and the levels in hexadecimal, separated by a space")
     }
 }
 
@@ -36,11 +37,11 @@ mod tests {
     use alloc::string::String;
 
     #[test]
-    fn reading_gives_back_what_was_written() {
+    fn writing_and_parsing_are_inverses() {
         for (cycle, levels) in [(0, 0), (0x1f4a, 0x7_0000_0001), (u64::MAX, 0xf_ffff_ffff)] {
             let record = Record { cycle: Instant(cycle), levels: Levels(levels) };
             let mut text = String::new();
-            write_record(&mut text, record).expect("a string takes it");
+            write_record(&mut text, record).expect("strings do not fail");
             assert_eq!(parse_line(&text), Ok(record));
         }
         for line in ["", "1", "1 ", "1 g", "-1 0"] {

@@ -18,6 +18,7 @@ use crate::units::Cycles;
 /// Bits of a byte on the line: start, eight data bits, stop.
 pub const BYTE_BITS: u64 = 10;
 
+/// Bit and byte times at one bit rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BitTimes {
     clock_hz: u64,
@@ -26,13 +27,11 @@ pub struct BitTimes {
 
 impl BitTimes {
     /// At `baud` bits per second; 0 counts as 1.
-    #[must_use]
     pub const fn new(clock_hz: u32, baud: u32) -> Self {
         Self { clock_hz: clock_hz as u64, baud: if baud == 0 { 1 } else { baud as u64 } }
     }
 
     /// From the start of a byte to its bit `index`: 0 the start bit, 10 the end of the stop bit. Saturates.
-    #[must_use]
     pub const fn bit(self, index: u64) -> Cycles {
         // At 1 GHz the product exceeds 64 bits after 1.8e9 bytes in a row.
         let Some(product) = index.checked_mul(self.clock_hz) else {
@@ -43,13 +42,11 @@ impl BitTimes {
     }
 
     /// From the start of the first byte to the start of byte `index` of bytes in a row. Saturates.
-    #[must_use]
     pub const fn byte(self, index: u64) -> Cycles {
         self.bit(BYTE_BITS.saturating_mul(index))
     }
 
     /// Time that `count` bytes in a row take, to the end of the last stop bit. Saturates.
-    #[must_use]
     pub const fn bytes(self, count: u64) -> Cycles {
         match count {
             0 => Cycles(0),
@@ -58,7 +55,6 @@ impl BitTimes {
     }
 
     /// Of bytes in a row, the one whose start is nearest to `after` the start of the first.
-    #[must_use]
     pub const fn nearest_byte(self, after: Cycles) -> u64 {
         let clock_hz = if self.clock_hz == 0 { 1 } else { self.clock_hz as u128 };
         let bits = self.baud as u128 * after.0 as u128 / clock_hz;
@@ -71,8 +67,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bits_and_bytes_begin_at_their_own_floors() {
-        // 11.1 cycles a bit, 111.1 a byte.
+    fn each_bit_and_byte_time_is_rounded_down_by_itself() {
+        // 11.1 cycles per bit, 111.1 per byte.
         let times = BitTimes::new(1000, 90);
         assert_eq!([0, 1, 9, 10].map(|bit| times.bit(bit).0), [0, 11, 100, 111]);
         assert_eq!([0, 1, 9, 10].map(|byte| times.byte(byte).0), [0, 111, 1000, 1111]);

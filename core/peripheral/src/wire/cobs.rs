@@ -15,12 +15,14 @@
 
 use cobs::{DecodeResult, DecoderState};
 
+/// The role of a byte in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CobsByte {
     /// The first code of a frame.
     First,
     /// A code without a zero, or the zero of an empty run.
     Overhead,
+    /// A byte of the content.
     Content,
     /// A code in place of a zero in the content.
     Zero,
@@ -32,7 +34,6 @@ pub enum CobsByte {
 
 impl CobsByte {
     /// The content of `byte` in this role.
-    #[must_use]
     pub const fn content(self, byte: u8) -> Option<u8> {
         match self {
             Self::Content => Some(byte),
@@ -42,6 +43,7 @@ impl CobsByte {
     }
 }
 
+/// Decodes frames byte by byte.
 #[derive(Debug)]
 pub struct CobsDecoder(DecoderState);
 
@@ -76,14 +78,12 @@ impl CobsDecoder {
     }
 
     /// Whether bytes wait for their delimiter.
-    #[must_use]
     pub const fn is_open(&self) -> bool {
         !matches!(self.0, DecoderState::Idle)
     }
 
     /// Whether a delimiter would now end a complete frame.
-    #[must_use]
-    pub const fn is_whole(&self) -> bool {
+    pub const fn is_complete(&self) -> bool {
         matches!(self.0, DecoderState::Grab(0) | DecoderState::GrabChain(0))
     }
 }
@@ -95,7 +95,7 @@ mod tests {
     use alloc::vec::Vec;
 
     #[test]
-    fn each_byte_says_what_it_carries() {
+    fn each_byte_has_its_role() {
         let rows: [(&[u8], &[CobsByte]); 4] = [
             (&[0, 0], &[Overhead, Overhead]),
             (&[2, 7, 1, 2, 9, 0], &[First, Content, Zero, Zero, Content, End]),
@@ -110,11 +110,11 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_254_bytes_owes_no_zero() {
+    fn a_run_of_254_bytes_ends_without_a_zero() {
         let mut reader = CobsDecoder::default();
         let wire = [[255].as_slice(), &[5; 254], &[2, 6]].concat();
         let found: Vec<_> = wire.iter().map(|&byte| reader.byte(byte)).collect();
         assert_eq!((found[0], found[254], found[255], found[256]), (First, Content, Overhead, Content));
-        assert!(reader.is_whole() && reader.is_open());
+        assert!(reader.is_complete() && reader.is_open());
     }
 }

@@ -15,7 +15,7 @@
 //! let mut deframer = Deframer::default();
 //! let (last, bytes) = wire.split_last().expect("a delimiter");
 //! assert!(bytes.iter().all(|&byte| deframer.byte(byte).is_none()));
-//! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("its CRC holds") };
+//! let Some(Deframed::Frame(frame)) = deframer.byte(*last) else { panic!("a frame") };
 //! let ticks = Ticks::parse(frame.body, 1).expect("a body of TICKS");
 //! assert_eq!((frame.address, ticks.seq, ticks.commands()), (7, 0, &[0x85, 0x03][..]));
 //! ```
@@ -29,11 +29,12 @@ use crate::wire::{
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 
+/// The CRC of frames.
 pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+/// Ends a frame.
 pub const DELIMITER: u8 = 0;
 
-/// `content` (address, kind, body) with CRC, COBS and delimiter.
-#[must_use]
+/// Encodes `content` (address, kind, body) with CRC, COBS and delimiter.
 pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     let mut content = content.to_vec();
     content.extend(CHECK.checksum(&content).to_le_bytes());
@@ -42,11 +43,15 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     wire
 }
 
+/// Bytes of the CRC.
 pub const CRC_LEN: usize = 4;
 /// Minimum decoded bytes of a frame: address, kind and CRC.
 pub const MIN_DECODED: usize = 2 + CRC_LEN;
+/// Maximum decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
+/// Bytes of the status in a reply.
 pub const STATUS_LEN: usize = 9;
+/// Bytes of a position counter in a reply.
 pub const POSITION_LEN: usize = 4;
 /// Bytes of an ACK on the wire, with COBS and delimiter; POSITIONS adds its counters.
 pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
@@ -54,15 +59,16 @@ pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
 pub const NAK_LEN: usize = ACK_LEN + 1;
 /// Maximum bytes of a reply on the wire: POSITIONS with all channels.
 pub const REPLY_LEN: usize = reply_len(Kind::Positions, MAX_CHANNELS as u8);
+/// Maximum bytes of content that COBS encodes with one additional byte.
 const COBS_RUN: usize = 254;
-/// Set in the kind of a positive reply.
+/// Bit in the kind of a positive reply.
 pub const ACK: u8 = 0x80;
 /// Kind of a negative reply.
 pub const NAK: u8 = 0xff;
 
 const _: () = assert!(MIN_DECODED + 2 + MAX_TICKS as usize * MAX_CHANNELS <= MAX_DECODED);
 const _: () = assert!(ACK_LEN == 17 && NAK_LEN == 18 && REPLY_LEN == 81);
-// COBS adds one byte, and the delimiter is another.
+// Without the COBS byte and the delimiter, a reply is a single COBS run.
 const _: () = assert!(REPLY_LEN - 2 <= COBS_RUN);
 // Kinds, their acknowledgements and NAK are distinct.
 const _: () = {
@@ -74,7 +80,6 @@ const _: () = {
 };
 
 /// Maximum bytes on the wire of a reply to a frame of this kind.
-#[must_use]
 pub const fn reply_len(kind: Kind, channels: u8) -> usize {
     let positions = if matches!(kind, Kind::Positions) { POSITION_LEN * channels as usize } else { 0 };
     if ACK_LEN + positions > NAK_LEN { ACK_LEN + positions } else { NAK_LEN }
@@ -99,10 +104,9 @@ fn parse_status(bytes: &[u8]) -> Option<Status> {
 
 impl Reply {
     /// Encodes the reply; `positions` for the ACK of POSITIONS only.
-    #[must_use]
     pub fn emit(&self, positions: Option<&Positions>) -> Vec<u8> {
-        debug_assert_eq!(positions.is_some(), self.answer == Ok(Kind::Positions), "{self:?}");
-        let (kind, reason) = match self.answer {
+        debug_assert_eq!(positions.is_some(), self.result == Ok(Kind::Positions), "{self:?}");
+        let (kind, reason) = match self.result {
             Ok(kind) => (kind as u8 | ACK, None),
             Err(reason) => (NAK, Some(reason as u8)),
         };
@@ -114,26 +118,25 @@ impl Reply {
     }
 
     /// Decodes a reply; [`Frame::positions`] has its position counters.
-    #[must_use]
     pub fn parse(frame: Frame<'_>) -> Option<Self> {
         parse_reply(frame).map(|(reply, _)| reply)
     }
 }
 
 fn parse_reply(frame: Frame<'_>) -> Option<(Reply, Option<Positions>)> {
-    let (answer, content) = if frame.kind == NAK {
+    let (result, content) = if frame.kind == NAK {
         let (&reason, content) = frame.body.split_first()?;
         (Err(Reason::parse(reason)?), content)
     } else {
         (Ok(Kind::parse(frame.kind & !ACK).filter(|_| frame.kind & ACK != 0)?), frame.body)
     };
     let (status, rest) = content.split_at_checked(STATUS_LEN)?;
-    let positions = match (answer, rest) {
+    let positions = match (result, rest) {
         (Ok(Kind::Positions), counters) => Some(parse_positions(counters)?),
         (_, []) => None,
         _ => return None,
     };
-    Some((Reply { address: frame.address, answer, status: parse_status(status)? }, positions))
+    Some((Reply { address: frame.address, result, status: parse_status(status)? }, positions))
 }
 
 fn parse_positions(bytes: &[u8]) -> Option<Positions> {
@@ -147,20 +150,22 @@ fn parse_positions(bytes: &[u8]) -> Option<Positions> {
 /// A frame with a valid CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
+    /// Address of the controller, or the broadcast address.
     pub address: u8,
+    /// Byte of the kind, known or not.
     pub kind: u8,
+    /// What follows the kind, without the CRC.
     pub body: &'a [u8],
 }
 
 impl Frame<'_> {
     /// The position counters in an ACK of POSITIONS.
-    #[must_use]
     pub fn positions(&self) -> Option<Positions> {
         parse_reply(*self)?.1
     }
 }
 
-#[must_use]
+/// Encodes a frame with CRC, COBS and delimiter.
 pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
     content.extend_from_slice(body);
@@ -170,6 +175,7 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
 /// The body of a TICKS frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ticks<'a> {
+    /// Sequence number.
     pub seq: u8,
     channels: usize,
     commands: &'a [u8],
@@ -177,7 +183,6 @@ pub struct Ticks<'a> {
 
 impl<'a> Ticks<'a> {
     /// Decodes the body for a controller with `channels` channels; `None` is BAD_BODY.
-    #[must_use]
     pub fn parse(body: &'a [u8], channels: u8) -> Option<Self> {
         let (&[seq, count], commands) = body.split_first_chunk()?;
         let channels = usize::from(channels.max(1));
@@ -186,7 +191,6 @@ impl<'a> Ticks<'a> {
     }
 
     /// The body for ticks of `channels` bytes each.
-    #[must_use]
     pub fn emit(seq: u8, channels: u8, commands: &[u8]) -> Vec<u8> {
         let count = commands.len() / usize::from(channels.max(1));
         debug_assert!(count <= MAX_TICKS.into(), "{count} ticks in a frame");
@@ -196,17 +200,17 @@ impl<'a> Ticks<'a> {
     }
 
     /// Number of ticks, 1..=32.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.commands.len() / self.channels
     }
 
     /// One byte per channel, tick after tick.
-    #[must_use]
+    /// The commands of all ticks, one byte per channel and tick.
     pub const fn commands(&self) -> &'a [u8] {
         self.commands
     }
 
+    /// The ticks in order.
     pub fn iter(&self) -> impl Iterator<Item = Tick> + use<'a> {
         self.commands.chunks(self.channels).map(|commands| {
             let mut tick = [0; MAX_CHANNELS];
@@ -216,12 +220,16 @@ impl<'a> Ticks<'a> {
     }
 }
 
+/// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deframed<'a> {
     /// A frame with a valid CRC.
     Frame(Frame<'a>),
+    /// Invalid COBS, or fewer than [`MIN_DECODED`] bytes.
     Short,
+    /// A frame with a wrong CRC.
     BadCrc {
+        /// The received CRC.
         found: u32,
         /// The CRC of the content.
         expected: u32,
@@ -261,7 +269,7 @@ impl Deframer {
                 self.content.clear();
                 return None;
             }
-            CobsByte::End => return Some(check(&self.content)),
+            CobsByte::End => return Some(check_crc(&self.content)),
             CobsByte::Broken => return Some(Deframed::Short),
         };
         if self.content.len() == MAX_DECODED {
@@ -274,13 +282,12 @@ impl Deframer {
     }
 
     /// Whether bytes wait for their delimiter.
-    #[must_use]
     pub const fn is_open(&self) -> bool {
         self.dropping || self.cobs.is_open()
     }
 }
 
-fn check(content: &[u8]) -> Deframed<'_> {
+fn check_crc(content: &[u8]) -> Deframed<'_> {
     match content.split_last_chunk::<CRC_LEN>() {
         Some((frame, crc)) if content.len() >= MIN_DECODED => {
             let (found, expected) = (u32::from_le_bytes(*crc), CHECK.checksum(frame));
@@ -323,15 +330,15 @@ mod tests {
     }
 
     #[test]
-    fn frames_and_replies_have_the_contracts_bytes() {
+    fn frames_and_replies_have_the_bytes_of_the_contract() {
         assert_eq!(CHECK.checksum(b"123456789"), 0xe306_9283, "the published value of CRC-32/ISCSI");
-        let stuffed = |content: &[u8]| {
+        let with_cobs = |content: &[u8]| {
             let crc = CHECK.checksum(content).to_le_bytes();
             let mut wire = cobs::encode_vec(&[content, &crc].concat());
             wire.push(0);
             wire
         };
-        assert_eq!(emit(7, Kind::Status as u8, &[]), stuffed(&[7, 4]));
+        assert_eq!(emit(7, Kind::Status as u8, &[]), with_cobs(&[7, 4]));
         assert_eq!(emit(7, Kind::Status as u8, &[]).len(), 8);
         let status = Status {
             state: State::Stopped,
@@ -341,26 +348,29 @@ mod tests {
             ticks_done: 0x0102_0304,
         };
         let bytes = [3, 5, 6, 0x80, 0x01, 4, 3, 2, 1];
-        let ack = Reply { address: 9, answer: Ok(Kind::Stop), status };
-        assert_eq!(ack.emit(None), stuffed(&[&[9, 0x85], bytes.as_slice()].concat()));
-        let nak = Reply { address: 9, answer: Err(Reason::QueueFull), status };
-        assert_eq!(nak.emit(None), stuffed(&[&[9, 0xff, 2], bytes.as_slice()].concat()));
+        let ack = Reply { address: 9, result: Ok(Kind::Stop), status };
+        assert_eq!(ack.emit(None), with_cobs(&[&[9, 0x85], bytes.as_slice()].concat()));
+        let nak = Reply { address: 9, result: Err(Reason::QueueFull), status };
+        assert_eq!(nak.emit(None), with_cobs(&[&[9, 0xff, 2], bytes.as_slice()].concat()));
         assert_eq!((ack.emit(None).len(), nak.emit(None).len()), (17, 18));
-        let told = Positions::new(&[3, -1200, i32::MIN]).expect("three channels");
+        let positions = Positions::new(&[3, -1200, i32::MIN]).expect("three channels");
         let counters = [3, 0, 0, 0, 0x50, 0xfb, 0xff, 0xff, 0, 0, 0, 0x80];
-        let positions = Reply { address: 9, answer: Ok(Kind::Positions), status };
-        assert_eq!(positions.emit(Some(&told)), stuffed(&[&[9, 0x87], bytes.as_slice(), &counters].concat()));
+        let reply = Reply { address: 9, result: Ok(Kind::Positions), status };
+        assert_eq!(
+            reply.emit(Some(&positions)),
+            with_cobs(&[&[9, 0x87], bytes.as_slice(), &counters].concat())
+        );
     }
 
     #[test]
-    fn a_reply_is_as_long_as_its_kind_and_channels_make_it() {
+    fn reply_length_depends_on_kind_and_channels() {
         let status = Status { state: State::Ready, free: 1, expected_seq: 1, faults: 0, ticks_done: 0 };
         for channels in 1..=16 {
             for fill in [0, -1, 0x0101_0101] {
-                let told = Positions::new(&[fill; 16][..channels]);
-                let reply = Reply { address: 9, answer: Ok(Kind::Positions), status };
+                let positions = Positions::new(&[fill; 16][..channels]);
+                let reply = Reply { address: 9, result: Ok(Kind::Positions), status };
                 let length = 17 + 4 * channels;
-                assert_eq!(reply.emit(told.as_ref()).len(), length, "{channels} x {fill}");
+                assert_eq!(reply.emit(positions.as_ref()).len(), length, "{channels} x {fill}");
                 assert_eq!(reply_len(Kind::Positions, channels as u8), length);
             }
             assert_eq!(reply_len(Kind::Status, channels as u8), 18, "a NAK");
@@ -399,20 +409,20 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_reply_is_none() {
+    fn frames_that_are_no_replies_are_rejected() {
         let body = [1; STATUS_LEN];
         // Kind, body, whether it is one.
-        let and = |more: usize| [&body, [1; 68].get(..more).expect("so many")].concat();
+        let longer = |by: usize| [&body, [1; 68].get(..by).expect("at most 68")].concat();
         let rows: [(u8, &[u8], bool); 16] = [
-            (0x87, &and(4), true),
-            (0x87, &and(64), true),
+            (0x87, &longer(4), true),
+            (0x87, &longer(64), true),
             (0x87, &body, false),
-            (0x87, &and(3), false),
-            (0x87, &and(5), false),
-            (0x87, &and(68), false),
+            (0x87, &longer(3), false),
+            (0x87, &longer(5), false),
+            (0x87, &longer(68), false),
             (0x87, &body[1..], false),
-            (0x07, &and(4), false),
-            (0x84, &and(4), false),
+            (0x07, &longer(4), false),
+            (0x84, &longer(4), false),
             (0x84, &body, true),
             (0x04, &body, false),
             (0x80, &body, false),
@@ -429,27 +439,27 @@ mod tests {
     }
 
     #[test]
-    fn replies_are_read_as_they_were_written() {
+    fn encoding_and_decoding_replies_are_inverses() {
         let status =
             Status { state: State::Moving, free: 3, expected_seq: 0, faults: 0x82, ticks_done: 0x0100_0000 };
         let (kinds, reasons) = (Kind::ALL.iter().copied().map(Ok), Reason::ALL.iter().copied().map(Err));
-        for (answer, channels) in kinds.chain(reasons).flat_map(|answer| [(answer, 1), (answer, 16)]) {
-            let reply = Reply { address: 9, answer, status };
+        for (result, channels) in kinds.chain(reasons).flat_map(|result| [(result, 1), (result, 16)]) {
+            let reply = Reply { address: 9, result, status };
             let counters = [0, 1, -1, i32::MIN, i32::MAX, 256, -256, 7, 0, 0, 0, 0, 0, 0, 0, 9];
-            let told = Positions::new(&counters[..channels]).filter(|_| answer == Ok(Kind::Positions));
-            let wire = reply.emit(told.as_ref());
+            let positions = Positions::new(&counters[..channels]).filter(|_| result == Ok(Kind::Positions));
+            let wire = reply.emit(positions.as_ref());
             assert!(wire.len() <= REPLY_LEN);
             let mut deframer = Deframer::default();
             let parsed = wire.iter().find_map(|&byte| match deframer.byte(byte) {
                 Some(Deframed::Frame(frame)) => Some((Reply::parse(frame), frame.positions())),
                 _ => None,
             });
-            assert_eq!(parsed, Some((Some(reply), told)));
+            assert_eq!(parsed, Some((Some(reply), positions)));
         }
     }
 
-    /// The results of `bytes`, each with the byte that made it.
-    fn verdicts(bytes: &[u8]) -> Vec<(usize, &'static str)> {
+    /// The results of `bytes`, each with the index of the byte that completed it.
+    fn outcomes(bytes: &[u8]) -> Vec<(usize, &'static str)> {
         let mut deframer = Deframer::default();
         let mut found = Vec::new();
         for (index, &byte) in bytes.iter().enumerate() {
@@ -466,28 +476,28 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_is_said_in_the_byte_that_shows_it() {
-        assert_eq!(verdicts(&[0, 0, 0]), []);
-        assert_eq!(verdicts(&[1, 0]), [(1, "short")]);
-        assert_eq!(verdicts(&[5, 1, 0]), [(2, "short")], "not COBS");
-        assert_eq!(verdicts(&[6, 1, 2, 3, 4, 5, 0]), [(6, "short")], "five bytes");
-        assert_eq!(verdicts(&[7, 1, 2, 3, 4, 5, 6, 0]), [(7, "check")], "six bytes");
+    fn invalid_frames_are_reported_at_the_byte_that_shows_it() {
+        assert_eq!(outcomes(&[0, 0, 0]), []);
+        assert_eq!(outcomes(&[1, 0]), [(1, "short")]);
+        assert_eq!(outcomes(&[5, 1, 0]), [(2, "short")], "not COBS");
+        assert_eq!(outcomes(&[6, 1, 2, 3, 4, 5, 0]), [(6, "short")], "five bytes");
+        assert_eq!(outcomes(&[7, 1, 2, 3, 4, 5, 6, 0]), [(7, "check")], "six bytes");
     }
 
     #[test]
-    fn the_601st_byte_is_one_too_many_also_where_it_is_a_zero_that_cobs_owes() {
-        // Codes of 2 hold one byte and owe a zero; 300 of them are 600 bytes with the last one owed.
-        let mut owed: Vec<u8> = [2, 1].repeat(300);
-        owed.extend([0]);
-        assert_eq!(verdicts(&owed), [(600, "check")], "599 bytes, the last zero is not owed");
-        let mut owed: Vec<u8> = [2, 1].repeat(300);
-        owed.extend([2, 1, 0, 2, 1, 0]);
+    fn the_601st_byte_is_too_many_even_as_an_implied_zero() {
+        // A code of 2 stands for one byte and a zero; the zero counts only if the frame goes on.
+        let mut implied: Vec<u8> = [2, 1].repeat(300);
+        implied.extend([0]);
+        assert_eq!(outcomes(&implied), [(600, "check")], "599 bytes, without the last zero");
+        let mut implied: Vec<u8> = [2, 1].repeat(300);
+        implied.extend([2, 1, 0, 2, 1, 0]);
         assert_eq!(
-            verdicts(&owed),
+            outcomes(&implied),
             [(601, "overlong"), (605, "short")],
-            "the 600th is a zero, the next is too many"
+            "the 600th byte is a zero, the next is too many"
         );
-        // 254 + 254 + 92 bytes are 600; the code after them owes a zero, the 601st.
+        // 254 + 254 + 92 bytes are 600; the code after them stands for a zero, the 601st.
         let mut full = Vec::new();
         for len in [254_usize, 254, 92] {
             full.push(len as u8 + 1);
@@ -495,6 +505,6 @@ mod tests {
         }
         let overlong = full.len();
         full.extend([1, 0]);
-        assert_eq!(verdicts(&full), [(overlong, "overlong")]);
+        assert_eq!(outcomes(&full), [(overlong, "overlong")]);
     }
 }

@@ -28,10 +28,14 @@ use crate::units::Instant;
 use crate::wire::{Schedule, sender::Sender};
 use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
 
+/// A level that a fault forces on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForcedLevel {
+    /// First cycle with this level.
     pub start: Instant,
+    /// The cycle after the last one, later than `start`.
     pub end: Instant,
+    /// The level.
     pub level: bool,
 }
 
@@ -41,12 +45,15 @@ impl ForcedLevel {
     }
 }
 
+/// The serial line with its host.
 #[derive(Clone, Debug)]
 pub struct Line {
     sender: Sender,
-    /// Invariant: disjoint and rising; those before `passed` have ended.
+    /// Invariant: disjoint and rising.
     forced: Rc<Vec<ForcedLevel>>,
-    passed: usize,
+    /// Number of forced levels that have ended.
+    ended: usize,
+    /// The level forced in the current cycle.
     force: Option<bool>,
     next: Instant,
     /// Next change of the level while no controller sends; [`Instant::RESET`] without future forced levels. It may be
@@ -56,13 +63,12 @@ pub struct Line {
 
 impl Line {
     /// The line before cycle 1, idle. A rate of 0 counts as 1 baud.
-    #[must_use]
     pub fn new(schedule: Rc<Schedule>, forced: &[ForcedLevel], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
         let mut line = Self {
             sender,
             forced: Rc::new(flatten(forced)),
-            passed: 0,
+            ended: 0,
             force: None,
             next: Instant::NEVER,
             next_level_change: Instant::NEVER,
@@ -72,11 +78,12 @@ impl Line {
         line
     }
 
-    #[must_use]
+    /// The host's sends.
     pub fn schedule(&self) -> &Schedule {
         self.sender.schedule()
     }
 
+    /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         self.sender.send(start, bytes);
         self.schedule_next();
@@ -95,7 +102,7 @@ impl Line {
         self.sender.forget_sent();
     }
 
-    /// Forces a level in future cycles; it replaces earlier ones.
+    /// Forces a level in future cycles; it replaces levels forced before.
     pub fn force(&mut self, new: ForcedLevel) {
         let forced = Rc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.ends_by(new.start));
@@ -116,42 +123,37 @@ impl Line {
     }
 
     /// Forced levels, past and future, rising in time and disjoint.
-    #[must_use]
     pub fn forced(&self) -> &[ForcedLevel] {
         &self.forced
     }
 
     /// The level in the current cycle while all controllers together send `others`.
-    #[must_use]
     pub fn level(&self, others: bool) -> bool {
         self.force.unwrap_or(self.sender.level() && others)
     }
 
-    /// The level that the host receives while controllers send `others`.
-    #[must_use]
-    pub fn replied(&self, others: bool) -> bool {
+    /// The level that the host receives, without its own, while controllers send `others`.
+    pub fn host_level(&self, others: bool) -> bool {
         self.force.unwrap_or(others)
     }
 
-    #[must_use]
+    /// Whether the host drives the line low.
     pub const fn is_pulled_low(&self) -> bool {
         !self.sender.level()
     }
 
-    /// Next cycle in which the host's level or a forced level changes; [`Instant::NEVER`] if neither does.
-    #[must_use]
+    /// Next cycle in which the host's or a forced level changes; [`Instant::NEVER`] without one.
     pub const fn next_change(&self) -> Instant {
         self.next
     }
 
     /// Whether the level no longer changes while no controller sends.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.next == Instant::NEVER || self.next_level_change == Instant::NEVER
     }
 
     fn find_level_change(&mut self) {
-        if self.passed == self.forced.len() {
+        if self.ended == self.forced.len() {
             self.next_level_change = Instant::RESET;
             return;
         }
@@ -161,7 +163,7 @@ impl Line {
             if now == Instant::NEVER {
                 break now;
             }
-            ahead.enter(now);
+            ahead.enter_cycle(now);
             if ahead.level(true) != level {
                 break now;
             }
@@ -171,38 +173,38 @@ impl Line {
     /// Enters the cycle of [`Self::next_change`].
     pub fn change(&mut self) {
         let now = self.next;
-        self.enter(now);
+        self.enter_cycle(now);
         if now == self.next_level_change {
             self.find_level_change();
         }
     }
 
-    fn enter(&mut self, now: Instant) {
+    fn enter_cycle(&mut self, now: Instant) {
         debug_assert!(now == self.next && now != Instant::NEVER, "nothing changes in {now:?}");
         if self.sender.next_edge() == now {
             self.sender.pass();
         }
-        if self.passed < self.forced.len() {
-            self.follow_forced(now);
+        if self.ended < self.forced.len() {
+            self.update_forced(now);
         }
         self.schedule_next();
     }
 
-    fn follow_forced(&mut self, now: Instant) {
-        while self.forced.get(self.passed).is_some_and(|forced| forced.ends_by(now)) {
-            self.passed += 1;
+    fn update_forced(&mut self, now: Instant) {
+        while self.forced.get(self.ended).is_some_and(|forced| forced.ends_by(now)) {
+            self.ended += 1;
         }
-        if self.passed == self.forced.len() {
+        if self.ended == self.forced.len() {
             self.next_level_change = Instant::RESET;
         }
         self.force =
-            self.forced.get(self.passed).filter(|forced| forced.start <= now).map(|forced| forced.level);
+            self.forced.get(self.ended).filter(|forced| forced.start <= now).map(|forced| forced.level);
     }
 
     fn schedule_next(&mut self) {
         let force = self
             .forced
-            .get(self.passed)
+            .get(self.ended)
             .map_or(Instant::NEVER, |forced| if self.force.is_some() { forced.end } else { forced.start });
         self.next = self.sender.next_edge().min(force);
     }
@@ -271,8 +273,8 @@ mod tests {
     }
 
     #[test]
-    fn bits_begin_at_the_floor_of_their_exact_time() {
-        // 10.5 cycles a bit: 0, 10, 21, 31, 42, 52, 63, 73, 84, 94, 105.
+    fn bit_times_are_rounded_down() {
+        // 10.5 cycles per bit: 0, 10, 21, 31, 42, 52, 63, 73, 84, 94, 105.
         let rows: &[(&[u8], &[u64])] = &[
             (&[0x00], &[1, 95]),
             (&[0xff], &[1, 11]),
@@ -300,9 +302,8 @@ mod tests {
         }
     }
 
-    /// What is forced while the line runs wins over what was known before, and comes in its turn.
     #[test]
-    fn what_is_forced_later_finds_its_place() {
+    fn a_level_forced_during_the_run_replaces_earlier_ones() {
         let span = |(start, length, level)| ForcedLevel {
             start: Instant(start),
             end: Instant(start + length),
@@ -326,22 +327,27 @@ mod tests {
             let expected: Vec<ForcedLevel> = expected.iter().copied().map(span).collect();
             assert_eq!(line.forced(), expected, "{before:?} {new:?}");
             let low = |at| expected.iter().any(|one| !one.level && one.start <= at && at < one.end);
-            let due: Vec<u64> = (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
+            let expected_changes: Vec<u64> =
+                (1..100).filter(|&at| low(Instant(at)) != low(Instant(at - 1))).collect();
             let (mut changes, mut level) = (Vec::new(), true);
             while line.next_change() != Instant::NEVER {
-                assert_eq!(line.is_over(), changes.len() == due.len(), "{before:?} {new:?} {changes:?}");
+                assert_eq!(
+                    line.is_over(),
+                    changes.len() == expected_changes.len(),
+                    "{before:?} {new:?} {changes:?}"
+                );
                 let at = line.next_change();
                 line.change();
                 if core::mem::replace(&mut level, line.level(true)) != line.level(true) {
                     changes.push(at.0);
                 }
             }
-            assert_eq!(changes, due, "{before:?} {new:?}");
+            assert_eq!(changes, expected_changes, "{before:?} {new:?}");
         }
     }
 
     #[test]
-    fn a_glitch_within_a_byte_covers_what_is_sent() {
+    fn a_glitch_replaces_the_level_of_a_byte() {
         // Start bit 100..110 and data 0x0f: high from 110 to 150, low to 190.
         assert_eq!(changes(&[(100, &[0x0f])], &[], 100, 10), [100, 110, 150, 190]);
         assert_eq!(changes(&[(100, &[0x0f])], &[(105, 10, true)], 100, 10), [100, 105, 150, 190]);

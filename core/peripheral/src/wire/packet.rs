@@ -13,11 +13,13 @@
 //! ```
 
 use crate::{
+    config::Config,
     signal::MAX_CHANNELS,
     units::{Cycles, Instant},
 };
 
 const RIGHT: u8 = 1 << 7;
+/// Maximum steps of a command.
 pub const MAX_STEPS: u8 = RIGHT - 1;
 /// Broadcast address.
 pub const ALL: u8 = 255;
@@ -27,19 +29,19 @@ pub const GAP_BITS: u64 = 45;
 /// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelCommand {
+    /// Direction: right or left.
     pub right: bool,
-    /// Steps, 0..=127.
+    /// Number of steps, 0..=127.
     pub steps: u8,
 }
 
 impl ChannelCommand {
-    #[must_use]
+    /// Decodes a byte.
     pub const fn parse(byte: u8) -> Self {
         Self { right: byte & RIGHT != 0, steps: byte & MAX_STEPS }
     }
 
-    /// The byte; `None` above [`MAX_STEPS`].
-    #[must_use]
+    /// Encodes a byte; `None` above [`MAX_STEPS`].
     pub const fn emit(self) -> Option<u8> {
         let direction = if self.right { RIGHT } else { 0 };
         if self.steps > MAX_STEPS { None } else { Some(direction | self.steps) }
@@ -49,15 +51,19 @@ impl ChannelCommand {
 /// One tick's commands, one byte per channel; unused channels have 0.
 pub type Tick = [u8; MAX_CHANNELS];
 
+/// A complete packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unpacked {
+    /// For this controller.
     Own(Tick),
+    /// For another controller.
     OtherAddress,
 }
 
 /// Assembles packets from bytes.
 #[derive(Clone, Debug)]
 pub struct Unpacker {
+    /// Invariant: 1..=16.
     channels: u8,
     address: Option<u8>,
     gap: Cycles,
@@ -74,13 +80,12 @@ pub struct Unpacker {
 }
 
 impl Unpacker {
-    /// For `channels` channels; `bit` is B.
-    #[must_use]
-    pub const fn new(channels: u8, address: Option<u8>, bit: Cycles) -> Self {
+    /// An unpacker for the packets of a raw line.
+    pub const fn new(config: &Config) -> Self {
         Self {
-            channels,
-            address,
-            gap: Cycles(GAP_BITS * bit.0 + 1),
+            channels: config.channels(),
+            address: config.packet_address(),
+            gap: Cycles(GAP_BITS * config.bit().0 + 1),
             commands: [0; MAX_CHANNELS],
             received: 0,
             other_address: false,
@@ -89,12 +94,12 @@ impl Unpacker {
         }
     }
 
-    #[must_use]
+    /// When a gap ends the packet; [`Instant::NEVER`] if no packet is open.
     pub const fn deadline(&self) -> Instant {
         self.deadline
     }
 
-    /// The gap is due; returns whether it cuts a packet short.
+    /// Ends the packet at its [`Self::deadline`]; returns whether the gap cuts it short.
     pub const fn gap(&mut self) -> bool {
         debug_assert!(self.received > 0 || self.ignoring, "nothing is open that a gap could end");
         let short = self.received > 0;
@@ -141,6 +146,7 @@ impl Unpacker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Bus, SerialLine};
 
     #[test]
     fn parse_and_emit_are_inverses() {
@@ -151,8 +157,11 @@ mod tests {
         assert_eq!(ChannelCommand::parse(0x85), ChannelCommand { right: true, steps: 5 });
     }
 
+    /// Two channels, 11 cycles per bit.
     fn unpacker(address: Option<u8>) -> Unpacker {
-        Unpacker::new(2, address, Cycles(11))
+        let line = SerialLine { baud: 100_000, address, ..SerialLine::default() };
+        let bus = Bus { channels: 2, ..Bus::default() };
+        Unpacker::new(&Config::new(1_100_000, &bus, &line).expect("a valid configuration"))
     }
 
     fn own(a: u8, b: u8) -> Option<Unpacked> {
@@ -170,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_for_others_are_consumed_by_their_length() {
+    fn packets_for_other_addresses_are_skipped_by_their_length() {
         let mut addressed = unpacker(Some(7));
         let rows = [
             (7, None),
@@ -189,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_falls_due_45_bits_and_a_cycle_after_the_last_byte() {
+    fn a_gap_is_45_bits_and_one_cycle_after_the_last_byte() {
         let mut raw = unpacker(None);
         raw.byte(Instant(100), 1);
         assert_eq!(raw.deadline(), Instant(100 + 45 * 11 + 1));
@@ -198,13 +207,13 @@ mod tests {
     }
 
     #[test]
-    fn after_a_framing_error_bytes_are_ignored_until_a_gap_and_hold_it_off() {
+    fn after_a_framing_error_bytes_are_ignored_and_restart_the_gap() {
         let mut raw = unpacker(None);
         raw.byte(Instant(100), 1);
         raw.framing_error(Instant(200));
         assert_eq!(raw.byte(Instant(300), 2), None);
         assert_eq!(raw.deadline(), Instant(300 + 496));
-        assert!(!raw.gap(), "nothing was open: no SHORT_PACKET");
+        assert!(!raw.gap(), "no packet was open");
         raw.byte(Instant(1000), 3);
         assert_eq!(raw.byte(Instant(1100), 4), own(3, 4));
     }

@@ -16,9 +16,12 @@ use crate::wire::BitTimes;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+/// Bytes in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sent<'a> {
+    /// Start bit of the first byte.
     pub start: Instant,
+    /// The bytes.
     pub bytes: &'a [u8],
 }
 
@@ -34,7 +37,6 @@ pub struct Schedule {
 impl Schedule {
     /// One packet per tick of `tick` cycles, from `start` on. The caller checks with [`line_time`] that the line is fast
     /// enough.
-    #[must_use]
     pub fn paced(start: Instant, tick: Cycles, packets: impl Iterator<Item = impl AsRef<[u8]>>) -> Self {
         let mut schedule = Self::default();
         let mut start = start;
@@ -65,23 +67,22 @@ impl Schedule {
         }
     }
 
-    #[must_use]
+    /// Number of sends.
     pub fn len(&self) -> usize {
         self.sends.len()
     }
 
-    #[must_use]
+    /// Whether there are no sends.
     pub fn is_empty(&self) -> bool {
         self.sends.is_empty()
     }
 
-    #[must_use]
+    /// Bytes of all sends.
     pub fn total_bytes(&self) -> usize {
         self.bytes.len()
     }
 
     /// Send `index`; `None` past the last.
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<Sent<'_>> {
         let (start, range) = self.byte_range(index)?;
         self.bytes.get(range).map(|bytes| Sent { start, bytes })
@@ -99,19 +100,18 @@ impl Schedule {
     }
 
     /// The last send that begins in cycle `at` or before.
-    #[must_use]
-    pub fn last_until(&self, at: Instant) -> Option<Sent<'_>> {
+    pub fn last_at_or_before(&self, at: Instant) -> Option<Sent<'_>> {
         let after = self.sends.partition_point(|(start, _)| *start <= at);
         self.get(after.checked_sub(1)?)
     }
 
+    /// The sends in order.
     pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
         (0..self.len()).filter_map(|index| self.get(index))
     }
 }
 
 /// Cycles that `bytes` bytes in a row take, to the end of the last stop bit; a rate of 0 counts as 1 baud.
-#[must_use]
 pub const fn line_time(bytes: u64, clock_hz: u32, baud: u32) -> u64 {
     BitTimes::new(clock_hz, baud).bytes(bytes).0
 }
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn packets_are_paced_one_a_tick() {
+    fn paced_packets_start_once_per_tick() {
         let packets: [&[u8]; 4] = [&[1, 2], &[3], &[], &[4, 5, 6]];
         let schedule = Schedule::paced(Instant(101), Cycles(40), packets.iter());
         let sent: Vec<(u64, &[u8])> = schedule.iter().map(|sent| (sent.start.0, sent.bytes)).collect();
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_join_the_last_send() {
+    fn bytes_are_added_to_the_last_send() {
         let mut schedule = Schedule::default();
         schedule.push(Instant(5), &[1]);
         schedule.push(Instant(90), &[2]);
@@ -143,21 +143,25 @@ mod tests {
     }
 
     #[test]
-    fn the_last_send_until_a_cycle_begins_in_it_or_before() {
+    fn the_last_send_at_a_cycle_starts_in_it_or_before() {
         let packets: [&[u8]; 2] = [&[1, 2], &[3]];
         let schedule = Schedule::paced(Instant(101), Cycles(40), packets.iter());
-        let found =
-            [100, 101, 140, 141, 9000].map(|at| schedule.last_until(Instant(at)).map(|sent| sent.bytes));
+        let found = [100, 101, 140, 141, 9000]
+            .map(|at| schedule.last_at_or_before(Instant(at)).map(|sent| sent.bytes));
         assert_eq!(found, [None, Some(packets[0]), Some(packets[0]), Some(packets[1]), Some(packets[1])]);
     }
 
     #[test]
-    fn bytes_hold_the_line_as_long_as_their_bits() {
-        // Bytes, clock, baud, cycles: 10.5 cycles a bit begin a byte at 105 and 210.
+    fn line_time_includes_the_last_stop_bit() {
+        // Bytes, clock, baud, cycles. With 10.5 cycles per bit, bytes start at 0, 105 and 210.
         let rows =
             [(0, 21, 2, 0), (1, 21, 2, 105), (3, 21, 2, 315), (2, 100, 7, 142 + 142), (5, 100, 0, 5000)];
         for (bytes, clock_hz, baud, expected) in rows {
-            assert_eq!(line_time(bytes, clock_hz, baud), expected, "{bytes} at {baud} of {clock_hz}");
+            assert_eq!(
+                line_time(bytes, clock_hz, baud),
+                expected,
+                "{bytes} bytes, {baud} baud, {clock_hz} Hz"
+            );
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The sender of the serial line (DESIGN A4): bytes as edges, to the cycle. Host and controllers share it.
+//! The sender of the serial line (DESIGN A4): the cycles of all edges of its bytes. Host and controllers share it.
 //!
 //! ```text
 //!  idle  start  d0    d1        d7   stop
@@ -28,52 +28,53 @@ use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
 use alloc::{rc::Rc, vec::Vec};
 use core::ops::Range;
 
+/// Sends the bytes of a schedule, edge by edge.
 #[derive(Clone, Debug)]
 pub struct Sender {
     schedule: Rc<Schedule>,
     times: BitTimes,
-    /// Sends begun; of the last one its start, the bytes begun, and the range of the other bytes.
-    sends: usize,
+    sends_begun: usize,
+    /// Start, bytes begun and indices of the remaining bytes of the last send begun.
     send_start: Instant,
     bytes_begun: u64,
-    rest: Range<usize>,
+    remaining: Range<usize>,
     byte_start: Instant,
-    /// Bits of the current byte that differ from the bit before and are not passed yet, the start bit lowest.
+    /// Remaining edges of the current byte: bits that differ from the bit before, the start bit lowest.
     edges: u16,
-    /// Cycle of the lowest one; [`Instant::NEVER`] without one.
+    /// Cycle of the next edge; [`Instant::NEVER`] without one.
     next: Instant,
     level: bool,
 }
 
 impl Sender {
     /// A sender before its first byte. A rate of 0 counts as 1 baud.
-    #[must_use]
     pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
         let mut sender = Self {
             schedule,
             times: BitTimes::new(clock_hz, baud),
-            sends: 0,
+            sends_begun: 0,
             send_start: Instant::NEVER,
             bytes_begun: 0,
-            rest: 0..0,
+            remaining: 0..0,
             byte_start: Instant::NEVER,
             edges: 0,
             next: Instant::NEVER,
             level: true,
         };
-        sender.load();
+        sender.load_byte();
         sender
     }
 
-    #[must_use]
+    /// All sends.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
+    /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
         Rc::make_mut(&mut self.schedule).push(start, bytes);
         if self.edges == 0 {
-            self.load();
+            self.load_byte();
         }
     }
 
@@ -81,41 +82,43 @@ impl Sender {
     pub fn extend(&mut self, bytes: &[u8]) {
         let schedule = Rc::make_mut(&mut self.schedule);
         schedule.extend(bytes);
-        if self.sends == schedule.len() {
-            self.rest.end = schedule.total_bytes();
+        if self.sends_begun == schedule.len() {
+            self.remaining.end = schedule.total_bytes();
         }
         if self.edges == 0 {
-            self.load();
+            self.load_byte();
         }
     }
 
+    /// Removes bytes that were sent, to bound the memory of an endless line.
     pub fn forget_sent(&mut self) {
-        if self.sends == 0 || self.sends < self.schedule.len() {
+        if self.sends_begun == 0 || self.sends_begun < self.schedule.len() {
             return;
         }
-        let rest: Vec<u8> = self.rest.clone().filter_map(|index| self.schedule.byte(index)).collect();
+        let remaining: Vec<u8> =
+            self.remaining.clone().filter_map(|index| self.schedule.byte(index)).collect();
         let mut schedule = Schedule::default();
-        schedule.push(self.send_start, &rest);
-        (self.sends, self.rest) = (1, 0..rest.len());
+        schedule.push(self.send_start, &remaining);
+        (self.sends_begun, self.remaining) = (1, 0..remaining.len());
         self.schedule = Rc::new(schedule);
     }
 
-    #[must_use]
+    /// The level in the current cycle.
     pub const fn level(&self) -> bool {
         self.level
     }
 
-    fn load(&mut self) {
-        while self.rest.is_empty() {
-            let Some((start, rest)) = self.schedule.byte_range(self.sends) else {
+    fn load_byte(&mut self) {
+        while self.remaining.is_empty() {
+            let Some((start, bytes)) = self.schedule.byte_range(self.sends_begun) else {
                 (self.edges, self.next) = (0, Instant::NEVER);
                 return;
             };
-            self.sends += 1;
-            (self.send_start, self.rest, self.bytes_begun) = (start, rest, 0);
+            self.sends_begun += 1;
+            (self.send_start, self.remaining, self.bytes_begun) = (start, bytes, 0);
         }
-        let byte = self.schedule.byte(self.rest.start).unwrap_or_default();
-        self.rest.start += 1;
+        let byte = self.schedule.byte(self.remaining.start).unwrap_or_default();
+        self.remaining.start += 1;
         self.byte_start = self.send_start + self.times.byte(self.bytes_begun);
         self.bytes_begun += 1;
         // Start bit 0, data, stop bit 1; the line is high before the start bit.
@@ -124,7 +127,7 @@ impl Sender {
         self.next = self.byte_start;
     }
 
-    #[must_use]
+    /// Cycle of the next edge; [`Instant::NEVER`] without one.
     pub const fn next_edge(&self) -> Instant {
         self.next
     }
@@ -135,7 +138,7 @@ impl Sender {
         self.level = !self.level;
         self.edges &= self.edges.wrapping_sub(1);
         if self.edges == 0 {
-            self.load();
+            self.load_byte();
         } else {
             self.next = self.byte_start + self.times.bit(self.edges.trailing_zeros().into());
         }
@@ -146,25 +149,25 @@ impl Sender {
 mod tests {
     use super::*;
 
-    /// 10.5 cycles a bit.
+    /// 10.5 cycles per bit.
     fn sender(start: u64, bytes: &[u8]) -> Sender {
         let mut schedule = Schedule::default();
         schedule.push(Instant(start), bytes);
         Sender::new(Rc::new(schedule), 21, 2)
     }
 
-    /// The next edges, at most so many.
-    fn edges(sender: &mut Sender, most: usize) -> Vec<u64> {
+    /// The next edges, at most `max`.
+    fn edges(sender: &mut Sender, max: usize) -> Vec<u64> {
         let next = || {
             let edge = sender.next_edge();
             (edge != Instant::NEVER).then(|| sender.pass())?;
             Some(edge.0)
         };
-        core::iter::from_fn(next).take(most).collect()
+        core::iter::from_fn(next).take(max).collect()
     }
 
     #[test]
-    fn bytes_that_join_a_send_later_begin_as_if_they_had_been_known() {
+    fn bytes_added_to_a_send_later_have_the_same_edges() {
         let bytes = [0x00, 0xff, 0x55, 0x81, 0x7e];
         let all = edges(&mut sender(100, &bytes), usize::MAX);
         for (known, passed) in
@@ -175,24 +178,24 @@ mod tests {
             let mut found = edges(&mut joined, passed);
             let mut forgetful = joined.clone();
             joined.extend(later);
-            let left = edges(&mut joined, usize::MAX);
+            let remaining = edges(&mut joined, usize::MAX);
             if known > 0 {
                 forgetful.forget_sent();
                 assert!(forgetful.schedule().total_bytes() < known);
                 forgetful.extend(later);
                 assert_eq!(
                     edges(&mut forgetful, usize::MAX),
-                    left,
+                    remaining,
                     "{known} bytes known, {passed} edges passed"
                 );
             }
-            found.extend(left);
+            found.extend(remaining);
             assert_eq!(found, all, "{known} bytes known, {passed} edges passed");
         }
     }
 
     #[test]
-    fn what_is_sent_after_all_has_been_forgotten_begins_anew() {
+    fn a_send_after_forgetting_starts_at_its_own_cycle() {
         let mut sender = sender(7, &[0x00, 0xff]);
         edges(&mut sender, usize::MAX);
         sender.forget_sent();

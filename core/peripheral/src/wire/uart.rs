@@ -23,8 +23,10 @@ use crate::units::{Cycles, Instant};
 
 const STOP: u32 = 9;
 
+/// What a sample completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RxEvent {
+    /// A byte.
     Byte(u8),
     /// A byte whose stop bit was low.
     FramingError,
@@ -43,26 +45,26 @@ enum State {
     Broken,
 }
 
+/// Receives bytes from the level of the line.
 #[derive(Clone, Debug)]
 pub struct Receiver {
     bit_cycles: Cycles,
     state: State,
-    seen: Instant,
+    start: Instant,
 }
 
 impl Receiver {
-    #[must_use]
+    /// An armed receiver with this bit time.
     pub const fn new(bit_cycles: Cycles) -> Self {
-        Self { bit_cycles, state: State::Armed, seen: Instant::RESET }
+        Self { bit_cycles, state: State::Armed, start: Instant::RESET }
     }
 
-    #[must_use]
-    pub const fn seen(&self) -> Instant {
-        self.seen
+    /// Cycle in which the latest start bit was detected.
+    pub const fn start(&self) -> Instant {
+        self.start
     }
 
     /// Next cycle after `now` in which the receiver acts if the line stays at `rx`.
-    #[must_use]
     pub const fn deadline(&self, now: Instant, rx: bool) -> Instant {
         match self.state {
             State::Sampling { at, .. } => at,
@@ -76,7 +78,7 @@ impl Receiver {
     pub fn clock(&mut self, now: Instant, rx: bool) -> Option<RxEvent> {
         match self.state {
             State::Armed if !rx => {
-                self.seen = now;
+                self.start = now;
                 self.state = State::Sampling { bit: 0, at: now + Cycles(self.bit_cycles.0 / 2), byte: 0 };
             }
             State::Broken if rx => self.state = State::Armed,
@@ -106,30 +108,30 @@ mod tests {
     use super::*;
     use alloc::vec::Vec;
 
-    /// B = 11: looks at t+5 (start), t+16+11*i (data), t+104 (stop).
-    fn heard(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, RxEvent)> {
+    /// B = 11: samples at t+5 (start), t+16+11*i (data), t+104 (stop).
+    fn received(low: &[(u64, u64)], cycles: u64) -> Vec<(u64, RxEvent)> {
         let mut receiver = Receiver::new(Cycles(11));
         let level = |c| !low.iter().any(|&(from, to)| (from..to).contains(&c));
-        (1..cycles).filter_map(|c| receiver.clock(Instant(c), level(c)).map(|h| (c, h))).collect()
+        (1..cycles).filter_map(|c| receiver.clock(Instant(c), level(c)).map(|event| (c, event))).collect()
     }
 
     #[test]
-    fn a_byte_is_delivered_in_the_cycle_that_looks_at_its_stop_bit() {
-        assert_eq!(heard(&[(10, 21)], 300), [(114, RxEvent::Byte(0xff))]);
-        assert_eq!(heard(&[(10, 109)], 300), [(114, RxEvent::Byte(0x00))]);
-        assert_eq!(heard(&[(10, 32)], 300), [(114, RxEvent::Byte(0xfe))]);
+    fn a_byte_is_delivered_when_its_stop_bit_is_sampled() {
+        assert_eq!(received(&[(10, 21)], 300), [(114, RxEvent::Byte(0xff))]);
+        assert_eq!(received(&[(10, 109)], 300), [(114, RxEvent::Byte(0x00))]);
+        assert_eq!(received(&[(10, 32)], 300), [(114, RxEvent::Byte(0xfe))]);
     }
 
     #[test]
-    fn a_low_shorter_than_half_a_bit_is_a_glitch_and_the_next_cycle_arms() {
+    fn a_low_shorter_than_half_a_bit_is_a_glitch() {
         // Low in 10..15 only: at 15 the line is high, armed in 16.
-        assert_eq!(heard(&[(10, 15), (16, 27)], 300), [(120, RxEvent::Byte(0xff))]);
-        // Low again in the cycle of the look: the start bit holds, whatever was between.
-        assert_eq!(heard(&[(10, 14), (15, 16)], 300), [(114, RxEvent::Byte(0xff))]);
+        assert_eq!(received(&[(10, 15), (16, 27)], 300), [(120, RxEvent::Byte(0xff))]);
+        // Low again when the start bit is sampled: the level in between has no effect.
+        assert_eq!(received(&[(10, 14), (15, 16)], 300), [(114, RxEvent::Byte(0xff))]);
     }
 
     #[test]
-    fn the_receiver_acts_where_it_samples_a_bit_or_arms() {
+    fn deadlines_are_samples_and_arming() {
         let mut receiver = Receiver::new(Cycles(11));
         assert_eq!([false, true].map(|rx| receiver.deadline(Instant(9), rx).0), [10, u64::MAX]);
         assert_eq!(receiver.clock(Instant(10), false), None);
@@ -149,10 +151,10 @@ mod tests {
     fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
         // Held low to 200: error at 114. High in 200 only arms 201; the low of 201 is a start bit.
         assert_eq!(
-            heard(&[(10, 200), (201, 212)], 500),
+            received(&[(10, 200), (201, 212)], 500),
             [(114, RxEvent::FramingError), (305, RxEvent::Byte(0xff))]
         );
-        // Two lows that meet leave no high cycle.
-        assert_eq!(heard(&[(10, 200), (200, 212)], 500), [(114, RxEvent::FramingError)]);
+        // Without a high cycle between them the receiver stays unarmed.
+        assert_eq!(received(&[(10, 200), (200, 212)], 500), [(114, RxEvent::FramingError)]);
     }
 }

@@ -115,7 +115,7 @@ impl Bus {
             node.collides = collides;
         }
         if let Some(host) = host {
-            let level = host.is_sending(now) || line.replied(low == 0);
+            let level = host.is_sending(now) || line.host_level(low == 0);
             host.clock(now, level, line);
         }
     }

@@ -131,8 +131,8 @@ impl Twin {
             Ok(kind) => format!("ACK {}", kind.name()),
             Err(reason) => format!("NAK {}", stepscope_peripheral::protocol::Reason::name(reason)),
         };
-        if reported.reply.answer != model.reply.answer {
-            let (reported, model) = (name(reported.reply.answer), name(model.reply.answer));
+        if reported.reply.result != model.reply.result {
+            let (reported, model) = (name(reported.reply.result), name(model.reply.result));
             return Some(format!("it replies {reported}, the model {model}"));
         }
         if (status.state == State::Stopped) != (model_status.state == State::Stopped) {
@@ -314,7 +314,7 @@ mod tests {
         let rows: [(usize, Spoil, &str); 5] = [
             (
                 5,
-                |reply| reply.answer = Err(stepscope_peripheral::protocol::Reason::Busy),
+                |reply| reply.result = Err(stepscope_peripheral::protocol::Reason::Busy),
                 "NAK BUSY, the model ACK TICKS",
             ),
             (6, |reply| reply.status.state = State::Stopped, "it is STOPPED, the model MOVING"),
@@ -352,6 +352,6 @@ mod tests {
         let opening = host.poll(now).expect("it asks how the device is");
         let known = *host.known().next().expect("there is one controller").1;
         twin.send(&opening, now, (experiment.config().channels(), &known));
-        assert!(twin.answer().is_some_and(|answer| answer.reply.answer.is_ok()));
+        assert!(twin.answer().is_some_and(|answer| answer.reply.result.is_ok()));
     }
 }

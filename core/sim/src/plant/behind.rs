@@ -105,7 +105,7 @@ impl<S: Sink, O: Observer> Sink for Wired<'_, S, O> {
         }
     }
 
-    fn paused(&self) -> bool {
+    fn is_paused(&self) -> bool {
         false
     }
 }

@@ -27,7 +27,7 @@ impl Reading<'_> {
             RowOutcome::Reply(reply) => {
                 let _ = write!(text, "from {}: {reply}", reply.address);
                 // The trace stores counters as bytes only.
-                if reply.answer == Ok(Kind::Positions) {
+                if reply.result == Ok(Kind::Positions) {
                     let content = Content::of(bytes, last_frame(bytes));
                     if let [address, kind, body @ ..] = content.without(content.check()) {
                         write_positions(Frame { address: *address, kind: *kind, body }, text);

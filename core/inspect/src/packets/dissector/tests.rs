@@ -66,7 +66,7 @@ fn each_command_of_a_frame_has_its_byte_despite_cobs() {
 fn a_reply_has_a_status_and_a_refusal_a_reason() {
     let status =
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
-    let acknowledged = Reply { address: 4, answer: Ok(Kind::Status), status };
+    let acknowledged = Reply { address: 4, result: Ok(Kind::Status), status };
     let lines =
         told(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
     assert_eq!(lines[2], "kind 2..3 ACK STATUS");
@@ -80,7 +80,7 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
             "ticks done 8..12 16777216"
         ]
     );
-    let refused = Reply { answer: Err(Reason::Busy), ..acknowledged };
+    let refused = Reply { result: Err(Reason::Busy), ..acknowledged };
     let lines = told(&read(Protocol::Framed, false, &refused.emit(None), RowOutcome::Reply(refused)));
     assert_eq!(lines[2..5], ["kind 2..3 NAK", "reason 3..4 4, BUSY", "state 4..5 MOVING"]);
 }
@@ -88,7 +88,7 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
 #[test]
 fn the_reply_to_positions_has_four_bytes_per_channel() {
     let status = Status { state: State::Ready, free: 4, expected_seq: 1, faults: 0, ticks_done: 2 };
-    let reply = Reply { address: 5, answer: Ok(Kind::Positions), status };
+    let reply = Reply { address: 5, result: Ok(Kind::Positions), status };
     let of = |counters: &[i32]| {
         let bytes = reply.emit(Positions::new(counters).as_ref());
         // As the controller's own, and as what another one hears.

@@ -25,8 +25,8 @@ impl Mark {
     pub const fn of(outcome: RowOutcome) -> Self {
         match outcome {
             RowOutcome::Packet(PacketOutcome::Queued)
-            | RowOutcome::Frame(FrameOutcome::Queued(_) | FrameOutcome::Taken(_))
-            | RowOutcome::Reply(Reply { answer: Ok(_), .. }) => Self::Good,
+            | RowOutcome::Frame(FrameOutcome::Queued(_) | FrameOutcome::Executed(_))
+            | RowOutcome::Reply(Reply { result: Ok(_), .. }) => Self::Good,
             RowOutcome::Packet(PacketOutcome::OtherAddress)
             | RowOutcome::Frame(FrameOutcome::OtherAddress) => Self::OtherAddress,
             RowOutcome::Frame(FrameOutcome::Repeated) => Self::Repeated,
@@ -46,8 +46,8 @@ impl Mark {
 
 pub(super) fn outcome(outcome: RowOutcome) -> String {
     match outcome {
-        RowOutcome::Reply(Reply { answer: Ok(_), .. }) => "acknowledged".to_owned(),
-        RowOutcome::Reply(Reply { answer: Err(reason), .. }) => format!("refused: {}", reason.name()),
+        RowOutcome::Reply(Reply { result: Ok(_), .. }) => "acknowledged".to_owned(),
+        RowOutcome::Reply(Reply { result: Err(reason), .. }) => format!("refused: {}", reason.name()),
         outcome => outcome.to_string(),
     }
 }

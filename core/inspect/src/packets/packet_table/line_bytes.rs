@@ -69,7 +69,7 @@ impl PacketTable<'_> {
     /// The byte that the host sent within a bit of a start bit.
     pub(crate) fn sent_at(&self, seen: Instant) -> Option<u8> {
         let (reach, times) = (self.own.bit(), self.host_times());
-        let send = self.run.schedule().last_until(seen + reach)?;
+        let send = self.run.schedule().last_at_or_before(seen + reach)?;
         let after = Cycles(seen.0.saturating_sub(send.start.0));
         let index = times.nearest_byte(after);
         let byte = *send.bytes.get(usize::try_from(index).ok()?)?;

@@ -1,4 +1,4 @@
-//! The changes of a tick, against DESIGN A7's formulas and the patent's numbers.
+//! Compares the changes of a tick with the formulas (DESIGN A7) and with numbers of the patent.
 
 use super::*;
 use crate::{
@@ -7,10 +7,10 @@ use crate::{
 };
 
 #[test]
-fn each_channel_fires_where_the_formula_says() {
+fn each_channel_steps_in_the_slots_of_the_formula() {
     for slots in 1..=127_u8 {
         for first in 0..=slots {
-            // Neighbors with other counts, the extremes among them.
+            // The other channels have other counts, including the extremes.
             let others = [0, slots, 1, slots - 1, slots / 2, first / 2, slots - first];
             let counts = core::array::from_fn(|i| if i % 2 == 0 { first } else { others[i / 2 % 7] });
             let (m, h) = (u32::from(slots), u32::from(slots / 2));
@@ -27,7 +27,7 @@ fn each_channel_fires_where_the_formula_says() {
     }
 }
 
-/// Three channels in two slots of 40 cycles, the first steps first; pulses of 3, DIR 2 before and 1 after.
+/// Three channels, two slots of 40 cycles; W = 3, D = 2, H = 1.
 fn bus(dir_line: DirLine, pulse_phasing: PulsePhasing, settle_cycles: u32) -> Bus {
     Bus {
         channels: 3,
@@ -45,22 +45,22 @@ fn bus(dir_line: DirLine, pulse_phasing: PulsePhasing, settle_cycles: u32) -> Bu
 }
 
 fn changes(bus: &Bus, commands: &[u8]) -> Vec<(u64, Lines)> {
-    let config = Config::new(16_000_000, bus, &SerialLine::default()).expect("it holds");
+    let config = Config::new(16_000_000, bus, &SerialLine::default()).expect("a valid configuration");
     let mut plan = Plan::new(&config);
     let mut tick = [0; MAX_CHANNELS];
-    tick.iter_mut().zip(commands).for_each(|(place, &byte)| *place = byte);
+    tick.iter_mut().zip(commands).for_each(|(command, &byte)| *command = byte);
     plan.set(tick);
     assert_eq!((plan.commands, plan.has_steps()), (tick, commands.iter().any(|byte| byte & 0x7f != 0)));
     plan.changes().iter().map(|change| (change.offset, change.lines)).collect()
 }
 
 #[test]
-fn each_mode_has_its_edges_where_the_contract_puts_them() {
+fn each_mode_has_the_edges_of_the_contract() {
     use {
         DirLine::{Common, PerChannel},
         PulsePhasing::{Simultaneous, Staggered},
     };
-    // One step right, one left, two right; nobody; DIR alone.
+    // One step right, one left, two right; no steps; DIR only.
     let (all, none, left) = ([0x81, 0x01, 0x82], [0x80, 0, 0x80], [0, 0, 1]);
     // DIR of the first and the last channel, and of all.
     let (own, common) = (0x5_0000, 0x7_0000);
@@ -68,7 +68,7 @@ fn each_mode_has_its_edges_where_the_contract_puts_them() {
     let rows: &[Row<'_>] = &[
         (PerChannel, Simultaneous, 0, &all, &[(0, own), (2, own | 7), (5, own), (42, own | 4), (45, own)]),
         (PerChannel, Simultaneous, 0, &none, &[(0, own)]),
-        // d = min(10, floor(40/3)), and of one that fires alone there is no second.
+        // d = min(10, floor(40/3)); in the second slot only one channel steps.
         (
             PerChannel,
             Staggered,
@@ -102,7 +102,7 @@ fn each_mode_has_its_edges_where_the_contract_puts_them() {
                 (31, common),
             ],
         ),
-        // Closer than they are long: they overlap, meet, and come at once.
+        // Distances below W: pulses overlap, touch, and coincide.
         (PerChannel, Staggered, 2, &[1, 1, 1], &[(0, 0), (2, 1), (4, 3), (5, 2), (6, 6), (7, 4), (9, 0)]),
         (PerChannel, Staggered, 3, &[1, 1, 1], &[(0, 0), (2, 1), (5, 2), (8, 4), (11, 0)]),
         (PerChannel, Staggered, 0, &[1, 1, 1], &[(0, 0), (2, 7), (5, 0)]),
@@ -127,7 +127,7 @@ fn each_mode_has_its_edges_where_the_contract_puts_them() {
         ),
         (Common, Simultaneous, 0, &left, &[(0, 0), (2, 4), (5, 0), (6, common)]),
         (Common, Simultaneous, 0, &none, &[]),
-        // The left one, then the right ones; DIR rises D before the first of these, and stays.
+        // The left one, then the right ones; DIR rises D before the first pulse to the right, and stays high.
         (
             Common,
             Staggered,
@@ -155,8 +155,8 @@ fn each_mode_has_its_edges_where_the_contract_puts_them() {
 }
 
 #[test]
-fn the_patents_numbers_come_out() {
-    // With D = W = 1 and H = 0 a common DIR line takes five cycles a step for all motors.
+fn edges_match_the_numbers_of_the_patent() {
+    // With D = W = 1 and H = 0 a common DIR line takes five cycles per step of all motors.
     let five = Bus {
         dir_setup_cycles: 1,
         pulse_width_cycles: 1,
@@ -180,7 +180,7 @@ fn the_patents_numbers_come_out() {
 }
 
 #[test]
-fn a_tick_that_fills_its_slots_ends_with_its_last_fall() {
+fn full_slots_end_with_the_last_fall() {
     // L = W + max(D + H, 1) = Ts: the fall of the last pulse is H before the end.
     let full = Bus {
         step_period_cycles: 6,
@@ -190,6 +190,6 @@ fn a_tick_that_fills_its_slots_ends_with_its_last_fall() {
     };
     let found = changes(&full, &[0xff]);
     assert_eq!(found.len(), 1 + 2 * 127);
-    let config = Config::new(16_000_000, &full, &SerialLine::default()).expect("it holds");
+    let config = Config::new(16_000_000, &full, &SerialLine::default()).expect("a valid configuration");
     assert_eq!((found.last(), config.tick()), (Some(&(6 * 127 - 1, 0x1_0000)), Cycles(6 * 127)));
 }

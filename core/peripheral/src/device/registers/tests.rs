@@ -1,4 +1,4 @@
-//! What the registers do, against the data sheet's sentences.
+//! Compares the registers with the data sheet.
 
 use super::*;
 use crate::config::{Bus, Distribution, PulsePhasing, SerialLine};
@@ -34,12 +34,12 @@ const BUS: Bus = Bus {
 };
 
 #[derive(Default)]
-struct Left {
+struct Output {
     trace: Vec<Record>,
     events: Vec<Event>,
 }
 
-impl Sink for Left {
+impl Sink for Output {
     fn record(&mut self, record: Record) {
         self.trace.push(record);
     }
@@ -49,10 +49,10 @@ impl Sink for Left {
     }
 }
 
-/// A peripheral and what it left; accesses take no time.
+/// A peripheral and its output; accesses take no time.
 struct Bench {
     device: Device,
-    left: Left,
+    output: Output,
 }
 
 impl RegisterBus for Bench {
@@ -61,17 +61,17 @@ impl RegisterBus for Bench {
     }
 
     fn write(&mut self, offset: u32, value: u32) {
-        self.device.write(offset, value, &mut self.left);
+        self.device.write(offset, value, &mut self.output);
     }
 }
 
 impl Bench {
     fn new(bus: &Bus, line: &SerialLine) -> Self {
-        let config = Config::new(1_600_000, bus, line).expect("it holds");
-        Self { device: Device::new(&config), left: Left::default() }
+        let config = Config::new(1_600_000, bus, line).expect("a valid configuration");
+        Self { device: Device::new(&config), output: Output::default() }
     }
 
-    /// Just after the self-test: cycle 100 was run.
+    /// A bench at the end of the self-test, in cycle 100.
     fn ready() -> Self {
         let mut bench = Self::new(&BUS, &SerialLine { baud: 100_000, ..SerialLine::default() });
         bench.run_to(100);
@@ -80,7 +80,7 @@ impl Bench {
 
     /// Runs to the end of cycle `last`.
     fn run_to(&mut self, last: u64) {
-        self.device.run(true, Instant(last + 1), &mut self.left);
+        self.device.run(true, Instant(last + 1), &mut self.output);
     }
 
     fn result(&mut self, offset: u32, value: u32) -> u32 {
@@ -92,8 +92,8 @@ impl Bench {
         self.result(map::control::OFFSET, command.mask())
     }
 
-    fn push(&mut self, orders: u32) -> u32 {
-        self.write(map::orders::OFFSET, orders);
+    fn push(&mut self, commands: u32) -> u32 {
+        self.write(map::orders::OFFSET, commands);
         self.result(map::push::OFFSET, 0)
     }
 
@@ -103,17 +103,17 @@ impl Bench {
 
     /// Cycles and levels of the trace without RX, TX and DE, from a cycle on.
     fn edges_from(&self, cycle: u64) -> Vec<(u64, u64)> {
-        let records = self.left.trace.iter().filter(|record| record.cycle.0 >= cycle);
+        let records = self.output.trace.iter().filter(|record| record.cycle.0 >= cycle);
         records.map(|record| (record.cycle.0, record.levels.0 & (Levels::EN | 0xffff_ffff))).collect()
     }
 }
 
-fn each() -> impl Iterator<Item = (&'static Register, u32)> {
+fn registers() -> impl Iterator<Item = (&'static Register, u32)> {
     map::MAP.iter().flat_map(|register| (0..register.count).map(move |n| (register, register.offset + 4 * n)))
 }
 
 #[test]
-fn every_register_is_as_the_table_says() {
+fn every_register_has_its_reset_value_and_access() {
     let built = [
         ("CAPABILITIES", 0x0002_1001),
         ("CLOCK_HZ", 1_600_000),
@@ -129,15 +129,17 @@ fn every_register_is_as_the_table_says() {
     ];
     let mut bench =
         Bench::new(&Bus { channels: 16, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
-    for (register, offset) in each() {
+    for (register, offset) in registers() {
         let expected = match register.reset {
             Reset::Is(value) => value,
-            Reset::Built => built.iter().find(|(name, _)| *name == register.name).expect("it is listed").1,
+            Reset::Built => {
+                built.iter().find(|(name, _)| *name == register.name).expect("a listed register").1
+            }
         };
         assert_eq!(bench.read(offset), expected, "{}", register.name);
     }
     bench.run_to(0);
-    for (register, offset) in each().filter(|(register, _)| register.access != Access::Wo) {
+    for (register, offset) in registers().filter(|(register, _)| register.access != Access::Wo) {
         let before = bench.read(offset);
         bench.write(offset, 2);
         let changes = register.access == Access::Rw;
@@ -146,22 +148,22 @@ fn every_register_is_as_the_table_says() {
 }
 
 #[test]
-fn where_no_register_is_reads_give_0_and_writes_do_nothing() {
+fn without_a_register_reads_return_0_and_writes_are_ignored() {
     let mut bench = Bench::ready();
-    let before: Vec<u32> = each().map(|(_, offset)| bench.read(offset)).collect();
-    let known: Vec<u32> = each().map(|(_, offset)| offset).collect();
+    let before: Vec<u32> = registers().map(|(_, offset)| bench.read(offset)).collect();
+    let known: Vec<u32> = registers().map(|(_, offset)| offset).collect();
     for offset in (0..0x200).chain([u32::MAX - 3, u32::MAX]).filter(|offset| !known.contains(offset)) {
         bench.write(offset, u32::MAX);
         assert_eq!(bench.read(offset), 0, "{offset:#x}");
     }
-    assert_eq!(each().map(|(_, offset)| bench.read(offset)).collect::<Vec<_>>(), before);
+    assert_eq!(registers().map(|(_, offset)| bench.read(offset)).collect::<Vec<_>>(), before);
 }
 
 #[test]
-fn before_cycle_0_nothing_is_taken_and_in_it_a_push_starts_its_tick_in_cycle_1() {
+fn pushes_are_ignored_before_cycle_0_and_start_a_tick_in_the_next_cycle() {
     let mut bench =
         Bench::new(&Bus { boot_cycles: 0, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
-    assert_eq!((bench.push(0x01), bench.status(MOVING)), (CODE_DONE, 0), "RESULT is as at reset");
+    assert_eq!((bench.push(0x01), bench.status(MOVING)), (CODE_DONE, 0), "RESULT has its reset value");
     bench.run_to(0);
     assert_eq!(bench.push(0x81), CODE_DONE);
     bench.run_to(200);
@@ -173,7 +175,7 @@ fn before_cycle_0_nothing_is_taken_and_in_it_a_push_starts_its_tick_in_cycle_1()
 }
 
 #[test]
-fn a_push_is_validated_in_the_data_sheets_order() {
+fn a_push_reports_errors_in_the_order_of_the_data_sheet() {
     let mut bench = Bench::new(&BUS, &SerialLine { baud: 100_000, ..SerialLine::default() });
     let faults = map::faults::OFFSET;
     bench.run_to(50);
@@ -190,7 +192,7 @@ fn a_push_is_validated_in_the_data_sheets_order() {
     assert_eq!((bench.push(0x04), bench.read(faults)), (CODE_QUEUE_FULL, 0x30));
     assert_eq!(bench.status(STATE), STATE_MOVING);
     bench.run_to(101);
-    assert_eq!(bench.status(FREE), 1, "the first tick left the queue at its start");
+    assert_eq!(bench.status(FREE), 1, "the first tick output the queue at its start");
     bench.run_to(101 + 2 * 80 - 1);
     assert_eq!((bench.status(MOVING), bench.read(map::ticks_done::OFFSET)), (1, 1));
     bench.run_to(101 + 2 * 80);
@@ -199,10 +201,10 @@ fn a_push_is_validated_in_the_data_sheets_order() {
 }
 
 #[test]
-fn faults_clear_where_a_one_is_written() {
+fn writing_1_clears_a_fault() {
     let mut bench = Bench::ready();
-    for order in [0x7f, 1, 1, 1] {
-        bench.push(order);
+    for command in [0x7f, 1, 1, 1] {
+        bench.push(command);
     }
     let steps = [(0x10, 0x20), (0, 0x20), (0x40, 0x20), (u32::MAX, 0)];
     for (written, expected) in steps {
@@ -222,14 +224,14 @@ fn underrun_is_set_on_a_framed_line_and_can_be_cleared() {
     bench.write(map::faults::OFFSET, map::faults::UNDERRUN.mask());
     bench.push(0);
     bench.run_to(500);
-    assert_eq!(bench.read(map::faults::OFFSET), 0, "a tick of zero counts was the last");
+    assert_eq!(bench.read(map::faults::OFFSET), 0, "the last tick had no steps");
 }
 
 #[test]
-fn the_reply_to_positions_tells_what_the_registers_read_in_its_cycle() {
+fn a_reply_to_positions_has_the_values_of_the_registers_in_its_cycle() {
     let serial = SerialLine { baud: 100_000, protocol: Protocol::Framed, ..SerialLine::default() };
     let bus = Bus { step_period_cycles: 1000, ..BUS };
-    // A tick that is pushed in 100 steps in 104, 1104, 2104, 3104: channel 0 to the right, channel 1 twice to the left.
+    // The tick pushed in cycle 100 has steps in 104, 1104, 2104, 3104: channel 0 to the right, channel 1 twice to the left.
     for (p, steps) in [(2103, [2, -2]), (2104, [3, -2]), (2105, [3, -2])] {
         // Eight bytes, the last one delivered 152 cycles after its start.
         let mut schedule = Schedule::default();
@@ -241,23 +243,23 @@ fn the_reply_to_positions_tells_what_the_registers_read_in_its_cycle() {
             if line.next_change() == now {
                 line.change();
             }
-            bench.device.clock(line.level(true), &mut bench.left);
+            bench.device.clock(line.level(true), &mut bench.output);
             if now == Instant(100) {
                 bench.write(map::orders::OFFSET, 0x0284);
                 bench.write(map::push::OFFSET, 0);
             }
         }
         let read = [0, 4].map(|channel| bench.read(map::position::OFFSET + channel).cast_signed());
-        let told = bench.left.events.iter().find_map(|event| match event {
+        let replied = bench.output.events.iter().find_map(|event| match event {
             Event::Reply { positions, .. } => *positions,
             _ => None,
         });
-        assert_eq!((read, told), (steps, Positions::new(&steps)), "POSITIONS in {p}");
+        assert_eq!((read, replied), (steps, Positions::new(&steps)), "POSITIONS in {p}");
     }
 }
 
 #[test]
-fn orders_of_channels_that_are_not_there_are_not_kept() {
+fn commands_of_missing_channels_are_not_stored() {
     let mut bench = Bench::ready();
     assert_eq!(bench.push(0x7f7f_0201), CODE_DONE);
     assert_eq!(bench.read(map::orders::OFFSET), 0x0201);
@@ -276,7 +278,7 @@ fn stop_in_mid_pulse_ends_the_pulse_in_the_next_cycle() {
     assert_eq!((bench.status(EN), bench.status(STATE)), (1, STATE_STOPPED), "EN falls in the next cycle");
     bench.run_to(400);
     assert_eq!(bench.edges_from(105), [(106, 0x2_0000)]);
-    assert_eq!(bench.device.positions()[..2], [-1, 1], "a pulse that was cut counts");
+    assert_eq!(bench.device.positions()[..2], [-1, 1], "a pulse that was cut short counts");
     assert_eq!((bench.status(EN), bench.status(FREE), bench.status(MOVING)), (0, 2, 0));
     assert_eq!(bench.command(ENABLE), CODE_DONE);
     bench.run_to(500);
@@ -296,7 +298,7 @@ fn stop_enable_and_push_in_one_cycle_start_the_tick_in_the_next() {
 }
 
 #[test]
-fn disable_waits_for_the_ticks_end() {
+fn disable_is_busy_until_the_end_of_the_tick() {
     let mut bench = Bench::ready();
     bench.push(0x01);
     bench.run_to(101 + 80 - 1);
@@ -308,7 +310,7 @@ fn disable_waits_for_the_ticks_end() {
 }
 
 #[test]
-fn of_several_commands_the_highest_is_carried_out() {
+fn of_several_commands_the_highest_bit_is_executed() {
     let rows = [
         (0, STATE_READY),
         (ENABLE.mask() | DISABLE.mask(), STATE_STOPPED),
@@ -325,7 +327,7 @@ fn of_several_commands_the_highest_is_carried_out() {
 }
 
 #[test]
-fn commit_makes_the_peripheral_one_that_was_built_with_the_timing() {
+fn after_commit_the_trace_equals_that_of_a_peripheral_with_this_timing() {
     let bus = Bus {
         slots: 6,
         step_period_cycles: 44,
@@ -351,12 +353,12 @@ fn commit_makes_the_peripheral_one_that_was_built_with_the_timing() {
         assert_eq!((bench.push(0x8605), bench.push(0x0283)), (CODE_DONE, CODE_DONE));
         bench.run_to(2_000);
     }
-    assert_eq!(bench.left.trace, built.left.trace);
+    assert_eq!(bench.output.trace, built.output.trace);
     assert_eq!(bench.device.ticks_done(), 2);
 }
 
 #[test]
-fn every_code_of_mode_that_has_a_meaning_is_put_in_force_and_no_other_is() {
+fn commit_accepts_exactly_the_named_codes_of_mode() {
     for field in map::mode::REGISTER.fields {
         for code in 0..=field.of(u32::MAX) {
             let known = field.values.iter().any(|named| named.value == code);
@@ -386,14 +388,14 @@ fn a_refused_commit_changes_nothing() {
         let (mut bench, mut untouched) = (Bench::ready(), Bench::ready());
         bench.write(offset, value);
         assert_eq!(bench.command(COMMIT), expected, "{value} at {offset:#x}");
-        assert_eq!(bench.read(offset), value, "what was written can be put right");
+        assert_eq!(bench.read(offset), value, "the written value can be corrected");
         assert_eq!(bench.status(PENDING), u32::from(expected != CODE_DONE));
         if expected != CODE_DONE {
             for bench in [&mut bench, &mut untouched] {
                 assert_eq!((bench.push(0x04), bench.push(0x05)), (CODE_DONE, CODE_TOO_MANY_STEPS));
                 bench.run_to(300);
             }
-            assert_eq!(bench.left.trace, untouched.left.trace);
+            assert_eq!(bench.output.trace, untouched.output.trace);
         }
     }
     let mut bench = Bench::ready();
@@ -410,24 +412,24 @@ fn a_refused_commit_changes_nothing() {
 fn a_stopped_controller_drops_raw_packets_without_a_fault() {
     let mut bench = Bench::ready();
     bench.command(STOP);
-    // Two bytes of 16 cycles a bit: start bit, data from bit 0 up, stop bit.
+    // Two bytes with 16 cycles per bit: start bit, data from bit 0 up, stop bit.
     for byte in [0x01_u32, 0x81] {
         for bit in 0..10 {
             let level = (byte << 1 | 1 << 9) >> bit & 1 != 0;
             let end = bench.device.now() + Cycles(16);
-            bench.device.run(level, end, &mut bench.left);
+            bench.device.run(level, end, &mut bench.output);
         }
     }
-    let packets = bench.left.events.iter().filter(|event| matches!(event, Event::Packet(_)));
+    let packets = bench.output.events.iter().filter(|event| matches!(event, Event::Packet(_)));
     assert_eq!(packets.collect::<Vec<_>>(), vec![&Event::Packet(crate::signal::PacketOutcome::Stopped)]);
     assert_eq!((bench.read(map::faults::OFFSET), bench.status(MOVING)), (0, 0));
 }
 
 #[test]
-fn time_does_not_go_back_behind_a_write() {
+fn finish_does_not_set_a_time_before_a_write() {
     let mut bench = Bench::ready();
     bench.push(0x04);
-    bench.device.run(true, Instant::NEVER, &mut bench.left);
+    bench.device.run(true, Instant::NEVER, &mut bench.output);
     bench.push(0x01);
     let end = 101 + 80;
     assert_eq!(bench.device.now(), Instant(end + 1));

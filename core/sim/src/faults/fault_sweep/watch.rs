@@ -33,7 +33,7 @@ impl Sink for Watch {
             Event::TickStart { commands } => return self.ticks.push(commands),
             Event::FramingError { .. } => &mut counted.framing,
             Event::Frame(FrameOutcome::BadCrc { .. }) => &mut counted.bad_check,
-            Event::Frame(FrameOutcome::Short) | Event::Gap { short: true } => &mut counted.short,
+            Event::Frame(FrameOutcome::Short) | Event::Gap { cuts_packet: true } => &mut counted.short,
             Event::Frame(FrameOutcome::Overlong) => &mut counted.overlong,
             Event::Frame(FrameOutcome::Refused(_))
             | Event::Packet(

@@ -202,7 +202,7 @@ impl Conversation {
         let missed = misses();
         let Some(peer) = self.peers.get_mut(index) else { return };
         let reply = reply.filter(|(reply, _)| reply.address == peer.job.address && !missed);
-        match reply.map(|(reply, positions)| (reply.answer, reply.status, positions)) {
+        match reply.map(|(reply, positions)| (reply.result, reply.status, positions)) {
             Some((Ok(taken), status, positions)) if taken == kind && peer.fits(kind, status) => {
                 self.counts.replies += 1;
                 (peer.attempts, peer.flush) = (0, false);
@@ -323,7 +323,7 @@ mod tests {
                 ticks_done: seq.into(),
             };
             let positions = (kind == Kind::Positions).then(|| Positions::new(&[7]).expect("one channel"));
-            for byte in (Reply { address: 0, answer: Ok(kind), status }).emit(positions.as_ref()) {
+            for byte in (Reply { address: 0, result: Ok(kind), status }).emit(positions.as_ref()) {
                 host.receive(byte, now + Cycles(9000));
             }
             asked.push(kind);

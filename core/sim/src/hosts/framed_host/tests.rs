@@ -62,7 +62,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
         }
         let (driven, sending) = (device.driven().unwrap_or(true), host.is_sending(now));
         let level = line.level(true);
-        host.clock(now, sending || line.replied(driven), &mut meant);
+        host.clock(now, sending || line.host_level(driven), &mut meant);
         if let Some(sent) = meant.schedule().get(frames.len()) {
             let (bytes, crashed) = spoil(frames.len(), sent.bytes);
             line.send(sent.start, &bytes);
@@ -188,7 +188,7 @@ fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
         let _ = host.poll(Instant(1)).expect("TICKS are due");
         host.sent(Instant(8));
         let status = Status { state: State::Moving, free: 14, expected_seq, faults: 0, ticks_done: 0 };
-        for byte in (Reply { address: 0, answer: Ok(Kind::Ticks), status }).emit(None) {
+        for byte in (Reply { address: 0, result: Ok(Kind::Ticks), status }).emit(None) {
             host.receive(byte, Instant(9));
         }
         assert_eq!(host.acknowledged().next(), Some(acknowledged), "seq {expected_seq}");
@@ -277,7 +277,7 @@ fn converse_with(
         let positions =
             (answer == Ok(Kind::Positions)).then(|| Positions::new(&reported.positions).expect("some"));
         now += Cycles(100);
-        (Reply { address: 0, answer, status })
+        (Reply { address: 0, result: answer, status })
             .emit(positions.as_ref())
             .iter()
             .for_each(|&byte| host.receive(byte, now));
