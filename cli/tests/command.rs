@@ -121,7 +121,7 @@ fn every_golden_case_comes_out_of_the_command() {
 #[test]
 fn a_bad_scenario_ends_with_2_and_all_its_problems() {
     let rows: [(&str, &[&str]); 4] = [
-        ("", &["not JSON at line 1, column 0: "]),
+        ("", &["invalid JSON at line 1, column 0: "]),
         (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; give 11 to 1000000000 Hz"]),
         (
             r#"{"clok_hz": 1, "bus": {"slots": 200, "channels": "four"}, "line": {"baud": 0}}"#,
@@ -213,11 +213,7 @@ fn a_table_of_points_becomes_a_scenario_that_runs() {
     let status = stepscope(&["run", "-", "--status"], &made.out).expect("it runs");
     assert!(status.out.contains("positions 0\n"), "{}", status.out);
     for (table, options, expected) in [
-        (
-            "0,0\n1,x\n",
-            &[][..],
-            "-: line 2: the position is \u{201c}x\u{201d}; give a number, such as 0.25\n",
-        ),
+        ("0,0\n1,x\n", &[][..], "-: line 2: the position is \u{201c}x\u{201d}; use a number, such as 0.25\n"),
         (
             "0,0\n1,5\n1,6\n",
             &["--unit", "deg"],

@@ -42,7 +42,7 @@ fn a_text_of_braces_is_refused_as_what_it_is() {
     let braces = "{\"bus\":".repeat(1 << 20);
     let (code, out, err) = stepscope(&["run", "-"], &braces);
     assert_eq!((code, out.as_str()), (Some(2), ""));
-    assert!(err.contains("not JSON at line 1, column "), "{err}");
+    assert!(err.contains("invalid JSON at line 1, column "), "{err}");
 }
 
 /// Maximum resident memory in bytes, as the system counted it.
@@ -109,11 +109,11 @@ fn a_field_that_is_given_twice_is_refused_with_its_path() {
     ] {
         let (code, out, err) = stepscope(&["run", "-"], given);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{given}");
-        assert_eq!(err, format!("-: 1 problem\n  {path}: given twice; give it once\n"), "{given}");
+        assert_eq!(err, format!("-: 1 problem\n  {path}: duplicate field; use it once\n"), "{given}");
     }
     let both = r#"{"source":{"motion":{"axes":[{"moves":[{"dwell":{},"dwell":{}}]}]}}}"#;
     let (code, _, err) = stepscope(&["run", "-"], both);
-    assert!(code == Some(2) && err.contains("moves[0]: a map of 2 keys"), "{err}");
+    assert!(code == Some(2) && err.contains("moves[0]: an object with 2 keys"), "{err}");
 }
 
 #[test]
@@ -130,19 +130,19 @@ fn a_whole_number_may_be_written_as_other_programs_write_it() {
 #[test]
 fn a_value_of_the_wrong_type_is_told_the_documented_range() {
     for (given, says) in [
-        (r#"{"clock_hz":-1}"#, "clock_hz: -1; give a whole number from 11 to 1000000000 Hz"),
-        (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5; give a whole number from 11 to 1000000000 Hz"),
-        (r#"{"bus":{"slots":300}}"#, "bus.slots: 300; give a whole number from 1 to 127"),
+        (r#"{"clock_hz":-1}"#, "clock_hz: -1; use a whole number from 11 to 1000000000 Hz"),
+        (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5; use a whole number from 11 to 1000000000 Hz"),
+        (r#"{"bus":{"slots":300}}"#, "bus.slots: 300; use a whole number from 1 to 127"),
         (
             r#"{"bus":{"channels":"four"}}"#,
-            "bus.channels: \u{201c}four\u{201d}; give a whole number from 1 to 16",
+            "bus.channels: \u{201c}four\u{201d}; use a whole number from 1 to 16",
         ),
-        (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30; give a whole number from 1 to 9000000000000000 cycles"),
-        (r#"{"title":5}"#, "title: 5; give a text of 0 to 120 characters"),
-        (r#"{"controllers":{}}"#, "controllers: an object; give a list of 0 to 31 additional controllers"),
-        (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d}; give a whole number: 1 or 2"),
-        (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d}; give a number from "),
-        (r#"{"title":"\ud800"}"#, "title: a text with half of a surrogate pair; give a text of 0 to 120"),
+        (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30; use a whole number from 1 to 9000000000000000 cycles"),
+        (r#"{"title":5}"#, "title: 5; use a text of 0 to 120 characters"),
+        (r#"{"controllers":{}}"#, "controllers: an object; use a list of 0 to 31 additional controllers"),
+        (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d}; use a whole number: 1 to 3"),
+        (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d}; use a number from "),
+        (r#"{"title":"\ud800"}"#, "title: a text with half of a surrogate pair; use a text of 0 to 120"),
     ] {
         let (code, _, err) = stepscope(&["run", "-"], given);
         assert_eq!(code, Some(2), "{given}");

@@ -3,8 +3,8 @@
 //! Motions are checked when they are planned (`motion`).
 
 use crate::{
-    Cause, Controller, Hex, Host, LineScript, Noise, Problem, Scenario, Source, Validator, ValueError,
-    limits::END_OF_TIME, schema::ranges::check_ranges,
+    Cause, Controller, Hex, Host, LineScript, Noise, Packets, Problem, Scenario, Source, VERSION, Validator,
+    ValueError, limits::END_OF_TIME, schema::ranges::check_ranges,
 };
 use alloc::{
     format,
@@ -22,21 +22,30 @@ use stepscope_peripheral::{
 /// Maximum bytes of a line script, and maximum packets of a packet list.
 const MAX_BYTES: usize = 4 << 20;
 
-/// A valid scenario. Its motions are checked later.
+/// A valid scenario. Its motions are checked when they are planned.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "fields are named as in the scenario")]
 pub struct CheckedScenario {
+    /// One per controller; the first is that of `bus` and `line`.
     pub configs: Vec<Config>,
+    /// The controllers after the first.
     pub additional: Vec<Controller>,
+    /// Bit rate of the host.
     pub baud: u32,
+    /// The host of a framed line.
     pub host: Host,
+    /// Random faults of the line and the host.
     pub noise: Noise,
     /// Levels forced on the line. If two overlap, the later wins.
     pub forced: Vec<ForcedLevel>,
+    /// What the host sends, or what the controllers run without a host.
     pub source: Source,
+    /// The lists, if the source is segments.
     pub segments: Option<CheckedSegments>,
+    /// The controllers, if they are stand-alone.
     pub stand_alone: Option<stepscope_controller::CheckedSetup>,
+    /// Given length of the run.
     pub run: Option<Cycles>,
+    /// Motors and supply behind each controller.
     pub plants: Option<crate::plant::Plants>,
 }
 
@@ -44,8 +53,8 @@ impl CheckedScenario {
     /// Whether the host waits for a reply before it sends the next frame.
     #[must_use]
     pub fn waits_for_replies(&self) -> bool {
-        let framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
-        framed && self.source.is_ticks()
+        let is_framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
+        is_framed && self.source.is_ticks()
     }
 }
 
@@ -56,63 +65,27 @@ impl Scenario {
     /// Every problem, each with its path.
     pub fn check(&self) -> Result<CheckedScenario, Vec<Problem>> {
         let mut validator = Validator::default();
-        if self.version > crate::VERSION {
-            let given = u64::from(self.version);
-            validator.add("version", Cause::NewerVersion { given, newest: crate::VERSION });
-        } else {
-            validator.whole("version", self.version, 1..=crate::VERSION.into(), "");
-        }
+        self.check_version(&mut validator);
         check_ranges(self, &mut validator);
-        let runs_alone = self.source.runs_alone();
-        let configure = if runs_alone { Config::of_segments } else { Config::new };
-        let config = configure(self.clock_hz, &self.bus, &self.line.serial());
-        let config = config.map_err(|broken| report(broken, ToString::to_string, &mut validator)).ok();
-        // By default the receiver has the host's rate, which is checked above.
-        if self.line.receiver_baud.is_some() && !runs_alone {
-            validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
-        }
-        if runs_alone && !self.controllers.is_empty() {
-            let detail = match self.source {
-                Source::Standalone(_) => "stand-alone controllers have no line; move them to the source",
-                _ => "segments run only one controller; remove the others, or choose ticks",
-            };
-            validator.add("controllers", ValueError::Conflict { detail });
-        }
-        let additional = self.additional(config.as_ref(), &mut validator);
-        self.host(&mut validator);
-        let forced = self.glitches(&mut validator);
-        let mut segments = None;
-        let mut stand_alone = None;
+        let first = self.check_first_controller(&mut validator);
+        let additional = self.check_additional_controllers(first.as_ref(), &mut validator);
+        self.check_host_rate(&mut validator);
+        let forced = self.check_glitches(&mut validator);
+        let (mut segments, mut stand_alone) = (None, None);
         match &self.source {
-            Source::Motion(motion) => {
-                let axes = motion.axes.len();
-                validator.at("source.motion.axes", |here| {
-                    fit_channels(here, axes, (1, "axes"), (self.bus.channels, "bus.channels"));
-                });
-            }
-            Source::Packets(packets) => {
-                let is_addressed = self.line.protocol == Protocol::Raw && self.line.address.is_some();
-                let additional = self.controllers.iter().map(|controller| &controller.packets);
-                let total: usize =
-                    additional.chain([&packets.packets]).flatten().map(|Hex(bytes)| bytes.len()).sum();
-                let channels = (self.bus.channels, "bus.channels");
-                validator.at("source.packets.packets", |here| {
-                    check_packets(&packets.packets, is_addressed, channels, here);
-                });
-                validator.length("source.packets.packets", total, 0..=MAX_BYTES, "bytes");
-            }
-            Source::Line(script) => self.script(script, &mut validator),
+            Source::Motion(motion) => validator.at("source.motion.axes", |axes| {
+                self.channels().check_count(motion.axes.len(), 1, "axes", axes);
+            }),
+            Source::Packets(packets) => self.check_packets(packets, &mut validator),
+            Source::Line(script) => self.check_script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
-            Source::Standalone(controllers) => stand_alone = self.stand_alone(controllers, &mut validator),
+            Source::Standalone(controllers) => {
+                stand_alone = self.check_stand_alone(controllers, &mut validator);
+            }
         }
-        let axes = match &self.source {
-            Source::Motion(motion) => motion.axes.len(),
-            _ => usize::from(self.bus.channels),
-        };
-        let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
-        validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
-        let configs: Vec<Config> = config.into_iter().chain(additional).collect();
-        let plants = self.plants(&configs, &mut validator);
+        self.check_analysis_axis(&mut validator);
+        let configs: Vec<Config> = first.into_iter().chain(additional).collect();
+        let plants = self.check_plants(&configs, &mut validator);
         validator.end(()).map(|()| CheckedScenario {
             configs,
             additional: self.controllers.clone(),
@@ -129,14 +102,48 @@ impl Scenario {
         })
     }
 
-    fn glitches(&self, validator: &mut Validator) -> Vec<ForcedLevel> {
+    /// The channels of the first controller.
+    pub(crate) const fn channels(&self) -> Channels<'static> {
+        Channels { count: self.bus.channels, path: "bus.channels" }
+    }
+
+    fn check_version(&self, validator: &mut Validator) {
+        if self.version > VERSION {
+            validator.add("version", Cause::NewerVersion { given: self.version.into(), newest: VERSION });
+        } else {
+            validator.whole("version", self.version, 1..=VERSION.into(), "");
+        }
+    }
+
+    fn check_first_controller(&self, validator: &mut Validator) -> Option<Config> {
+        let has_no_line = self.source.runs_alone();
+        let configure = if has_no_line { Config::of_segments } else { Config::new };
+        let config = configure(self.clock_hz, &self.bus, &self.line.serial());
+        let config = config.map_err(|problems| add_unless_out_of_range(problems, validator)).ok();
+        // By default the receiver has the host's rate, which is checked above.
+        if self.line.receiver_baud.is_some() && !has_no_line {
+            validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
+        }
+        config
+    }
+
+    fn check_analysis_axis(&self, validator: &mut Validator) {
+        let axes = match &self.source {
+            Source::Motion(motion) => motion.axes.len(),
+            _ => usize::from(self.bus.channels),
+        };
+        let last = axes.clamp(1, MAX_CHANNELS) as u64 - 1;
+        validator.whole("analysis.axis", self.analysis.axis, 0..=last, "");
+    }
+
+    fn check_glitches(&self, validator: &mut Validator) -> Vec<ForcedLevel> {
         let mut forced = Vec::new();
         let outside = validator.enter("line.glitches");
         for (index, glitch) in self.line.glitches.iter().enumerate() {
             let start = glitch.start_cycle;
-            let room = END_OF_TIME.saturating_sub(start).max(1);
+            let max_length = END_OF_TIME.saturating_sub(start).max(1);
             validator.at_entry(index, |here| {
-                here.whole("length_cycles", glitch.length_cycles, 1..=room, "cycles");
+                here.whole("length_cycles", glitch.length_cycles, 1..=max_length, "cycles");
             });
             forced.push(ForcedLevel {
                 start: Instant(start),
@@ -148,63 +155,78 @@ impl Scenario {
         forced
     }
 
-    fn additional(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
+    fn check_additional_controllers(&self, first: Option<&Config>, validator: &mut Validator) -> Vec<Config> {
+        if self.controllers.is_empty() {
+            return Vec::new();
+        }
+        if self.source.runs_alone() {
+            let detail = match self.source {
+                Source::Standalone(_) => "stand-alone controllers have no line; move them to the source",
+                _ => "segments run only one controller; remove the others, or choose ticks",
+            };
+            validator.add("controllers", ValueError::Conflict { detail });
+        }
         // A line script may use one address for several controllers.
-        let scripted = matches!(self.source, Source::Line(_));
-        let has_no_address = self.line.protocol == Protocol::Raw && self.line.address.is_none();
-        if !self.controllers.is_empty() && has_no_address && !scripted {
-            let detail =
-                "several controllers on a line need addresses; give the first one an address, 0 to 254";
+        let is_script = matches!(self.source, Source::Line(_));
+        let is_raw = self.line.protocol == Protocol::Raw;
+        if is_raw && self.line.address.is_none() && !is_script {
+            let detail = "several controllers on a line need addresses; use an address from 0 to 254 for the first one";
             validator.add("line.address", ValueError::Conflict { detail });
         }
         let mut configs = Vec::new();
         for (index, controller) in self.controllers.iter().enumerate() {
-            let line = SerialLine {
-                baud: self.line.baud,
-                receiver_baud: controller.receiver_baud,
-                address: Some(controller.address),
-                protocol: self.line.protocol,
-            };
-            match Config::new(self.clock_hz, &controller.bus, &line) {
-                Ok(config) => configs.push(config),
-                Err(broken) => {
-                    let path = |field: &Field| match field {
-                        // Already reported for the first controller.
-                        Field::ClockHz | Field::Line("baud") => field.to_string(),
-                        Field::Line(own) => format!("controllers[{index}].{own}"),
-                        Field::Bus(_) => format!("controllers[{index}].{field}"),
-                    };
-                    report_new(broken, path, validator);
-                }
-            }
+            configs.extend(self.check_config(controller, index, validator));
+        }
+        let outside = validator.enter("controllers");
+        for (index, controller) in self.controllers.iter().enumerate() {
             let mut before = self.controllers.iter().take(index).map(|controller| controller.address);
-            let first_address = first.and_then(Config::address);
-            let same =
-                first_address == Some(controller.address) || before.any(|other| other == controller.address);
-            validator.at("controllers", |controllers| {
-                controllers.at_entry(index, |here| {
-                    if same && !scripted {
-                        here.add("address", Cause::SameAddress { address: controller.address });
-                    }
-                    self.commands(controller, index, here);
-                });
+            let is_used = first.and_then(Config::address) == Some(controller.address)
+                || before.any(|other| other == controller.address);
+            validator.at_entry(index, |here| {
+                if is_used && !is_script {
+                    here.add("address", Cause::SameAddress { address: controller.address });
+                }
+                self.check_commands(controller, index, here);
             });
         }
-        let paced = self.line.protocol == Protocol::Raw && !matches!(self.source, Source::Line(_));
-        if let Some(first) = first.filter(|_| paced && configs.len() == self.controllers.len()) {
-            let outside = validator.enter("controllers");
+        if let Some(first) = first.filter(|_| is_raw && !is_script && configs.len() == self.controllers.len())
+        {
             for (index, config) in configs.iter().enumerate() {
-                validator.at_entry(index, |here| paced_together(config, first, here));
+                validator.at_entry(index, |here| check_common_ticks(config, first, here));
             }
-            validator.leave(outside);
         }
+        validator.leave(outside);
         configs
     }
 
-    fn commands(&self, controller: &Controller, index: usize, here: &mut Validator) {
+    fn check_config(
+        &self,
+        controller: &Controller,
+        index: usize,
+        validator: &mut Validator,
+    ) -> Option<Config> {
+        let line = SerialLine {
+            baud: self.line.baud,
+            receiver_baud: controller.receiver_baud,
+            address: Some(controller.address),
+            protocol: self.line.protocol,
+        };
+        let path_of = |field: &Field| match field {
+            // All controllers share these.
+            Field::ClockHz | Field::Line("baud") => field.to_string(),
+            Field::Line(own) => format!("controllers[{index}].{own}"),
+            Field::Bus(_) => format!("controllers[{index}].{field}"),
+        };
+        Config::new(self.clock_hz, &controller.bus, &line)
+            .map_err(|problems| add_new(problems, path_of, validator))
+            .ok()
+    }
+
+    /// What the host sends to an additional controller. `here` is at its entry.
+    fn check_commands(&self, controller: &Controller, index: usize, here: &mut Validator) {
         let path = format!("controllers[{index}].bus.channels");
-        let channels = (controller.bus.channels, path.as_str());
-        here.at("axes", |here| fit_channels(here, controller.axes.len(), (0, "axes"), channels));
+        let channels = Channels { count: controller.bus.channels, path: &path };
+        here.at("axes", |axes| channels.check_count(controller.axes.len(), 0, "axes", axes));
         if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
             let detail = "axes need a motion as the source; remove them, or choose a motion";
             here.add("axes", ValueError::Conflict { detail });
@@ -214,20 +236,32 @@ impl Scenario {
             here.add("packets", ValueError::Conflict { detail });
         }
         let is_addressed = self.line.protocol == Protocol::Raw;
-        here.at("packets", |here| check_packets(&controller.packets, is_addressed, channels, here));
+        here.at("packets", |list| channels.check_packets(&controller.packets, is_addressed, list));
     }
 
-    fn host(&self, validator: &mut Validator) {
+    /// Replies arrive at the host's own bit rate.
+    fn check_host_rate(&self, validator: &mut Validator) {
         let receives_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
         if receives_replies && self.line.receiver_baud.is_some() {
             let host = SerialLine { receiver_baud: None, ..self.line.serial() };
-            let mut broken = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
-            broken.retain(|problem| problem.field == Field::Line("baud"));
-            report_new(broken, ToString::to_string, validator);
+            let problems = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
+            let is_rate = |problem: &ConfigProblem| problem.field == Field::Line("baud");
+            add_new(problems.into_iter().filter(is_rate), ToString::to_string, validator);
         }
     }
 
-    fn script(&self, script: &LineScript, validator: &mut Validator) {
+    fn check_packets(&self, packets: &Packets, validator: &mut Validator) {
+        let is_addressed = self.line.protocol == Protocol::Raw && self.line.address.is_some();
+        let additional = self.controllers.iter().map(|controller| &controller.packets);
+        let all = additional.chain([&packets.packets]).flatten();
+        let bytes: usize = all.map(|Hex(bytes)| bytes.len()).sum();
+        validator.at("source.packets.packets", |list| {
+            self.channels().check_packets(&packets.packets, is_addressed, list);
+        });
+        validator.length("source.packets.packets", bytes, 0..=MAX_BYTES, "bytes");
+    }
+
+    fn check_script(&self, script: &LineScript, validator: &mut Validator) {
         let total = script.sends.iter().map(|send| send.wire().len()).sum();
         validator.length("source.line.sends", total, 0..=MAX_BYTES, "bytes");
         let mut free_from = 1;
@@ -251,20 +285,24 @@ impl Scenario {
     }
 }
 
-/// Skips ranges that `check_ranges` has reported.
-fn report(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
-    for ConfigProblem { field, error } in broken {
-        let path = path(&field);
+/// Adds the problems of the first controller without the ranges that `check_ranges` has reported.
+fn add_unless_out_of_range(problems: Vec<ConfigProblem>, validator: &mut Validator) {
+    for ConfigProblem { field, error } in problems {
+        let path = field.to_string();
         if !(matches!(error, ConfigError::Range { .. }) && validator.has(&path)) {
             validator.add(&path, error);
         }
     }
 }
 
-/// Skips problems that another configuration has as well.
-fn report_new(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, validator: &mut Validator) {
-    for ConfigProblem { field, error } in broken {
-        let path = path(&field);
+/// Adds the problems that another configuration does not have as well.
+fn add_new(
+    problems: impl IntoIterator<Item = ConfigProblem>,
+    path_of: impl Fn(&Field) -> String,
+    validator: &mut Validator,
+) {
+    for ConfigProblem { field, error } in problems {
+        let path = path_of(&field);
         if !validator.has(&path) {
             validator.add(&path, error);
         }
@@ -272,7 +310,7 @@ fn report_new(broken: Vec<ConfigProblem>, path: impl Fn(&Field) -> String, valid
 }
 
 /// Controllers with common ticks need equal tick and packet lengths.
-fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
+fn check_common_ticks(config: &Config, first: &Config, here: &mut Validator) {
     let (tick_cycles, first_cycles) = (config.tick().0, first.tick().0);
     if tick_cycles != first_cycles {
         here.add("bus.step_period_cycles", Cause::OtherTick { tick_cycles, first_cycles });
@@ -283,28 +321,31 @@ fn paced_together(config: &Config, first: &Config, here: &mut Validator) {
     }
 }
 
-/// `least` is the minimum and what is counted, `channels` the number of channels and its path.
-pub(crate) fn fit_channels(
-    here: &mut Validator,
-    given: usize,
-    least: (usize, &'static str),
-    channels: (u8, &str),
-) {
-    let ((least, of), (channels, path)) = (least, channels);
-    if !(least..=usize::from(channels).clamp(1, MAX_CHANNELS)).contains(&given) {
-        here.add("", Cause::Channels { given, of, channels, path: path.into() });
-    }
+/// The number of a controller's channels, and the path of the field that sets it.
+#[derive(Clone, Copy)]
+pub(crate) struct Channels<'a> {
+    pub(crate) count: u8,
+    pub(crate) path: &'a str,
 }
 
-/// `channels` is their number and its path.
-fn check_packets(packets: &[Hex], is_addressed: bool, channels: (u8, &str), here: &mut Validator) {
-    let (channels, path) = channels;
-    for (index, Hex(bytes)) in packets.iter().enumerate() {
-        let given = bytes.len();
-        if given != usize::from(channels) + usize::from(is_addressed) {
-            here.at_entry(index, |here| {
-                here.add("", Cause::PacketLength { given, channels, is_addressed, path: path.into() });
-            });
+impl Channels<'_> {
+    /// Reports less than `min` or more axes, lists or controllers (`of`) than channels.
+    pub(crate) fn check_count(self, given: usize, min: usize, of: &'static str, here: &mut Validator) {
+        if !(min..=usize::from(self.count).clamp(1, MAX_CHANNELS)).contains(&given) {
+            here.add("", Cause::Channels { given, of, channels: self.count, path: self.path.into() });
+        }
+    }
+
+    /// Reports packets that do not have one byte per channel, and the address if `is_addressed`.
+    fn check_packets(self, packets: &[Hex], is_addressed: bool, here: &mut Validator) {
+        for (index, Hex(bytes)) in packets.iter().enumerate() {
+            let given = bytes.len();
+            if given != usize::from(self.count) + usize::from(is_addressed) {
+                let (channels, path) = (self.count, self.path.into());
+                here.at_entry(index, |here| {
+                    here.add("", Cause::PacketLength { given, channels, is_addressed, path });
+                });
+            }
         }
     }
 }
@@ -326,18 +367,18 @@ mod tests {
                 r#"{"source":{"motion":{"axes":[{},{}]}}}"#,
                 "source.motion.axes: 2 axes, but `bus.channels` is 1; remove 1, or set `bus.channels` to 2",
             ),
-            (r#"{"source":{"motion":{"axes":[]}}}"#, "source.motion.axes: 0 axes; give at least 1"),
+            (r#"{"source":{"motion":{"axes":[]}}}"#, "source.motion.axes: 0 axes; use at least 1"),
             (
                 r#"{"controllers":[{"axes":[{},{},{}]}],"line":{"address":0}}"#,
                 "controllers[0].axes: 3 axes, but `controllers[0].bus.channels` is 1; remove 2, or set `controllers[0].bus.channels` to 3",
             ),
             (
                 r#"{"source":{"packets":{"packets":["8001"]}}}"#,
-                "source.packets.packets[0]: 2 bytes; give 1: one per channel (`bus.channels` is 1)",
+                "source.packets.packets[0]: 2 bytes; use 1: one per channel (`bus.channels` is 1)",
             ),
             (
                 r#"{"line":{"address":7},"source":{"packets":{"packets":["80"]}}}"#,
-                "source.packets.packets[0]: 1 bytes; give 2: the address and one per channel (`bus.channels` is 1)",
+                "source.packets.packets[0]: 1 bytes; use 2: the address and one per channel (`bus.channels` is 1)",
             ),
             (r#"{"line":{"baud":0}}"#, "line.baud: 0 baud is out of range; give 1 to 1523809 baud"),
         ];

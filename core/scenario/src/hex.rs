@@ -43,7 +43,7 @@ fn wrong_in(digits: &str) -> String {
         }
         None => format!("byte {} has only one digit", digits.len() / 2 + 1),
     };
-    format!("{what}; give two digits per byte, such as 80 01 7f")
+    format!("{what}; use two digits per byte, such as 80 01 7f")
 }
 
 impl crate::schema::ToParts for Hex {
@@ -72,7 +72,7 @@ mod tests {
         for (given, expected) in rows {
             let error = Hex::of_text(given).unwrap_err();
             assert!(error.starts_with(expected), "{given}: {error}");
-            assert!(error.ends_with("give two digits per byte, such as 80 01 7f"), "{error}");
+            assert!(error.ends_with("use two digits per byte, such as 80 01 7f"), "{error}");
         }
         assert_eq!(Hex::of_text("80 01\n7F").unwrap(), Hex(vec![0x80, 1, 0x7f]));
     }

@@ -37,7 +37,7 @@ struct MotorAtPath<'a> {
 
 impl Scenario {
     /// Rules between fields are checked only if the fields are valid.
-    pub(crate) fn plants(&self, configs: &[Config], validator: &mut Validator) -> Option<Plants> {
+    pub(crate) fn check_plants(&self, configs: &[Config], validator: &mut Validator) -> Option<Plants> {
         self.check_motors(validator);
         let settings = self.plant.as_ref()?;
         if !validator.is_ok() {
@@ -370,7 +370,7 @@ mod tests {
             ),
             (
                 r#"{"bus":{"self_test_cycles":100},"plant":{"self_test":true}}"#.into(),
-                &["bus.self_test_cycles: 100 cycles are too short for the self-test; give at least 7681"],
+                &["bus.self_test_cycles: 100 cycles are too short for the self-test; use at least 7681"],
             ),
         ];
         for (given, expected) in rows {

@@ -12,7 +12,7 @@ impl Read for Point {
         let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
         let Some(numbers) = value.list() else { return reader.refuse(value, wanted) };
         let [time_s, position] = &numbers[..] else {
-            return reader.wrong(format!("a point with {} numbers; give {wanted}", numbers.len()));
+            return reader.wrong(format!("a point with {} numbers; use {wanted}", numbers.len()));
         };
         reader.entry(0, *time_s, &mut self.time_s);
         reader.entry(1, *position, &mut self.position);
@@ -58,16 +58,16 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
             let text = row.get(column).map_or("", |field| field.trim());
             number(text).ok_or_else(|| {
                 let given: String = short(text);
-                rows.bad(at, format!("the {what} is \u{201c}{given}\u{201d}; give a number, such as 0.25"))
+                rows.bad(at, format!("the {what} is \u{201c}{given}\u{201d}; use a number, such as 0.25"))
             })
         };
         points.push(Point { time_s: read(columns.0, "time in s")?, position: read(columns.1, "position")? });
         if points.len() > MAX_POINTS {
-            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; give at most {MAX_POINTS}")));
+            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; use at most {MAX_POINTS}")));
         }
     }
     if points.len() < 2 {
-        return Err(rows.bad(rows.at, format!("{} points; give 2 to {MAX_POINTS}", points.len())));
+        return Err(rows.bad(rows.at, format!("{} points; use 2 to {MAX_POINTS}", points.len())));
     }
     Ok(points)
 }
@@ -101,20 +101,17 @@ mod tests {
     #[test]
     fn errors_state_the_line() {
         for (table, expected) in [
-            ("", "line 1: 0 points; give 2 to 4096"),
-            ("time,position\n1,2\n", "line 3: 1 points; give 2 to 4096"),
-            ("0,0\n\n1,x\n", "line 3: the position is \u{201c}x\u{201d}; give a number, such as 0.25"),
-            (
-                "a,b\n0,0\nNaN,1\n",
-                "line 3: the time in s is \u{201c}NaN\u{201d}; give a number, such as 0.25",
-            ),
-            ("0,0\n1\n", "line 2: the position is \u{201c}\u{201d}; give a number, such as 0.25"),
-            ("0,x\n", "line 1: the position is \u{201c}x\u{201d}; give a number, such as 0.25"),
+            ("", "line 1: 0 points; use 2 to 4096"),
+            ("time,position\n1,2\n", "line 3: 1 points; use 2 to 4096"),
+            ("0,0\n\n1,x\n", "line 3: the position is \u{201c}x\u{201d}; use a number, such as 0.25"),
+            ("a,b\n0,0\nNaN,1\n", "line 3: the time in s is \u{201c}NaN\u{201d}; use a number, such as 0.25"),
+            ("0,0\n1\n", "line 2: the position is \u{201c}\u{201d}; use a number, such as 0.25"),
+            ("0,x\n", "line 1: the position is \u{201c}x\u{201d}; use a number, such as 0.25"),
         ] {
             assert_eq!(points(table), Err(expected.into()), "{table:?}");
         }
         let many = "0,0\n".repeat(MAX_POINTS + 1);
-        assert_eq!(points(&many), Err("line 4097: more than 4096 points; give at most 4096".into()));
+        assert_eq!(points(&many), Err("line 4097: more than 4096 points; use at most 4096".into()));
     }
 
     #[test]

@@ -163,7 +163,7 @@ impl fmt::Display for Cause {
             Self::Motion(cause) => cause.fmt(f),
             Self::Config(error) => error.fmt(f),
             Self::Syntax { line, column, detail } => {
-                write!(f, "not JSON at line {line}, column {column}: {detail}")
+                write!(f, "invalid JSON at line {line}, column {column}: {detail}")
             }
             Self::Type { detail } => f.write_str(detail),
             Self::NewerVersion { given, newest } => {
@@ -171,13 +171,13 @@ impl fmt::Display for Cause {
             }
             Self::Overlap { start, free_from } => write!(
                 f,
-                "starts at cycle {start}, but the bytes before it end at cycle {}; start at {free_from} or later",
+                "starts at cycle {start}, but the bytes before it end at cycle {}; use cycle {free_from} or later",
                 free_from - 1
             ),
             Self::LineTooSlow { packet_cycles, tick_cycles, baud, needed_baud, max_baud } => {
                 write!(
                     f,
-                    "at {baud} baud the bytes of a tick take {packet_cycles} cycles, but a tick has {tick_cycles}; give "
+                    "at {baud} baud the bytes of a tick take {packet_cycles} cycles, but a tick has {tick_cycles}; use "
                 )?;
                 if needed_baud <= max_baud {
                     write!(
@@ -191,7 +191,7 @@ impl fmt::Display for Cause {
                     )
                 }
             }
-            Self::Channels { given: 0, of, .. } => write!(f, "0 {of}; give at least 1"),
+            Self::Channels { given: 0, of, .. } => write!(f, "0 {of}; use at least 1"),
             Self::Channels { given, of, channels, path } => {
                 let surplus = given.saturating_sub(usize::from(*channels));
                 write!(f, "{given} {of}, but `{path}` is {channels}; remove {surplus}")?;
@@ -205,29 +205,32 @@ impl fmt::Display for Cause {
                     true => (u16::from(*channels) + 1, "the address and "),
                     false => (u16::from(*channels), ""),
                 };
-                write!(f, "{given} bytes; give {needed}: {address}one per channel (`{path}` is {channels})")
+                write!(f, "{given} bytes; use {needed}: {address}one per channel (`{path}` is {channels})")
             }
             Self::SameAddress { address } => {
-                write!(f, "address {address} is already used; give each controller another one, 0 to 254")
+                write!(
+                    f,
+                    "address {address} is already used; use a different address for each controller, 0 to 254"
+                )
             }
             Self::OtherPackets { channels, first_channels } => write!(
                 f,
-                "{channels} channels, but the first controller has {first_channels}; on a raw line all controllers need the same number: change one of them, or choose the framed protocol"
+                "{channels} channels, but the first controller has {first_channels}; on a raw line all controllers need the same number; use {first_channels}, or the framed protocol"
             ),
             Self::StandAlone(refusal) => refusal.fmt(f),
             Self::Work(work) => work.fmt(f),
             Self::Plant(refused) => refused.fmt(f),
             Self::OtherSupply { supply_v, first_v } => write!(
                 f,
-                "{supply_v} V, but the first motor has {first_v} V; all motors of a controller share one supply: give {first_v} V"
+                "{supply_v} V, but the first motor has {first_v} V; all motors of a controller share one supply; use {first_v} V"
             ),
             Self::SelfTest { given, needed } => write!(
                 f,
-                "{given} cycles are too short for the self-test; give at least {needed}, or set `plant.self_test` to false"
+                "{given} cycles are too short for the self-test; use at least {needed}, or set `plant.self_test` to false"
             ),
             Self::OtherTick { tick_cycles, first_cycles } => write!(
                 f,
-                "ticks of {tick_cycles} cycles, but the first controller has ticks of {first_cycles}; on a raw line all ticks need the same length (slots × slot): change one of them, or choose the framed protocol"
+                "ticks of {tick_cycles} cycles, but the first controller has ticks of {first_cycles}; on a raw line all ticks need the same length (slots × slot); use {first_cycles} cycles, or the framed protocol"
             ),
         }
     }

@@ -12,6 +12,8 @@ use stepscope_motion::MAX_PROBLEMS;
 
 /// Maximum bytes of a text with every field written; longer ones omit defaults.
 const MAX_WHOLE_BYTES: usize = 4 << 20;
+/// The version of a text without one: the names of all versions are accepted.
+const ANY_VERSION: u32 = 1;
 
 impl Scenario {
     /// Reads a scenario of any version up to [`VERSION`].
@@ -46,17 +48,17 @@ impl Scenario {
     /// [`MAX_TEXT_BYTES`] as well.
     #[must_use]
     pub fn to_file_json(&self) -> Option<String> {
-        self.within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
+        self.to_json_within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
     }
 
-    fn within(&self, whole: usize, most: usize) -> Option<String> {
+    fn to_json_within(&self, max_whole: usize, max_short: usize) -> Option<String> {
         let mut text = String::new();
-        compact::write_whole(&mut text, self, 0, whole);
-        if text.len() > whole {
+        compact::write_whole(&mut text, self, 0, max_whole);
+        if text.len() > max_whole {
             text.clear();
-            compact::write_short(&mut text, self, most);
+            compact::write_short(&mut text, self, max_short);
         }
-        (text.len() <= most).then_some(text)
+        (text.len() <= max_short).then_some(text)
     }
 
     /// Canonical JSON, as in a link.
@@ -70,13 +72,13 @@ fn strictly((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, 
     if problems.is_empty() { Ok(scenario) } else { Err(problems) }
 }
 
-/// Reads a part of a scenario, such as an axis or a move, with the names of the current version.
+/// Reads a part of a scenario, such as an axis or a move. A part has no version, so names of all versions are accepted.
 ///
 /// # Errors
 /// Every field of the wrong type or name, with its path in the part.
 pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
     let mut part = T::blank();
-    let problems = read_into(&mut part, parse(text)?, VERSION);
+    let problems = read_into(&mut part, parse(text)?, ANY_VERSION);
     if problems.is_empty() { Ok(part) } else { Err(problems) }
 }
 
@@ -92,7 +94,7 @@ fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
     // Some editors write a byte order mark.
     Json::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let (line, column) = (error.line(), error.column());
-        let detail = alloc::string::ToString::to_string(&error);
+        let detail = error.to_string();
         let detail = detail.split(" at line ").next().unwrap_or_default().into();
         alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
     })
@@ -109,7 +111,7 @@ fn version(value: Json<'_>) -> Option<u64> {
         });
     }
     match given.map(Json::whole) {
-        None => Some(1),
+        None => Some(ANY_VERSION.into()),
         Some(Some((false, version))) => Some(version),
         Some(_) => None,
     }
@@ -211,11 +213,11 @@ mod tests {
         let rows = [
             (
                 r#"{"source":{"segments":{"channels":[{"segments":[5]}]}}}"#,
-                "source.segments.channels[0].segments[0]: 5; give an object with one key (steps, dwell), such as {\"steps\": {\u{2026}}}",
+                "source.segments.channels[0].segments[0]: 5; use an object with one key (steps, dwell), such as {\"steps\": {\u{2026}}}",
             ),
             (
                 r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":5}}]}]}}}"#,
-                "source.motion.axes[0].moves[0].constant.distance: 5; give an object with one key (steps, mm, deg), such as {\"steps\": 250}",
+                "source.motion.axes[0].moves[0].constant.distance: 5; use an object with one key (steps, mm, deg), such as {\"steps\": 250}",
             ),
             (
                 r#"{"source":{"packet":{}}}"#,
@@ -243,17 +245,21 @@ mod tests {
         for text in texts {
             let scenario = Scenario::from_json(text).expect("it reads");
             assert_eq!(scenario.to_file_json(), Some(scenario.to_json()));
-            let short = scenario.within(10, 4096).expect("it is short");
+            let short = scenario.to_json_within(10, 4096).expect("it is short");
             assert!(
                 short.len() < scenario.to_json().len() / 2 && short.starts_with(r#"{"version":3"#),
                 "{short}"
             );
             assert_eq!(Scenario::from_json(&short), Ok(scenario.clone()));
-            assert_eq!(scenario.within(10, short.len()), Some(short.clone()));
-            assert_eq!(scenario.within(10, short.len() - 1), None);
+            assert_eq!(scenario.to_json_within(10, short.len()), Some(short.clone()));
+            assert_eq!(scenario.to_json_within(10, short.len() - 1), None);
         }
         let points = Scenario::from_json(texts[2]).expect("it reads");
-        assert!(points.within(10, 4096).is_some_and(|short| short.contains("[\n[0.0,0.0],\n[0.5,12.5]\n]")));
+        assert!(
+            points
+                .to_json_within(10, 4096)
+                .is_some_and(|short| short.contains("[\n[0.0,0.0],\n[0.5,12.5]\n]"))
+        );
     }
 
     #[test]

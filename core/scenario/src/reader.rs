@@ -53,7 +53,7 @@ impl Reader {
 
     /// Reports a wrong type; always returns false.
     pub(super) fn refuse(&mut self, value: Json<'_>, wanted: &str) -> bool {
-        self.note(format!("{}; give {wanted}", describe(value)));
+        self.note(format!("{}; use {wanted}", describe(value)));
         false
     }
 
@@ -125,7 +125,7 @@ impl Reader {
             return self.refuse(value, wanted);
         }
         if !value.members(&mut |name, value| each(self, name, value)) {
-            return self.wrong("a name is not valid Unicode; give another name".to_owned());
+            return self.wrong("a name is not valid Unicode; use another name".to_owned());
         }
         true
     }
@@ -176,7 +176,7 @@ impl Reader {
     ) {
         let Some(row) = group.fields.get(index) else { return };
         if given.contains(&row.name) {
-            let detail = "given twice; give it once".to_owned();
+            let detail = "duplicate field; use it once".to_owned();
             return self.validator.add(written, Cause::Type { detail });
         }
         given.push(row.name);
@@ -216,7 +216,7 @@ impl Reader {
             Some((Err(name), _)) if count == 1 => {
                 self.note(format!("unknown kind \u{201c}{name}\u{201d}; use one of {}", group.names()));
             }
-            _ => self.note(format!("a map of {count} keys; give {wanted}")),
+            _ => self.note(format!("an object with {count} keys; use {wanted}")),
         }
         None
     }
@@ -392,7 +392,7 @@ impl<T: Read> Read for Vec<T> {
         });
         if index > most {
             *self = Self::new();
-            return reader.wrong(format!("{index} entries; give at most {most}"));
+            return reader.wrong(format!("{index} entries; use at most {most}"));
         }
         true
     }

@@ -45,12 +45,12 @@ impl LineScript {
                 } else {
                     ("start_cycle", "a whole number of cycles from 1")
                 };
-                rows.bad(at, format!("{name} is “{}”; give {allowed}", short(given)))
+                rows.bad(at, format!("{name} is “{}”; use {allowed}", short(given)))
             })?;
             let given = field(bytes);
             let hex: String = given.split_whitespace().collect();
             let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
-                rows.bad(at, format!("bytes are “{}”; give pairs of hexadecimal digits", short(given)))
+                rows.bad(at, format!("bytes are “{}”; use pairs of hexadecimal digits", short(given)))
             })?;
             let of_another = outcome.is_some_and(|at| field(at) == OTHER_ADDRESS) && is_reply(&sent);
             if !sent.is_empty() && !of_another {
@@ -58,7 +58,9 @@ impl LineScript {
             }
         }
         if sends.is_empty() {
-            return Err(rows.bad(rows.at, "the table has no packets; give at least one".to_owned()));
+            return Err(
+                rows.bad(rows.at, "the table has no packets; use at least one row with bytes".to_owned())
+            );
         }
         Ok(Self { sends })
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     Cause, ChannelSegments, Direction, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
-    check::fit_channels,
+    check::Channels,
 };
 use alloc::vec::Vec;
 use stepscope_motion::{self as motion, MAX_PROBLEMS};
@@ -20,8 +20,8 @@ impl SegmentLists {
     /// Checks and converts the lists.
     pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
         let mut validator = Validator::within("source.segments.channels");
-        let channels = (bus.channels, "bus.channels");
-        fit_channels(&mut validator, self.channels.len(), (0, "lists of segments"), channels);
+        let channels = Channels { count: bus.channels, path: "bus.channels" };
+        channels.check_count(self.channels.len(), 0, "lists of segments", &mut validator);
         let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
         validator.length("", total, 0..=MAX_SEGMENTS, "segments");
         let pulse = PulseTimes::from(bus);

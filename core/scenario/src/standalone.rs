@@ -2,9 +2,7 @@
 //! (CONTROLLER.md).
 
 use crate::{
-    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError,
-    check::fit_channels,
-    of_motion,
+    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError, of_motion,
     schema::{
         Homing, PanelInput, ProfileGroup, ProgramGroup, Sensor, SoftLimits, Switch, Type, Typed, Until,
         VirtualAxis,
@@ -24,14 +22,13 @@ use stepscope_peripheral::{segment::PulseTimes, signal::MAX_CHANNELS, units::Ins
 const MAX_PROFILE_STEPS: u64 = 4_000_000;
 
 impl Scenario {
-    pub(crate) fn stand_alone(
+    pub(crate) fn check_stand_alone(
         &self,
         controllers: &[StandAlone],
         validator: &mut Validator,
     ) -> Option<stepscope_controller::CheckedSetup> {
         let outside = validator.enter("source.standalone");
-        let channels = (self.bus.channels, "bus.channels");
-        fit_channels(validator, controllers.len(), (1, "controllers"), channels);
+        self.channels().check_count(controllers.len(), 1, "controllers", validator);
         let before = validator.count();
         let pulse = PulseTimes::from(&self.bus);
         let mut steps_left = MAX_PROFILE_STEPS;
@@ -193,7 +190,7 @@ fn intervals(
     let (mut intervals, mut before, mut direction) = (Vec::with_capacity(count as usize), 0, None);
     for step in plan.due_steps(clock_hz) {
         if *direction.get_or_insert(step.right) != step.right {
-            let detail = "moves in both directions; a profile moves in one: use one group per direction";
+            let detail = "moves in both directions, but a profile moves in one; use one group per direction";
             here.add("", ValueError::Conflict { detail });
             return None;
         }
@@ -286,7 +283,7 @@ impl PanelInput {
             (given, _) => {
                 let detail = match given {
                     Some(_) => "an entry is an input or a push, not both; make two entries",
-                    None => "the entry is empty; give an input, or `push_steps`",
+                    None => "the entry is empty; use an input, or `push_steps`",
                 };
                 here.add("", ValueError::Conflict { detail });
                 Change::Push(0)

@@ -43,7 +43,7 @@ impl<'a> Rows<'a> {
     pub(super) fn new(text: &'a str, separator: u8) -> Result<Self, BadTable> {
         let bytes = text.len();
         if bytes > MAX_TABLE_BYTES {
-            let what = format!("{bytes} bytes are too many; give at most {MAX_TABLE_BYTES}");
+            let what = format!("{bytes} bytes are too many; use at most {MAX_TABLE_BYTES}");
             return Err(BadTable { line: 1, what });
         }
         let reader = ReaderBuilder::new().delimiter(separator).build();

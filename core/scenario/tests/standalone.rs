@@ -15,7 +15,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
     let rows: &[(&str, &[&str])] = &[
         ("[{}]", &[]),
         ("[{},{}]", &[]),
-        ("[]", &["source.standalone: 0 controllers; give at least 1"]),
+        ("[]", &["source.standalone: 0 controllers; use at least 1"]),
         (
             "[{},{},{}]",
             &[
@@ -53,7 +53,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
             r#"[{},{"inputs":[{"cycle":9,"input":"estop"},{"cycle":0,"input":"start"},{"cycle":9},{"cycle":9,"input":"ok","push_steps":3}]}]"#,
             &[
                 "source.standalone[1].inputs[1].cycle: 0 cycles is out of range; give 1 to 9000000000000000 cycles",
-                "source.standalone[1].inputs[2]: the entry is empty; give an input, or `push_steps`",
+                "source.standalone[1].inputs[2]: the entry is empty; use an input, or `push_steps`",
                 "source.standalone[1].inputs[3]: an entry is an input or a push, not both; make two entries",
                 "source.standalone[1].inputs[0]: estop is for all controllers and the first one's; leave it out here",
             ],
@@ -61,14 +61,14 @@ fn every_refusal_names_its_field_and_the_numbers() {
         (
             r#"[{"groups":[{"profile":{"intervals_q16":[5242880,5242879]}},{"profile":{"motion":{"sine":{"periods":1}}}}]}]"#,
             &[
-                "{at}.groups[1].profile.motion: moves in both directions; a profile moves in one: use one group per direction",
+                "{at}.groups[1].profile.motion: moves in both directions, but a profile moves in one; use one group per direction",
                 "{at}.groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse allows; W + max(H + D, 1) is 5242880/65536 cycle, so give at least that",
             ],
         ),
         (
             r#"[{"groups":[{"profile":{"motion":{"cosine":{"duration_s":-1}}}}],"loops":0,"memory":{"initial":"0g"}}]"#,
             &[
-                "{at}.memory.initial: \u{201c}g\u{201d} in byte 1 is not a hexadecimal digit; give two digits per byte, such as 80 01 7f; or use blank or factory",
+                "{at}.memory.initial: \u{201c}g\u{201d} in byte 1 is not a hexadecimal digit; use two digits per byte, such as 80 01 7f; or use blank or factory",
                 "{at}.loops: 0 is out of range; give 1 to 9999",
                 "{at}.groups[0].profile.motion.cosine.duration_s: -1 s is out of range; give 1e-6 to 86400 s",
             ],
