@@ -93,7 +93,7 @@ fn a_short_text_of_very_many_entries_is_refused() {
     let (code, out, err) =
         stepscope(&["run", "-"], &format!(r#"{{"source":{{"line":{{"sends":[{sends}]}}}}}}"#));
     assert_eq!((code, out.as_str()), (Some(2), ""));
-    assert!(err.contains("source.line.sends: 6000000 entries; give at most "), "{err}");
+    assert!(err.contains("source.line.sends: 6000000 entries; use at most "), "{err}");
 }
 
 #[test]

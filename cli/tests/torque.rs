@@ -204,7 +204,7 @@ fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_n
         code == Some(2) && err.contains("plant: the scenario has no motor; use --motor, or \"plant\": {}"),
         "{err}"
     );
-    let heavy = r#","plant":{"motors":[{},{"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}}]}"#;
+    let heavy = r#","plant":{"motors":[{},{"motor":{"load_inertia_g_cm2":9955,"load_torque_mN_m":100}}]}"#;
     let (code, out, err) = stepscope(&["torque", "-"], &lists(heavy));
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let (light, heavy_lines) = out.split_once("channel 1: ").expect("both channels");
