@@ -42,7 +42,7 @@ pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| Failure::Table(path.clone(), error.to_string()))?;
     let unit = match arguments.unit {
         UnitName::Steps => PointUnit::Steps,
-        UnitName::Mm => PointUnit::Millimetres,
+        UnitName::Mm => PointUnit::Millimeters,
         UnitName::Deg => PointUnit::Degrees,
     };
     let interpolation = if arguments.straight { Interpolation::Straight } else { Interpolation::Smooth };

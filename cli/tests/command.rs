@@ -122,7 +122,7 @@ fn every_golden_case_comes_out_of_the_command() {
 fn a_bad_scenario_ends_with_2_and_all_its_problems() {
     let rows: [(&str, &[&str]); 4] = [
         ("", &["invalid JSON at line 1, column 0: "]),
-        (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; give 11 to 1000000000 Hz"]),
+        (r#"{"clock_hz": 0}"#, &["clock_hz: 0 Hz is out of range; use 11 to 1000000000 Hz"]),
         (
             r#"{"clok_hz": 1, "bus": {"slots": 200, "channels": "four"}, "line": {"baud": 0}}"#,
             &["bus.channels: ", "clok_hz: ", "bus.slots: ", "line.baud: "],
@@ -217,7 +217,7 @@ fn a_table_of_points_becomes_a_scenario_that_runs() {
         (
             "0,0\n1,5\n1,6\n",
             &["--unit", "deg"],
-            "-: 1 problem\n  source.motion.axes[0].moves[0].points.points[2]: a time of 1 s after one of 1 s; give times that rise by 1e-9 s at least\n",
+            "-: 1 problem\n  source.motion.axes[0].moves[0].points.points[2]: a time of 1 s is not at least 1e-9 s after the previous time of 1 s; use rising times\n",
         ),
     ] {
         let answer = stepscope(&[&["points", "-"], options].concat(), table).expect("it runs");

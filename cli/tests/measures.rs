@@ -60,7 +60,7 @@ fn more_steps_than_can_be_kept_are_refused_before_the_run() {
     // 4 times the amplitude on each of two axes.
     let (code, out, err) = measures(&[], &sine(2_500_001));
     assert_eq!((code, out.as_str()), (Some(2), ""));
-    let expected = "20000008 steps to be measured are more than one run may have; at most 20000000 are allowed: give a shorter motion";
+    let expected = "20000008 steps to be measured exceed the maximum of 20000000; use a shorter motion";
     assert!(err.contains(expected), "{err}");
 }
 

@@ -18,7 +18,7 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
     assert_eq!((&rows[1][..3], of(1)), (["0", "exact", "q16"].as_slice(), ("20000", "0.000")));
     // The timer's ticks are whole cycles of the clock.
     assert_eq!((&rows[6][..3], of(6)), (["0", "document", "ticks"].as_slice(), ("20000", "0.000")));
-    assert!(out.contains("1 document   q16      a move of this kind has no table of its own"), "{out}");
+    assert!(out.contains("1 document   q16      this kind of move has no table"), "{out}");
     let count = |row: usize| rows[row][3].parse::<u32>().expect("a count");
     assert!(count(7) < 60 && rows[7][..3] == ["0", "compressed", "q16"], "{out}");
     let tight =
@@ -63,7 +63,7 @@ fn steps_of_any_origin_are_compressed() {
     let rows: Vec<Vec<&str>> = out.lines().map(|line| line.split_whitespace().collect()).collect();
     let count = |row: usize| rows[row][3].parse::<u32>().expect("a count");
     assert_eq!((&rows[1][..3], rows[1][6], rows[1][7]), (["0", "exact", "q16"].as_slice(), "1500", "0.000"));
-    assert!(out.contains("a list of steps has no table of its own"), "{out}");
+    assert!(out.contains("a list of steps has no table"), "{out}");
     // An entry and a turn in each direction.
     assert!(count(1) > 200 && count(3) == 4, "{out}");
     let (code, out, _) =
@@ -84,7 +84,7 @@ fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let refused = |form: &str, most: &str| {
         let told = format!(
-            "4000000000 steps of a table are more than one run may have; at most {most} are allowed: give a shorter motion, or make a table of each part of it"
+            "4000000000 steps of a table exceed the maximum of {most}; use a shorter motion, or a table for each part of it"
         );
         out.lines().filter(|row| row.contains(form) && row.contains(&told)).count()
     };

@@ -136,7 +136,7 @@ fn the_curve_is_a_table_that_starts_full_and_falls() {
 }
 
 #[test]
-fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
+fn steps_a_millimeter_are_fitted_and_made_into_mechanics() {
     let table = "length_cm, steps\n10,5650\n30.5,17232.5\n45,25425\n";
     let (code, out, err) = stepscope(&["calibrate", "-"], table);
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -151,7 +151,7 @@ fn steps_a_millimetre_are_fitted_and_made_into_mechanics() {
 }
 
 #[test]
-fn very_few_steps_a_millimetre_keep_their_digits() {
+fn very_few_steps_a_millimeter_keep_their_digits() {
     let (code, out, _) = stepscope(&["calibrate", "-"], "length_mm,steps\n0,0\n1e12,1\n");
     assert_eq!(code, Some(0));
     assert!(

@@ -49,12 +49,12 @@ fn number() -> impl Strategy<Value = f64> + Clone {
 /// Anything that the types allow.
 fn wild_move() -> impl Strategy<Value = Move> {
     let distance = number().prop_flat_map(|x| {
-        prop::sample::select(vec![Distance::Steps(x), Distance::Millimetres(x), Distance::Degrees(x)])
+        prop::sample::select(vec![Distance::Steps(x), Distance::Millimeters(x), Distance::Degrees(x)])
     });
     let speed = number().prop_flat_map(|x| {
         prop::sample::select(vec![
             Speed::StepsPerSecond(x),
-            Speed::MillimetresPerSecond(x),
+            Speed::MillimetersPerSecond(x),
             Speed::TurnsPerMinute(x),
         ])
     });

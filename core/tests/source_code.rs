@@ -202,7 +202,7 @@ fn a_csv_table_has_a_row_for_each_entry_and_a_head_says_what_it_is() {
     assert!(lines.eq(rows.iter().map(String::as_str)));
     let head = source(&table, Language::Rust);
     let steps = format!("{} steps in {} entries of 8 bytes (q8)", table.error.steps, table.entries.len());
-    let error = format!("Largest timing error {} cycles", table.error.greatest);
+    let error = format!("Largest timing error {} cycles", table.error.max_cycles);
     for part in [steps.as_str(), error.as_str(), "Clock: 16000000 Hz", "1/256 cycle"] {
         assert!(head.contains(part), "{part}: {}", &head[..900]);
     }

@@ -104,7 +104,7 @@ proptest! {
             prop_assert!(tolerance.side == Side::Both || cycle <= due_step.cycle, "step {} is late", index);
             greatest = greatest.max(off);
         }
-        prop_assert_eq!(made.error.greatest, greatest);
+        prop_assert_eq!(made.error.max_cycles, greatest);
         prop_assert_eq!(Some(made.error), TimingError::of(&made.list, due));
         // As it stands in the format, an entry's times are the same.
         prop_assert_eq!(walked(&made), found);
@@ -122,8 +122,8 @@ proptest! {
                     prop_assert_eq!(found.len() as u64, plan.step_count());
                     let off = found.iter().zip(plan.due_steps(CLOCK_HZ));
                     let off = off.map(|(made, due)| made.0.abs_diff(due.cycle)).max();
-                    prop_assert_eq!(made.error.greatest, off.unwrap_or(0));
-                    prop_assert!(form != Form::Exact || made.error.greatest == 0);
+                    prop_assert_eq!(made.error.max_cycles, off.unwrap_or(0));
+                    prop_assert!(form != Form::Exact || made.error.max_cycles == 0);
                     prop_assert_eq!(walked(&made), found);
                 }
                 // Only what has no table of its own is refused.
@@ -152,7 +152,7 @@ proptest! {
                 prop_assert!(made.surplus != Some(0) || made.list.segments.len() <= made_quickly);
                 let found = TimingError::of(&made.list, due);
                 prop_assert_eq!(Some(made.error), found);
-                prop_assert!(made.error.greatest <= tolerance.cycles.0);
+                prop_assert!(made.error.max_cycles <= tolerance.cycles.0);
                 prop_assert!(CheckedSegments::new(PULSE, vec![made.list], 1).is_ok());
             }
             Err(cause) => {
@@ -200,7 +200,7 @@ fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
         let made = kept(ramp.clone(), Form::Compressed(tolerance), format);
         assert_eq!(made.error.steps, 1_000_000);
         assert!(made.entries.len() <= most, "{}: {}", format.name, made.entries.len());
-        assert!(made.error.greatest <= 400 && made.error.rms() < made.error.greatest as f64);
+        assert!(made.error.max_cycles <= 400 && made.error.rms() < made.error.max_cycles as f64);
     }
 }
 
@@ -212,7 +212,7 @@ fn a_hundred_million_steps_do_not_drift() {
     let steps = (1..=count).map(|k| ScheduledStep { cycle: due(k), right: true });
     let made = compressed(steps, Tolerance::of(Cycles(16)), EntryFormat::Q16, PULSE);
     let made = made.unwrap_or_else(|cause| panic!("{cause}"));
-    assert!(made.error.greatest <= 16 && made.error.steps == count);
+    assert!(made.error.max_cycles <= 16 && made.error.steps == count);
     // The last step's time in closed form: the sum over the entries.
     let (mut time, mut all) = (0_u128, 0);
     for segment in &made.list.segments {
@@ -249,12 +249,12 @@ fn a_documents_table_has_its_own_bytes_and_its_own_error() {
     ];
     for (given, format, greatest) in rows {
         let made = kept(vec![given.clone()], Form::Document, format);
-        assert!(made.error.greatest <= greatest, "{given:?}: {:?}", made.error);
+        assert!(made.error.max_cycles <= greatest, "{given:?}: {:?}", made.error);
         assert!(made.document_bytes.is_some_and(|bytes| bytes <= made.bytes()), "{given:?}");
     }
     // 16 MHz over a whole rate is mostly no whole number: half a cycle a step adds up.
     let coarse = kept(vec![staircase], Form::Document, EntryFormat::TICKS);
-    assert!(coarse.error.greatest > 100, "{:?}", coarse.error);
+    assert!(coarse.error.max_cycles > 100, "{:?}", coarse.error);
     // Six segments of six bytes.
     assert_eq!(kept(vec![sine], Form::Document, q16).document_bytes, Some(36));
 }
@@ -279,12 +279,12 @@ fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
     let cause = Cause::SegmentInterval { step: 0, interval, pulse: PULSE };
     assert_eq!(refused(quick, Form::Document), Some(cause));
     let many = Move::Constant(Constant { distance: Distance::Steps(5e6), speed: steps_s(1e5) });
-    let cause = Cause::Value(ValueError::TooMuch { given: 5e6, most: 4e6, of: "steps of a table" });
+    let cause = Cause::Value(ValueError::TooMuch { given: 5e6, max: 4e6, of: "steps of a table" });
     assert_eq!(refused(many, Form::Exact), Some(cause));
     let rest = Move::Dwell(Dwell { duration_s: 1.0 });
     let wide = Tolerance::of(Cycles(MAX_TOLERANCE.0 + 1));
     let cause =
-        ValueError::TooMuch { given: 16_777_217.0, most: 16_777_216.0, of: "cycles of tolerance" }.into();
+        ValueError::TooMuch { given: 16_777_217.0, max: 16_777_216.0, of: "cycles of tolerance" }.into();
     assert_eq!(refused(rest.clone(), Form::Compressed(wide)), Some(cause));
     let nothing = kept(vec![rest], Form::Compressed(Tolerance::of(MAX_TOLERANCE)), EntryFormat::Q8);
     assert_eq!((nothing.entries.len(), nothing.error.rms()), (0, 0.0));

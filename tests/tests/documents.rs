@@ -280,7 +280,7 @@ fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
         let made = Made::preset(id);
         let all = made.steps(0);
         let Source::Motion(motion) = &made.scenario.source else { panic!("{id} is a motion") };
-        let amplitude = 20.0 / motion.axes[0].mechanics.step_mm().expect("a wheel has millimetres");
+        let amplitude = 20.0 / motion.axes[0].mechanics.step_mm().expect("a wheel has millimeters");
         assert_eq!(all.last().map(|step| step.position), Some(0), "{id}");
         let farthest = all.iter().map(|step| step.position).min().expect("it moves");
         assert_eq!(farthest, -2 * amplitude.round() as i32, "{id}: from one extreme to the other");

@@ -390,8 +390,8 @@ fn the_cost_of_a_plant_is_judged_before_it_runs() {
     .expect_err("too much");
     assert_eq!(
         problems[0].to_string(),
-        "plant.step_cycles: 256000000000 motor-steps of the plant are more than one run may have; at most 10000000000 are allowed: \
-         give a shorter run, fewer channels or a greater step_cycles"
+        "plant.step_cycles: 256000000000 motor-steps of the plant exceed the maximum of 10000000000; \
+         use a shorter run, fewer channels or a larger step_cycles"
     );
 }
 

@@ -8,8 +8,8 @@
 //!
 //! let screw = Mechanics::Screw(Screw { lead_mm: 8.0, ..Screw::default() });
 //! // 200 full steps of 16 microsteps per turn, and 8 mm per turn.
-//! assert_eq!(Distance::Millimetres(2.0).in_steps(&screw), Ok(800.0));
-//! let refused = Distance::Millimetres(2.0).in_steps(&Mechanics::default()).unwrap_err();
+//! assert_eq!(Distance::Millimeters(2.0).in_steps(&screw), Ok(800.0));
+//! let refused = Distance::Millimeters(2.0).in_steps(&Mechanics::default()).unwrap_err();
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
@@ -112,7 +112,7 @@ impl Mechanics {
     }
 
     /// Millimeters in steps; `None` for a wheel, whose circumference contains pi.
-    fn millimetres(&self, given: Exact) -> Option<Exact> {
+    fn millimeters(&self, given: Exact) -> Option<Exact> {
         match self {
             Self::Rotary(_) | Self::Wheel(_) => None,
             Self::Screw(m) => self.degrees(given.times(360.0).divided_by(m.lead_mm)),
@@ -215,7 +215,7 @@ macro_rules! quantity {
 quantity! {
     Distance,
     Steps = "steps" per |_| Some(1.0), by |_, _| None;
-    Millimetres = "mm" per Mechanics::step_mm, by Mechanics::millimetres;
+    Millimeters = "mm" per Mechanics::step_mm, by Mechanics::millimeters;
     Degrees = "deg" per Mechanics::step_deg, by Mechanics::degrees;
 }
 
@@ -238,7 +238,7 @@ impl Distance {
         let travel = Exact::difference(self.value(), first);
         let exact = match self {
             Self::Steps(_) => Some(travel),
-            Self::Millimetres(_) => mechanics.millimetres(travel),
+            Self::Millimeters(_) => mechanics.millimeters(travel),
             Self::Degrees(_) => mechanics.degrees(travel),
         };
         Ok(exact.map_or(quotient.into(), |exact| exact.double()))
@@ -248,7 +248,7 @@ impl Distance {
 quantity! {
     Speed,
     StepsPerSecond = "steps_s" per |_| Some(1.0), by |_, _| None;
-    MillimetresPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimetres;
+    MillimetersPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimeters;
     DegreesPerSecond = "deg_s" per Mechanics::step_deg, by Mechanics::degrees;
     TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0),
     by |mechanics, rpm| mechanics.degrees(rpm.times(6.0));
@@ -257,13 +257,13 @@ quantity! {
 quantity! {
     Acceleration,
     StepsPerSecond2 = "steps_s2" per |_| Some(1.0), by |_, _| None;
-    MillimetresPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimetres;
+    MillimetersPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimeters;
     DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg, by Mechanics::degrees;
 }
 
 quantity! {
     Jerk,
     StepsPerSecond3 = "steps_s3" per |_| Some(1.0), by |_, _| None;
-    MillimetresPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimetres;
+    MillimetersPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimeters;
     DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg, by Mechanics::degrees;
 }

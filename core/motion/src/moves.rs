@@ -213,7 +213,7 @@ pub const MAX_POINTS: usize = 4096;
 pub enum PointUnit {
     #[default]
     Steps,
-    Millimetres,
+    Millimeters,
     Degrees,
 }
 
@@ -222,7 +222,7 @@ impl PointUnit {
     pub const fn of(self, position: f64) -> Distance {
         match self {
             Self::Steps => Distance::Steps(position),
-            Self::Millimetres => Distance::Millimetres(position),
+            Self::Millimeters => Distance::Millimeters(position),
             Self::Degrees => Distance::Degrees(position),
         }
     }

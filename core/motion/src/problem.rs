@@ -14,19 +14,23 @@ use alloc::string::String;
 use core::fmt;
 use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 
+/// A problem of one value, shown as `path: cause`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem<C = Cause> {
-    /// Such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the whole.
+    /// Such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the whole scenario.
     pub path: String,
+    /// What is wrong with the value, and how to fix it.
     pub cause: C,
 }
 
 impl<C> Problem<C> {
+    /// A problem of the value at `path`.
     #[must_use]
     pub fn new(path: impl Into<String>, cause: impl Into<C>) -> Self {
         Self { path: path.into(), cause: cause.into() }
     }
 
+    /// The same problem with the cause type of a crate further up, such as a scenario's.
     #[must_use]
     pub fn widen<D: From<C>>(self) -> Problem<D> {
         Problem { path: self.path, cause: self.cause.into() }
@@ -45,149 +49,104 @@ impl<C: fmt::Display> fmt::Display for Problem<C> {
 
 impl<C: fmt::Debug + fmt::Display> core::error::Error for Problem<C> {}
 
+/// What is wrong with a value of any kind.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ValueError {
     /// A number is out of its range. The unit is empty for a plain count.
-    Range { given: f64, least: f64, most: f64, unit: &'static str },
+    Range { given: f64, min: f64, max: f64, unit: &'static str },
     /// A text, list or byte string is too short or too long; `of` is `characters`, `bytes`, `axes`, …
-    Length { given: usize, least: usize, most: usize, of: &'static str },
+    Length { given: usize, min: usize, max: usize, of: &'static str },
     /// Fields do not go together; the detail has which, why, and the remedy.
     Conflict { detail: &'static str },
     /// More work than a run may have; `of` is `ticks`, `cycles`, `table rows`, …
-    TooMuch { given: f64, most: f64, of: &'static str },
+    TooMuch { given: f64, max: f64, of: &'static str },
 }
 
 impl ValueError {
-    pub(crate) fn too_much(given: u64, most: u64, of: &'static str) -> Self {
-        Self::TooMuch { given: given as f64, most: most as f64, of }
+    pub(crate) fn too_much(given: u64, max: u64, of: &'static str) -> Self {
+        Self::TooMuch { given: given as f64, max: max as f64, of }
     }
 }
 
 impl fmt::Display for ValueError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Range { given, least, most, unit } => {
-                let (unit, space) = (shown(unit), if unit.is_empty() { "" } else { " " });
-                write!(f, "{}{space}{unit} is out of range; give {}", Short(*given), Short(*least))?;
-                if least < most {
-                    write!(f, " to {}", Short(*most))?;
+            Self::Range { given, min, max, unit } => {
+                let (unit, space) = (unit_symbol(unit), if unit.is_empty() { "" } else { " " });
+                write!(f, "{}{space}{unit} is out of range; use {}", Short(*given), Short(*min))?;
+                if min < max {
+                    write!(f, " to {}", Short(*max))?;
                 }
                 write!(f, "{space}{unit}")
             }
-            Self::Length { given, least, most, of } if least == most => {
-                write!(f, "{given} {of}; give {least}")
-            }
-            Self::Length { given, least, most, of } => {
-                write!(f, "{given} {of}; give {least} to {most}")
-            }
+            Self::Length { given, min, max, of } if min == max => write!(f, "{given} {of}; use {min}"),
+            Self::Length { given, min, max, of } => write!(f, "{given} {of}; use {min} to {max}"),
             Self::Conflict { detail } => f.write_str(detail),
-            Self::TooMuch { given, most, of } => write!(
-                f,
-                "{} {of} are more than one run may have; at most {} are allowed: {}",
-                Short(*given),
-                Short(*most),
-                match *of {
-                    "table rows" => "give a higher acceleration or a lower top speed",
-                    "moves" => "give fewer moves",
-                    "steps" => "give a shorter motion, or run it by ticks",
-                    "steps of a table" => "give a shorter motion, or make a table of each part of it",
-                    "steps to be measured" => "give a shorter motion",
-                    "slices" => "give longer slices or less time, or choose the exact method",
-                    "sine segments" => "give a greater largest deviation or fewer sines",
-                    "motor-steps of the plant" =>
-                        "give a shorter run, fewer channels or a greater step_cycles",
-                    "bytes of all frames and their repetitions" => {
-                        "give a shorter motion, longer ticks, more ticks a frame or fewer attempts"
-                    }
-                    _ => "give a shorter motion or longer ticks",
-                }
-            ),
+            Self::TooMuch { given, max, of } => {
+                let (given, max) = (Short(*given), Short(*max));
+                write!(f, "{given} {of} exceed the maximum of {max}; use {}", smaller_load(of))
+            }
         }
     }
 }
 
+/// Completes "use …" for a motion with too much of something.
+fn smaller_load(of: &str) -> &'static str {
+    match of {
+        "table rows" => "a higher acceleration or a lower top speed",
+        "moves" => "fewer moves",
+        "steps" => "a shorter motion, or run it by ticks",
+        "steps of a table" => "a shorter motion, or a table for each part of it",
+        "steps to be measured" | "seconds" | "cycles" => "a shorter motion",
+        "slices" => "longer slices, a shorter duration or the exact method",
+        "sine segments" => "a larger maximum deviation or fewer sines",
+        "entries" => "a shorter motion or a larger tolerance",
+        "cycles of tolerance" => "a smaller tolerance",
+        "motor-steps of the plant" => "a shorter run, fewer channels or a larger step_cycles",
+        "bytes of all frames and their repetitions" => {
+            "a shorter motion, longer ticks, more ticks per frame or fewer attempts"
+        }
+        _ => "a shorter motion or longer ticks",
+    }
+}
+
+/// What is wrong with a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
+    /// A single value is wrong.
     Value(ValueError),
     /// The axis' mechanics, of this kind, do not have the unit.
-    NoSuchUnit {
-        given: f64,
-        unit: &'static str,
-        mechanics: &'static str,
-    },
+    NoSuchUnit { given: f64, unit: &'static str, mechanics: &'static str },
     /// Two ramps are longer than the move.
-    RampTooLong {
-        ramp_s: f64,
-        duration_s: f64,
-    },
-    /// The top speed is below the start speed.
-    TopBelowStart {
-        top: f64,
-        start: f64,
-    },
-    /// The top speed is above the maximum of the table.
-    TopAboveTable {
-        top: f64,
-        most: f64,
-    },
-    /// The table's timer is slower than the rate.
-    TimerTooSlow {
-        rate: f64,
-        timer_hz: u32,
-    },
-    /// A speed that follows from other numbers is too high.
-    TooFast {
-        rate: f64,
-        most: f64,
-    },
-    /// Slices are so short that none has a step, even at top speed.
-    SliceTooShort {
-        rate: f64,
-        slice_s: f64,
-    },
-    /// Slices cannot contain all steps, even at the maximum rate.
-    SlicesTooFew {
-        slices: u64,
-        slice_s: f64,
-        steps: u64,
-        rate: f64,
-    },
-    NoSteps {
-        steps: f64,
-    },
-    /// The time of a point is not later than that of the point before by at least `least`.
-    NotRising {
-        given: f64,
-        before: f64,
-        least: f64,
-    },
-    /// A tick (from 0) needs more steps than it has slots, and a higher rate than the bus' limit.
-    TooManySteps {
-        tick: u64,
-        steps: u64,
-        slots: u8,
-        rate: f64,
-        limit: f64,
-    },
+    RampTooLong { ramp_s: f64, duration_s: f64 },
+    /// The top speed is below the start speed; both in steps/s.
+    TopBelowStart { top: f64, start: f64 },
+    /// The top speed is above the maximum of the table; both in steps/s.
+    TopAboveTable { top: f64, max: f64 },
+    /// The table's timer is slower than the rate in steps/s.
+    TimerTooSlow { rate: f64, timer_hz: u32 },
+    /// A speed that follows from other numbers is too high; both in steps/s.
+    TooFast { rate: f64, max: f64 },
+    /// Slices are so short that none has a step, even at the top speed of `rate` steps/s.
+    SliceTooShort { rate: f64, slice_s: f64 },
+    /// Slices cannot contain all steps, even at the maximum rate in steps/s.
+    SlicesTooFew { slices: u64, slice_s: f64, steps: u64, rate: f64 },
+    /// The distance rounds to no step.
+    NoSteps { steps: f64 },
+    /// The time of a point is not later than that of the previous point by at least `min`; all in s.
+    NotRising { given: f64, before: f64, min: f64 },
+    /// A tick (from 0) needs more steps than it has slots, so a rate above the limit of the bus; both in steps/s.
+    TooManySteps { tick: u64, steps: u64, slots: u8, rate: f64, limit: f64 },
+    /// A segment of steps has none.
     NoSegmentSteps,
     /// The interval of a segment's step (from 0), in 1/65536 cycle, is out of its range.
-    SegmentInterval {
-        step: u32,
-        interval: i128,
-        pulse: PulseTimes,
-    },
+    SegmentInterval { step: u32, interval: i128, pulse: PulseTimes },
     /// The time after a segment, in 1/65536 cycle, exceeds 64 bits.
-    SegmentEnd {
-        next: i128,
-    },
-    /// A step (from 1) of a motion is too soon after the one before, or after the start.
-    StepTooSoon {
-        step: u64,
-        interval: u64,
-        pulse: PulseTimes,
-    },
+    SegmentEnd { next: i128 },
+    /// A step (from 1) of a motion follows the previous step, or the start, after too few cycles.
+    StepTooSoon { step: u64, interval: u64, pulse: PulseTimes },
 }
 
 impl From<ValueError> for Cause {
@@ -210,114 +169,107 @@ impl fmt::Display for Cause {
             Self::Value(error) => error.fmt(f),
             Self::NoSuchUnit { given, unit, mechanics } => write!(
                 f,
-                "{} {unit}, but mechanics of kind {mechanics} have no such unit; give steps, or choose mechanics that have it",
+                "{} {} is not available with {mechanics} mechanics; use steps or other mechanics",
                 Short(*given),
-                unit = shown(unit)
+                unit_symbol(unit)
             ),
             Self::RampTooLong { ramp_s, duration_s } => write!(
                 f,
-                "two ramps of {} s do not fit in {} s; give a ramp of at most {} s",
+                "two ramps of {} s do not fit in {} s; use a ramp of at most {} s",
                 Short(*ramp_s),
                 Short(*duration_s),
                 Short(duration_s / 2.0)
             ),
             Self::TopBelowStart { top, start } => write!(
                 f,
-                "a top speed of {} steps/s is under the start speed of {} steps/s; give a higher top speed or a lower start speed",
+                "a top speed of {} steps/s is below the start speed of {} steps/s; use a higher top speed or a lower start speed",
                 Short(*top),
                 Short(*start)
             ),
-            Self::TopAboveTable { top, most } => write!(
+            Self::TopAboveTable { top, max } => write!(
                 f,
-                "a top speed of {} steps/s is above the table's greatest of {} steps/s; give a lower top speed or a higher table",
+                "a top speed of {} steps/s is above the table's maximum of {} steps/s; use a lower top speed or a higher maximum",
                 Short(*top),
-                Short(*most)
+                Short(*max)
             ),
-            Self::TimerTooSlow { rate, timer_hz } => write!(
+            Self::TimerTooSlow { rate, timer_hz } => {
+                let rate = Short(*rate);
+                write!(f, "a timer of {timer_hz} Hz is too slow for {rate} steps/s; use at least {rate} Hz")
+            }
+            Self::TooFast { rate, max } => write!(
                 f,
-                "a timer of {timer_hz} Hz cannot make {} steps/s; give a timer of at least that rate",
-                Short(*rate)
-            ),
-            Self::TooFast { rate, most } => write!(
-                f,
-                "this needs {} steps/s, at most {} are allowed; give more time or less distance",
+                "the motion needs {} steps/s, above the maximum of {}; use more time or less distance",
                 Short(libm::ceil(*rate)),
-                Short(*most)
+                Short(*max)
             ),
             Self::SliceTooShort { rate, slice_s } => write!(
                 f,
-                "at the top speed of {} steps/s a slice of {} s has {} steps, so none would have one; give slices of at least {} s, more distance or less time, or choose the exact method",
-                Short(*rate),
+                "a slice of {} s has only {} steps at the top speed of {} steps/s; use slices of at least {} s, more distance, less time or the exact method",
                 Short(*slice_s),
                 Short(rate * slice_s),
+                Short(*rate),
                 Short(1.0 / rate)
             ),
             Self::SlicesTooFew { slices, slice_s, steps, rate } => write!(
                 f,
-                "slices of {} s, of which there are {slices}, never have {steps} steps together, not even at {} steps/s: a slice has the rate of its start; give shorter slices, or choose the exact method",
+                "{slices} slice{} of {} s cannot contain {steps} steps, even at {} steps/s, because a slice has the rate at its start; use shorter slices or the exact method",
+                if *slices == 1 { "" } else { "s" },
                 Short(*slice_s),
                 Short(*rate)
             ),
             Self::NoSteps { steps } => {
-                write!(f, "{} steps is less than one step; give at least one step, or a dwell", Short(*steps))
+                write!(f, "{} steps is less than one step; use at least one step, or a dwell", Short(*steps))
             }
-            Self::NotRising { given, before, least } => write!(
+            Self::NotRising { given, before, min } => write!(
                 f,
-                "a time of {} s after one of {} s; give times that rise by {} s at least",
+                "a time of {} s is not at least {} s after the previous time of {} s; use rising times",
                 Short(*given),
-                Short(*before),
-                Short(*least)
+                Short(*min),
+                Short(*before)
             ),
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
                 f,
-                "tick {tick} needs {steps} steps ({} steps/s), its {slots} slots give at most {} steps/s; slow the motion, or give a shorter step period",
+                "tick {tick} needs {steps} steps ({} steps/s), but its {slots} slots allow {} steps/s; use a slower motion or a shorter step period",
                 Short(*rate),
                 Short(*limit)
             ),
-            Self::NoSegmentSteps => f.write_str("no steps; give a count of at least 1, or a dwell"),
+            Self::NoSegmentSteps => f.write_str("0 steps; use at least 1 step, or a dwell"),
             Self::SegmentInterval { step, interval, pulse } => {
                 write!(f, "step {step} has an interval of {interval}/65536 cycles")?;
                 if *interval > u64::MAX.into() {
-                    write!(f, "; give at most {}", u64::MAX)
+                    write!(f, "; use at most {}", u64::MAX)
                 } else {
-                    let least = pulse.min_interval().0 << FRACTION_BITS;
-                    write!(
-                        f,
-                        ", {}; give at least {least}, or shorter times of the pulse",
-                        MinInterval(*pulse)
-                    )
+                    let min = pulse.min_interval().0 << FRACTION_BITS;
+                    write!(f, ", {}; use at least {min}, or shorter pulse times", TooShortFor(*pulse))
                 }
             }
             Self::SegmentEnd { next } => write!(
                 f,
-                "ends at {next}/65536 cycles; give less time, at most {}/65536 (cycle {})",
+                "the segment ends too late, at {next}/65536 cycles; use at most {}/65536 (cycle {})",
                 u64::MAX,
                 LAST_CYCLE.0
             ),
             Self::StepTooSoon { step, interval, pulse } => write!(
                 f,
-                "step {step} comes {interval} cycles after {}, {}; slow the motion, or give shorter times of the pulse",
-                if *step == 1 { "the start" } else { "the one before" },
-                MinInterval(*pulse)
+                "step {step} comes {interval} cycles after {}, {}; use a slower motion or shorter pulse times",
+                if *step == 1 { "the start" } else { "the previous step" },
+                TooShortFor(*pulse)
             ),
         }
     }
 }
 
-struct MinInterval(PulseTimes);
+struct TooShortFor(PulseTimes);
 
-impl fmt::Display for MinInterval {
+impl fmt::Display for TooShortFor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let PulseTimes { width, setup, hold } = self.0;
-        let least = self.0.min_interval().0;
-        write!(
-            f,
-            "a pulse needs width {} + max(hold {} + setup {}, 1) = {least} cycles",
-            width.0, hold.0, setup.0
-        )
+        let min = self.0.min_interval().0;
+        write!(f, "but a pulse needs {min} (width {} + max(hold {} + setup {}, 1))", width.0, hold.0, setup.0)
     }
 }
 
+/// A number in as few digits as a message needs, the same on every target.
 struct Short(f64);
 
 impl fmt::Display for Short {
@@ -341,7 +293,8 @@ impl fmt::Display for Short {
     }
 }
 
-fn shown(unit: &str) -> &str {
+/// The symbol of a JSON unit: `steps/s` for `steps_s`.
+fn unit_symbol(unit: &str) -> &str {
     match unit {
         "steps_s" => "steps/s",
         "mm_s" => "mm/s",

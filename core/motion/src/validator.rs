@@ -80,7 +80,7 @@ impl<C> Validator<C> {
 
     /// Whether the value at `step` has a listed problem.
     #[must_use]
-    pub fn has(&mut self, step: &str) -> bool {
+    pub fn has_problem(&mut self, step: &str) -> bool {
         self.at(step, |here| here.problems.iter().any(|problem| problem.path == here.path))
     }
 }
@@ -123,7 +123,7 @@ impl<C: From<ValueError>> Validator<C> {
             return Some(given);
         }
         let (least, most) = range.into_inner();
-        self.add(step, ValueError::Range { given, least, most, unit });
+        self.add(step, ValueError::Range { given, min: least, max: most, unit });
         None
     }
 
@@ -138,7 +138,7 @@ impl<C: From<ValueError>> Validator<C> {
         let given = given.into();
         if !range.contains(&given) {
             let (given, least, most) = (given as f64, *range.start() as f64, *range.end() as f64);
-            self.add(step, ValueError::Range { given, least, most, unit });
+            self.add(step, ValueError::Range { given, min: least, max: most, unit });
         }
     }
 
@@ -146,7 +146,7 @@ impl<C: From<ValueError>> Validator<C> {
     pub fn length(&mut self, step: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
         if !range.contains(&given) {
             let (least, most) = range.into_inner();
-            self.add(step, ValueError::Length { given, least, most, of });
+            self.add(step, ValueError::Length { given, min: least, max: most, of });
         }
     }
 

@@ -28,11 +28,11 @@ fn points(unit: PointUnit, points: &[(f64, f64)]) -> Move {
 #[test]
 fn half_steps_are_rounded_as_they_are_printed() {
     let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
-    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimetres(88.35))), 884);
-    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimetres(-88.35))), -883);
+    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimeters(88.35))), 884);
+    assert_eq!(steps_of(direct(0.1), constant(Distance::Millimeters(-88.35))), -883);
     let shaft = Mechanics::Rotary(Rotary { full_step_deg: 1.8, microsteps: 16 });
     assert_eq!(steps_of(shaft, constant(Distance::Degrees(41.456_25))), 369);
-    let table = points(PointUnit::Millimetres, &[(0.0, 0.0), (1.0, 0.145)]);
+    let table = points(PointUnit::Millimeters, &[(0.0, 0.0), (1.0, 0.145)]);
     assert_eq!(steps_of(direct(0.01), table), 15);
 }
 
@@ -40,13 +40,13 @@ fn half_steps_are_rounded_as_they_are_printed() {
 fn what_is_no_quantity_gives_what_the_quotient_gives() {
     let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
     let steps =
-        |mm: f64, step_mm: f64| Distance::Millimetres(mm).in_steps(&direct(step_mm)).expect("they have mm");
+        |mm: f64, step_mm: f64| Distance::Millimeters(mm).in_steps(&direct(step_mm)).expect("they have mm");
     assert!(steps(f64::NAN, 0.1).is_nan() && steps(0.0, 0.0).is_nan());
     assert_eq!(
         (steps(f64::INFINITY, 0.1), steps(1.0, 0.0), steps(1.0, -0.5)),
         (f64::INFINITY, f64::INFINITY, -2.0)
     );
-    assert_eq!(Distance::Millimetres(f64::NAN).whole_steps(&direct(0.1)), Ok(0));
+    assert_eq!(Distance::Millimeters(f64::NAN).whole_steps(&direct(0.1)), Ok(0));
 }
 
 /// Decimals n/10^places, so that the quotient is one of whole numbers: floor(a/b + 1/2) = floor((2a + b)/(2b)).
@@ -66,7 +66,7 @@ fn distances_are_the_quotients_of_their_decimals() {
         let (mechanics, distance, over, under) = match draw(0, 2) {
             0 => (
                 Mechanics::Direct(Direct { step_mm: size }),
-                Distance::Millimetres(given),
+                Distance::Millimeters(given),
                 whole * unit_ten,
                 unit * ten,
             ),
@@ -75,7 +75,7 @@ fn distances_are_the_quotients_of_their_decimals() {
                 let screw = Screw { full_step_deg: 1.8, microsteps, lead_mm: size };
                 // lead*1.8/microsteps/360 mm a step.
                 let over = whole * 3600 * i128::from(microsteps) * unit_ten;
-                (Mechanics::Screw(screw), Distance::Millimetres(given), over, unit * 18 * ten)
+                (Mechanics::Screw(screw), Distance::Millimeters(given), over, unit * 18 * ten)
             }
             _ => {
                 let microsteps = [1, 16, 5, 128][draw(0, 3) as usize];

@@ -58,7 +58,7 @@ fn an_exact_table_is_the_smallest() {
             .collect();
         let entries = |form, format| {
             let table = stored_steps(&steps, form, format, PULSE).expect("there is time for each pulse");
-            assert_eq!((table.error.greatest, table.error.steps), (0, count), "{round}");
+            assert_eq!((table.error.max_cycles, table.error.steps), (0, count), "{round}");
             table.entries.len()
         };
         // A change of the direction is an entry of its own; before the first step it is to the left.

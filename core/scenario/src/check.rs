@@ -289,7 +289,7 @@ impl Scenario {
 fn add_unless_out_of_range(problems: Vec<ConfigProblem>, validator: &mut Validator) {
     for ConfigProblem { field, error } in problems {
         let path = field.to_string();
-        if !(matches!(error, ConfigError::Range { .. }) && validator.has(&path)) {
+        if !(matches!(error, ConfigError::Range { .. }) && validator.has_problem(&path)) {
             validator.add(&path, error);
         }
     }
@@ -303,7 +303,7 @@ fn add_new(
 ) {
     for ConfigProblem { field, error } in problems {
         let path = path_of(&field);
-        if !validator.has(&path) {
+        if !validator.has_problem(&path) {
             validator.add(&path, error);
         }
     }
@@ -380,7 +380,7 @@ mod tests {
                 r#"{"line":{"address":7},"source":{"packets":{"packets":["80"]}}}"#,
                 "source.packets.packets[0]: 1 bytes; use 2: the address and one per channel (`bus.channels` is 1)",
             ),
-            (r#"{"line":{"baud":0}}"#, "line.baud: 0 baud is out of range; give 1 to 1523809 baud"),
+            (r#"{"line":{"baud":0}}"#, "line.baud: 0 baud is out of range; use 1 to 1523809 baud"),
         ];
         for (json, expected) in rows {
             let problems = Scenario::from_json(json).expect("reads").check().expect_err(json);

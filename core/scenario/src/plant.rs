@@ -196,7 +196,7 @@ fn one_supply(placed: &[MotorAtPath<'_>], validator: &mut Validator) {
     let Some(first) = placed.first().map(supply) else { return };
     for other in placed {
         let path = format!("{}.supply_v", other.path);
-        if supply(other).to_bits() != first.to_bits() && !validator.has(&path) {
+        if supply(other).to_bits() != first.to_bits() && !validator.has_problem(&path) {
             validator.add(&path, Cause::OtherSupply { supply_v: supply(other), first_v: first });
         }
     }
@@ -306,10 +306,10 @@ fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validato
         }
         (Refusal::Range { field, .. }, None) => format!("plant.{field}"),
     };
-    if !validator.has(&path) {
+    if !validator.has_problem(&path) {
         match refused.refusal {
-            Refusal::Range { given, min: least, max: greatest, .. } => {
-                validator.add(&path, ValueError::Range { given, least, most: greatest, unit: "" });
+            Refusal::Range { given, min, max, .. } => {
+                validator.add(&path, ValueError::Range { given, min, max, unit: "" });
             }
             _ => validator.add(&path, Cause::Plant(refused)),
         }
@@ -336,16 +336,16 @@ mod tests {
             (
                 r#"{"plant":{"source_ohm":0,"current_sensor":{"poles":4},"tail_s":11}}"#.into(),
                 &[
-                    "plant.source_ohm: 0 Ω is out of range; give 0.001 to 100 Ω",
-                    "plant.tail_s: 11 s is out of range; give 0 to 10 s",
-                    "plant.current_sensor.poles: 4 is out of range; give 1 to 3",
+                    "plant.source_ohm: 0 Ω is out of range; use 0.001 to 100 Ω",
+                    "plant.tail_s: 11 s is out of range; use 0 to 10 s",
+                    "plant.current_sensor.poles: 4 is out of range; use 1 to 3",
                 ],
             ),
             (
                 motor(r#""friction_mN_m":-1,"driver":{"off_time_us":-2}"#),
                 &[
-                    "source.motion.axes[0].motor.friction_mN_m: -1 mN*m is out of range; give 0 to 1000000 mN*m",
-                    "source.motion.axes[0].motor.driver.off_time_us: -2 us is out of range; give 0 to 1000000 us",
+                    "source.motion.axes[0].motor.friction_mN_m: -1 mN*m is out of range; use 0 to 1000000 mN*m",
+                    "source.motion.axes[0].motor.driver.off_time_us: -2 us is out of range; use 0 to 1000000 us",
                 ],
             ),
             (
@@ -362,7 +362,7 @@ mod tests {
             ),
             (
                 r#"{"bus":{"channels":2},"plant":{"motors":[{},{"motor":{"supply_v":36,"inductance_mh":0.0001}}]},"source":{"packets":{}}}"#.into(),
-                &["plant.motors[1].motor.inductance_mh: 1e-4 mH is out of range; give 0.001 to 10000 mH"],
+                &["plant.motors[1].motor.inductance_mh: 1e-4 mH is out of range; use 0.001 to 10000 mH"],
             ),
             (
                 r#"{"bus":{"channels":3},"plant":{"motors":[{},{"motor":{"supply_v":36}}]},"source":{"packets":{}}}"#.into(),

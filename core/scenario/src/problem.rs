@@ -134,7 +134,7 @@ impl From<ConfigError> for Cause {
         match error {
             ConfigError::Range { given, min: least, max: most, unit } => {
                 let (given, least, most) = (given as f64, least as f64, most as f64);
-                Self::Value(ValueError::Range { given, least, most, unit })
+                Self::Value(ValueError::Range { given, min: least, max: most, unit })
             }
             error => Self::Config(error),
         }

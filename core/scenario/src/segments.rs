@@ -110,27 +110,27 @@ mod tests {
             (
                 r#"{"start_cycle":0}"#,
                 &[
-                    "source.segments.channels[0].start_cycle: 0 cycles is out of range; give 1 to 281474976710655 cycles",
+                    "source.segments.channels[0].start_cycle: 0 cycles is out of range; use 1 to 281474976710655 cycles",
                 ],
             ),
             (
                 r#"{"segments":[{"dwell":{}},{"steps":{"count":0}},{"steps":{"interval_q16":5242879}},{"steps":{"count":4000000000,"interval_q16":8242880,"add_q16":-1}}]}"#,
                 &[
-                    "source.segments.channels[0].segments[1]: no steps; give a count of at least 1, or a dwell",
-                    "source.segments.channels[0].segments[2]: step 0 has an interval of 5242879/65536 cycles, a pulse needs width 40 + max(hold 0 + setup 40, 1) = 80 cycles; give at least 5242880, or shorter times of the pulse",
-                    "source.segments.channels[0].segments[3]: step 3000001 has an interval of 5242879/65536 cycles, a pulse needs width 40 + max(hold 0 + setup 40, 1) = 80 cycles; give at least 5242880, or shorter times of the pulse",
+                    "source.segments.channels[0].segments[1]: 0 steps; use at least 1 step, or a dwell",
+                    "source.segments.channels[0].segments[2]: step 0 has an interval of 5242879/65536 cycles, but a pulse needs 80 (width 40 + max(hold 0 + setup 40, 1)); use at least 5242880, or shorter pulse times",
+                    "source.segments.channels[0].segments[3]: step 3000001 has an interval of 5242879/65536 cycles, but a pulse needs 80 (width 40 + max(hold 0 + setup 40, 1)); use at least 5242880, or shorter pulse times",
                 ],
             ),
             (
                 r#"{"segments":[{"steps":{"count":3,"interval_q16":18446744073709551615,"add_q16":9223372036854775807}},{"steps":{}}]}"#,
                 &[
-                    "source.segments.channels[0].segments[0]: step 1 has an interval of 27670116110564327422/65536 cycles; give at most 18446744073709551615",
+                    "source.segments.channels[0].segments[0]: step 1 has an interval of 27670116110564327422/65536 cycles; use at most 18446744073709551615",
                 ],
             ),
             (
                 r#"{"segments":[{"steps":{"count":4000000000}},{"steps":{"count":4000000000,"interval_q16":10485760000}},{"steps":{"count":1}}]}"#,
                 &[
-                    "source.segments.channels[0].segments[1]: ends at 46137344000000065536/65536 cycles; give less time, at most 18446744073709551615/65536 (cycle 281474976710655)",
+                    "source.segments.channels[0].segments[1]: the segment ends too late, at 46137344000000065536/65536 cycles; use at most 18446744073709551615/65536 (cycle 281474976710655)",
                 ],
             ),
         ];

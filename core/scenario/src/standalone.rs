@@ -44,7 +44,7 @@ impl Scenario {
                 for one in refused {
                     let Some(controller) = one.controller else { continue };
                     validator.at_entry(controller, |here| {
-                        if !here.has(&one.path) {
+                        if !here.has_problem(&one.path) {
                             here.add(&one.path, Cause::StandAlone(one.refusal));
                         }
                     });
@@ -182,7 +182,7 @@ fn intervals(
     let count = plan.step_count();
     let Some(left) = steps_left.checked_sub(count) else {
         let cause =
-            ValueError::TooMuch { given: count as f64, most: *steps_left as f64, of: "steps of profiles" };
+            ValueError::TooMuch { given: count as f64, max: *steps_left as f64, of: "steps of profiles" };
         here.add("", cause);
         return None;
     };
@@ -199,7 +199,7 @@ fn intervals(
             let most = (u64::MAX >> 16) as f64;
             here.add(
                 "",
-                ValueError::TooMuch { given: interval as f64, most, of: "cycles between two steps" },
+                ValueError::TooMuch { given: interval as f64, max: most, of: "cycles between two steps" },
             );
             return None;
         };

@@ -52,7 +52,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
         (
             r#"[{},{"inputs":[{"cycle":9,"input":"estop"},{"cycle":0,"input":"start"},{"cycle":9},{"cycle":9,"input":"ok","push_steps":3}]}]"#,
             &[
-                "source.standalone[1].inputs[1].cycle: 0 cycles is out of range; give 1 to 9000000000000000 cycles",
+                "source.standalone[1].inputs[1].cycle: 0 cycles is out of range; use 1 to 9000000000000000 cycles",
                 "source.standalone[1].inputs[2]: the entry is empty; use an input, or `push_steps`",
                 "source.standalone[1].inputs[3]: an entry is an input or a push, not both; make two entries",
                 "source.standalone[1].inputs[0]: estop is for all controllers and the first one's; leave it out here",
@@ -69,11 +69,11 @@ fn every_refusal_names_its_field_and_the_numbers() {
             r#"[{"groups":[{"profile":{"motion":{"cosine":{"duration_s":-1}}}}],"loops":0,"memory":{"initial":"0g"}}]"#,
             &[
                 "{at}.memory.initial: \u{201c}g\u{201d} in byte 1 is not a hexadecimal digit; use two digits per byte, such as 80 01 7f; or use blank or factory",
-                "{at}.loops: 0 is out of range; give 1 to 9999",
-                "{at}.groups[0].profile.motion.cosine.duration_s: -1 s is out of range; give 1e-6 to 86400 s",
+                "{at}.loops: 0 is out of range; use 1 to 9999",
+                "{at}.groups[0].profile.motion.cosine.duration_s: -1 s is out of range; use 1e-6 to 86400 s",
             ],
         ),
-        (r#"[{"groups":[]}]"#, &["{at}.groups: 0 groups; give 1 to 50"]),
+        (r#"[{"groups":[]}]"#, &["{at}.groups: 0 groups; use 1 to 50"]),
         (
             r#"[{"soft_limits":{"min_steps":5,"max_steps":4}}]"#,
             &["{at}.soft_limits.max_steps: 4 is out of range; give 5 to 2147483648"],

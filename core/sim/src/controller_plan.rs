@@ -101,7 +101,7 @@ pub(super) fn controller_plans(
         if total > MAX_BYTES {
             let cause = ValueError::TooMuch {
                 given: total as f64,
-                most: MAX_BYTES as f64,
+                max: MAX_BYTES as f64,
                 of: "commands of all channels",
             };
             problems.push(Problem::new("controllers", cause));

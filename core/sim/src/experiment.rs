@@ -47,7 +47,7 @@ fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Res
     if given <= max {
         return Ok(());
     }
-    let cause = ValueError::TooMuch { given: given as f64, most: max as f64, of };
+    let cause = ValueError::TooMuch { given: given as f64, max: max as f64, of };
     Err(alloc::vec![Problem::new(path, cause)])
 }
 

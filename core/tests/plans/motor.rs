@@ -10,16 +10,16 @@ fn a_motors_numbers_are_judged_with_their_paths() {
     check(
         r#"{"motor":{"inductance_mh":0,"peak_current_a":2.2,"load_inertia_g_cm2":-1,"working_rate_hz":0}}"#,
         &[
-            "axis.motor.inductance_mh: 0 mH is out of range; give 0.001 to 10000 mH",
-            "axis.motor.peak_current_a: 2.2 A is out of range; give 0.0015 to 2.1214 A",
-            "axis.motor.load_inertia_g_cm2: -1 g*cm^2 is out of range; give 0 to 1000000000 g*cm^2",
-            "axis.motor.working_rate_hz: 0 steps/s is out of range; give 1 to 10000000 steps/s",
+            "axis.motor.inductance_mh: 0 mH is out of range; use 0.001 to 10000 mH",
+            "axis.motor.peak_current_a: 2.2 A is out of range; use 0.0015 to 2.1214 A",
+            "axis.motor.load_inertia_g_cm2: -1 g*cm^2 is out of range; use 0 to 1000000000 g*cm^2",
+            "axis.motor.working_rate_hz: 0 steps/s is out of range; use 1 to 10000000 steps/s",
         ],
     );
     // Without a rated current the peak's range is not known.
     check(
         r#"{"motor":{"rated_current_a":0,"peak_current_a":9}}"#,
-        &["axis.motor.rated_current_a: 0 A is out of range; give 0.001 to 100 A"],
+        &["axis.motor.rated_current_a: 0 A is out of range; use 0.001 to 100 A"],
     );
 }
 
@@ -28,7 +28,7 @@ fn a_motor_on_direct_mechanics_is_refused_with_the_remedy() {
     check(
         r#"{"mechanics":{"direct":{}},"motor":{}}"#,
         &[
-            "axis.motor: a motor needs the angle of its steps, which mechanics of kind direct do not have; choose rotary, wheel or screw, or take the motor out",
+            "axis.motor: a motor needs a step angle, which direct mechanics do not have; use rotary, wheel or screw mechanics, or remove the motor",
         ],
     );
 }

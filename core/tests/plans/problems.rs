@@ -10,48 +10,48 @@ fn plan(json: &str) -> Result<AxisPlan, Vec<Problem>> {
 #[test]
 fn every_problem_is_told_with_its_path() {
     check("{}", &[]);
-    check(r#"{"moves":[]}"#, &["axis.moves: 0 moves; give 1 to 64"]);
+    check(r#"{"moves":[]}"#, &["axis.moves: 0 moves; use 1 to 64"]);
     check(
         r#"{"moves":[{"cosine":{"distance":{"mm":3},"duration_s":0,"ramp_s":-1}},{"dwell":{"duration_s":1e300}}]}"#,
         &[
-            "axis.moves[0].cosine.distance: 3 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
-            "axis.moves[0].cosine.duration_s: 0 s is out of range; give 1e-6 to 86400 s",
-            "axis.moves[0].cosine.ramp_s: -1 s is out of range; give 0 to 86400 s",
-            "axis.moves[1].dwell.duration_s: 1e300 s is out of range; give 0 to 86400 s",
+            "axis.moves[0].cosine.distance: 3 mm is not available with rotary mechanics; use steps or other mechanics",
+            "axis.moves[0].cosine.duration_s: 0 s is out of range; use 1e-6 to 86400 s",
+            "axis.moves[0].cosine.ramp_s: -1 s is out of range; use 0 to 86400 s",
+            "axis.moves[1].dwell.duration_s: 1e300 s is out of range; use 0 to 86400 s",
         ],
     );
     check(
         r#"{"moves":[{"cosine":{"duration_s":0.3,"ramp_s":0.2}},{"cosine":{"distance":{"steps":0.4}}},{"cosine":{"distance":{"steps":1e9}}}]}"#,
         &[
-            "axis.moves[0].cosine.ramp_s: two ramps of 0.2 s do not fit in 0.3 s; give a ramp of at most 0.15 s",
-            "axis.moves[1].cosine.distance: 0.4 steps is less than one step; give at least one step, or a dwell",
-            "axis.moves[2].cosine.duration_s: this needs 5000000000 steps/s, at most 10000000 are allowed; give more time or less distance",
+            "axis.moves[0].cosine.ramp_s: two ramps of 0.2 s do not fit in 0.3 s; use a ramp of at most 0.15 s",
+            "axis.moves[1].cosine.distance: 0.4 steps is less than one step; use at least one step, or a dwell",
+            "axis.moves[2].cosine.duration_s: the motion needs 5000000000 steps/s, above the maximum of 10000000; use more time or less distance",
         ],
     );
     check(
         r#"{"moves":[{"trapezoid":{"start_speed":{"steps_s":5000},"timer_hz":0}},{"trapezoid":{"timer_hz":3999}},{"trapezoid":{"start_speed":{"steps_s":0}}},{"trapezoid":{"start_speed":{"steps_s":0},"method":"exact"}}]}"#,
         &[
-            "axis.moves[0].trapezoid.timer_hz: 0 Hz is out of range; give 1 to 4294967295 Hz",
-            "axis.moves[0].trapezoid.max_speed: a top speed of 4000 steps/s is under the start speed of 5000 steps/s; give a higher top speed or a lower start speed",
-            "axis.moves[1].trapezoid.timer_hz: a timer of 3999 Hz cannot make 4000 steps/s; give a timer of at least that rate",
-            "axis.moves[2].trapezoid.start_speed: 0 steps/s is out of range; give 0.5 to 10000000 steps/s",
+            "axis.moves[0].trapezoid.timer_hz: 0 Hz is out of range; use 1 to 4294967295 Hz",
+            "axis.moves[0].trapezoid.max_speed: a top speed of 4000 steps/s is below the start speed of 5000 steps/s; use a higher top speed or a lower start speed",
+            "axis.moves[1].trapezoid.timer_hz: a timer of 3999 Hz is too slow for 4000 steps/s; use at least 4000 Hz",
+            "axis.moves[2].trapezoid.start_speed: 0 steps/s is out of range; use 0.5 to 10000000 steps/s",
         ],
     );
     check(
         r#"{"mechanics":{"wheel":{"microsteps":0,"radius_mm":-1}},"moves":[{"constant":{"distance":{"mm":1},"speed":{"steps_s":-2}}}]}"#,
         &[
-            "axis.mechanics.wheel.microsteps: 0 is out of range; give 1 to 512",
-            "axis.mechanics.wheel.radius_mm: -1 mm is out of range; give 1e-6 to 1000000 mm",
-            "axis.moves[0].constant.speed: -2 steps/s is out of range; give 1e-6 to 10000000 steps/s",
+            "axis.mechanics.wheel.microsteps: 0 is out of range; use 1 to 512",
+            "axis.mechanics.wheel.radius_mm: -1 mm is out of range; use 1e-6 to 1000000 mm",
+            "axis.moves[0].constant.speed: -2 steps/s is out of range; use 1e-6 to 10000000 steps/s",
         ],
     );
     check(
         r#"{"mechanics":{"direct":{"step_mm":0.5}},"moves":[{"sine_segments":{"amplitude":{"mm":1e9},"periods":0,"max_deviation":2}},{"sine_segments":{"amplitude":{"mm":50000},"period_s":0.01}}]}"#,
         &[
-            "axis.moves[0].sine_segments.amplitude: 1000000000 mm is out of range; give -500000000 to 500000000 mm",
-            "axis.moves[0].sine_segments.periods: 0 is out of range; give 1 to 1000000",
-            "axis.moves[0].sine_segments.max_deviation: 2 is out of range; give 0 to 1",
-            "axis.moves[1].sine_segments.period_s: this needs 61870287 steps/s, at most 10000000 are allowed; give more time or less distance",
+            "axis.moves[0].sine_segments.amplitude: 1000000000 mm is out of range; use -500000000 to 500000000 mm",
+            "axis.moves[0].sine_segments.periods: 0 is out of range; use 1 to 1000000",
+            "axis.moves[0].sine_segments.max_deviation: 2 is out of range; use 0 to 1",
+            "axis.moves[1].sine_segments.period_s: the motion needs 61870287 steps/s, above the maximum of 10000000; use more time or less distance",
         ],
     );
 }
@@ -60,20 +60,18 @@ fn every_problem_is_told_with_its_path() {
 fn an_axis_has_bounds_on_time_and_tables() {
     check(
         r#"{"moves":[{"sine_segments":{"period_s":10,"periods":99999}},{"constant":{"speed":{"steps_s":0.01}}}]}"#,
-        &[
-            "axis.moves: 1099990 seconds are more than one run may have; at most 1000000 are allowed: give a shorter motion or longer ticks",
-        ],
+        &["axis.moves: 1099990 seconds exceed the maximum of 1000000; use a shorter motion"],
     );
     let table = r#"{"trapezoid":{"distance":{"steps":1400000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}"#;
     let text = format!(r#"{{"moves":[{table},{table}]}}"#);
     check(
         &text,
         &[
-            "axis.moves[1].trapezoid: 1400000 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
+            "axis.moves[1].trapezoid: 1400000 table rows exceed the maximum of 1000000; use a higher acceleration or a lower top speed",
         ],
     );
     let moves = format!(r#"{{"moves":[{}{{"dwell":{{}}}}]}}"#, r#"{"dwell":{}},"#.repeat(64));
-    check(&moves, &["axis.moves: 65 moves; give 1 to 64"]);
+    check(&moves, &["axis.moves: 65 moves; use 1 to 64"]);
 }
 
 #[test]
@@ -88,7 +86,7 @@ fn axes_share_the_bounds_on_tables_and_segments() {
     assert_eq!(
         problems(table, 3),
         [
-            "source.motion.axes[2].moves[0].trapezoid: 1200000 table rows are more than one run may have; at most 1000000 are allowed: give a higher acceleration or a lower top speed",
+            "source.motion.axes[2].moves[0].trapezoid: 1200000 table rows exceed the maximum of 1000000; use a higher acceleration or a lower top speed",
         ]
     );
     let sine = r#"{"sine_segments":{"max_deviation":0}}"#;
@@ -97,7 +95,7 @@ fn axes_share_the_bounds_on_tables_and_segments() {
     assert_eq!(problems(&sines, 3).len(), 64);
     assert_eq!(
         problems(&sines, 3)[0],
-        "source.motion.axes[2].moves[0].sine_segments: 66048 sine segments are more than one run may have; at most 65536 are allowed: give a greater largest deviation or fewer sines"
+        "source.motion.axes[2].moves[0].sine_segments: 66048 sine segments exceed the maximum of 65536; use a larger maximum deviation or fewer sines"
     );
     // The preset of the document has six: a sweep of ten on each of 16 axes is no trouble.
     let sweep = sines.replace(r#""max_deviation":0"#, r#""max_deviation":0.0054"#);

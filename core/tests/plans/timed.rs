@@ -51,7 +51,7 @@ fn slices_may_have_the_highest_speed_exactly_and_no_more() {
     check(
         r#"{"moves":[{"cosine":{"distance":{"steps":10550},"duration_s":0.001055,"ramp_s":0,"method":"sliced","slice_s":1.055e-5}}]}"#,
         &[
-            "axis.moves[0].cosine.duration_s: this needs 10047394 steps/s, at most 10000000 are allowed; give more time or less distance",
+            "axis.moves[0].cosine.duration_s: the motion needs 10047394 steps/s, above the maximum of 10000000; use more time or less distance",
         ],
     );
 }
@@ -61,25 +61,25 @@ fn every_problem_of_slices_and_shapes_is_told_with_its_path() {
     check(
         r#"{"moves":[{"cosine":{"distance":{"steps":0},"method":"sliced","slice_s":0}},{"cosine":{"slice_s":0}},{"cosine":{"distance":{"steps":100},"method":"sliced"}}]}"#,
         &[
-            "axis.moves[0].cosine.distance: 0 steps is less than one step; give at least one step, or a dwell",
-            "axis.moves[0].cosine.slice_s: 0 s is out of range; give 1e-5 to 0.1 s",
-            "axis.moves[2].cosine.slice_s: at the top speed of 500 steps/s a slice of 0.001 s has 0.5 steps, so none would have one; give slices of at least 0.002 s, more distance or less time, or choose the exact method",
+            "axis.moves[0].cosine.distance: 0 steps is less than one step; use at least one step, or a dwell",
+            "axis.moves[0].cosine.slice_s: 0 s is out of range; use 1e-5 to 0.1 s",
+            "axis.moves[2].cosine.slice_s: a slice of 0.001 s has only 0.5 steps at the top speed of 500 steps/s; use slices of at least 0.002 s, more distance, less time or the exact method",
         ],
     );
     check(
         r#"{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":0.1,"ramp_s":0.05,"method":"sliced","slice_s":0.1}},{"cosine":{"distance":{"steps":990000},"duration_s":99,"ramp_s":0,"method":"sliced"}},{"cosine":{"distance":{"steps":1e6},"duration_s":2,"method":"sliced"}}]}"#,
         &[
-            "axis.moves[0].cosine.slice_s: slices of 0.1 s, of which there are 1, never have 100 steps together, not even at 10000000 steps/s: a slice has the rate of its start; give shorter slices, or choose the exact method",
-            "axis.moves[2].cosine.slice_s: 101000 slices are more than one run may have; at most 100000 are allowed: give longer slices or less time, or choose the exact method",
+            "axis.moves[0].cosine.slice_s: 1 slice of 0.1 s cannot contain 100 steps, even at 10000000 steps/s, because a slice has the rate at its start; use shorter slices or the exact method",
+            "axis.moves[2].cosine.slice_s: 101000 slices exceed the maximum of 100000; use longer slices, a shorter duration or the exact method",
         ],
     );
     check(
         r#"{"moves":[{"ramps":{"ramp_s":0.3,"sigmoid_range":21}},{"ramps":{"shape":"bezier","sigmoid_range":0,"time_constants":0}},{"ramps":{"shape":"exponential","sigmoid_range":0,"time_constants":0}},{"ramps":{"distance":{"steps":1e9}}}]}"#,
         &[
-            "axis.moves[0].ramps.ramp_s: two ramps of 0.3 s do not fit in 0.4 s; give a ramp of at most 0.2 s",
-            "axis.moves[0].ramps.sigmoid_range: 21 is out of range; give 0.1 to 20",
-            "axis.moves[2].ramps.time_constants: 0 is out of range; give 0.1 to 20",
-            "axis.moves[3].ramps.duration_s: this needs 5000000000 steps/s, at most 10000000 are allowed; give more time or less distance",
+            "axis.moves[0].ramps.ramp_s: two ramps of 0.3 s do not fit in 0.4 s; use a ramp of at most 0.2 s",
+            "axis.moves[0].ramps.sigmoid_range: 21 is out of range; use 0.1 to 20",
+            "axis.moves[2].ramps.time_constants: 0 is out of range; use 0.1 to 20",
+            "axis.moves[3].ramps.duration_s: the motion needs 5000000000 steps/s, above the maximum of 10000000; use more time or less distance",
         ],
     );
 }

@@ -399,7 +399,7 @@ fn plant() -> impl Strategy<Value = PlantSettings> {
 fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
     prop_oneof![
         4 => number(steps).prop_map(Distance::Steps),
-        1 => number(1.0).prop_map(Distance::Millimetres),
+        1 => number(1.0).prop_map(Distance::Millimeters),
         1 => number(90.0).prop_map(Distance::Degrees),
     ]
 }
@@ -407,7 +407,7 @@ fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
 fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
     prop_oneof![
         4 => number(steps_s).prop_map(Speed::StepsPerSecond),
-        1 => number(1.0).prop_map(Speed::MillimetresPerSecond),
+        1 => number(1.0).prop_map(Speed::MillimetersPerSecond),
         1 => number(90.0).prop_map(Speed::DegreesPerSecond),
         1 => number(60.0).prop_map(Speed::TurnsPerMinute),
     ]
@@ -416,7 +416,7 @@ fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
 fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
     prop_oneof![
         4 => number(9000.0).prop_map(Acceleration::StepsPerSecond2),
-        1 => number(10.0).prop_map(Acceleration::MillimetresPerSecond2),
+        1 => number(10.0).prop_map(Acceleration::MillimetersPerSecond2),
         1 => number(90.0).prop_map(Acceleration::DegreesPerSecond2),
     ]
 }
@@ -429,14 +429,14 @@ fn ramp_shape() -> impl Strategy<Value = RampShape> {
 fn jerk() -> impl Strategy<Value = Jerk> + Clone {
     prop_oneof![
         4 => number(2e6).prop_map(Jerk::StepsPerSecond3),
-        1 => number(1e3).prop_map(Jerk::MillimetresPerSecond3),
+        1 => number(1e3).prop_map(Jerk::MillimetersPerSecond3),
         1 => number(1e4).prop_map(Jerk::DegreesPerSecond3),
     ]
 }
 
 fn curve() -> impl Strategy<Value = Points> {
     let point = (number(0.0), number(1000.0)).prop_map(|(time_s, position)| Point { time_s, position });
-    let unit = prop::sample::select(vec![PointUnit::Steps, PointUnit::Millimetres, PointUnit::Degrees]);
+    let unit = prop::sample::select(vec![PointUnit::Steps, PointUnit::Millimeters, PointUnit::Degrees]);
     let interpolation = prop::sample::select(vec![Interpolation::Straight, Interpolation::Smooth]);
     (unit, interpolation, prop::collection::vec(point, 0..6))
         .prop_map(|(unit, interpolation, points)| Points { unit, interpolation, points })

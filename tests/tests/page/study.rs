@@ -329,7 +329,7 @@ async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> R
             let own = table.document_bytes.filter(|_| form == "document");
             ensure!(shown[3] == own.map_or(bytes.to_string(), |own| format!("{bytes} ({own})")), "{shown:?}");
             close(&shown[4], table.error.steps as f64 / entries as f64)?;
-            close(&shown[5], known.seconds(table.error.greatest))?;
+            close(&shown[5], known.seconds(table.error.max_cycles))?;
             close(&shown[6], table.error.rms() / f64::from(known.experiment.config().clock_hz()))?;
             ensure!(shown[7] == format!("{}, exact", table.error.steps), "{shown:?}");
         }

@@ -96,8 +96,8 @@ impl Source<'_> {
         writeln!(
             out,
             "{mark}Largest timing error {} cycles ({} ns), r.m.s. {:.2} cycles ({} ns).",
-            error.greatest,
-            nanos(error.greatest as f64),
+            error.max_cycles,
+            nanos(error.max_cycles as f64),
             error.rms(),
             nanos(error.rms())
         )?;

@@ -102,7 +102,7 @@ impl<'a> StepTables<'a> {
                 entries: table.entries.len(),
                 bytes: table.bytes(),
                 document_bytes: table.document_bytes,
-                largest_s: seconds(table.error.greatest as f64),
+                largest_s: seconds(table.error.max_cycles as f64),
                 rms_s: seconds(table.error.rms()),
                 why: None,
             },
@@ -164,7 +164,7 @@ mod tests {
             assert!(run.entries.abs_diff(plan.entries) <= plan.entries / 20, "{form}: {run:?} {plan:?}");
         }
         let none = of_run.cost("document", "q16", 25.0);
-        assert!(none.steps == 3200 && none.why.is_some_and(|why| why.contains("no table of its own")));
+        assert!(none.steps == 3200 && none.why.is_some_and(|why| why.contains("has no table")));
         let source = of_run.source(0, ("compressed", "q16", 25.0), "c").expect("a table");
         assert!(source.contains("axis_0"), "{source}");
     }

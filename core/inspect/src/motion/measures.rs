@@ -38,7 +38,7 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
     if steps > MAX_STEPS {
         return Err(ValueError::TooMuch {
             given: steps as f64,
-            most: MAX_STEPS as f64,
+            max: MAX_STEPS as f64,
             of: "steps to be measured",
         });
     }

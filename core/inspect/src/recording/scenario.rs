@@ -118,7 +118,7 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
                 .collect();
             let stored = stored_steps(&scheduled, form, EntryFormat::Q16, pulse)
                 .map_err(|cause| Refused::Channel(channel, cause))?;
-            greatest = greatest.max(stored.error.greatest);
+            greatest = greatest.max(stored.error.max_cycles);
             list = channel_list(&stored.list);
         }
         entries += list.segments.len();

@@ -32,6 +32,6 @@ pub(crate) fn hold_speed(quantities: &mut Quantities<'_>, step: &str, rate: f64)
     if rate <= MAX_SPEED {
         return Some(());
     }
-    quantities.refuse(step, Cause::TooFast { rate, most: MAX_SPEED });
+    quantities.refuse(step, Cause::TooFast { rate, max: MAX_SPEED });
     None
 }

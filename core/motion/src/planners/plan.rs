@@ -77,7 +77,7 @@ fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan,
     });
     let plan = AxisPlan::of(profiles);
     if plan.duration_s() > MAX_DURATION_S {
-        let cause = ValueError::TooMuch { given: plan.duration_s(), most: MAX_DURATION_S, of: "seconds" };
+        let cause = ValueError::TooMuch { given: plan.duration_s(), max: MAX_DURATION_S, of: "seconds" };
         quantities.refuse("moves", cause);
     }
     quantities.validator.end(plan)

@@ -387,7 +387,7 @@ mod tests {
     fn entries(due: &[u64], tolerance: u64) -> usize {
         let tolerance = Tolerance::of(Cycles(tolerance));
         let made = compressed(right(due), tolerance, EntryFormat::TICKS, PULSE).unwrap();
-        assert!(made.error.greatest <= tolerance.cycles.0 && made.error.steps == due.len() as u64);
+        assert!(made.error.max_cycles <= tolerance.cycles.0 && made.error.steps == due.len() as u64);
         assert_eq!(made.surplus, Some(0));
         made.list.segments.len()
     }
@@ -431,10 +431,10 @@ mod tests {
         let due = [last - 20, last - 10, last];
         for format in EntryFormat::ALL {
             let made = compressed(right(&due), Tolerance::of(Cycles(0)), format, PULSE);
-            assert_eq!(made.map(|made| made.error.greatest), Ok(0), "{}", format.name);
+            assert_eq!(made.map(|made| made.error.max_cycles), Ok(0), "{}", format.name);
         }
         let late = compressed(right(&due), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
-        let cause = ValueError::TooMuch { given: last as f64 + 1.0, most: last as f64, of: "cycles" };
+        let cause = ValueError::TooMuch { given: last as f64 + 1.0, max: last as f64, of: "cycles" };
         assert_eq!(late, Err(cause.into()));
         let soon = compressed(right(&[5, 6]), Tolerance::of(Cycles(1)), EntryFormat::Q16, PULSE);
         assert_eq!(soon, Err(Cause::StepTooSoon { step: 2, interval: 1, pulse: PULSE }));

@@ -112,8 +112,7 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
         _ => {
-            let detail = "a move of this kind has no table of its own; ask for the exact or a compressed list, or plan \
-                          the move with a table";
+            let detail = "this kind of move has no table; use the form exact or compressed, or a move planned by a table";
             return Err(ValueError::Conflict { detail }.into());
         }
     })

@@ -101,8 +101,7 @@ impl EntryFormat {
         if time.trailing_zeros() >= self.shift() {
             Ok(time >> self.shift())
         } else {
-            let detail =
-                "the format has fewer bits for a cycle's fraction than the list; give one with more (q16)";
+            let detail = "the format has fewer fraction bits than the list; use q16";
             Err(ValueError::Conflict { detail }.into())
         }
     }

@@ -37,7 +37,7 @@ pub fn exact_segments(
     clock_hz: u32,
 ) -> Result<CheckedSegments, Vec<Problem>> {
     if plans.len() > channels.into() {
-        let cause = ValueError::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
+        let cause = ValueError::Length { given: plans.len(), min: 1, max: channels.into(), of: "axes" };
         return Err(vec![Problem::new(at.axes, cause)]);
     }
     let steps = plans.iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
@@ -247,7 +247,7 @@ mod tests {
             exact_segments(&plans, AxesPath::MOTION, channels, PULSE, 1_000_000)
                 .map(|found| found.lists().len())
         };
-        let cause = ValueError::Length { given: 2, least: 1, most: 1, of: "axes" };
+        let cause = ValueError::Length { given: 2, min: 1, max: 1, of: "axes" };
         assert_eq!(lists(1), Err(vec![Problem::new("source.motion.axes", cause)]));
         assert_eq!([2, 3].map(lists), [Ok(2), Ok(2)]);
     }
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn what_is_too_much_is_refused_with_its_numbers() {
         let many = [plan(vec![constant(2_000_001.0, 1e4)]), plan(vec![constant(-2_000_000.0, 1e4)])];
-        let cause = ValueError::TooMuch { given: 4_000_001.0, most: 4_000_000.0, of: "steps" };
+        let cause = ValueError::TooMuch { given: 4_000_001.0, max: 4_000_000.0, of: "steps" };
         let found = exact_segments(&many, AxesPath::MOTION, 2, PULSE, 1_000_000);
         assert_eq!(found, Err(vec![Problem::new("source.motion", cause)]));
         // 2^48 cycles of 1 GHz are 281474.98 s.

@@ -111,7 +111,7 @@ pub fn stored(
 /// let steps: Vec<_> = (1..=10).map(|k| ScheduledStep { cycle: 1000 * k, right: true }).collect();
 /// let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).expect("there is time for each pulse");
 /// // The turn to the right, and all steps.
-/// assert_eq!((table.entries.len(), table.error.greatest), (2, 0));
+/// assert_eq!((table.entries.len(), table.error.max_cycles), (2, 0));
 /// ```
 ///
 /// # Errors
@@ -124,7 +124,7 @@ pub fn stored_steps(
 ) -> Result<Stored, Cause> {
     check_count(steps.len() as u64, form)?;
     let own_table = || {
-        let detail = "a list of steps has no table of its own; give the form exact or compressed";
+        let detail = "a list of steps has no table; use the form exact or compressed";
         Err(ValueError::Conflict { detail }.into())
     };
     table(|| steps.iter().copied(), own_table, form, format, pulse)

@@ -71,7 +71,7 @@ pub fn ticks(
 ) -> Result<Ticks, Vec<Problem>> {
     let (channels, tick_cycles) = (channels.max(1), tick_cycles.max(1));
     if plans.len() > channels.into() {
-        let cause = ValueError::Length { given: plans.len(), least: 1, most: channels.into(), of: "axes" };
+        let cause = ValueError::Length { given: plans.len(), min: 1, max: channels.into(), of: "axes" };
         return Err(vec![Problem::new(at.axes, cause)]);
     }
     let needed = plans.iter().map(|plan| plan.spans(tick_cycles, clock_hz)).max().unwrap_or(1);
@@ -248,7 +248,7 @@ mod tests {
         ];
         assert_eq!(found, expected);
         let found = ticks(&one, AxesPath::MOTION, 2, 12, 1, 1_000_000_000).unwrap_err();
-        let cause = ValueError::TooMuch { given: 10_000_000.0, most: 2_000_000.0, of: "ticks" };
+        let cause = ValueError::TooMuch { given: 10_000_000.0, max: 2_000_000.0, of: "ticks" };
         assert_eq!(found, [Problem::new("source.motion", cause)]);
         // 625 000 ticks, of which seven channels are the first too many.
         let long = [plan(vec![Move::Dwell(Dwell { duration_s: 625.0 })])];
@@ -257,8 +257,7 @@ mod tests {
             Ok(625_000)
         );
         let found = ticks(&long, AxesPath::MOTION, 7, 12, 1000, 1_000_000).unwrap_err();
-        let cause =
-            ValueError::TooMuch { given: 4_375_000.0, most: 4_000_000.0, of: "ticks of all channels" };
+        let cause = ValueError::TooMuch { given: 4_375_000.0, max: 4_000_000.0, of: "ticks of all channels" };
         assert_eq!(found, [Problem::new("source.motion", cause)]);
         assert!(ticks(&one, AxesPath::MOTION, 1, 12, 1000, 1_000_000).is_err());
         // Nothing of this is a scenario; nothing of it may panic.

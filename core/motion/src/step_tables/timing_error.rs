@@ -8,7 +8,7 @@ use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 pub struct TimingError {
     pub steps: u64,
     /// Maximum in cycles, early or late.
-    pub greatest: u64,
+    pub max_cycles: u64,
     /// Sum of squares in cycles^2.
     squares: u128,
 }
@@ -16,7 +16,7 @@ pub struct TimingError {
 impl TimingError {
     pub(super) fn step(&mut self, distance: u64) {
         self.steps += 1;
-        self.greatest = self.greatest.max(distance);
+        self.max_cycles = self.max_cycles.max(distance);
         self.squares = self.squares.saturating_add(u128::from(distance) * u128::from(distance));
     }
 
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_every_size_are_summed_without_a_rounding() {
+    fn sums_errors_of_every_size_exactly() {
         let list = list();
         // Up to 16 cycles, up to about 2^28 within some steps and beyond in others, and so far that no 64 bits hold a square.
         for bits in [4, 28, 29, 40] {
@@ -97,7 +97,7 @@ mod tests {
             let offs: Vec<u64> = (0..1001).map(off).collect();
             let expected = TimingError {
                 steps: 1001,
-                greatest: *offs.iter().max().unwrap(),
+                max_cycles: *offs.iter().max().unwrap(),
                 squares: offs.iter().map(|off| u128::from(*off) * u128::from(*off)).sum(),
             };
             assert_eq!(TimingError::of(&list, away(&list, off)), Some(expected), "{bits} bits");
@@ -112,7 +112,7 @@ mod tests {
             let found = TimingError::of(&list, [ScheduledStep { cycle, right: true }]).unwrap();
             let off = cycle - 1;
             let expected =
-                TimingError { steps: 1, greatest: off, squares: u128::from(off) * u128::from(off) };
+                TimingError { steps: 1, max_cycles: off, squares: u128::from(off) * u128::from(off) };
             assert_eq!(found, expected, "{cycle}");
         }
     }
@@ -122,7 +122,7 @@ mod tests {
         let list = list();
         let due = away(&list, |_| 0);
         assert_eq!(
-            TimingError::of(&list, due.iter().copied()).map(|error| (error.steps, error.greatest)),
+            TimingError::of(&list, due.iter().copied()).map(|error| (error.steps, error.max_cycles)),
             Some((1001, 0))
         );
         for step in [0, 1, 255, 256, 257, 700, 701, 1000] {

@@ -114,11 +114,11 @@ fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
 
 /// Of a screw of 3 mm a turn and such a shaft a step is 0.03 mm: 10 mm/s are 1000/3 steps/s, which no f64 is.
 #[test]
-fn a_rate_in_millimetres_is_the_quotient_of_its_decimals() {
+fn a_rate_in_millimeters_is_the_quotient_of_its_decimals() {
     let screw = || Screw { full_step_deg: 3.6, microsteps: 1, lead_mm: 3.0 };
     for (digits, clock) in [(10, 1000), (7, 1000), (1, 999_983), (70, 16_000_000)] {
         let given =
-            Constant { distance: Distance::Steps(5000.0), speed: Speed::MillimetresPerSecond(digits as f64) };
+            Constant { distance: Distance::Steps(5000.0), speed: Speed::MillimetersPerSecond(digits as f64) };
         // Twice, so that the second begins with a part of a cycle.
         let moves = vec![Move::Constant(given.clone()), Move::Constant(given)];
         let axis = Axis { mechanics: Mechanics::Screw(screw()), moves, ..Axis::default() };

@@ -84,7 +84,7 @@ kinds! {
         /// In steps.
         Steps(f64) = "steps" => label("steps"),
         /// In millimeters.
-        Millimetres(f64) = "mm" => label("mm"),
+        Millimeters(f64) = "mm" => label("mm"),
         /// In degrees.
         Degrees(f64) = "deg" => label("°"),
     }
@@ -93,7 +93,7 @@ kinds! {
         /// In steps per second (Hz or pps).
         StepsPerSecond(f64) = "steps_s" => label("steps/s"),
         /// In millimeters per second.
-        MillimetresPerSecond(f64) = "mm_s" => label("mm/s"),
+        MillimetersPerSecond(f64) = "mm_s" => label("mm/s"),
         /// In degrees per second.
         DegreesPerSecond(f64) = "deg_s" => label("°/s"),
         /// In turns per minute.
@@ -104,7 +104,7 @@ kinds! {
         /// In steps per second squared.
         StepsPerSecond2(f64) = "steps_s2" => label("steps/s²"),
         /// In millimeters per second squared.
-        MillimetresPerSecond2(f64) = "mm_s2" => label("mm/s²"),
+        MillimetersPerSecond2(f64) = "mm_s2" => label("mm/s²"),
         /// In degrees per second squared.
         DegreesPerSecond2(f64) = "deg_s2" => label("°/s²"),
     }
@@ -113,7 +113,7 @@ kinds! {
         /// In steps per second cubed.
         StepsPerSecond3(f64) = "steps_s3" => label("steps/s³"),
         /// In millimeters per second cubed.
-        MillimetresPerSecond3(f64) = "mm_s3" => label("mm/s³"),
+        MillimetersPerSecond3(f64) = "mm_s3" => label("mm/s³"),
         /// In degrees per second cubed.
         DegreesPerSecond3(f64) = "deg_s3" => label("°/s³"),
     }

@@ -322,7 +322,7 @@ words! {
         /// steps
         Steps = "steps", "steps";
         /// millimeters
-        Millimetres = "mm", "mm";
+        Millimeters = "mm", "mm";
         /// degrees
         Degrees = "deg", "°";
     }

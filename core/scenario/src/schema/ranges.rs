@@ -42,14 +42,14 @@ fn check_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
                 && !(least..=most).contains(&given)
             {
                 let (given, least, most) = (given as f64, least as f64, most as f64);
-                validator.add("", ValueError::Range { given, least, most, unit: field.unit });
+                validator.add("", ValueError::Range { given, min: least, max: most, unit: field.unit });
             }
         }
         Limit::Number(least, most) => {
             if let Parts::Number(given) = value.parts()
                 && !(least..=most).contains(&given)
             {
-                validator.add("", ValueError::Range { given, least, most, unit: field.unit });
+                validator.add("", ValueError::Range { given, min: least, max: most, unit: field.unit });
             }
         }
         Limit::Length(least, most, of) => {

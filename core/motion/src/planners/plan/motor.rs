@@ -5,7 +5,7 @@ use crate::{limits, motor::Motor, moves::Axis, planners::quantities::Quantities,
 pub(super) fn check(quantities: &mut Quantities<'_>, axis: &Axis) {
     let Some(motor) = &axis.motor else { return };
     if axis.mechanics.step_deg().is_none() {
-        let detail = "a motor needs the angle of its steps, which mechanics of kind direct do not have; choose rotary, wheel or screw, or take the motor out";
+        let detail = "a motor needs a step angle, which direct mechanics do not have; use rotary, wheel or screw mechanics, or remove the motor";
         quantities.refuse("motor", ValueError::Conflict { detail });
     }
     quantities.at("motor", |here| check_numbers(here, motor));

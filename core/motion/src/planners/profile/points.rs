@@ -57,7 +57,7 @@ fn check(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> O
     for (index, point) in given.points.iter().enumerate() {
         quantities.at_entry(index, |here| {
             if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
-                here.refuse("", Cause::NotRising { given: point.time_s, before, least: MIN_TIME_S });
+                here.refuse("", Cause::NotRising { given: point.time_s, before, min: MIN_TIME_S });
             }
             let travel = here.travel(first, &given.unit.of(point.position), size);
             points.extend(travel.map(|travel| (since(point.time_s), travel)));
@@ -92,47 +92,47 @@ mod tests {
             (
                 PointUnit::Steps,
                 vec![(-1e12, 0.0), (-1e-6, 0.0), (0.0, 5.0)],
-                &["points: 1000000000000 s is out of range; give 1e-6 to 86400 s"],
+                &["points: 1000000000000 s is out of range; use 1e-6 to 86400 s"],
             ),
             (PointUnit::Steps, vec![(5.0, 3.0), (5.5, 4.0)], &[]),
-            (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; give 2 to 4096"]),
-            (PointUnit::Steps, vec![(0.0, 0.0); MAX_POINTS + 1], &["points: 4097 points; give 2 to 4096"]),
+            (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; use 2 to 4096"]),
+            (PointUnit::Steps, vec![(0.0, 0.0); MAX_POINTS + 1], &["points: 4097 points; use 2 to 4096"]),
             (
-                PointUnit::Millimetres,
+                PointUnit::Millimeters,
                 vec![(0.0, 0.0), (1.0, 1.0)],
-                &[
-                    "unit: 0 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
-                ],
+                &["unit: 0 mm is not available with rotary mechanics; use steps or other mechanics"],
             ),
             (
                 PointUnit::Steps,
                 vec![(0.0, 0.0), (0.0, 1e10), (0.5, 4.0), (0.25, 1.0)],
                 &[
-                    "points[1]: a time of 0 s after one of 0 s; give times that rise by 1e-9 s at least",
-                    "points[1]: 10000000000 steps is out of range; give -1000000000 to 1000000000 steps",
-                    "points[3]: a time of 0.25 s after one of 0.5 s; give times that rise by 1e-9 s at least",
+                    "points[1]: a time of 0 s is not at least 1e-9 s after the previous time of 0 s; use rising times",
+                    "points[1]: 10000000000 steps is out of range; use -1000000000 to 1000000000 steps",
+                    "points[3]: a time of 0.25 s is not at least 1e-9 s after the previous time of 0.5 s; use rising times",
                 ],
             ),
             (
                 PointUnit::Steps,
                 vec![(0.0, 0.0), (f64::NAN, 1.0)],
-                &["points[1]: a time of NaN s after one of 0 s; give times that rise by 1e-9 s at least"],
+                &[
+                    "points[1]: a time of NaN s is not at least 1e-9 s after the previous time of 0 s; use rising times",
+                ],
             ),
             (
                 PointUnit::Steps,
                 vec![(0.0, 0.0), (86_401.0, 1.0)],
-                &["points: 86401 s is out of range; give 1e-6 to 86400 s"],
+                &["points: 86401 s is out of range; use 1e-6 to 86400 s"],
             ),
             (
                 PointUnit::Steps,
                 vec![(0.0, 0.0), (1.0, 0.49), (2.0, -0.3)],
-                &["points: 0.49 steps is less than one step; give at least one step, or a dwell"],
+                &["points: 0.49 steps is less than one step; use at least one step, or a dwell"],
             ),
             (
                 PointUnit::Steps,
                 vec![(0.0, 0.0), (1.0, 10.0), (1.001, 20_000.0)],
                 &[
-                    "points[2]: this needs 19990001 steps/s, at most 10000000 are allowed; give more time or less distance",
+                    "points[2]: the motion needs 19990001 steps/s, above the maximum of 10000000; use more time or less distance",
                 ],
             ),
         ];

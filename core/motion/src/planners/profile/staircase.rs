@@ -30,7 +30,7 @@ pub(super) fn plan(
     if let (Some(top), Some(max)) = (top, max)
         && top > max
     {
-        quantities.refuse("top_speed", Cause::TopAboveTable { top, most: max });
+        quantities.refuse("top_speed", Cause::TopAboveTable { top, max });
         return None;
     }
     let table = StaircaseTable::new(start?, max?, level? * LEVEL_ACCELERATION);
@@ -64,27 +64,27 @@ mod tests {
             (Staircase::default(), &[]),
             (
                 Staircase {
-                    distance: Distance::Millimetres(1.0),
+                    distance: Distance::Millimeters(1.0),
                     level: 6,
                     top_speed: speed(0.4),
                     ..Staircase::default()
                 },
                 &[
-                    "axis.moves[0].staircase.distance: 1 mm, but mechanics of kind rotary have no such unit; give steps, or choose mechanics that have it",
-                    "axis.moves[0].staircase.top_speed: 0.4 steps/s is out of range; give 0.5 to 10000000 steps/s",
-                    "axis.moves[0].staircase.acceleration_level: 6 is out of range; give 1 to 5",
+                    "axis.moves[0].staircase.distance: 1 mm is not available with rotary mechanics; use steps or other mechanics",
+                    "axis.moves[0].staircase.top_speed: 0.4 steps/s is out of range; use 0.5 to 10000000 steps/s",
+                    "axis.moves[0].staircase.acceleration_level: 6 is out of range; use 1 to 5",
                 ],
             ),
             (
                 Staircase { top_speed: speed(20_001.0), ..Staircase::default() },
                 &[
-                    "axis.moves[0].staircase.top_speed: a top speed of 20001 steps/s is above the table's greatest of 20000 steps/s; give a lower top speed or a higher table",
+                    "axis.moves[0].staircase.top_speed: a top speed of 20001 steps/s is above the table's maximum of 20000 steps/s; use a lower top speed or a higher maximum",
                 ],
             ),
             (
                 Staircase { max_speed: speed(999.0), ..Staircase::default() },
                 &[
-                    "axis.moves[0].staircase.max_speed: a top speed of 999 steps/s is under the start speed of 1000 steps/s; give a higher top speed or a lower start speed",
+                    "axis.moves[0].staircase.max_speed: a top speed of 999 steps/s is below the start speed of 1000 steps/s; use a higher top speed or a lower start speed",
                 ],
             ),
         ];
