@@ -143,7 +143,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let finished = go(&experiment, &mut stations, &mut progress);
     if let Some(work) = finished.stand_alone().and_then(StandAlone::work) {
         let at = format!("source.standalone[{}].groups", work.controller);
-        return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::Work(work))]));
+        return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::TooManyGroups(work))]));
     }
     let mut timing = None;
     for station in &mut stations {

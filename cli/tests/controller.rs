@@ -94,7 +94,7 @@ fn a_program_without_end_is_refused_with_the_groups_that_repeat() {
         "groups":[{"set":{}},{"set":{"level":0}},{"jump":{}}],"inputs":[{"cycle":3000,"input":"start"}]}]}}"#;
     let (code, _, err) = stepscope(&["run", "-"], scenario);
     assert_eq!(code, Some(2));
-    let message = "source.standalone[0].groups: groups 1 to 3 repeat without end; give one of them a move, a wait or a way out";
+    let message = "source.standalone[0].groups: groups 1 to 3 repeat without end; add a move, a wait or a jump out of them";
     assert!(err.contains(message), "{err}");
 }
 

@@ -129,7 +129,7 @@ pub(crate) fn status(machine: &StandAlone) -> String {
         let position = machine.position(index).unwrap_or(0);
         let _ = write!(text, " position {position} {}", trust_name(trust));
     }
-    if let Some(work) = machine.work() {
+    if let Some(work) = machine.too_many_groups() {
         let _ = write!(text, "  ended: {work}");
     }
     text

@@ -6,15 +6,15 @@ use crate::{input::Signal, parameters::Axis};
 pub(crate) struct VirtualAxis {
     axis: Axis,
     position: i64,
-    /// Difference to the controller's position when zero was last set, or before that when memory was first read.
-    zero: i64,
-    has_zero: bool,
+    /// Axis position minus controller position when zero was last set; before that, when memory was first read.
+    zero_offset: i64,
+    is_zero_set: bool,
 }
 
 impl VirtualAxis {
     pub(crate) fn new(axis: Option<&Axis>) -> Self {
         let axis = axis.cloned().unwrap_or_default();
-        Self { position: axis.start_steps, axis, zero: 0, has_zero: false }
+        Self { position: axis.start_steps, axis, zero_offset: 0, is_zero_set: false }
     }
 
     pub(crate) const fn position(&self) -> i64 {
@@ -33,6 +33,7 @@ impl VirtualAxis {
         };
     }
 
+    /// The level of each switch; `None` where the script drives it.
     pub(crate) fn switches(&self) -> [(Signal, Option<bool>); 3] {
         let position = self.position;
         let home = self.axis.home_from_steps.zip(self.axis.home_to_steps);
@@ -53,21 +54,21 @@ impl VirtualAxis {
         }
     }
 
-    /// Zero is set: the present difference is no error.
-    pub(crate) fn zero_is_set(&mut self, position: i32) {
-        self.zero = self.position.saturating_sub(position.into());
-        self.has_zero = true;
+    /// Declares the current offset correct, because the controller's zero was set.
+    pub(crate) fn set_zero(&mut self, position: i32) {
+        self.zero_offset = self.position.saturating_sub(position.into());
+        self.is_zero_set = true;
     }
 
-    /// Memory is read: until zero is set, the first position read is no error.
-    pub(crate) fn memory_is_read(&mut self, position: i32) {
-        if !self.has_zero {
-            self.zero_is_set(position);
+    /// Declares the first position read from memory correct, unless zero was set before.
+    pub(crate) fn set_initial_zero(&mut self, position: i32) {
+        if !self.is_zero_set {
+            self.set_zero(position);
         }
     }
 
-    pub(crate) fn error(&self, position: i32) -> i64 {
-        self.position.saturating_sub(position.into()).saturating_sub(self.zero)
+    pub(crate) fn position_error(&self, position: i32) -> i64 {
+        self.position.saturating_sub(position.into()).saturating_sub(self.zero_offset)
     }
 }
 
@@ -76,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_into_an_end_are_lost() {
+    fn steps_beyond_a_hard_end_are_lost() {
         // Position, hard_min_steps, hard_max_steps, steps, position after.
         let rows = [
             (0, None, None, 5, 5),
@@ -97,18 +98,18 @@ mod tests {
     }
 
     #[test]
-    fn the_error_counts_from_the_zero_that_was_set_or_the_first_position_that_was_read() {
+    fn error_is_relative_to_the_last_zero_or_the_first_position_read() {
         let mut axis = VirtualAxis::new(Some(&Axis { start_steps: 50, ..Axis::default() }));
-        assert_eq!(axis.error(0), 50, "before memory is read");
-        axis.memory_is_read(20);
-        assert_eq!(axis.error(20), 0);
+        assert_eq!(axis.position_error(0), 50, "before memory is read");
+        axis.set_initial_zero(20);
+        assert_eq!(axis.position_error(20), 0);
         axis.shift(3);
-        assert_eq!((axis.error(23), axis.error(20)), (0, 3));
-        axis.memory_is_read(20);
-        assert_eq!(axis.error(20), 3, "read again");
-        axis.zero_is_set(0);
-        axis.memory_is_read(7);
-        assert_eq!((axis.error(0), axis.error(7)), (0, -7), "a zero that was set stays");
+        assert_eq!((axis.position_error(23), axis.position_error(20)), (0, 3));
+        axis.set_initial_zero(20);
+        assert_eq!(axis.position_error(20), 3, "read again");
+        axis.set_zero(0);
+        axis.set_initial_zero(7);
+        assert_eq!((axis.position_error(0), axis.position_error(7)), (0, -7), "a later read keeps the zero");
     }
 
     #[test]

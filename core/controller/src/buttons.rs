@@ -5,15 +5,16 @@ use crate::{
     input::Signal,
     motion::Purpose,
     parameters::Group,
-    state::{Alarm, State},
+    state::{Alarm, State, trust},
 };
 use stepscope_peripheral::units::Instant;
 
-const ENTRY: u32 = 1_000_000;
+/// An entry has its last six digits.
+const ENTRY_MODULUS: u32 = 1_000_000;
 
 impl Controller {
-    /// Handles the buttons pressed or released in this cycle, in their order.
-    pub(crate) fn buttons(&mut self, now: u64) {
+    /// Handles the buttons that were pressed or released in this cycle, in the order of [`Signal::ALL`].
+    pub(crate) fn handle_buttons(&mut self, now: u64) {
         if !self.inputs.has_edges() {
             return;
         }
@@ -21,15 +22,16 @@ impl Controller {
             if self.inputs.is_pressed(button) && !self.press(now, button) {
                 self.ignored.push(Press { cycle: Instant(now), button, state: self.state });
             }
-            if self.inputs.is_released(button) && self.jogs(button) {
+            if self.inputs.is_released(button) && self.is_jogging_with(button) {
                 self.end_jog();
             }
-            // A move that this button ended must end before the next button.
-            self.ended(now);
+            // A move that this button stopped must end before the next button is handled.
+            self.end_stopped_move(now);
         }
     }
 
-    fn jogs(&self, button: Signal) -> bool {
+    /// Whether this is the button of the current jog.
+    fn is_jogging_with(&self, button: Signal) -> bool {
         let right = match button {
             Signal::JogPlus => true,
             Signal::JogMinus => false,
@@ -38,6 +40,7 @@ impl Controller {
         self.state == State::Jog && self.motion.as_ref().is_some_and(|motion| motion.right == right)
     }
 
+    /// Handles a press; returns whether it had an effect.
     fn press(&mut self, now: u64, button: Signal) -> bool {
         if self.state == State::Edit {
             return self.press_in_edit(button);
@@ -55,8 +58,8 @@ impl Controller {
             Signal::Debug if self.state == State::Ready => self.state = State::Debug,
             Signal::Debug if self.state == State::Debug => self.state = State::Ready,
             Signal::Ok if self.state == State::Debug => {
-                (self.position, self.trust) = (0, 2);
-                self.axis.zero_is_set(0);
+                (self.position, self.trust) = (0, trust::SURE);
+                self.axis.set_zero(0);
             }
             Signal::System if self.state == State::Ready => {
                 (self.state, self.edit) = (State::Edit, Edit::default());
@@ -73,7 +76,7 @@ impl Controller {
                 self.pins.power_on(now);
             }
             State::Paused => {
-                self.drop_program();
+                self.cancel_program();
                 self.state = State::Ready;
             }
             _ => return false,
@@ -84,27 +87,27 @@ impl Controller {
     fn start(&mut self, now: u64) -> bool {
         match self.state {
             State::Ready => {
-                let homes = self.parameters.groups.first() == Some(&Group::Home);
-                if self.trust < self.parameters.least_trust && !homes {
+                let begins_with_homing = self.parameters.groups.first() == Some(&Group::Home);
+                if self.trust < self.parameters.least_trust && !begins_with_homing {
                     self.raise(Alarm::Trust);
                 } else {
                     self.begin_program(now);
                 }
             }
-            State::Paused => self.go_on(now),
+            State::Paused => self.resume(now),
             State::Pausing => self.stop_braking(),
             _ => return false,
         }
         true
     }
 
-    /// Continues a pausing move; it keeps braking only for `until`.
+    /// Continues a pausing move, unless it must brake for its `until`.
     fn stop_braking(&mut self) {
         let Some(motion) = &mut self.motion else { return };
         let inputs = &self.inputs;
         let is_met = motion.until.is_some_and(|(input, level)| inputs.level(input) == level);
         motion.until_met |= motion.is_active() && is_met;
-        motion.brakes = motion.until_met;
+        motion.is_braking = motion.until_met;
         let purpose = motion.purpose;
         self.state = self.state_of(purpose);
     }
@@ -116,11 +119,11 @@ impl Controller {
                 if let Some(motion) = &mut self.motion {
                     motion.brake();
                 }
-                self.keep_dir_of_stopped();
+                self.keep_dir_if_stopped();
             }
             State::Running | State::Delay | State::Wait => {
-                let left = (self.timer != NEVER).then(|| self.timer.saturating_sub(now));
-                self.paused = Some(Paused::Time(self.state, left));
+                let time_left = (self.timer != NEVER).then(|| self.timer.saturating_sub(now));
+                self.paused = Some(Paused::Time(self.state, time_left));
                 (self.state, self.timer) = (State::Paused, NEVER);
             }
             _ => return false,
@@ -131,14 +134,14 @@ impl Controller {
     fn press_jog(&mut self, now: u64, button: Signal) -> bool {
         match self.state {
             State::Ready | State::Debug => self.jog(now, button == Signal::JogPlus),
-            State::Jog if !self.jogs(button) => self.end_jog(),
+            State::Jog if !self.is_jogging_with(button) => self.end_jog(),
             _ => return false,
         }
         true
     }
 
     fn zero(&mut self, now: u64) {
-        if self.trust >= self.parameters.least_trust.max(1) {
+        if self.trust >= self.parameters.least_trust.max(trust::HELD) {
             self.return_to_zero(now, Purpose::Return);
         } else if self.parameters.home.is_some() {
             self.home(now);
@@ -151,15 +154,15 @@ impl Controller {
         match (button, button.digit()) {
             (_, Some(digit)) => {
                 let entry = self.edit.entry.unwrap_or(0);
-                self.edit.entry = Some((entry * 10 + u32::from(digit)) % ENTRY);
+                self.edit.entry = Some((entry * 10 + u32::from(digit)) % ENTRY_MODULUS);
             }
             (Signal::System, _) => self.next_number(),
             (Signal::Clear, _) => self.edit.entry = Some(0),
-            (Signal::Ok, _) => self.take_entry(),
+            (Signal::Ok, _) => self.store_entry(),
             (Signal::Back, _) => {
                 self.state = State::Ready;
                 self.edit = Edit::default();
-                self.wants_save |= core::mem::take(&mut self.is_changed);
+                self.needs_number_save |= core::mem::take(&mut self.has_unsaved_numbers);
             }
             _ => return false,
         }
@@ -171,12 +174,12 @@ impl Controller {
         self.edit = Edit { number, entry: None };
     }
 
-    /// Stores an entry that is in range. Then, or without an entry, selects the next number.
-    fn take_entry(&mut self) {
+    /// Stores the entry and selects the next number. An entry that is out of range is dropped.
+    fn store_entry(&mut self) {
         if let Some(entry) = self.edit.entry.take() {
             match self.numbers.store(&self.parameters, self.edit.number, entry) {
                 None => return,
-                Some(is_changed) => self.is_changed |= is_changed,
+                Some(has_changed) => self.has_unsaved_numbers |= has_changed,
             }
         }
         self.next_number();

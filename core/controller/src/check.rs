@@ -3,13 +3,18 @@
 use crate::{
     checked::CheckedSetup,
     input::{Change, Input, Signal},
+    journal::RECORD,
     limits,
     numbers::Numbers,
-    parameters::{Axis, Group, Home, Initial, Parameters, Policy, Release, Setup, ShortMove, Until},
+    parameters::{
+        Axis, Group, Home, Initial, Move, MoveTo, Parameters, Policy, Profile, Release, Setup, ShortMove,
+        Until,
+    },
     refusal::{Refusal, Refused, Warned, Warning},
     table::Table,
 };
 use alloc::{
+    collections::BTreeSet,
     format,
     string::{String, ToString},
     vec::Vec,
@@ -17,11 +22,14 @@ use alloc::{
 use core::ops::RangeInclusive;
 use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
 
+/// Bytes that a power failure may have to wait for: one in progress, and a record.
+const HOLD_UP_BYTES: u64 = 1 + RECORD as u64;
+
 impl Setup {
-    /// Validates the controllers.
-    /// Errors: everything that is refused, in the order of the fields.
+    /// Validates all parameters of the bus and its controllers.
+    /// Errors: every value that is refused, in the order of the fields.
     pub fn check(self) -> Result<CheckedSetup, Vec<Refused>> {
-        let mut check = Check { refused: Vec::new(), controller: None };
+        let mut check = Validator { refused: Vec::new(), controller: None };
         check.bus(&self);
         for (index, parameters) in self.controllers.iter().enumerate() {
             check.controller = Some(index);
@@ -34,7 +42,7 @@ impl Setup {
         Ok(CheckedSetup::new(self, warned))
     }
 
-    /// Warnings for controllers whose numbers are in range.
+    /// Warnings about valid parameters.
     fn warnings(&self) -> Vec<Warned> {
         let mut warned = Vec::new();
         for (controller, parameters) in self.controllers.iter().enumerate() {
@@ -49,15 +57,14 @@ impl Setup {
                 warn("jog.speed_hz", Warning::JogCostsTrust { given_hz, start_speed_hz });
             }
             let memory = &parameters.memory;
-            let enough = (17 * u64::from(memory.byte_write_cycles)).saturating_sub(1);
-            if memory.policy == Policy::PowerLoss && memory.hold_up_cycles < enough {
+            let needed = (HOLD_UP_BYTES * u64::from(memory.byte_write_cycles)).saturating_sub(1);
+            if memory.policy == Policy::PowerLoss && memory.hold_up_cycles < needed {
                 let given = memory.hold_up_cycles;
-                warn("memory.hold_up_cycles", Warning::ShortHoldUp { given, enough });
+                warn("memory.hold_up_cycles", Warning::ShortHoldUp { given, needed });
             }
             for (index, group) in parameters.groups.iter().enumerate() {
                 if let Group::Move(own) = group
-                    && let Some(warning) =
-                        parameters.short_move_of(own.length, own.speed_hz, own.level.into())
+                    && let Some(warning) = parameters.short_move_warning(own)
                 {
                     warn(&format!("groups[{index}].move.speed_hz"), warning);
                 }
@@ -68,23 +75,24 @@ impl Setup {
 }
 
 impl Parameters {
-    /// Whether a move never reaches its speed, so that all of it runs at the start-stop rate.
-    fn short_move_of(&self, length: u32, given_hz: u32, level: u32) -> Option<Warning> {
-        let steps = Numbers::new(self).steps(length.into());
-        let (start_speed_hz, acceleration_hz_s) =
-            (self.start_speed_hz, self.level_hz_s.saturating_mul(level));
-        let needed = Table { start_speed_hz, acceleration_hz_s }.climb(given_hz).saturating_mul(2);
+    /// A warning if a move never reaches its speed, so that all of it runs at the start-stop rate.
+    fn short_move_warning(&self, group: &Move) -> Option<Warning> {
+        let (given_hz, start_speed_hz) = (group.speed_hz, self.start_speed_hz);
+        let steps = Numbers::new(self).steps(group.length.into());
+        let acceleration_hz_s = self.level_hz_s.saturating_mul(group.level.into());
+        let needed = Table { start_speed_hz, acceleration_hz_s }.steps_to(given_hz).saturating_mul(2);
         let is_short = self.short_move == ShortMove::Document && i128::from(needed) > steps;
         is_short.then_some(Warning::ShortMove { steps, needed, given_hz, start_speed_hz })
     }
 }
 
-struct Check {
+/// Collects refused values; `controller` is the one being validated.
+struct Validator {
     refused: Vec<Refused>,
     controller: Option<usize>,
 }
 
-impl Check {
+impl Validator {
     fn refuse(&mut self, path: impl Into<String>, refusal: Refusal) {
         self.refused.push(Refused { controller: self.controller, path: path.into(), refusal });
     }
@@ -97,7 +105,7 @@ impl Check {
 
     fn speed(&mut self, path: impl Into<String>, given_hz: u32, parameters: &Parameters) {
         let max_speed_hz = parameters.max_speed_hz;
-        if given_hz < 10 || given_hz > max_speed_hz {
+        if i128::from(given_hz) < *limits::SPEED_HZ.start() || given_hz > max_speed_hz {
             self.refuse(path, Refusal::Speed { given_hz, max_speed_hz });
         }
     }
@@ -163,34 +171,9 @@ impl Check {
     fn group(&mut self, setup: &Setup, parameters: &Parameters, index: usize, group: &Group) {
         let path = |field: &str| format!("groups[{index}].{field}");
         match group {
-            Group::Move(group) => {
-                self.range(path("move.length"), group.length, &limits::LENGTH);
-                self.range(path("move.direction"), group.direction, &limits::DIRECTION);
-                self.speed(path("move.speed_hz"), group.speed_hz, parameters);
-                self.range(path("move.acceleration_level"), group.level, &limits::LEVEL);
-                self.range(path("move.delay_ms"), group.delay_ms, &limits::DELAY_MS);
-                if let Some(until) = &group.until {
-                    self.until(path("move.until.input"), until);
-                }
-            }
-            Group::MoveTo(group) => {
-                self.range(path("move_to.length"), group.length, &limits::TARGET);
-                self.speed(path("move_to.speed_hz"), group.speed_hz, parameters);
-                self.range(path("move_to.acceleration_level"), group.level, &limits::LEVEL);
-                self.range(path("move_to.delay_ms"), group.delay_ms, &limits::DELAY_MS);
-            }
-            Group::Profile(group) => {
-                self.range(path("profile.intervals_q16"), group.intervals.len() as i128, &limits::INTERVALS);
-                let least = setup.pulse.min_interval().0.saturating_mul(1 << FRACTION_BITS);
-                for (step, &given) in group.intervals.iter().enumerate() {
-                    if given < least {
-                        let refusal = Refusal::ShortInterval { given, least };
-                        self.refuse(path(&format!("profile.intervals_q16[{step}]")), refusal);
-                    }
-                }
-                self.range(path("profile.direction"), group.direction, &limits::DIRECTION);
-                self.range(path("profile.delay_ms"), group.delay_ms, &limits::DELAY_MS);
-            }
+            Group::Move(group) => self.move_group(&path("move"), group, parameters),
+            Group::MoveTo(group) => self.move_to(&path("move_to"), group, parameters),
+            Group::Profile(group) => self.profile(&path("profile"), group, setup),
             Group::Home if parameters.home.is_none() => self.refuse(path("home"), Refusal::NoHome),
             Group::Home => {}
             Group::Wait(group) => {
@@ -216,6 +199,37 @@ impl Check {
                 }
             }
         }
+    }
+
+    fn move_group(&mut self, path: &str, group: &Move, parameters: &Parameters) {
+        self.range(format!("{path}.length"), group.length, &limits::LENGTH);
+        self.range(format!("{path}.direction"), group.direction, &limits::DIRECTION);
+        self.speed(format!("{path}.speed_hz"), group.speed_hz, parameters);
+        self.range(format!("{path}.acceleration_level"), group.level, &limits::LEVEL);
+        self.range(format!("{path}.delay_ms"), group.delay_ms, &limits::DELAY_MS);
+        if let Some(until) = &group.until {
+            self.until(format!("{path}.until.input"), until);
+        }
+    }
+
+    fn move_to(&mut self, path: &str, group: &MoveTo, parameters: &Parameters) {
+        self.range(format!("{path}.length"), group.length, &limits::TARGET);
+        self.speed(format!("{path}.speed_hz"), group.speed_hz, parameters);
+        self.range(format!("{path}.acceleration_level"), group.level, &limits::LEVEL);
+        self.range(format!("{path}.delay_ms"), group.delay_ms, &limits::DELAY_MS);
+    }
+
+    fn profile(&mut self, path: &str, group: &Profile, setup: &Setup) {
+        let intervals = format!("{path}.intervals_q16");
+        self.range(intervals.as_str(), group.intervals.len() as i128, &limits::INTERVALS);
+        let min = setup.pulse.min_interval().0.saturating_mul(1 << FRACTION_BITS);
+        for (index, &given) in group.intervals.iter().enumerate() {
+            if given < min {
+                self.refuse(format!("{intervals}[{index}]"), Refusal::ShortInterval { given, min });
+            }
+        }
+        self.range(format!("{path}.direction"), group.direction, &limits::DIRECTION);
+        self.range(format!("{path}.delay_ms"), group.delay_ms, &limits::DELAY_MS);
     }
 
     fn until(&mut self, path: String, until: &Until) {
@@ -250,7 +264,7 @@ impl Check {
             if given_hz > start_speed_hz {
                 self.refuse(path, Refusal::AboveStartSpeed { given_hz, start_speed_hz });
             } else {
-                self.range(path, given_hz, &(10..=i128::from(start_speed_hz)));
+                self.range(path, given_hz, &(*limits::SPEED_HZ.start()..=i128::from(start_speed_hz)));
             }
         }
         self.range("home.pull_off_steps", home.pull_off_steps, &limits::PULL_OFF_STEPS);
@@ -306,13 +320,14 @@ impl Check {
                 self.refuse(path(field), refusal);
             }
         }
-        for (index, input) in twice(inputs) {
-            let refusal = Refusal::Twice { name: input.change.name(), cycle: input.cycle };
+        for (index, input) in duplicate_inputs(inputs) {
+            let refusal = Refusal::DuplicateInput { name: input.change.name(), cycle: input.cycle };
             self.refuse(format!("inputs[{index}]"), refusal);
         }
     }
 }
 
+/// Why an input of this controller must not have this change.
 pub(crate) fn forbidden_change(
     parameters: &Parameters,
     controller: usize,
@@ -320,50 +335,32 @@ pub(crate) fn forbidden_change(
 ) -> Option<Refusal> {
     match change {
         Change::Push(steps) => out_of_range(steps.into(), &limits::PUSH_STEPS),
-        Change::Level(signal, _) => forbidden(parameters, controller, signal),
+        Change::Level(signal, _) => forbidden_signal(parameters, controller, signal),
     }
 }
 
 fn out_of_range(given: i128, range: &RangeInclusive<i128>) -> Option<Refusal> {
-    let (least, greatest) = (*range.start(), *range.end());
-    (!range.contains(&given)).then_some(Refusal::Range { given, least, greatest })
+    let (min, max) = (*range.start(), *range.end());
+    (!range.contains(&given)).then_some(Refusal::Range { given, min, max })
 }
 
-/// Why the script of this controller must not contain this signal.
-fn forbidden(parameters: &Parameters, controller: usize, signal: Signal) -> Option<Refusal> {
+fn forbidden_signal(parameters: &Parameters, controller: usize, signal: Signal) -> Option<Refusal> {
     let axis = parameters.axis.as_ref();
-    let by = match signal {
+    let driven_by = match signal {
         Signal::Power | Signal::Estop | Signal::Clear if controller != 0 => {
-            return Some(Refusal::FirstControllers { signal });
+            return Some(Refusal::OnlyFirstController { signal });
         }
         Signal::LimitMin => axis?.min_switch_at_steps.map(|_| "min_switch_at_steps"),
         Signal::LimitMax => axis?.max_switch_at_steps.map(|_| "max_switch_at_steps"),
         Signal::HomeSwitch => axis?.home_from_steps.or(axis?.home_to_steps).map(|_| "home_from_steps"),
         _ => None,
     };
-    by.map(|by| Refusal::Driven { signal, by })
+    driven_by.map(|axis_field| Refusal::Driven { signal, axis_field })
 }
 
-/// Entries that set an input a second time in the same cycle, in the order of the script.
-fn twice(inputs: &[Input]) -> Vec<(usize, Input)> {
-    let key = |&(index, input): &(usize, Input)| {
-        let signal = match input.change {
-            Change::Level(signal, _) => Some(signal),
-            Change::Push(_) => None,
-        };
-        (input.cycle, signal, index)
-    };
-    let mut sorted: Vec<(usize, Input)> = inputs.iter().copied().enumerate().collect();
-    sorted.sort_unstable_by_key(key);
-    let mut found: Vec<(usize, Input)> = sorted
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [first, second] if (key(first).0, key(first).1) == (key(second).0, key(second).1) => {
-                Some(*second)
-            }
-            _ => None,
-        })
-        .collect();
-    found.sort_unstable_by_key(|&(index, _)| index);
-    found
+/// Inputs that repeat the signal and cycle of an earlier entry, with their indices, in the order of the script.
+fn duplicate_inputs(inputs: &[Input]) -> Vec<(usize, Input)> {
+    let mut seen = BTreeSet::new();
+    let is_duplicate = |&(_, input): &(usize, Input)| !seen.insert((input.cycle, input.change.name()));
+    inputs.iter().copied().enumerate().filter(is_duplicate).collect()
 }

@@ -1,4 +1,5 @@
-//! Valid controllers.
+//! Validated controllers.
+
 use crate::{
     parameters::{Parameters, Setup},
     refusal::Warned,
@@ -6,7 +7,7 @@ use crate::{
 use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::segment::PulseTimes;
 
-/// Valid controllers; cheap to clone.
+/// Validated controllers, the result of [`Setup::check`]. Cheap to clone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckedSetup {
     clock_hz: u32,
@@ -23,36 +24,34 @@ impl CheckedSetup {
         Self { clock_hz, channels, pulse, controllers, warned: warned.into() }
     }
 
-    /// The parameters, to be changed and validated again.
-    #[must_use]
+    /// A copy of the parameters, to change and validate again.
     pub fn setup(&self) -> Setup {
         let Self { clock_hz, channels, pulse, .. } = *self;
         let controllers = self.controllers.iter().map(|one| Parameters::clone(one)).collect();
         Setup { clock_hz, channels, pulse, controllers }
     }
 
-    #[must_use]
+    /// Cycles per second.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    #[must_use]
+    /// Channels of the bus, 1 to 16.
     pub const fn channels(&self) -> u8 {
         self.channels
     }
 
-    #[must_use]
+    /// Width of a STEP pulse, and setup and hold time of DIR.
     pub const fn pulse(&self) -> PulseTimes {
         self.pulse
     }
 
-    #[must_use]
+    /// The parameters of each controller; the index is the channel.
     pub fn controllers(&self) -> &[Rc<Parameters>] {
         &self.controllers
     }
 
-    /// Valid parameters that may be unintended.
-    #[must_use]
+    /// Valid values that may be unintended.
     pub fn warnings(&self) -> &[Warned] {
         &self.warned
     }

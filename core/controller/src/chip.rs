@@ -20,10 +20,10 @@
 //!     fn is_writing(&mut self) -> bool { false }
 //! }
 //!
-//! let checked = Setup::default().check().expect("the defaults hold");
+//! let checked = Setup::default().check().expect("the defaults are valid");
 //! let mut chip = Bench { now: 0, rises: 0, memory: Runner::factory_memory(&checked) };
-//! let mut runner = Runner::power_up(Instant(0), &checked, &mut chip).expect("it is one controller");
-//! // A real chip sleeps until a tick or an input; this one skips the time.
+//! let mut runner = Runner::power_up(Instant(0), &checked, &mut chip).expect("one controller without an axis");
+//! // A real chip sleeps until the tick or an input; this one skips the time.
 //! let mut wake = Some(Instant(0));
 //! while let Some(at) = wake.or((chip.now < 3_000_000).then_some(Instant(3_000_000))) {
 //!     chip.now = at.0;
@@ -39,7 +39,7 @@ use crate::{
 use alloc::string::String;
 use stepscope_peripheral::{signal::Levels, units::Instant};
 
-/// A chip with one controller on it.
+/// The hardware that a [`Runner`](crate::Runner) drives: one channel with its inputs, panel and EEPROM.
 pub trait Chip {
     /// The current tick of a free-running timer that neither goes back nor wraps. Extend shorter timers in software.
     fn now(&mut self) -> Instant;
@@ -72,24 +72,26 @@ pub struct RawLevels(u32);
 const _: () = assert!(SIGNALS <= u32::BITS as usize);
 
 impl Default for RawLevels {
-    /// Nothing is pressed, no switch is closed, the power is on.
+    /// No button is pressed, no switch is closed, the power is on.
     fn default() -> Self {
         Self(1 << Signal::Power as u32)
     }
 }
 
 impl RawLevels {
+    /// The same levels, with `signal` at `level`.
     #[must_use]
     pub const fn with(self, signal: Signal, level: bool) -> Self {
         let bit = 1 << signal as u32;
         Self(if level { self.0 | bit } else { self.0 & !bit })
     }
 
-    #[must_use]
+    /// The level of `signal`.
     pub const fn level(self, signal: Signal) -> bool {
         self.0 >> signal as u32 & 1 != 0
     }
 
+    /// The signals whose levels differ from those in `before`.
     pub(crate) fn changed(self, before: Self) -> impl Iterator<Item = Signal> {
         Signal::ALL.into_iter().filter(move |&signal| self.level(signal) != before.level(signal))
     }
@@ -98,24 +100,26 @@ impl RawLevels {
 /// Contents of the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face {
+    /// Tick of the change.
     pub at: Instant,
+    /// State, alarm, trust, outputs, group and loop.
     pub word: Word,
     /// In steps.
     pub position: i64,
-    /// In display digits.
+    /// The displayed number without its decimal point.
     pub display: i64,
+    /// Decimal places of a length, 0 to 3.
     pub decimals: u8,
 }
 
 impl Face {
-    /// Six characters of the LCD. An edited number has no decimal point.
-    #[must_use]
+    /// The six characters of the LCD. An edited number has no decimal point.
     pub fn lcd(self) -> String {
         let is_length = self.word.state() != crate::State::Edit;
         panel::lcd(self.display, if is_length { self.decimals } else { 0 })
     }
 
-    #[must_use]
+    /// The signal of the LED.
     pub fn led(self) -> Led {
         self.word.led()
     }

@@ -13,7 +13,7 @@ use crate::{
     debounce::{Inputs, Times},
     eeprom::Eeprom,
     input::Signal,
-    journal::{self, Valid},
+    journal::{self, ValidRecord},
     motion::{ENDLESS, Motion, Purpose, interval},
     numbers::Numbers,
     panel::{PanelRecord, Word},
@@ -26,68 +26,77 @@ use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::{segment::PulseTimes, units::Instant};
 
 pub(crate) const NEVER: u64 = u64::MAX;
-/// Groups per window of the most recent groups.
+/// Groups that count as the most recent ones, and that may begin without a step or a wait.
 const WINDOW: u64 = 1024;
 
+/// A program in progress. Positions are `base` plus the rounded sum of all lengths, so rounding errors do not add up.
 #[derive(Clone, Debug)]
 pub(crate) struct Program {
+    /// Current group and loop, from 1.
     pub(crate) group: u32,
     pub(crate) loop_: u32,
+    /// In steps.
     pub(crate) base: i128,
-    pub(crate) sum: i64,
-    pub(crate) reached: Vec<u32>,
+    /// In display digits.
+    pub(crate) length_sum: i64,
+    /// How often each `repeat` was reached in this loop.
+    pub(crate) repeat_counts: Vec<u32>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) enum Paused {
     Move(Motion),
-    /// A state without a move, and the rest of its time.
+    /// A state without a move, and its remaining cycles; `None` without a timeout.
     Time(State, Option<u64>),
 }
 
+/// The number that is edited, and the digits entered so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Edit {
     pub(crate) number: usize,
     pub(crate) entry: Option<u32>,
 }
 
+/// A press that had no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Press {
+    /// When the debounced press was handled.
     pub cycle: Instant,
+    /// The pressed button or key.
     pub button: Signal,
-    /// The state in which it had no effect.
+    /// The state that ignored it.
     pub state: State,
 }
 
-/// Statistics of groups that began, for the message about a run without end.
+/// Counts the groups that begin, to detect endless programs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Begun {
+pub(crate) struct GroupCounter {
     pub(crate) count: u64,
     /// `count` at the last step or wait.
     pub(crate) progress: u64,
-    /// Minimum and maximum group number of the previous and the current window.
-    before: Option<(u32, u32)>,
-    window: Option<(u32, u32)>,
+    /// Minimum and maximum group number of the previous and the current [`WINDOW`].
+    previous: Option<(u32, u32)>,
+    current: Option<(u32, u32)>,
 }
 
-impl Begun {
+impl GroupCounter {
     pub(crate) fn group(&mut self, number: u32) {
         if self.count.is_multiple_of(WINDOW) {
-            self.before = self.window.take();
+            self.previous = self.current.take();
         }
         self.count += 1;
-        let (first, last) = self.window.unwrap_or((number, number));
-        self.window = Some((first.min(number), last.max(number)));
+        let (min, max) = self.current.unwrap_or((number, number));
+        self.current = Some((min.min(number), max.max(number)));
     }
 
     /// Minimum and maximum number of the most recent groups.
     pub(crate) fn range(&self) -> (u32, u32) {
-        let (first, last) = self.window.or(self.before).unwrap_or((0, 0));
-        let (before_first, before_last) = self.before.unwrap_or((first, last));
-        (first.min(before_first), last.max(before_last))
+        let (min, max) = self.current.or(self.previous).unwrap_or((0, 0));
+        let (previous_min, previous_max) = self.previous.unwrap_or((min, max));
+        (min.min(previous_min), max.max(previous_max))
     }
 
-    /// Whether they repeat without a step or a wait.
+    /// Whether groups repeat without a step or a wait.
     pub(crate) const fn is_endless(&self) -> bool {
         self.count - self.progress > WINDOW
     }
@@ -104,37 +113,42 @@ pub(crate) struct Controller {
     pub(crate) position: i32,
     pub(crate) outputs: u8,
     pub(crate) pins: Pins,
-    pub(crate) steps: i32,
+    /// Steps since reset, right positive. Unlike `position` it is never set.
+    pub(crate) step_count: i32,
     pub(crate) motion: Option<Motion>,
     pub(crate) program: Option<Program>,
+    /// End of a delay or a wait, or begin of the next group.
     pub(crate) timer: u64,
     pub(crate) paused: Option<Paused>,
     pub(crate) edit: Edit,
     pub(crate) numbers: Numbers,
     /// Whether a number was changed since the numbers were read or saved.
-    pub(crate) is_changed: bool,
+    pub(crate) has_unsaved_numbers: bool,
     pub(crate) inputs: Inputs,
     pub(crate) script: Script,
     pub(crate) axis: VirtualAxis,
     pub(crate) eeprom: Eeprom,
-    pub(crate) newest: Option<Valid>,
+    /// The newest record of the journal.
+    pub(crate) newest: Option<ValidRecord>,
     pub(crate) writes_journal: bool,
     /// Whether the opening record after a read is needed, or complete.
-    pub(crate) wants_opening: bool,
-    pub(crate) is_opened: bool,
-    pub(crate) wants_save: bool,
-    /// Whether no record can become newer, because the newest has the maximum sequence number.
-    pub(crate) is_stuck: bool,
-    pub(crate) is_unknown: bool,
-    pub(crate) is_read: bool,
-    pub(crate) reads: u64,
-    pub(crate) dies: u64,
-    pub(crate) is_stopped: bool,
-    pub(crate) begun: Begun,
+    pub(crate) needs_opening_record: bool,
+    pub(crate) has_opening_record: bool,
+    pub(crate) needs_number_save: bool,
+    /// Whether no record can become newer, because the newest one has the maximum sequence number.
+    pub(crate) is_sequence_exhausted: bool,
+    pub(crate) is_memory_invalid: bool,
+    pub(crate) is_memory_read: bool,
+    /// When the self-test reads memory, and when the hold-up time ends.
+    pub(crate) read_at: u64,
+    pub(crate) off_at: u64,
+    pub(crate) is_stopped_in_self_test: bool,
+    pub(crate) group_counter: GroupCounter,
     pub(crate) ignored: Vec<Press>,
     pub(crate) panel: Vec<PanelRecord>,
+    /// The last panel record, and when the next one is due.
     shown: Option<(Word, i64)>,
-    shows: u64,
+    show_at: u64,
 }
 
 impl Controller {
@@ -156,82 +170,89 @@ impl Controller {
             position: 0,
             outputs: 0,
             pins: Pins::new(),
-            steps: 0,
+            step_count: 0,
             motion: None,
             program: None,
             timer: NEVER,
             paused: None,
             edit: Edit::default(),
             numbers: Numbers::new(parameters),
-            is_changed: false,
+            has_unsaved_numbers: false,
             inputs: Inputs::new(times),
             script,
             axis: VirtualAxis::new(parameters.axis.as_ref()),
             eeprom: Eeprom::new(len, memory.byte_write_cycles, &memory.initial, &factory),
             newest: None,
             writes_journal: false,
-            wants_opening: false,
-            is_opened: false,
-            wants_save: false,
-            is_stuck: false,
-            is_unknown: false,
-            is_read: false,
-            reads: parameters.self_test_cycles.into(),
-            dies: NEVER,
-            is_stopped: false,
-            begun: Begun::default(),
+            needs_opening_record: false,
+            has_opening_record: false,
+            needs_number_save: false,
+            is_sequence_exhausted: false,
+            is_memory_invalid: false,
+            is_memory_read: false,
+            read_at: parameters.self_test_cycles.into(),
+            off_at: NEVER,
+            is_stopped_in_self_test: false,
+            group_counter: GroupCounter::default(),
             ignored: Vec::new(),
             panel: Vec::new(),
             shown: None,
-            shows: 0,
+            show_at: 0,
         };
         controller.newest = controller.find_newest();
-        // At reset the debounced levels are the raw ones of cycle 0, with the switches that the axis closes.
-        controller.switches(0);
+        // At reset the debounced levels are the raw levels of cycle 0, which include the switches of the axis.
+        controller.update_switches(0);
         controller.inputs.restart();
         controller
     }
 
     pub(crate) fn cycle(&mut self, now: u64) {
-        self.eeprom.settle(now);
+        self.eeprom.catch_up(now);
         self.pins.apply_pending(now);
         self.show(now);
-        self.engine(now);
+        self.run_engine(now);
         self.complete_byte(now);
         self.read_inputs(now);
         self.react(now);
         self.begin_record(now);
-        self.shows = if self.shown == Some(self.face()) { NEVER } else { now.saturating_add(1) };
+        self.show_at = if self.shown == Some(self.face()) { NEVER } else { now.saturating_add(1) };
     }
 
     /// The next cycle in which something can change; everything due by `now` must be done in `now`.
     pub(crate) fn due(&self) -> u64 {
         let motion = self.motion.as_ref().map_or(NEVER, Motion::rise);
-        let waits = self.pins.due().min(self.timer).min(self.reads).min(self.dies).min(self.eeprom.due());
-        motion.min(waits).min(self.shows).min(self.inputs.due()).min(self.script.due())
+        let timers =
+            self.pins.due().min(self.timer).min(self.read_at).min(self.off_at).min(self.eeprom.due());
+        motion.min(timers).min(self.show_at).min(self.inputs.due()).min(self.script.due())
     }
 
+    /// Whether a jog continues for ever, because no input and no limit can end it.
     pub(crate) fn jogs_without_end(&self) -> bool {
         let endless = |motion: &Motion| {
-            let jogs = matches!(motion.purpose, Purpose::Jog(_)) && motion.is_due && !motion.brakes;
-            jogs && motion.rem > ENDLESS / 2 && !self.axis.has_switch_ahead(motion.right)
+            let is_jog = matches!(motion.purpose, Purpose::Jog(_));
+            is_jog
+                && motion.has_pending_step
+                && !motion.is_braking
+                && motion.steps_left > ENDLESS / 2
+                && !self.axis.has_switch_ahead(motion.right)
         };
-        let is_last = self.script.due() == NEVER && self.inputs.due() == NEVER && self.dies == NEVER;
-        is_last && self.motion.as_ref().is_some_and(endless)
+        let has_no_more_events =
+            self.script.due() == NEVER && self.inputs.due() == NEVER && self.off_at == NEVER;
+        has_no_more_events && self.motion.as_ref().is_some_and(endless)
     }
 
     /// Adds the panel's record of this cycle, if it changed.
     fn show(&mut self, now: u64) {
-        if self.shows > now {
+        if self.show_at > now {
             return;
         }
         let (word, display) = self.face();
-        // Only in EDIT a change of the display adds a record.
         self.shown = Some((word, display));
         let (cycle, display) = (Instant(now), self.display());
         self.panel.push(PanelRecord { cycle, word, position: self.position.into(), display });
     }
 
+    /// What adds a panel record when it changes: the word and, only in EDIT, the display.
     fn face(&self) -> (Word, i64) {
         (self.word(), if self.state == State::Edit { self.display() } else { 0 })
     }
@@ -257,6 +278,7 @@ impl Controller {
         u64::from(ms) * u64::from(self.clock_hz) / 1000
     }
 
+    /// Whether a first or last step with this interval exceeds the start-stop rate, so that steps may be lost.
     pub(crate) fn is_jump(&self, rate_interval: u64) -> bool {
         rate_interval < interval(self.clock_hz, self.parameters.start_speed_hz.into())
     }

@@ -1,7 +1,7 @@
 //! Raw and debounced levels of the inputs (CONTROLLER G1.3).
 //!
 //! ```text
-//! raw        ___┌─┐_┌────────────   the debounced level follows in the first cycle c
+//! raw        ___┌─┐_┌────────────   the debounced level changes in the first cycle c
 //! debounced  _______________┌────   in which the raw level has been constant for c - N..c
 //!                   ╎<- N ->╎
 //! ```
@@ -11,6 +11,7 @@ use crate::input::{SIGNALS, Signal};
 const NEVER: u64 = u64::MAX;
 const _: () = assert!(SIGNALS <= 32);
 
+/// Debounce times in cycles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times {
     pub(crate) buttons: u64,
@@ -33,7 +34,7 @@ pub(crate) struct Inputs {
     times: Times,
     raw: u32,
     debounced: u32,
-    /// When each debounced level follows the raw one; [`NEVER`] if they agree.
+    /// When each debounced level changes to the raw one; [`NEVER`] if they agree.
     due: [u64; SIGNALS],
     first_due: u64,
     pressed: u32,
@@ -45,14 +46,14 @@ const fn bit(signal: Signal) -> u32 {
 }
 
 impl Inputs {
-    /// Initially all inputs are 0, power 1.
+    /// Initially power is 1 and all other inputs are 0.
     pub(crate) fn new(times: Times) -> Self {
         let raw = bit(Signal::Power);
         let due = [NEVER; SIGNALS];
         Self { times, raw, debounced: raw, due, first_due: NEVER, pressed: 0, released: 0 }
     }
 
-    /// Sets the raw level from cycle `now` on; without power nothing is debounced.
+    /// Sets the raw level from cycle `now` on. Without power, `debounces` is false.
     pub(crate) fn set(&mut self, now: u64, signal: Signal, level: bool, debounces: bool) {
         if self.raw(signal) == level {
             return;
@@ -74,28 +75,28 @@ impl Inputs {
         if self.first_due > now {
             return;
         }
-        let mut taken = 0;
+        let mut changed = 0;
         for (index, due) in self.due.iter_mut().enumerate() {
             if *due <= now {
                 *due = NEVER;
-                taken |= 1 << index;
+                changed |= 1 << index;
             }
         }
-        self.debounced ^= taken;
-        self.pressed = taken & self.debounced;
-        self.released = taken & !self.debounced;
+        self.debounced ^= changed;
+        self.pressed = changed & self.debounced;
+        self.released = changed & !self.debounced;
         self.first_due = self.due.iter().copied().min().unwrap_or(NEVER);
     }
 
-    /// SELF_TEST begins: the debounced levels are the raw ones, without edges.
+    /// Sets the debounced levels to the raw ones without edges, because a self-test begins.
     pub(crate) fn restart(&mut self) {
         self.debounced = self.raw;
         (self.pressed, self.released) = (0, 0);
         (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
     }
 
-    /// The power is off: nothing is debounced from now on.
-    pub(crate) fn die(&mut self) {
+    /// Cancels pending changes, because the power is off.
+    pub(crate) fn stop_debouncing(&mut self) {
         (self.due, self.first_due) = ([NEVER; SIGNALS], NEVER);
     }
 
@@ -133,9 +134,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_level_has_to_stand_for_n_cycles_after_the_one_in_which_it_came() {
+    fn a_level_must_be_constant_for_n_cycles_after_its_change() {
         let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
-        // Cycle, raw start, whether it is a press.
+        // Cycle, raw level of `start`, whether a press is reported.
         let rows = [
             (1, true, false),
             (2, false, false),
@@ -156,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn the_e_stop_rises_at_once_and_falls_as_a_button() {
+    fn the_e_stop_rises_immediately_and_falls_debounced() {
         let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
         for (now, level, expected) in
             [(1, true, true), (2, false, true), (4, false, true), (5, false, false), (6, true, true)]
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_when_self_test_begins_is_no_press() {
+    fn a_button_held_when_self_test_begins_is_not_pressed() {
         let mut inputs = Inputs::new(Times { buttons: 3, sensors: 0 });
         inputs.set(1, Signal::Start, true, false);
         inputs.debounce(1);

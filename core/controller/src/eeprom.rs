@@ -10,7 +10,7 @@ use crate::parameters::Initial;
 use alloc::{vec, vec::Vec};
 
 const ERASED: u8 = 0xff;
-/// Bits that stay erased in a byte whose write is cut late.
+/// Bits that stay erased in a byte whose write is cut in its second half.
 const CUT_LATE: u8 = 0x0f;
 
 #[derive(Clone, Debug)]
@@ -21,15 +21,16 @@ pub(crate) struct Eeprom {
     writing: Option<Writing>,
 }
 
+/// A record being written: the byte in progress, and the remaining ones.
 #[derive(Clone, Debug)]
 struct Writing {
     address: usize,
-    left: vec::IntoIter<u8>,
+    remaining: vec::IntoIter<u8>,
     byte: u8,
     begun: u64,
-    /// Not complete before this cycle, even after `byte_write_cycles`.
+    /// The byte is not complete before this cycle, even after `byte_write_cycles`.
     not_before: u64,
-    /// The record is already there and is written again and again: only the wear changes, so nothing is due.
+    /// The same record is written again and again over itself. Only the wear changes, so no event is due.
     repeats: bool,
 }
 
@@ -73,12 +74,12 @@ impl Eeprom {
         self.writing.as_ref().map_or(u64::MAX, due)
     }
 
-    /// When the current byte was begun, its address, and the byte.
-    pub(crate) fn under_way(&self) -> Option<(u64, usize, u8)> {
+    /// When the byte in progress was begun, its address, and the byte.
+    pub(crate) fn byte_in_progress(&self) -> Option<(u64, usize, u8)> {
         self.writing.as_ref().map(|writing| (writing.begun, writing.address, writing.byte))
     }
 
-    /// Delays the current byte until `cycle`: the cell of a chip is slower.
+    /// Delays the byte in progress until `cycle`, because a chip's EEPROM is slower.
     pub(crate) const fn postpone(&mut self, cycle: u64) {
         if let Some(writing) = &mut self.writing {
             (writing.not_before, writing.repeats) = (cycle, false);
@@ -91,22 +92,24 @@ impl Eeprom {
         }
     }
 
-    /// Begins to write a record. `repeats` if the same record would be needed again afterwards; it has an effect only if
-    /// its bytes are already there.
+    /// Begins to write a record. `repeats` if the same record will be needed again afterwards; it has an effect only if
+    /// memory already holds the same bytes.
     pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>, repeats: bool) {
-        debug_assert!(self.writing.is_none(), "a record is under way");
-        let there = self.bytes.get(address..address.saturating_add(record.len()));
-        let repeats = repeats && there == Some(record.as_slice());
-        let mut left = record.into_iter();
-        let first = left.next();
-        self.writing = first.map(|byte| Writing { address, left, byte, begun: now, not_before: 0, repeats });
+        debug_assert!(self.writing.is_none(), "a record is being written");
+        let current = self.bytes.get(address..address.saturating_add(record.len()));
+        let repeats = repeats && current == Some(record.as_slice());
+        let mut remaining = record.into_iter();
+        let first = remaining.next();
+        self.writing =
+            first.map(|byte| Writing { address, remaining, byte, begun: now, not_before: 0, repeats });
     }
 
-    /// Computes how far a repeated record has come by the end of the cycle before `now`; then it is an ordinary one.
-    pub(crate) fn settle(&mut self, now: u64) {
+    /// Computes the wear and the byte in progress of a repeated record at the end of the cycle before `now`. After that it
+    /// is an ordinary record.
+    pub(crate) fn catch_up(&mut self, now: u64) {
         let Some(writing) = self.writing.as_mut().filter(|writing| writing.repeats) else { return };
         writing.repeats = false;
-        let bytes = 1 + writing.left.len() as u64;
+        let bytes = 1 + writing.remaining.len() as u64;
         let written = now.saturating_sub(1).saturating_sub(writing.begun) / self.byte_write_cycles;
         let (records, part) = (written / bytes, written % bytes);
         let cells = self.writes.iter_mut().skip(writing.address).zip(0..bytes);
@@ -116,7 +119,7 @@ impl Eeprom {
         }
         writing.begun += written * self.byte_write_cycles;
         for _ in 0..part {
-            if let Some(byte) = writing.left.next() {
+            if let Some(byte) = writing.remaining.next() {
                 (writing.byte, writing.address) = (byte, writing.address + 1);
             }
         }
@@ -129,30 +132,27 @@ impl Eeprom {
         }
         let Some(mut writing) = self.writing.take() else { return false };
         self.write(writing.address, writing.byte);
-        let next = writing.left.next();
-        let is_last = next.is_none();
-        if let Some(byte) = next {
-            let Writing { address, left, .. } = writing;
-            self.writing =
-                Some(Writing { address: address + 1, left, byte, begun: now, not_before: 0, repeats: false });
-        }
-        is_last
+        let Some(byte) = writing.remaining.next() else { return true };
+        let address = writing.address + 1;
+        self.writing = Some(Writing { address, byte, begun: now, not_before: 0, repeats: false, ..writing });
+        false
     }
 
-    /// The power fails in cycle `now`: the current byte is finished unless it began in `now`; the rest of the record is
-    /// dropped.
-    pub(crate) fn drop_rest(&mut self, now: u64) {
+    /// Drops the remaining bytes when the power fails in cycle `now`. The byte in progress is finished unless it began in
+    /// `now`.
+    pub(crate) fn finish_byte_only(&mut self, now: u64) {
         match &mut self.writing {
-            Some(writing) if writing.begun < now => writing.left = Vec::new().into_iter(),
+            Some(writing) if writing.begun < now => writing.remaining = Vec::new().into_iter(),
             writing => *writing = None,
         }
     }
 
-    pub(crate) fn die(&mut self, now: u64) {
+    /// Leaves a byte in progress half-written.
+    pub(crate) fn cut_power(&mut self, now: u64) {
         let Some(writing) = self.writing.take() else { return };
-        let after = now.saturating_sub(writing.begun);
-        if after > 0 {
-            let is_early = after.saturating_mul(2) < self.byte_write_cycles;
+        let elapsed = now.saturating_sub(writing.begun);
+        if elapsed > 0 {
+            let is_early = elapsed.saturating_mul(2) < self.byte_write_cycles;
             self.write(writing.address, if is_early { ERASED } else { writing.byte | CUT_LATE });
         }
     }
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_is_there_after_its_time_and_the_next_begins() {
+    fn a_byte_is_complete_after_its_write_time_and_the_next_begins() {
         let mut eeprom = eeprom();
         eeprom.begin(100, 1, vec![1, 2], false);
         assert!(!eeprom.complete(109));
@@ -186,47 +186,47 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_that_is_postponed_is_there_later_and_the_next_takes_its_own_time() {
+    fn a_postponed_byte_is_complete_later_and_the_next_takes_its_own_time() {
         let mut eeprom = eeprom();
         eeprom.begin(100, 1, vec![1, 2], false);
         eeprom.postpone(115);
-        assert!(!eeprom.complete(114) && eeprom.under_way() == Some((100, 1, 1)));
-        assert!(!eeprom.complete(115) && eeprom.under_way() == Some((115, 2, 2)));
+        assert!(!eeprom.complete(114) && eeprom.byte_in_progress() == Some((100, 1, 1)));
+        assert!(!eeprom.complete(115) && eeprom.byte_in_progress() == Some((115, 2, 2)));
         assert_eq!((eeprom.bytes()[1], eeprom.due()), (1, 125));
         eeprom.postpone(90);
         assert_eq!(eeprom.due(), 125, "no byte takes less than w");
     }
 
     #[test]
-    fn what_a_cut_leaves_of_a_byte_depends_on_how_far_it_was() {
-        // Cycle of the death, what is there, writes.
+    fn a_cut_byte_depends_on_the_time_since_its_begin() {
+        // Cycle of the cut, byte in memory, writes.
         for (now, expected, writes) in
             [(100, 0x55, 0), (101, 0xff, 1), (104, 0xff, 1), (105, 0x2f, 1), (109, 0x2f, 1)]
         {
             let mut eeprom = eeprom();
             eeprom.begin(100, 0, vec![0x20, 0x21], false);
-            eeprom.die(now);
+            eeprom.cut_power(now);
             assert_eq!((eeprom.bytes()[0], eeprom.writes()[0]), (expected, writes), "{now}");
             assert!(eeprom.is_idle());
         }
     }
 
     #[test]
-    fn a_fall_of_the_power_ends_the_record_with_the_byte_under_way() {
-        // Cycle of the fall, whether a byte goes on.
-        for (now, goes_on) in [(100, false), (101, true)] {
+    fn a_power_failure_ends_the_record_with_the_byte_in_progress() {
+        // Cycle of the failure, whether the byte is finished.
+        for (now, is_finished) in [(100, false), (101, true)] {
             let mut eeprom = eeprom();
             eeprom.begin(100, 0, vec![1, 2, 3], false);
-            eeprom.drop_rest(now);
-            assert_eq!(!eeprom.is_idle(), goes_on);
-            assert_eq!(eeprom.complete(110), goes_on);
+            eeprom.finish_byte_only(now);
+            assert_eq!(!eeprom.is_idle(), is_finished);
+            assert_eq!(eeprom.complete(110), is_finished);
             assert!(eeprom.is_idle());
-            assert_eq!(eeprom.bytes()[..2], if goes_on { [1, 0x55] } else { [0x55; 2] });
+            assert_eq!(eeprom.bytes()[..2], if is_finished { [1, 0x55] } else { [0x55; 2] });
         }
     }
 
     #[test]
-    fn a_record_that_repeats_comes_to_what_it_would_byte_by_byte() {
+    fn a_repeated_record_equals_the_same_record_written_byte_by_byte() {
         for now in 100..200 {
             let mut plain = eeprom();
             plain.load(&[0x55, 1, 2, 3]);
@@ -234,16 +234,16 @@ mod tests {
             plain.begin(100, 1, vec![1, 2, 3], true);
             repeated.begin(100, 1, vec![1, 2, 3], true);
             assert_eq!(repeated.due(), u64::MAX);
-            // Byte by byte, begun again in the cycle in which it is there.
-            plain.settle(100);
+            // Byte by byte, begun again in the cycle in which it is complete.
+            plain.catch_up(100);
             for cycle in 101..now {
                 if plain.complete(cycle) {
                     plain.begin(cycle, 1, vec![1, 2, 3], false);
                 }
             }
-            repeated.settle(now);
+            repeated.catch_up(now);
             assert_eq!(repeated.writes(), plain.writes(), "{now}");
-            assert_eq!(repeated.under_way(), plain.under_way(), "{now}");
+            assert_eq!(repeated.byte_in_progress(), plain.byte_in_progress(), "{now}");
         }
     }
 }

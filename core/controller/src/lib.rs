@@ -1,12 +1,13 @@
 //! The stand-alone controller (CONTROLLER.md): buttons, programs, jogs, homing, limits, and a memory that survives power
-//! cuts, to the clock cycle. It generates STEP, DIR and EN by itself, without a serial line.
+//! cuts, cycle-exact. It generates STEP, DIR and EN by itself, without a serial line.
 //!
-//! It depends on no motion, file or host, and computes in integers only, so every target gives the same bits.
+//! It computes in integers only, so every target gives the same bits. [`StandAlone`] simulates controllers; [`Runner`] runs
+//! one on a [`Chip`](chip::Chip).
 //!
 //! ```text
 //! limits, input, parameters -> refusal, check, checked -> table, motion, pins, debounce, axis, numbers, eeprom, journal,
 //! script, panel -> controller (state, one cycle) -> pulses, store, power, buttons, moves, homing, program (effects)
-//! -> machine (all controllers of a bus), enter, report -> powered_up, chip (the hardware), runner (the machine on it)
+//! -> machine (all controllers of a bus), enter, report -> powered_up, chip (hardware), runner (a machine on a chip)
 //! ```
 //!
 //! ```
@@ -14,12 +15,12 @@
 //! use stepscope_peripheral::{signal::Record, units::Instant};
 //!
 //! let controller = Parameters { self_test_cycles: 100, debounce_cycles: 0, ..Parameters::default() };
-//! let checked = Setup { controllers: vec![controller], ..Setup::default() }.check().expect("it holds");
+//! let checked = Setup { controllers: vec![controller], ..Setup::default() }.check().expect("valid");
 //! let (mut machine, mut trace) = (StandAlone::new(&checked), Vec::<Record>::new());
 //! machine.run(Instant::NEVER, &mut trace);
 //! assert_eq!(machine.state(0), Some(State::Ready));
 //!
-//! // Hold the button for 0.1 s: 1000 Hz, the first step at once.
+//! // Hold the button for 0.1 s. A jog runs at 1000 Hz, and its first step comes immediately.
 //! let now = machine.now().0;
 //! machine.enter(Instant(now), 0, Change::Level(Signal::JogPlus, true)).expect("not in the past");
 //! machine.enter(Instant(now + 1_600_000), 0, Change::Level(Signal::JogPlus, false)).expect("not in the past");
@@ -27,7 +28,6 @@
 //! assert_eq!(machine.position(0), Some(100));
 //! ```
 #![cfg_attr(not(test), no_std)]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 
@@ -54,6 +54,7 @@ mod journal;
 mod machine;
 mod motion;
 mod moves;
+mod named;
 mod numbers;
 mod pins;
 mod power;
@@ -68,7 +69,7 @@ mod script;
 mod state;
 mod store;
 mod table;
-mod work;
+mod too_many_groups;
 
 pub use checked::CheckedSetup;
 pub use controller::Press;
@@ -77,4 +78,4 @@ pub use machine::StandAlone;
 pub use refusal::{Refusal, Refused, Warned, Warning};
 pub use runner::{Lateness, NotRunnable, Runner};
 pub use state::{Alarm, State, trust_name};
-pub use work::Work;
+pub use too_many_groups::TooManyGroups;

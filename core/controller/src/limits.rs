@@ -1,5 +1,5 @@
-//! The range of each number of a stand-alone controller (CONTROLLER.md, "The format");
-//! [`Setup::check`](crate::parameters::Setup::check) has rules that combine several.
+//! The range of each number of a stand-alone controller (CONTROLLER.md, "The format").
+//! [`Setup::check`](crate::parameters::Setup::check) also checks rules about several numbers.
 //!
 //! ```
 //! assert!(stepscope_controller::limits::DEBOUNCE_CYCLES.contains(&160_000));
@@ -8,9 +8,11 @@
 use core::ops::RangeInclusive;
 use stepscope_peripheral::{config, signal::MAX_CHANNELS};
 
+/// Clock rate.
 pub const CLOCK_HZ: RangeInclusive<i128> = 1..=*config::limits::CLOCK_HZ.end() as i128;
 /// Channels of the bus, and maximum number of controllers.
 pub const CHANNELS: RangeInclusive<i128> = 1..=MAX_CHANNELS as i128;
+/// Width of a STEP pulse.
 pub const PULSE_WIDTH_CYCLES: RangeInclusive<i128> = 1..=1_000_000_000;
 /// Setup and hold time of DIR.
 pub const DIR_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000;
@@ -18,9 +20,11 @@ pub const DIR_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000;
 pub const SELF_TEST_CYCLES: RangeInclusive<i128> = 1..=0xffff_ffff;
 /// Debounce time of buttons and sensors.
 pub const DEBOUNCE_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000;
+/// Steps per unit of length.
 pub const PULSES_PER_UNIT: RangeInclusive<i128> = 1..=999_999;
 /// Decimal places of lengths.
 pub const DECIMALS: RangeInclusive<i128> = 0..=3;
+/// Step rates; each controller limits them further by `max_speed_hz`.
 pub const SPEED_HZ: RangeInclusive<i128> = 10..=10_000_000;
 /// Acceleration of level 1 in Hz/s.
 pub const LEVEL_HZ_S: RangeInclusive<i128> = 1..=1_000_000;
@@ -36,12 +40,13 @@ pub const GROUPS: RangeInclusive<i128> = 1..=50;
 pub const LENGTH: RangeInclusive<i128> = 0..=999_999;
 /// Target of a `move_to` in display digits.
 pub const TARGET: RangeInclusive<i128> = -999_999..=999_999;
-/// 1 right, 0 left.
+/// Direction: 1 right, 0 left.
 pub const DIRECTION: RangeInclusive<i128> = 0..=1;
 /// Delay after a group.
 pub const DELAY_MS: RangeInclusive<i128> = 0..=999_999;
 /// Timeout of a `wait`; 0 for none.
 pub const TIMEOUT_MS: RangeInclusive<i128> = 0..=1_000_000_000;
+/// Outputs of `set`.
 pub const OUTPUT: RangeInclusive<i128> = 0..=3;
 /// Number of intervals of a `profile`.
 pub const INTERVALS: RangeInclusive<i128> = 0..=1_000_000;
@@ -59,8 +64,9 @@ pub const HOLD_UP_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000_000;
 pub const SLOTS: RangeInclusive<i128> = 2..=200;
 /// Entries of the script.
 pub const INPUTS: RangeInclusive<i128> = 0..=100_000;
+/// Cycle of an entry.
 pub const INPUT_CYCLE: RangeInclusive<i128> = 1..=9_000_000_000_000_000;
 /// Steps of a manual push.
 pub const PUSH_STEPS: RangeInclusive<i128> = -1_000_000..=1_000_000;
-/// Groups of all controllers that may begin in a run; one more ends it with [`Work`](crate::Work).
+/// Groups of all controllers that may begin in a run; one more ends it with [`TooManyGroups`](crate::TooManyGroups).
 pub const MAX_GROUPS_BEGUN: u64 = 1_000_000;

@@ -1,4 +1,4 @@
-//! All stand-alone controllers of a bus (CONTROLLER G1), cycle by cycle or event by event.
+//! All stand-alone controllers of a bus (CONTROLLER G1), run cycle by cycle or event by event.
 
 use crate::{
     checked::CheckedSetup,
@@ -8,7 +8,7 @@ use crate::{
     panel::PanelRecord,
     parameters::Parameters,
     script::{self, Script},
-    work::Work,
+    too_many_groups::TooManyGroups,
 };
 use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::{
@@ -16,46 +16,49 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
 };
 
+/// The stand-alone controllers of a bus in a run.
+///
+/// [`clock`](Self::clock) runs every cycle; [`run`](Self::run) skips the cycles without events. Both give the same result.
 #[derive(Clone, Debug)]
 pub struct StandAlone {
     pub(crate) checked: CheckedSetup,
     pub(crate) controllers: Vec<Controller>,
+    /// Next cycle with an event of each controller.
     pub(crate) due: Vec<u64>,
     pub(crate) now: u64,
-    acted: u64,
+    last_event: u64,
     levels: Levels,
-    pub(crate) begun: u64,
-    work: Option<Work>,
+    pub(crate) groups_begun: u64,
+    too_many_groups: Option<TooManyGroups>,
 }
 
 impl StandAlone {
     /// The controllers before cycle 0.
     #[must_use]
     pub fn new(checked: &CheckedSetup) -> Self {
-        let first = checked.controllers().first();
-        let shared = first.into_iter().flat_map(|first| first.inputs.iter().copied());
-        let shared = script::sorted(shared.filter(|input| script::is_shared(input.change)));
-        let make = |(index, parameters): (usize, &Rc<Parameters>)| {
+        let first_inputs =
+            checked.controllers().first().into_iter().flat_map(|first| first.inputs.iter().copied());
+        let shared = script::sorted(first_inputs.filter(|input| script::is_shared(input.change)));
+        let create = |(index, parameters): (usize, &Rc<Parameters>)| {
             let own = script::sorted(parameters.inputs.iter().copied());
-            // The first controller has the shared entries among its own.
+            // The first controller's own entries include the shared ones.
             let script = Script::new(own, if index == 0 { Rc::new([]) } else { shared.clone() });
             Controller::new(checked, parameters, script)
         };
-        let controllers: Vec<Controller> = checked.controllers().iter().enumerate().map(make).collect();
+        let controllers: Vec<Controller> = checked.controllers().iter().enumerate().map(create).collect();
         Self {
             checked: checked.clone(),
             due: controllers.iter().map(|_| 0).collect(),
             controllers,
             now: 0,
-            acted: 0,
+            last_event: 0,
             levels: Levels::RESET,
-            begun: 0,
-            work: None,
+            groups_begun: 0,
+            too_many_groups: None,
         }
     }
 
     /// The next cycle to run.
-    #[must_use]
     pub const fn now(&self) -> Instant {
         Instant(self.now)
     }
@@ -69,41 +72,40 @@ impl StandAlone {
 
     fn cycle(&mut self, sink: &mut impl Sink) {
         let now = self.now;
-        (self.now, self.acted) = (now.saturating_add(1), now);
-        if self.work.is_none() {
+        (self.now, self.last_event) = (now.saturating_add(1), now);
+        if self.too_many_groups.is_none() {
             for (index, (controller, due)) in self.controllers.iter_mut().zip(&mut self.due).enumerate() {
                 if *due > now {
                     continue;
                 }
-                // Cycle 0 reports the switches that the axis closes at reset.
-                let before = if now == 0 { 1 << Signal::Power as u32 } else { controller.inputs.all_raw() };
-                let (begun, shown) = (controller.begun.count, controller.panel.len());
+                // In cycle 0 the switches that are closed at reset are reported, too.
+                let raw = if now == 0 { 1 << Signal::Power as u32 } else { controller.inputs.all_raw() };
+                let before = Before { raw, panel_records: controller.panel.len() };
+                let begun = controller.group_counter.count;
                 controller.cycle(now);
                 *due = controller.due().max(self.now);
-                self.begun += controller.begun.count - begun;
-                report(index as u8, controller, (now, before, shown), sink);
+                self.groups_begun += controller.group_counter.count - begun;
+                report(Instant(now), index as u8, controller, &before, sink);
             }
         }
-        let levels = self.shown();
+        let levels = self.bus_levels();
         if now == 0 || levels != self.levels {
             self.levels = levels;
             sink.record(Record { cycle: Instant(now), levels });
         }
-        if self.begun > limits::MAX_GROUPS_BEGUN && self.work.is_none() {
+        if self.groups_begun > limits::MAX_GROUPS_BEGUN && self.too_many_groups.is_none() {
             self.stop();
         }
     }
 
     fn stop(&mut self) {
-        let most = self.controllers.iter().enumerate().max_by_key(|(_, controller)| controller.begun.count);
-        let Some((controller, begun)) = most.map(|(index, controller)| (index, controller.begun)) else {
-            return;
-        };
-        let (first_group, last_group) = begun.range();
-        self.work = Some(Work { controller, first_group, last_group, is_endless: begun.is_endless() });
+        let counters = self.controllers.iter().map(|controller| controller.group_counter).enumerate();
+        let Some((controller, counter)) = counters.max_by_key(|(_, counter)| counter.count) else { return };
+        let ((first_group, last_group), is_endless) = (counter.range(), counter.is_endless());
+        self.too_many_groups = Some(TooManyGroups { controller, first_group, last_group, is_endless });
     }
 
-    fn shown(&self) -> Levels {
+    fn bus_levels(&self) -> Levels {
         let mut bits = Levels::RESET.0;
         for (channel, controller) in self.controllers.iter().enumerate() {
             let pins = &controller.pins;
@@ -116,19 +118,18 @@ impl StandAlone {
         Levels(bits)
     }
 
-    /// Next cycle in which something can change; `u64::MAX` at the end.
+    /// The next cycle with an event; [`NEVER`] at the end.
     fn deadline(&self) -> u64 {
         if self.now == 0 {
             return 0;
         }
-        if self.work.is_some() {
+        if self.too_many_groups.is_some() {
             return NEVER;
         }
         self.due.iter().copied().min().map_or(NEVER, |due| if due == NEVER { due } else { due.max(self.now) })
     }
 
-    /// Number of cycles without change; `None` for ever.
-    #[must_use]
+    /// Number of cycles before the next event; `None` if there is none.
     pub fn cycles_until_event(&self) -> Option<Cycles> {
         match self.deadline() {
             NEVER => None,
@@ -136,18 +137,18 @@ impl StandAlone {
         }
     }
 
-    /// Skips cycles without change, at most [`Self::cycles_until_event`].
+    /// Skips cycles without events, at most [`Self::cycles_until_event`].
     pub fn advance(&mut self, cycles: Cycles) {
         self.now = self.now.saturating_add(cycles.0).min(self.deadline());
     }
 
-    /// Runs up to cycle `until`; with [`Instant::NEVER`], up to and including the last cycle in which something can
-    /// change. Stops early when the sink pauses, and when too many groups have begun ([`Self::work`]).
+    /// Runs until cycle `until`, exclusive; with [`Instant::NEVER`], up to and including the last event. Stops early when
+    /// the sink pauses, and when [`Self::too_many_groups`] have begun.
     pub fn run(&mut self, until: Instant, sink: &mut impl Sink) {
         self.run_events(until, u64::MAX, sink);
     }
 
-    /// The same for at most `events` cycles with changes; returns whether that was enough.
+    /// As [`Self::run`], but for at most `events` cycles with events. Returns whether the run got to its end or a pause.
     pub fn run_events(&mut self, until: Instant, events: u64, sink: &mut impl Sink) -> bool {
         for _ in 0..events {
             if sink.is_paused() {
@@ -157,7 +158,7 @@ impl StandAlone {
             if deadline >= until.0 {
                 if until != Instant::NEVER {
                     self.now = self.now.max(until.0);
-                    self.settle();
+                    self.catch_up_memory();
                 }
                 return true;
             }
@@ -167,47 +168,50 @@ impl StandAlone {
         false
     }
 
-    fn settle(&mut self) {
+    fn catch_up_memory(&mut self) {
         for (controller, due) in self.controllers.iter_mut().zip(&mut self.due) {
-            controller.eeprom.settle(self.now);
+            controller.eeprom.catch_up(self.now);
             *due = (*due).min(controller.eeprom.due());
         }
     }
 
-    /// The first cycle after the last in which something could change, once the run has ended.
-    #[must_use]
-    pub const fn rests_from(&self) -> Instant {
-        Instant(self.acted.saturating_add(1))
+    /// The cycle after the last event, once the run has ended.
+    pub const fn idle_from(&self) -> Instant {
+        Instant(self.last_event.saturating_add(1))
     }
 
-    /// Whether nothing can change any more. A memory that writes the same record again and again, because its sequence
-    /// number is the maximum, does not keep a run from ending.
-    #[must_use]
+    /// Whether no event follows. A memory that writes the same record again and again, because its sequence number is the
+    /// maximum, has no events.
     pub fn at_rest(&self) -> bool {
         self.now > 0
-            && (self.work.is_some() || self.controllers.iter().all(|controller| controller.due() == NEVER))
+            && (self.too_many_groups.is_some()
+                || self.controllers.iter().all(|controller| controller.due() == NEVER))
     }
 
-    /// Set if the run ended because too many groups have begun.
-    #[must_use]
-    pub const fn work(&self) -> Option<Work> {
-        self.work
+    /// Why the run ended, if too many groups have begun.
+    pub const fn too_many_groups(&self) -> Option<TooManyGroups> {
+        self.too_many_groups
     }
 }
 
-/// Reports the changes of cycle `now` besides the bus: raw levels compared with `before`, and the panel record after the
-/// first `shown` ones.
-fn report(index: u8, controller: &Controller, (now, before, shown): (u64, u32, usize), sink: &mut impl Sink) {
+/// The raw levels and the number of panel records before a cycle.
+struct Before {
+    raw: u32,
+    panel_records: usize,
+}
+
+/// Reports the changed inputs and the new panel record of cycle `now`.
+fn report(now: Instant, index: u8, controller: &Controller, before: &Before, sink: &mut impl Sink) {
     let raw = controller.inputs.all_raw();
-    let changed = |signal: &Signal| (raw ^ before) >> *signal as u32 & 1 != 0;
-    if raw != before {
+    let changed = |signal: &Signal| (raw ^ before.raw) >> *signal as u32 & 1 != 0;
+    if raw != before.raw {
         for signal in Signal::ALL.into_iter().filter(changed) {
             let level = controller.inputs.raw(signal);
-            let event = Event::Input { controller: index, input: signal as u8, level };
-            sink.event(Instant(now), event);
+            sink.event(now, Event::Input { controller: index, input: signal as u8, level });
         }
     }
-    if let Some(&PanelRecord { cycle, word, position, display }) = controller.panel.get(shown) {
+    if let Some(&PanelRecord { cycle, word, position, display }) = controller.panel.get(before.panel_records)
+    {
         sink.event(cycle, Event::Panel { controller: index, word: word.0, position, display });
     }
 }

@@ -1,8 +1,8 @@
-//! A move (CONTROLLER G4): remaining steps, height of the climb, and time of the next step.
+//! A move (CONTROLLER G4): remaining steps, height on the ramp, and time of the next step.
 //!
 //! ```text
-//! rate   top ┤      ┌────────┐          u rises by one per step to the top, runs on the plateau, and falls
-//!            │    ┌─┘        └─┐        while rem <= u; a brake falls from the current height
+//! rate   top ┤      ┌────────┐          the height rises by one per step to the top and falls as soon as the
+//!            │    ┌─┘        └─┐        remaining steps are no more; a brake falls from the current height
 //!          1 ┤  ┌─┘            └─┐
 //! next += interval; STEP rises in next >> 16
 //! ```
@@ -21,6 +21,7 @@ pub(crate) const fn interval(clock_hz: u32, rate_hz: u64) -> u64 {
     ((clock_hz as u64) << FRACTION_BITS) / if rate_hz == 0 { 1 } else { rate_hz }
 }
 
+/// A part of homing: toward the switch, away from it, and slowly toward it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Leg {
     Seek,
@@ -46,40 +47,56 @@ pub(crate) struct Climb {
     pub(crate) plateau_hz: u32,
 }
 
+/// A step that was executed.
+pub(crate) struct ExecutedStep {
+    pub(crate) is_first: bool,
+    /// Interval of its rate, also if it came later.
+    pub(crate) rate_interval: u64,
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Motion {
     pub(crate) purpose: Purpose,
     pub(crate) right: bool,
-    pub(crate) rem: u64,
+    pub(crate) steps_left: u64,
+    /// Steps that have accelerated minus those that have decelerated.
     height: u64,
     climb: Climb,
     clock_hz: u32,
+    /// The current row of the table, and its interval.
     row: Option<(Row, u64)>,
     /// Time before the first step, if not the interval of its rate.
     pub(crate) first_interval: Option<u64>,
+    /// Number of the `profile` group that gives the intervals.
     pub(crate) profile: Option<u32>,
     /// Time of the pending step in 1/65536 cycle.
     next: u128,
-    pub(crate) is_due: bool,
-    pub(crate) waits: bool,
-    pub(crate) brakes: bool,
-    pub(crate) is_limited: bool,
+    pub(crate) has_pending_step: bool,
+    pub(crate) waits_for_memory: bool,
+    pub(crate) is_braking: bool,
+    pub(crate) has_hit_limit: bool,
     /// The level that ends the move early.
     pub(crate) until: Option<(Signal, bool)>,
     pub(crate) until_met: bool,
-    /// Whether the switch did what a leg of homing waits for.
-    pub(crate) is_found: bool,
+    /// Whether the switch has the level for which a leg of homing waits.
+    pub(crate) has_found_switch: bool,
     /// Rate interval of the pending step.
     due_interval: u64,
     pub(crate) last_interval: Option<u64>,
 }
 
 impl Motion {
-    pub(crate) const fn new(purpose: Purpose, right: bool, rem: u64, climb: Climb, clock_hz: u32) -> Self {
+    pub(crate) const fn new(
+        purpose: Purpose,
+        right: bool,
+        steps_left: u64,
+        climb: Climb,
+        clock_hz: u32,
+    ) -> Self {
         Self {
             purpose,
             right,
-            rem,
+            steps_left,
             height: 0,
             climb,
             clock_hz,
@@ -87,13 +104,13 @@ impl Motion {
             first_interval: None,
             profile: None,
             next: 0,
-            is_due: false,
-            waits: false,
-            brakes: false,
-            is_limited: false,
+            has_pending_step: false,
+            waits_for_memory: false,
+            is_braking: false,
+            has_hit_limit: false,
             until: None,
             until_met: false,
-            is_found: false,
+            has_found_switch: false,
             due_interval: 0,
             last_interval: None,
         }
@@ -101,38 +118,43 @@ impl Motion {
 
     /// Begins in cycle `now`: the move's time starts at (now + 1) << 16.
     pub(crate) fn begin(&mut self, now: u64, profile: &[u64]) {
-        self.waits = false;
+        self.waits_for_memory = false;
         self.next = (u128::from(now) + 1) << FRACTION_BITS;
-        self.decide(profile);
+        self.schedule_next(profile);
     }
 
     /// Cycle in which the pending step rises; `u64::MAX` without one.
     pub(crate) fn rise(&self) -> u64 {
-        if self.is_due { u64::try_from(self.next >> FRACTION_BITS).unwrap_or(u64::MAX) } else { u64::MAX }
+        if self.has_pending_step {
+            u64::try_from(self.next >> FRACTION_BITS).unwrap_or(u64::MAX)
+        } else {
+            u64::MAX
+        }
     }
 
-    /// Executes the pending step and schedules the next; returns whether it was the first, and its rate interval.
-    pub(crate) fn step(&mut self, profile: &[u64]) -> (bool, u64) {
-        let (is_first, made) = (self.last_interval.is_none(), self.due_interval);
-        self.last_interval = Some(made);
-        self.rem = self.rem.saturating_sub(1);
-        self.decide(profile);
-        (is_first, made)
+    /// Executes the pending step and schedules the next one.
+    pub(crate) fn step(&mut self, profile: &[u64]) -> ExecutedStep {
+        let step = ExecutedStep { is_first: self.last_interval.is_none(), rate_interval: self.due_interval };
+        self.last_interval = Some(step.rate_interval);
+        self.steps_left = self.steps_left.saturating_sub(1);
+        self.schedule_next(profile);
+        step
     }
 
-    fn decide(&mut self, profile: &[u64]) {
-        self.is_due = self.rem > 0 && !(self.brakes && self.height == 0);
-        if !self.is_due {
+    fn schedule_next(&mut self, profile: &[u64]) {
+        self.has_pending_step = self.steps_left > 0 && !(self.is_braking && self.height == 0);
+        if !self.has_pending_step {
             return;
         }
         self.due_interval = if self.profile.is_some() {
-            let rem = usize::try_from(self.rem).unwrap_or(usize::MAX);
-            profile.len().checked_sub(rem).and_then(|made| profile.get(made)).copied().unwrap_or(u64::MAX)
-        } else if self.brakes || self.rem <= self.height {
+            let steps_left = usize::try_from(self.steps_left).unwrap_or(usize::MAX);
+            let next = profile.len().checked_sub(steps_left).and_then(|done| profile.get(done));
+            next.copied().unwrap_or(u64::MAX)
+        } else if self.is_braking || self.steps_left <= self.height {
             let interval = self.ramp(self.height);
             self.height -= 1;
             interval
-        } else if self.height < self.climb.top && self.rem >= self.height + 2 {
+        } else if self.height < self.climb.top && self.steps_left >= self.height + 2 {
             self.height += 1;
             self.ramp(self.height)
         } else if self.height == self.climb.top {
@@ -143,7 +165,7 @@ impl Motion {
         self.next += u128::from(self.first_interval.take().unwrap_or(self.due_interval));
     }
 
-    /// I(R(k)) of ramp step `k`, with the current row cached.
+    /// The interval of ramp step `k`.
     fn ramp(&mut self, k: u64) -> u64 {
         match self.row {
             Some((row, interval)) if (row.first..=row.last).contains(&k) => interval,
@@ -156,25 +178,25 @@ impl Motion {
         }
     }
 
-    /// Stops at once: the pending step does not rise, and stays in `rem`.
+    /// Stops immediately: the pending step is not executed, and remains in `steps_left`.
     pub(crate) const fn stop(&mut self) {
-        (self.is_due, self.waits) = (false, false);
+        (self.has_pending_step, self.waits_for_memory) = (false, false);
     }
 
-    /// Brakes; at once from height 0 or while it waits. A `profile` does not brake.
+    /// Brakes, or stops immediately from height 0 and while the move waits. A `profile` does not brake.
     pub(crate) const fn brake(&mut self) {
-        if self.brakes || self.profile.is_some() {
+        if self.is_braking || self.profile.is_some() {
             return;
         }
-        self.brakes = true;
-        if self.height == 0 || self.waits {
+        self.is_braking = true;
+        if self.height == 0 || self.waits_for_memory {
             self.stop();
         }
     }
 
-    /// Whether a step is due or the move waits, so that switches and levels have an effect.
+    /// Whether a step is pending or the move waits for memory, so that switches and levels can end it.
     pub(crate) const fn is_active(&self) -> bool {
-        self.is_due || self.waits
+        self.has_pending_step || self.waits_for_memory
     }
 }
 
@@ -186,17 +208,16 @@ mod tests {
     const TABLE: Table = Table { start_speed_hz: 1000, acceleration_hz_s: 1000 };
 
     /// Rates of the steps of a move that begins to brake after some of them.
-    fn rates(rem: u64, top: u64, plateau_hz: u32, brakes_after: usize) -> Vec<u64> {
+    fn rates(steps_left: u64, top: u64, plateau_hz: u32, brakes_after: usize) -> Vec<u64> {
         let climb = Climb { table: TABLE, top, plateau_hz };
-        let mut motion = Motion::new(Purpose::Return, true, rem, climb, 1_000_000);
+        let mut motion = Motion::new(Purpose::Return, true, steps_left, climb, 1_000_000);
         let mut rates = vec![];
         motion.begin(0, &[]);
         if brakes_after == 0 {
             motion.brake();
         }
-        while motion.is_due {
-            let (_, interval) = motion.step(&[]);
-            rates.push((1_000_000 << 16) / interval);
+        while motion.has_pending_step {
+            rates.push((1_000_000 << 16) / motion.step(&[]).rate_interval);
             if rates.len() == brakes_after {
                 motion.brake();
             }
@@ -210,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_move_climbs_runs_and_comes_down_by_the_table() {
+    fn a_move_accelerates_runs_and_decelerates_by_the_table() {
         let never = usize::MAX;
         // Steps, top, plateau, runs of rates.
         let rows = [
@@ -220,18 +241,18 @@ mod tests {
             (64, 60, 1050, vec![(1000, 30), (1030, 4), (1000, 30)]),
             (65, 60, 1050, vec![(1000, 30), (1030, 5), (1000, 30)]),
         ];
-        for (rem, top, plateau_hz, expected) in rows {
-            assert_eq!(runs(&rates(rem, top, plateau_hz, never)), expected, "{rem} {top}");
+        for (steps_left, top, plateau_hz, expected) in rows {
+            assert_eq!(runs(&rates(steps_left, top, plateau_hz, never)), expected, "{steps_left} {top}");
         }
     }
 
     #[test]
-    fn a_brake_makes_the_step_that_is_due_and_as_many_more_as_it_has_climbed() {
-        // After so many steps, how many are made in all: the due one, and u more.
+    fn a_brake_executes_the_pending_step_and_one_more_per_step_of_height() {
+        // Steps before the brake, steps in total: the pending one, and one per step of height.
         for (after, expected) in [(0, 1 + 1), (1, 1 + 1 + 2), (35, 35 + 1 + 36), (70, 70 + 1 + 60)] {
             assert_eq!(rates(200, 60, 1050, after).len(), expected, "after {after}");
         }
-        assert_eq!(rates(200, 0, 1000, 7).len(), 7, "at height 0 at once");
-        assert_eq!(rates(63, 60, 1050, 32).len(), 63, "what it had to make anyway");
+        assert_eq!(rates(200, 0, 1000, 7).len(), 7, "at height 0 immediately");
+        assert_eq!(rates(63, 60, 1050, 32).len(), 63, "it was braking already");
     }
 }

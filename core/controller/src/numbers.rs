@@ -2,7 +2,7 @@
 //!
 //! | number | content |
 //! | --- | --- |
-//! | 0 to 7 | pulses_per_unit, decimals, jog.speed_hz, jog.fine_hz, return.speed_hz, return.level, loops, used |
+//! | 0 to 7 | pulses_per_unit, decimals, jog.speed_hz, jog.fine_hz, return.speed_hz, return.level, loops, used groups |
 //! | 8 + 5*k to 12 + 5*k | length, speed_hz, direction, level, delay_ms of `move` k (from 0) |
 
 use crate::{
@@ -12,8 +12,22 @@ use crate::{
 use alloc::vec::Vec;
 use core::ops::RangeInclusive;
 
-const COMMON: usize = 8;
-const OF_MOVE: usize = 5;
+/// Numbers that exist once, and per move.
+pub(crate) const COMMON: usize = 8;
+pub(crate) const PER_MOVE: usize = 5;
+
+/// A number that exists once; the discriminant is its index.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Common {
+    PulsesPerUnit,
+    Decimals,
+    JogSpeedHz,
+    JogFineHz,
+    ReturnSpeedHz,
+    ReturnLevel,
+    Loops,
+    UsedGroups,
+}
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Numbers(Vec<i32>);
@@ -35,17 +49,17 @@ fn moves(parameters: &Parameters) -> impl Iterator<Item = &Move> {
 }
 
 fn range(parameters: &Parameters, index: usize) -> RangeInclusive<i128> {
-    let fastest = 10..=i128::from(parameters.max_speed_hz);
+    let speed_hz = *limits::SPEED_HZ.start()..=i128::from(parameters.max_speed_hz);
     match index {
         0 => limits::PULSES_PER_UNIT,
         1 => limits::DECIMALS,
-        2..=4 => fastest,
+        2..=4 => speed_hz,
         5 => limits::LEVEL,
         6 => limits::LOOPS,
         7 => 1..=parameters.groups.len() as i128,
-        _ => match (index - COMMON) % OF_MOVE {
+        _ => match (index - COMMON) % PER_MOVE {
             0 => limits::LENGTH,
-            1 => fastest,
+            1 => speed_hz,
             2 => limits::DIRECTION,
             3 => limits::LEVEL,
             _ => limits::DELAY_MS,
@@ -72,20 +86,21 @@ impl Numbers {
         Self(common.into_iter().chain(of_moves).map(|number| number as i32).collect())
     }
 
+    /// These numbers, if each is in its range.
     pub(crate) fn in_range(parameters: &Parameters, numbers: Vec<i32>) -> Option<Self> {
         let is_in_range = |(index, &number): (usize, &i32)| range(parameters, index).contains(&number.into());
         let all = numbers.len() == parameters.numbers() && numbers.iter().enumerate().all(is_in_range);
         all.then_some(Self(numbers))
     }
 
-    /// Stores an entry if it is in range; returns whether it changed the number.
+    /// Stores an entry; returns whether the number changed, or `None` if the entry is out of range.
     pub(crate) fn store(&mut self, parameters: &Parameters, index: usize, entry: u32) -> Option<bool> {
         let is_in_range = range(parameters, index).contains(&entry.into());
         let number = self.0.get_mut(index).filter(|_| is_in_range)?;
         let entry = entry as i32;
-        let is_changed = *number != entry;
+        let has_changed = *number != entry;
         *number = entry;
-        Some(is_changed)
+        Some(has_changed)
     }
 
     pub(crate) fn all(&self) -> &[i32] {
@@ -96,44 +111,24 @@ impl Numbers {
         self.0.get(index).copied().unwrap_or(0)
     }
 
-    pub(crate) fn pulses_per_unit(&self) -> i64 {
-        self.get(0).max(1).into()
+    pub(crate) fn common(&self, number: Common) -> u32 {
+        self.get(number as usize) as u32
     }
 
-    /// 10^d.
-    pub(crate) fn scale(&self) -> i64 {
-        10_i64.pow(self.get(1).clamp(0, 3) as u32)
+    fn pulses_per_unit(&self) -> i64 {
+        self.common(Common::PulsesPerUnit).max(1).into()
     }
 
-    pub(crate) fn jog_speed_hz(&self) -> u32 {
-        self.get(2) as u32
+    /// Display digits per unit of length.
+    fn scale(&self) -> i64 {
+        10_i64.pow(self.common(Common::Decimals).min(3))
     }
 
-    pub(crate) fn jog_fine_hz(&self) -> u32 {
-        self.get(3) as u32
-    }
-
-    pub(crate) fn return_speed_hz(&self) -> u32 {
-        self.get(4) as u32
-    }
-
-    pub(crate) fn return_level(&self) -> u32 {
-        self.get(5) as u32
-    }
-
-    pub(crate) fn loops(&self) -> u32 {
-        self.get(6) as u32
-    }
-
-    pub(crate) fn used(&self) -> u32 {
-        self.get(7) as u32
-    }
-
-    /// The numbers of group `group` (from 1), a `move`.
+    /// The numbers of group `group` (from 1), which is a `move`.
     pub(crate) fn of_move(&self, parameters: &Parameters, group: u32) -> MoveNumbers {
         let before = parameters.groups.iter().take(group.saturating_sub(1) as usize);
         let before = before.filter(|group| matches!(group, Group::Move(_))).count();
-        let number = |index| self.get(COMMON + OF_MOVE * before + index);
+        let number = |index| self.get(COMMON + PER_MOVE * before + index);
         MoveNumbers {
             length: number(0),
             speed_hz: number(1) as u32,
@@ -143,13 +138,13 @@ impl Numbers {
         }
     }
 
-    /// P(x) = floor((2*x*N + 10^d)/(2*10^d)): display digits in steps.
+    /// Steps of a length in display digits, rounded half up.
     pub(crate) fn steps(&self, digits: i64) -> i128 {
         let scale = i128::from(self.scale());
         (2 * i128::from(digits) * i128::from(self.pulses_per_unit()) + scale).div_euclid(2 * scale)
     }
 
-    /// A position in display digits: sign*floor((2*|position|*10^d + N)/(2*N)).
+    /// Display digits of a position in steps, rounded half away from zero.
     pub(crate) fn digits(&self, position: i32) -> i64 {
         let position = i64::from(position);
         let pulses = self.pulses_per_unit();
@@ -213,7 +208,7 @@ mod tests {
         assert_eq!(parameters.numbers(), 18);
         let expected = MoveNumbers { length: 7, speed_hz: 60, right: false, level: 5, delay_ms: 9 };
         assert_eq!(numbers.of_move(&parameters, 3), expected);
-        // Index, entry, whether it is in range, whether it changes.
+        // Index, entry, whether the number changes (`None`: out of range).
         for (index, entry, expected) in [
             (7, 4, None),
             (7, 3, Some(false)),

@@ -16,14 +16,16 @@ use core::hash::Hasher;
 use stepscope_peripheral::units::Instant;
 use twox_hash::XxHash64;
 
-/// The panel from a cycle on, at the end of the cycle before.
+/// The contents of the panel from a cycle on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelRecord {
-    /// Cycle 0, or a change of the word or, in EDIT, of the display.
+    /// Cycle 0, or the cycle after a change of the word or, in EDIT, of the display.
     pub cycle: Instant,
+    /// State, alarm, trust, outputs, group and loop.
     pub word: Word,
+    /// In steps.
     pub position: i64,
-    /// In display digits; in EDIT the entry or the value of a number.
+    /// The position in display digits; in EDIT the entry or the value of a number.
     pub display: i64,
 }
 
@@ -40,11 +42,14 @@ pub struct PanelRecord {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word(pub u64);
 
+/// Signal of the LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Led {
+    /// Blinks quickly: an alarm.
     Quick,
     /// On: idle with trust 2.
     On,
+    /// Blinks slowly.
     Slow,
 }
 
@@ -54,39 +59,37 @@ impl Word {
         Self(low | u64::from(outputs & 15) << 12 | (group & 0x1ff) << 16 | (loop_ & 0xffff) << 32)
     }
 
-    #[must_use]
+    /// State of the controller.
     pub fn state(self) -> State {
         State::ALL.get(self.0 as usize & 15).copied().unwrap_or(State::Off)
     }
 
-    #[must_use]
+    /// Reason for [`State::Alarm`].
     pub fn alarm(self) -> Alarm {
         Alarm::ALL.get((self.0 >> 4) as usize & 15).copied().unwrap_or(Alarm::None)
     }
 
-    #[must_use]
+    /// Trust in the position: 0 LOST, 1 HELD, 2 SURE.
     pub const fn trust(self) -> u8 {
         (self.0 >> 8) as u8 & 3
     }
 
     /// Outputs 0 to 3, one bit each.
-    #[must_use]
     pub const fn outputs(self) -> u8 {
         (self.0 >> 12) as u8 & 15
     }
 
-    /// Group from 1, in EDIT the number from 0; 0 without program.
-    #[must_use]
+    /// Current group from 1, in EDIT the number from 0; 0 without a program.
     pub const fn group(self) -> u16 {
         (self.0 >> 16) as u16 & 0x1ff
     }
 
-    #[must_use]
+    /// Current loop from 1; 0 without a program.
     pub const fn loop_(self) -> u16 {
         (self.0 >> 32) as u16
     }
 
-    #[must_use]
+    /// Signal of the LED.
     pub fn led(self) -> Led {
         match self.state() {
             State::Alarm => Led::Quick,
@@ -96,8 +99,7 @@ impl Word {
     }
 }
 
-/// Six characters of the LCD: `display` with `decimals` (0 to 3) decimal places, dashes above 999999 and below -99999.
-#[must_use]
+/// The six characters of the LCD: `display` with `decimals` (0 to 3) decimal places, dashes above 999999 and below -99999.
 pub fn lcd(display: i64, decimals: u8) -> String {
     if !(-99_999..=999_999).contains(&display) {
         return "------".into();
@@ -109,7 +111,7 @@ pub fn lcd(display: i64, decimals: u8) -> String {
         let (places, scale) = (usize::from(decimals.min(3)), 10_u64.pow(decimals.min(3).into()));
         format!("{sign}{}.{:0places$}", digits / scale, digits % scale)
     };
-    // The point does not take one of the six characters.
+    // The decimal point shares a digit's character.
     let width = 6 + usize::from(decimals > 0 && text.len() > 6);
     format!("{text:>width$}")
 }
@@ -149,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_read_as_it_was_made() {
+    fn the_fields_of_a_word_are_read_back() {
         let word = Word::new(State::Paused, Alarm::None, 2, 0b1010, 258, 9999);
         assert_eq!(word.0, 7 | 2 << 8 | 10 << 12 | 258 << 16 | 9999 << 32);
         assert_eq!(

@@ -1,7 +1,7 @@
-//! The parameters of stand-alone controllers (CONTROLLER.md, "The format"): one struct or enum per object of a scenario's
-//! `source.standalone`.
+//! The parameters of stand-alone controllers (CONTROLLER.md, "The format"): one struct or enum per object of
+//! `source.standalone` in a scenario.
 //!
-//! Units are in the names; [`limits`](crate::limits) has the range of each number.
+//! Names contain the units; [`limits`](crate::limits) has the range of each number.
 //!
 //! ```
 //! use stepscope_controller::parameters::{Group, Move, Parameters, Setup};
@@ -9,31 +9,40 @@
 //! let right = Group::Move(Move { length: 305, speed_hz: 2000, ..Move::default() });
 //! let controller = Parameters { groups: vec![right, Group::Home], ..Parameters::default() };
 //! let refused = Setup { controllers: vec![controller], ..Setup::default() }.check().unwrap_err();
-//! assert_eq!(refused[0].to_string(), "controller 0: groups[1].home: there is no `home`; give one or leave the group out");
+//! assert_eq!(refused[0].to_string(), "controller 0: groups[1].home: the controller has no `home`; add one or remove this group");
 //! ```
 
-use crate::input::{Change, Input, Signal};
+#![allow(missing_docs, reason = "the names of the other fields have their quantity and unit")]
+
+use crate::{
+    input::{Change, Input, Signal},
+    journal,
+    numbers::{COMMON, PER_MOVE},
+};
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::{parameters, segment::PulseTimes, units::Cycles};
 
 /// How a move runs that is too short for its speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShortMove {
-    /// All of it at the start speed, as in the paper.
+    /// At the start-stop rate, as in Zhang 2012.
     #[default]
     Document,
-    /// Up as far as possible, and down again.
+    /// Accelerates as far as possible, then decelerates.
     TurnRound,
 }
 
+/// How a jog runs and stops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Release {
-    /// At once, without a ramp, as in the paper.
+    /// At constant speed; it stops immediately, as in Zhang 2012.
     #[default]
     AtOnce,
+    /// With acceleration and deceleration.
     Ramp,
 }
 
+/// When a controller saves its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Policy {
     /// During the hold-up time after a power failure.
@@ -43,6 +52,7 @@ pub enum Policy {
     WriteAhead,
 }
 
+/// Initial contents of the EEPROM.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Initial {
     /// All 0xFF.
@@ -54,15 +64,20 @@ pub enum Initial {
     Bytes(Vec<u8>),
 }
 
+/// An instruction of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Group {
+    /// Moves by a length.
     Move(Move),
+    /// Moves to a position.
     MoveTo(MoveTo),
     /// Steps with given intervals.
     Profile(Profile),
-    /// Needs [`Parameters::home`].
+    /// Homes; needs [`Parameters::home`].
     Home,
+    /// Waits for a level.
     Wait(Wait),
+    /// Sets an output.
     Set(Set),
     /// Goes back a number of times.
     Repeat(Repeat),
@@ -71,26 +86,29 @@ pub enum Group {
 }
 
 parameters! { (Clone, Debug, PartialEq, Eq)
+    /// A bus and its controllers.
     pub struct Setup {
         pub clock_hz: u32 = 16_000_000,
+        /// 1 to 16.
         pub channels: u8 = 1,
-        /// W, D and H.
+        /// Width of a STEP pulse, and setup and hold time of DIR.
         pub pulse: PulseTimes = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) },
         /// One per channel, from channel 0 on.
         pub controllers: Vec<Parameters> = vec![Parameters::default()],
     }
 
+    /// One controller.
     pub struct Parameters {
         pub self_test_cycles: u32 = 1600,
         /// Debounce time of buttons, keys and the release of the E-stop.
         pub debounce_cycles: u32 = 160_000,
         /// Debounce time of limits, the home switch and `in_0` to `in_3`.
         pub sensor_debounce_cycles: u32 = 0,
-        /// N, pulses per unit of length.
+        /// Steps per unit of length.
         pub pulses_per_unit: u32 = 100,
-        /// d, decimal places of lengths.
+        /// Decimal places of lengths.
         pub decimals: u8 = 1,
-        /// f_1, the start-stop rate.
+        /// The start-stop rate.
         pub start_speed_hz: u32 = 1000,
         /// Maximum of all requested speeds.
         pub max_speed_hz: u32 = 20_000,
@@ -114,6 +132,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub inputs: Vec<Input> = Vec::new(),
     }
 
+    /// Jogging by the buttons `jog_plus` and `jog_minus`.
     pub struct Jog {
         /// Speed from READY.
         pub speed_hz: u32 = 1000,
@@ -124,12 +143,14 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub release: Release = Release::AtOnce,
     }
 
+    /// The return to zero.
     pub struct Return {
         pub speed_hz: u32 = 1000,
         /// Level of acceleration.
         pub level: u8 = 3,
     }
 
+    /// Homing.
     pub struct Home {
         /// The home switch or a limit.
         pub switch: Signal = Signal::HomeSwitch,
@@ -147,12 +168,13 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub position_steps: i64 = 0,
     }
 
+    /// Positions that moves must not exceed.
     pub struct SoftLimits {
         pub min_steps: i64 = 0,
         pub max_steps: i64 = 0,
     }
 
-    /// A virtual axis. `None` leaves a switch to the script, and an end open.
+    /// A virtual axis. A switch that is `None` belongs to the script; an end that is `None` is open.
     pub struct Axis {
         /// Initial position.
         pub start_steps: i64 = 0,
@@ -169,9 +191,10 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub hard_max_steps: Option<i64> = None,
     }
 
+    /// The EEPROM.
     pub struct Memory {
         pub policy: Policy = Policy::PowerLoss,
-        /// w, write time of a byte.
+        /// Write time of a byte.
         pub byte_write_cycles: u32 = 136_000,
         /// Hold-up time of the supply after a power failure.
         pub hold_up_cycles: u64 = 3_200_000,
@@ -181,6 +204,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub initial: Initial = Initial::Factory,
     }
 
+    /// A `move`.
     pub struct Move {
         /// In display digits.
         pub length: u32 = 1000,
@@ -195,13 +219,14 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub until: Option<Until> = None,
     }
 
-    /// Level of a sensor at which a [`Move`] brakes and its rest is dropped.
+    /// Level of a sensor at which a [`Move`] brakes and drops its remaining steps.
     pub struct Until {
         /// `in_0` to `in_3` or `home_switch`.
         pub input: Signal = Signal::In0,
         pub level: bool = true,
     }
 
+    /// A `move_to`.
     pub struct MoveTo {
         /// Target in display digits.
         pub length: i32 = 0,
@@ -212,9 +237,9 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub delay_ms: u32 = 0,
     }
 
-    /// A `profile`: a rise after each interval, from (c + 1) << 16 on.
+    /// A `profile`: one step after each interval, counted from the cycle after its begin.
     pub struct Profile {
-        /// In 1/65536 cycle, Lm to 2^64 - 1.
+        /// In 1/65536 cycle, at least the minimum step interval of the bus.
         pub intervals: Vec<u64> = Vec::new(),
         /// 1 right, 0 left.
         pub direction: u8 = 1,
@@ -222,6 +247,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub delay_ms: u32 = 0,
     }
 
+    /// A `wait`.
     pub struct Wait {
         /// `in_0` to `in_3` or a switch.
         pub input: Signal = Signal::In0,
@@ -232,19 +258,22 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub then: Option<u32> = None,
     }
 
+    /// A `set`.
     pub struct Set {
         /// 0 to 3.
         pub output: u8 = 0,
         pub level: bool = true,
     }
 
+    /// A `repeat`.
     pub struct Repeat {
         /// Number (from 1) of an earlier group.
         pub first: u32 = 1,
-        /// The program continues after this group the nth time.
+        /// How often the groups run; after that the program continues.
         pub times: u32 = 2,
     }
 
+    /// A `jump`.
     pub struct Jump {
         /// Number (from 1) of the next group.
         pub to: u32 = 1,
@@ -255,8 +284,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
 }
 
 impl Parameters {
-    /// The signals that its script sets or its axis drives, in their order.
-    #[must_use]
+    /// The signals that the script sets or the axis drives, in the order of [`Signal::ALL`].
     pub fn inputs_used(&self) -> Vec<Signal> {
         let scripted = |signal| {
             self.inputs.iter().any(|input| matches!(input.change, Change::Level(own, _) if own == signal))
@@ -272,15 +300,13 @@ impl Parameters {
         Signal::ALL.into_iter().filter(|&signal| scripted(signal) || driven(signal)).collect()
     }
 
-    /// Number of numbers that the panel can change: 8, and 5 per `move`.
-    #[must_use]
+    /// Number of values that the panel can change: 8, and 5 per `move`.
     pub fn numbers(&self) -> usize {
-        8 + 5 * self.groups.iter().filter(|group| matches!(group, Group::Move(_))).count()
+        COMMON + PER_MOVE * self.groups.iter().filter(|group| matches!(group, Group::Move(_))).count()
     }
 
     /// Size of the EEPROM in bytes: the journal and two banks of numbers.
-    #[must_use]
     pub fn memory_len(&self) -> usize {
-        16 * self.memory.slots as usize + 2 * (8 + 4 * self.numbers())
+        journal::memory_len(self.memory.slots as usize, self.numbers())
     }
 }

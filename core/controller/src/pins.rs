@@ -1,8 +1,8 @@
 //! STEP, DIR and EN of one channel (CONTROLLER G1.1, G4).
 //!
 //! ```text
-//! EN    ─────────────┐         changes of EN and a cut pulse show one cycle after their cause in c,
-//! STEP  _┌──┐__┌─────┘____     as does the reset of DIR after power-off and restart
+//! EN    ─────────────┐         EN changes and a pulse is cut one cycle after their cause in c;
+//! STEP  _┌──┐__┌─────┘____     so does the reset of DIR after power-off and restart
 //!               c    c + 1
 //! ```
 
@@ -13,8 +13,10 @@ pub(crate) struct Pins {
     pub(crate) step: bool,
     pub(crate) dir: bool,
     pub(crate) en: bool,
+    /// When STEP falls.
     fall: u64,
     last_fall: Option<u64>,
+    /// When DIR changes.
     turn: u64,
     next_en: bool,
     is_cut: bool,
@@ -39,7 +41,7 @@ impl Pins {
         }
     }
 
-    /// Before cycle 0, if the driver must not be powered.
+    /// Keeps the driver off from cycle 0 on.
     pub(crate) const fn stay_off(&mut self) {
         (self.en, self.next_en) = (false, false);
     }
@@ -74,7 +76,7 @@ impl Pins {
         self.fall = now.saturating_add(width);
     }
 
-    /// Begins a move to the right or left: DIR changes if needed, at least `hold` cycles after the last fall.
+    /// Sets the direction of a move. DIR changes if needed, at least `hold` cycles after the last fall.
     pub(crate) fn turn(&mut self, now: u64, right: bool, hold: u64) {
         self.turn = if right == self.dir {
             NEVER
@@ -89,7 +91,7 @@ impl Pins {
         self.turn = NEVER;
     }
 
-    /// From the next cycle on EN is 0 and a high pulse is cut.
+    /// Sets EN to 0 and cuts a high pulse, both in the next cycle.
     pub(crate) const fn power_off(&mut self, now: u64) {
         self.is_cut = self.step;
         self.turn = NEVER;
@@ -128,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pulse_that_is_cut_falls_in_the_next_cycle_and_dir_is_held_from_there() {
+    fn a_cut_pulse_falls_in_the_next_cycle_and_the_hold_time_of_dir_begins() {
         let mut pins = Pins::new();
         pins.rise(10, 8);
         pins.power_off(12);
@@ -141,11 +143,11 @@ mod tests {
             assert_eq!(pins.due(), expected, "{now} {hold}");
         }
         pins.turn(20, false, 4);
-        assert_eq!(pins.due(), NEVER, "it has its level");
+        assert_eq!(pins.due(), NEVER, "DIR has its level already");
     }
 
     #[test]
-    fn what_is_taken_back_in_the_same_cycle_does_not_show() {
+    fn changes_reverted_in_the_same_cycle_have_no_effect() {
         let mut pins = Pins::new();
         pins.power_off(5);
         pins.power_on(5);

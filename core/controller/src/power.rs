@@ -4,19 +4,19 @@ use crate::{
     controller::{Controller, NEVER},
     input::Signal,
     parameters::Policy,
-    state::{Alarm, State},
+    state::{Alarm, State, trust},
 };
 
 impl Controller {
-    /// Reacts to the power before anything else; returns whether the other reactions of this cycle follow.
-    pub(crate) fn power(&mut self, now: u64) -> bool {
+    /// Handles power before all other inputs; returns whether they are handled in this cycle, too.
+    pub(crate) fn handle_power(&mut self, now: u64) -> bool {
         let has_power = self.inputs.raw(Signal::Power);
         match self.state {
             State::Off if has_power => self.restart(now),
             State::Off => return false,
             State::PowerLoss if has_power => {
-                self.dies = NEVER;
-                if !self.eeprom.is_idle() || self.wants_closing() {
+                self.off_at = NEVER;
+                if !self.eeprom.is_idle() || self.needs_closing_record() {
                     return false;
                 }
                 self.restart(now);
@@ -29,8 +29,8 @@ impl Controller {
             _ => {
                 self.motor_off(now);
                 (self.state, self.alarm) = (State::PowerLoss, Alarm::None);
-                (self.wants_opening, self.wants_save, self.reads) = (false, false, NEVER);
-                self.eeprom.drop_rest(now);
+                (self.needs_opening_record, self.needs_number_save, self.read_at) = (false, false, NEVER);
+                self.eeprom.finish_byte_only(now);
                 self.writes_journal = false;
                 self.hold_up(now);
                 return false;
@@ -39,72 +39,72 @@ impl Controller {
         true
     }
 
-    /// Without power: the hold-up time, then power-off.
+    /// Waits for the end of the hold-up time, then switches off.
     fn hold_up(&mut self, now: u64) {
-        if self.dies == NEVER {
-            self.dies = now.saturating_add(self.parameters.memory.hold_up_cycles);
+        if self.off_at == NEVER {
+            self.off_at = now.saturating_add(self.parameters.memory.hold_up_cycles);
         }
-        if self.dies > now {
+        if self.off_at > now {
             return;
         }
-        self.dies = NEVER;
-        (self.state, self.position, self.trust) = (State::Off, 0, 0);
+        self.off_at = NEVER;
+        (self.state, self.position, self.trust) = (State::Off, 0, trust::LOST);
         self.pins.clear_dir(now);
-        self.eeprom.die(now);
+        self.eeprom.cut_power(now);
         self.writes_journal = false;
-        self.inputs.die();
+        self.inputs.stop_debouncing();
     }
 
-    /// SELF_TEST and the reset state from the next cycle on.
+    /// Resets and begins the self-test; it takes effect in the next cycle.
     fn restart(&mut self, now: u64) {
-        (self.state, self.position, self.trust, self.outputs) = (State::SelfTest, 0, 0, 0);
+        (self.state, self.position, self.trust, self.outputs) = (State::SelfTest, 0, trust::LOST, 0);
         self.pins.power_on(now);
         self.pins.clear_dir(now);
         self.inputs.restart();
-        (self.is_read, self.is_opened, self.is_stopped) = (false, false, false);
+        (self.is_memory_read, self.has_opening_record, self.is_stopped_in_self_test) = (false, false, false);
         let self_test = self.parameters.self_test_cycles;
-        self.reads = now.saturating_add(1).saturating_add(self_test.into());
+        self.read_at = now.saturating_add(1).saturating_add(self_test.into());
         self.newest = self.find_newest();
     }
 
-    pub(crate) fn estop(&mut self, now: u64) {
+    pub(crate) fn check_estop(&mut self, now: u64) {
         if !self.inputs.raw(Signal::Estop) || matches!(self.state, State::Off | State::PowerLoss) {
             return;
         }
         self.motor_off(now);
         if self.state == State::SelfTest {
-            self.is_stopped = true;
+            self.is_stopped_in_self_test = true;
         } else {
             self.raise(Alarm::Estop);
         }
     }
 
-    /// EN = 0 and STEP = 0 at once; outputs 0; program, move and timer dropped.
+    /// Switches the driver and the outputs off, and drops program, move and timer.
     fn motor_off(&mut self, now: u64) {
         self.pins.power_off(now);
         if let Some(motion) = self.motion.take() {
             self.check_last_step(&motion);
         }
-        self.trust = self.trust.min(1);
+        self.trust = self.trust.min(trust::HELD);
         self.outputs = 0;
-        self.drop_program();
+        self.cancel_program();
     }
 
-    pub(crate) fn self_test(&mut self, now: u64) {
+    pub(crate) fn continue_self_test(&mut self, now: u64) {
         if self.state != State::SelfTest {
             return;
         }
-        if self.reads <= now {
-            self.reads = NEVER;
+        if self.read_at <= now {
+            self.read_at = NEVER;
             self.read();
-            self.is_read = true;
-            self.wants_opening = self.parameters.memory.policy == Policy::PowerLoss;
-            self.is_opened = !self.wants_opening;
+            self.is_memory_read = true;
+            self.needs_opening_record = self.parameters.memory.policy == Policy::PowerLoss;
+            self.has_opening_record = !self.needs_opening_record;
         }
-        if self.is_read && self.is_opened {
-            if self.is_stopped {
+        if self.is_memory_read && self.has_opening_record {
+            if self.is_stopped_in_self_test {
                 self.raise(Alarm::Estop);
-            } else if self.is_unknown {
+            } else if self.is_memory_invalid {
                 self.raise(Alarm::Memory);
             } else {
                 self.state = State::Ready;

@@ -1,9 +1,9 @@
-//! Power-up of a machine on a chip, and EEPROM timing by the chip: internals for a [`Runner`](crate::Runner)
-//! (CONTROLLER G2, G7).
+//! What a [`Runner`](crate::Runner) needs of its machine: power-up on a chip, and EEPROM timing by the chip (CONTROLLER G2,
+//! G7).
 
 use crate::{
     chip::RawLevels,
-    controller::{Begun, Controller},
+    controller::{Controller, GroupCounter},
     input::{Change, Input, Signal},
     machine::StandAlone,
 };
@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use stepscope_peripheral::units::Instant;
 
 impl StandAlone {
-    /// A machine before cycle 0 of a power-up, with these raw levels and this memory, and without a script.
+    /// A machine before cycle 0 of a power-up, with the inputs and the memory of a chip and without a script.
     pub(crate) fn power_up(checked: &crate::CheckedSetup, levels: RawLevels, memory: &[u8]) -> Self {
         let mut machine = Self::new(checked);
         machine.drop_inputs();
@@ -21,8 +21,8 @@ impl StandAlone {
         machine
     }
 
-    /// Enters the level of an input of the first controller from cycle `at` on, unless the input has an entry in that
-    /// cycle; returns whether it did. `at` has not been run.
+    /// Enters an input of the first controller in cycle `at`, which has not been run. Returns false if the input already
+    /// has an entry in that cycle.
     pub(crate) fn enter_level(&mut self, at: Instant, signal: Signal, level: bool) -> bool {
         let input = Input { cycle: at, change: Change::Level(signal, level) };
         let is_free = self.controllers.first().is_some_and(|controller| !controller.script.has(input));
@@ -32,22 +32,23 @@ impl StandAlone {
         is_free
     }
 
-    pub(crate) fn forget(&mut self) {
+    /// Drops the history.
+    pub(crate) fn clear_history(&mut self) {
         for controller in &mut self.controllers {
             controller.panel.clear();
             controller.ignored.clear();
-            controller.begun = Begun::default();
+            controller.group_counter = GroupCounter::default();
         }
-        self.begun = 0;
+        self.groups_begun = 0;
     }
 
     pub(crate) fn byte_due(&self) -> u64 {
         self.controllers.first().map_or(u64::MAX, |controller| controller.eeprom.due())
     }
 
-    /// When that byte was begun, its address, and the byte.
-    pub(crate) fn byte_under_way(&self) -> Option<(Instant, usize, u8)> {
-        let (begun, address, byte) = self.controllers.first()?.eeprom.under_way()?;
+    /// When the byte in progress was begun, its address, and the byte.
+    pub(crate) fn byte_in_progress(&self) -> Option<(Instant, usize, u8)> {
+        let (begun, address, byte) = self.controllers.first()?.eeprom.byte_in_progress()?;
         Some((Instant(begun), address, byte))
     }
 
@@ -60,7 +61,7 @@ impl StandAlone {
 }
 
 impl Controller {
-    /// SELF_TEST begins with the raw levels debounced, so held buttons are no presses; an active E-stop keeps EN at 0.
+    /// The self-test begins with debounced inputs, so held buttons are not pressed. An active emergency stop keeps EN at 0.
     fn power_up(&mut self, levels: RawLevels, memory: &[u8]) {
         self.eeprom.load(memory);
         self.newest = self.find_newest();

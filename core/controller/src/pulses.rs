@@ -1,13 +1,13 @@
-//! The engine (CONTROLLER G1.1) and the inputs (G1.3) of a cycle.
+//! The pulses (CONTROLLER G1.1) and the inputs (G1.3) of a cycle.
 
 use crate::{
     controller::Controller,
     input::{Change, Signal},
     parameters::{Group, Parameters},
-    state::State,
+    state::{State, trust},
 };
 
-/// The intervals of group `group` if it is a `profile`, else none.
+/// The intervals of group `group` if it is a `profile`; empty otherwise.
 pub(crate) fn profile(parameters: &Parameters, group: Option<u32>) -> &[u64] {
     let index = group.and_then(|group| usize::try_from(group).ok()?.checked_sub(1));
     match index.and_then(|index| parameters.groups.get(index)) {
@@ -17,26 +17,29 @@ pub(crate) fn profile(parameters: &Parameters, group: Option<u32>) -> &[u64] {
 }
 
 impl Controller {
-    pub(crate) fn engine(&mut self, now: u64) {
+    /// Ends and begins the pulse that is due.
+    pub(crate) fn run_engine(&mut self, now: u64) {
         self.pins.fall_and_turn(now);
         let Some(motion) = &mut self.motion else { return };
         if motion.rise() > now {
             return;
         }
-        debug_assert!(self.pins.dir == motion.right && !self.pins.step, "a step rises too soon");
+        debug_assert!(
+            self.pins.dir == motion.right && !self.pins.step,
+            "a step came before the last one ended"
+        );
         self.pins.rise(now, self.pulse.width.0);
-        let right = self.pins.dir;
-        let (is_first, rate_interval) = motion.step(profile(&self.parameters, motion.profile));
-        let by = if right { 1 } else { -1 };
-        self.position = self.position.wrapping_add(by);
-        self.steps = self.steps.wrapping_add(by);
+        let step = motion.step(profile(&self.parameters, motion.profile));
+        let shift = if self.pins.dir { 1 } else { -1 };
+        self.position = self.position.wrapping_add(shift);
+        self.step_count = self.step_count.wrapping_add(shift);
         if self.pins.en {
-            self.axis.shift(by.into());
+            self.axis.shift(shift.into());
         }
-        if is_first && self.is_jump(rate_interval) {
-            self.trust = 0;
+        if step.is_first && self.is_jump(step.rate_interval) {
+            self.trust = trust::LOST;
         }
-        self.begun.progress = self.begun.count;
+        self.group_counter.progress = self.group_counter.count;
     }
 
     /// Applies the script, the switches of the axis, and debouncing.
@@ -49,11 +52,11 @@ impl Controller {
                 Change::Push(_) => {}
             }
         }
-        self.switches(now);
+        self.update_switches(now);
         self.inputs.debounce(now);
     }
 
-    pub(crate) fn switches(&mut self, now: u64) {
+    pub(crate) fn update_switches(&mut self, now: u64) {
         let debounces = self.state != State::Off;
         for (signal, level) in self.axis.switches() {
             if let Some(level) = level {
@@ -62,7 +65,7 @@ impl Controller {
         }
     }
 
-    pub(crate) const fn limit(&self, right: bool) -> bool {
+    pub(crate) const fn is_limit_closed(&self, right: bool) -> bool {
         self.inputs.level(if right { Signal::LimitMax } else { Signal::LimitMin })
     }
 }

@@ -5,14 +5,14 @@
 //! tick     ──┬───────────────┬──────╎────┬─────────┬──>   the chip wakes at `wake`, late by L, or for an input
 //!         poll(now)       input    wake  poll     poll
 //! cycle    ──┬───────────────┬──────┬ ─ ─ ┬────────┬──>   the machine's time stops while the chip is late:
-//!            run        enter, run  c     c       c + n   cycle = tick - origin, and origin grows by L
+//!            run        enter, run  c     c       c + n   cycle = tick - origin, and origin increases by L
 //! ```
 //!
-//! So a late chip makes edges late by the total lateness ([`Runner::lateness`]), but never closer to each other: no pulse
-//! is too short, no rate too high, no edge lost. The time from a poll to the change of a pin is not counted.
+//! A late chip delays edges by the total lateness ([`Runner::lateness`]), but never brings them closer to each other: no
+//! pulse becomes too short, no rate too high, and no edge is lost. The time from a poll to the change of a pin is not counted.
 //!
-//! A byte of memory is complete when the chip reports it, at least `byte_write_cycles` after its begin, so no step rises
-//! before the opening record is in a slow EEPROM.
+//! A byte of memory is complete when the chip reports it, and not before `byte_write_cycles`. So a slow EEPROM delays the
+//! first step until the opening record is complete.
 
 use crate::{
     checked::CheckedSetup,
@@ -30,12 +30,13 @@ use stepscope_peripheral::{
     units::{Cycles, Instant},
 };
 
-/// A chip that is still writing is polled again after this part of `byte_write_cycles`.
+/// Polls per `byte_write_cycles` while a slow chip is still writing.
 const WRITE_POLLS: u64 = 64;
 
+/// Why a setup cannot run on a chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotRunnable {
-    /// A chip has one controller.
+    /// The setup has this number of controllers instead of one.
     Controllers(usize),
     /// A virtual axis would drive the switches.
     Axis,
@@ -44,8 +45,12 @@ pub enum NotRunnable {
 impl fmt::Display for NotRunnable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Controllers(given) => write!(f, "{given} controllers; a chip runs one: give it its own"),
-            Self::Axis => f.write_str("axis: on a chip the switches are real; leave the axis out"),
+            Self::Controllers(given) => {
+                write!(f, "{given} controllers do not fit on a chip; use one per chip")
+            }
+            Self::Axis => {
+                f.write_str("axis: a virtual axis cannot drive the real switches of a chip; remove it")
+            }
         }
     }
 }
@@ -55,27 +60,30 @@ impl core::error::Error for NotRunnable {}
 /// How late the chip woke for cycles with events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lateness {
+    /// Of the last event.
     pub last: Cycles,
+    /// The maximum since power-up.
     pub worst: Cycles,
-    /// Sum since power-up: the present delay of an edge.
+    /// The sum since power-up, which is the current delay of an edge.
     pub total: Cycles,
 }
 
+/// A controller that runs on a [`Chip`]; see the example there.
 #[derive(Clone, Debug)]
 pub struct Runner {
     machine: StandAlone,
     checked: CheckedSetup,
-    /// The tick of cycle 0, plus all lateness since.
+    /// The tick of cycle 0, plus the total lateness.
     origin: u64,
     lateness: Lateness,
     levels: RawLevels,
-    /// When the byte last passed to the chip was begun.
-    begun: Option<Instant>,
+    /// Begin of the byte that was passed to the chip last.
+    byte_begun: Option<Instant>,
 }
 
 impl Runner {
-    /// Power-up: cycle 0 of the machine is tick `now`. Memory is the chip's EEPROM; held inputs are no presses; the script
-    /// and `memory.initial` have no effect. Nothing is written yet.
+    /// Powers up: cycle 0 of the machine is tick `now`. Reads the inputs and the EEPROM of the chip, and writes nothing.
+    /// Buttons that are held are not pressed. The script and `memory.initial` have no effect.
     /// Errors: more than one controller, or a virtual axis.
     pub fn power_up(now: Instant, checked: &CheckedSetup, chip: &mut impl Chip) -> Result<Self, NotRunnable> {
         let [parameters] = checked.controllers() else {
@@ -97,27 +105,26 @@ impl Runner {
             origin: now.0,
             lateness: Lateness::default(),
             levels,
-            begun: None,
+            byte_begun: None,
         }
     }
 
-    /// Initial EEPROM contents of a new chip, from address 0: `memory.initial`.
-    #[must_use]
+    /// The EEPROM contents of a new chip, from address 0: `memory.initial`.
     pub fn factory_memory(checked: &CheckedSetup) -> Vec<u8> {
         StandAlone::new(checked).memory(0).to_vec()
     }
 
-    /// Runs the machine up to tick `now`: reads inputs, writes pins and panel, begins a byte of memory. Returns the tick
-    /// of the next call, which may have passed; `None` until an input changes.
+    /// Runs the machine up to tick `now`: reads inputs, writes pins and panel, and begins a byte of memory. Returns the tick
+    /// of the next call, which may have passed already; `None` if only an input can cause an event.
     pub fn poll(&mut self, now: Instant, chip: &mut impl Chip) -> Option<Instant> {
         if now.0 < self.origin {
             return Some(Instant(self.origin));
         }
         let levels = chip.inputs();
         if chip.is_writing() {
-            self.wait_for_byte(now);
+            self.delay_byte(now);
         }
-        let cycle = self.stand_still(now);
+        let cycle = self.cycle_of(now);
         let is_off = self.machine.state(0) == Some(State::Off);
         if !is_off {
             self.read_inputs(cycle, levels);
@@ -130,7 +137,7 @@ impl Runner {
     }
 
     /// Delays a byte that would be complete by `now` but that the chip is still writing.
-    fn wait_for_byte(&mut self, now: Instant) {
+    fn delay_byte(&mut self, now: Instant) {
         let cycle = now.0 - self.origin;
         if self.machine.byte_due() <= cycle {
             let write = self.checked.controllers().first().map_or(0, |one| one.memory.byte_write_cycles);
@@ -139,8 +146,8 @@ impl Runner {
         }
     }
 
-    /// The cycle of tick `now`. If an earlier one was due, it is that one: the machine's time has stopped since.
-    fn stand_still(&mut self, now: Instant) -> u64 {
+    /// The cycle of tick `now`, but at most the next one with an event: the machine's time stops while the chip is late.
+    fn cycle_of(&mut self, now: Instant) -> u64 {
         let (cycle, deadline) = (now.0 - self.origin, self.deadline());
         if deadline == NEVER || cycle < deadline {
             return cycle;
@@ -156,12 +163,12 @@ impl Runner {
         deadline
     }
 
-    /// Enters changed inputs from `cycle` on or, if that has been run, from the next cycle.
+    /// Enters changed inputs in `cycle` or, if that has been run, in the next cycle.
     fn read_inputs(&mut self, cycle: u64, levels: RawLevels) {
         let at = Instant(cycle.max(self.machine.now().0).max(1));
         for signal in levels.changed(self.levels) {
             let level = levels.level(signal);
-            // A second change in one cycle is entered in the next.
+            // A second change in the same cycle is entered at the next poll.
             if self.machine.enter_level(at, signal, level) {
                 self.levels = self.levels.with(signal, level);
             }
@@ -171,18 +178,18 @@ impl Runner {
     fn run(&mut self, cycle: u64, chip: &mut impl Chip) {
         let decimals = self.decimals();
         let origin = self.origin;
-        self.machine.run(Instant(cycle.saturating_add(1)), &mut Outlet { chip, origin, decimals });
+        self.machine.run(Instant(cycle.saturating_add(1)), &mut ChipSink { chip, origin, decimals });
         // A chip runs without end, so the history must not grow.
-        self.machine.forget();
-        if let Some((begun, address, byte)) = self.machine.byte_under_way()
-            && self.begun != Some(begun)
+        self.machine.clear_history();
+        if let Some((begun, address, byte)) = self.machine.byte_in_progress()
+            && self.byte_begun != Some(begun)
         {
-            self.begun = Some(begun);
+            self.byte_begun = Some(begun);
             chip.begin_byte(address, byte);
         }
     }
 
-    /// The power is back before the chip stopped: restarts from the contents of the EEPROM.
+    /// Restarts from the contents of the EEPROM, because the power came back before the chip stopped.
     fn power_up_again(&mut self, now: Instant, chip: &mut impl Chip) -> Instant {
         let next = Instant(now.0.saturating_add(1));
         if !chip.is_writing() {
@@ -207,18 +214,17 @@ impl Runner {
         decimals.and_then(|&decimals| u8::try_from(decimals).ok()).unwrap_or(0)
     }
 
-    #[must_use]
+    /// The machine, for queries.
     pub const fn machine(&self) -> &StandAlone {
         &self.machine
     }
 
-    #[must_use]
+    /// How late the chip was so far.
     pub const fn lateness(&self) -> Lateness {
         self.lateness
     }
 
-    /// The panel in the last cycle.
-    #[must_use]
+    /// The contents of the panel now.
     pub fn face(&self) -> Face {
         Face {
             at: Instant(self.origin.saturating_add(self.machine.now().0.saturating_sub(1))),
@@ -231,13 +237,13 @@ impl Runner {
 }
 
 /// Passes the changes of a cycle to pins and panel.
-struct Outlet<'c, C> {
+struct ChipSink<'c, C> {
     chip: &'c mut C,
     origin: u64,
     decimals: u8,
 }
 
-impl<C: Chip> Sink for Outlet<'_, C> {
+impl<C: Chip> Sink for ChipSink<'_, C> {
     fn record(&mut self, record: Record) {
         self.chip.write_pins(record.levels);
     }

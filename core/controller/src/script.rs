@@ -1,9 +1,9 @@
-//! The future entries of a controller's script, in the order of their cycles (CONTROLLER G1.3).
+//! The inputs of a controller that are still to come, in the order of their cycles (CONTROLLER G1.3).
 
 use crate::input::{Change, Input, Signal};
 use alloc::{collections::VecDeque, rc::Rc, vec::Vec};
 
-/// Entries in the order of their cycles, and the number already taken.
+/// Entries in the order of their cycles, and how many have been applied.
 #[derive(Clone, Debug, Default)]
 struct Queue {
     entries: Rc<[Input]>,
@@ -12,9 +12,10 @@ struct Queue {
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Script {
-    /// Its own entries, and those shared by all: power, E-stop and clear of the first controller.
+    /// The controller's own entries, and those shared by all: power, emergency stop and clear of the first controller.
     queues: [Queue; 2],
-    live: VecDeque<Input>,
+    /// Inputs entered during the run.
+    entered: VecDeque<Input>,
 }
 
 /// Whether an entry of the first controller applies to all.
@@ -22,7 +23,7 @@ pub(crate) const fn is_shared(change: Change) -> bool {
     matches!(change, Change::Level(Signal::Power | Signal::Estop | Signal::Clear, _))
 }
 
-fn is_same(one: Change, other: Change) -> bool {
+fn is_same_input(one: Change, other: Change) -> bool {
     one.name() == other.name()
 }
 
@@ -39,22 +40,23 @@ impl Queue {
 
     fn has(&self, wanted: Input) -> bool {
         let start = self.entries.partition_point(|input| input.cycle < wanted.cycle);
-        let at_cycle = self.entries.iter().skip(start).take_while(|input| input.cycle == wanted.cycle);
-        at_cycle.into_iter().any(|input| is_same(input.change, wanted.change))
+        let mut at_cycle = self.entries.iter().skip(start).take_while(|input| input.cycle == wanted.cycle);
+        at_cycle.any(|input| is_same_input(input.change, wanted.change))
     }
 }
 
 impl Script {
     pub(crate) fn new(own: Rc<[Input]>, shared: Rc<[Input]>) -> Self {
         let queue = |entries| Queue { entries, taken: 0 };
-        Self { queues: [queue(own), queue(shared)], live: VecDeque::new() }
+        Self { queues: [queue(own), queue(shared)], entered: VecDeque::new() }
     }
 
     pub(crate) fn due(&self) -> u64 {
         let queued = self.queues.iter().filter_map(Queue::first).map(|input| input.cycle.0);
-        queued.chain(self.live.front().map(|input| input.cycle.0)).min().unwrap_or(u64::MAX)
+        queued.chain(self.entered.front().map(|input| input.cycle.0)).min().unwrap_or(u64::MAX)
     }
 
+    /// Removes and returns the next change up to cycle `now`.
     pub(crate) fn take(&mut self, now: u64) -> Option<Change> {
         for queue in &mut self.queues {
             if let Some(input) = queue.first().filter(|input| input.cycle.0 <= now) {
@@ -62,12 +64,13 @@ impl Script {
                 return Some(input.change);
             }
         }
-        self.live.pop_front_if(|input| input.cycle.0 <= now).map(|input| input.change)
+        self.entered.pop_front_if(|input| input.cycle.0 <= now).map(|input| input.change)
     }
 
+    /// Whether this input has an entry in the same cycle.
     pub(crate) fn has(&self, input: Input) -> bool {
-        let is_twin = |other: &Input| other.cycle == input.cycle && is_same(other.change, input.change);
-        self.queues.iter().any(|queue| queue.has(input)) || self.live.iter().any(is_twin)
+        let is_same = |other: &Input| other.cycle == input.cycle && is_same_input(other.change, input.change);
+        self.queues.iter().any(|queue| queue.has(input)) || self.entered.iter().any(is_same)
     }
 
     pub(crate) fn clear(&mut self) {
@@ -75,7 +78,7 @@ impl Script {
     }
 
     pub(crate) fn enter(&mut self, input: Input) {
-        let index = self.live.partition_point(|other| other.cycle <= input.cycle);
-        self.live.insert(index, input);
+        let index = self.entered.partition_point(|other| other.cycle <= input.cycle);
+        self.entered.insert(index, input);
     }
 }

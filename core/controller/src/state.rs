@@ -1,30 +1,8 @@
 //! States and alarms, with their numbers on the panel (CONTROLLER G2).
 
-macro_rules! numbered {
-    ($(#[$meta:meta])* $name:ident { $($(#[$item_meta:meta])* $item:ident = $text:literal,)* }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[repr(u8)]
-        pub enum $name {
-            $($(#[$item_meta])* $item,)*
-        }
-
-        impl $name {
-            pub const ALL: [Self; [$(stringify!($item)),*].len()] = [$(Self::$item),*];
-
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$item => $text,)*
-                }
-            }
-        }
-    };
-}
-
-numbered! {
+crate::named::named_enum! { (Hash)
     /// What a controller is doing; the discriminant is its number on the panel.
-    State {
+    pub enum State {
         /// 0: no power.
         Off = "OFF",
         /// 1: self-test and reading memory.
@@ -39,27 +17,33 @@ numbered! {
         Wait = "WAIT",
         /// 6: a program's move or a return brakes for a pause.
         Pausing = "PAUSING",
+        /// 7: a move, delay or wait is paused.
         Paused = "PAUSED",
+        /// 8: a jog button is held, or the jog brakes.
         Jog = "JOG",
         /// 9: the return to zero.
         Returning = "RETURNING",
+        /// 10: homing.
         Homing = "HOMING",
         /// 11: fine jogs and manual zero.
         Debug = "DEBUG",
         /// 12: numbers are edited.
         Edit = "EDIT",
+        /// 13: an error stopped the controller; see [`Alarm`].
         Alarm = "ALARM",
         /// 14: power failure, in the hold-up time.
         PowerLoss = "POWER_LOSS",
     }
 }
 
-numbered! {
+crate::named::named_enum! { (Hash)
     /// Why a controller is in [`State::Alarm`]; the discriminant is its number on the panel.
-    Alarm {
+    pub enum Alarm {
+        /// 0: no alarm.
         None = "",
         /// 1: the emergency stop.
         Estop = "ESTOP",
+        /// 2: a limit switch.
         Limit = "LIMIT",
         /// 3: a move beyond the soft limits.
         SoftLimit = "SOFT_LIMIT",
@@ -74,19 +58,30 @@ numbered! {
     }
 }
 
+/// How far a controller trusts its position.
+pub(crate) mod trust {
+    /// The position is unknown.
+    pub(crate) const LOST: u8 = 0;
+    /// The position was restored from memory.
+    pub(crate) const HELD: u8 = 1;
+    /// Zero was set after power-up.
+    pub(crate) const SURE: u8 = 2;
+}
+
 /// Name of a trust level: 0 LOST, 1 HELD, 2 SURE; empty for any other.
 #[must_use]
 pub const fn trust_name(trust: u8) -> &'static str {
     match trust {
-        0 => "LOST",
-        1 => "HELD",
-        2 => "SURE",
+        trust::LOST => "LOST",
+        trust::HELD => "HELD",
+        trust::SURE => "SURE",
         _ => "",
     }
 }
 
 impl State {
-    pub(crate) const fn rests(self) -> bool {
+    /// Whether nothing moves, waits or delays.
+    pub(crate) const fn is_idle(self) -> bool {
         matches!(self, Self::Ready | Self::Debug | Self::Edit | Self::Paused | Self::Alarm)
     }
 }

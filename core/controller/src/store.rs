@@ -2,10 +2,10 @@
 
 use crate::{
     controller::Controller,
-    journal::{self, Entry, Valid},
+    journal::{self, Entry, ValidRecord},
     numbers::Numbers,
     parameters::Policy,
-    state::State,
+    state::{State, trust},
 };
 
 impl Controller {
@@ -13,15 +13,16 @@ impl Controller {
         self.parameters.memory.slots as usize
     }
 
-    pub(crate) fn find_newest(&self) -> Option<Valid> {
+    pub(crate) fn find_newest(&self) -> Option<ValidRecord> {
         journal::newest(self.eeprom.bytes(), self.slots())
     }
 
+    /// Whether memory says that the axis may move.
     pub(crate) fn is_memory_open(&self) -> bool {
         !self.writes_journal && self.newest.is_some_and(|newest| newest.entry.is_open)
     }
 
-    /// Completes a byte that is due, and with its last byte the record.
+    /// Completes the byte that is due, and with the last byte the record.
     pub(crate) fn complete_byte(&mut self, now: u64) {
         if !self.eeprom.complete(now) {
             return;
@@ -29,52 +30,57 @@ impl Controller {
         let before = self.newest;
         self.newest = self.find_newest();
         if core::mem::take(&mut self.writes_journal) {
-            self.is_opened |= self.state == State::SelfTest;
-            self.is_stuck = self.state != State::SelfTest && before.is_some() && before == self.newest;
+            self.has_opening_record |= self.state == State::SelfTest;
+            self.is_sequence_exhausted =
+                self.state != State::SelfTest && before.is_some() && before == self.newest;
         }
     }
 
-    /// Position and trust in memory; `None` without a valid record.
-    pub(crate) fn believed(&self) -> Option<(i32, u8)> {
+    /// Position and trust that a power-up would read; `None` without a valid record.
+    pub(crate) fn stored_position(&self) -> Option<(i32, u8)> {
         let entry = self.find_newest()?.entry;
-        Some((entry.position, if entry.is_open { 0 } else { entry.trust.min(1) }))
+        Some((entry.position, if entry.is_open { trust::LOST } else { entry.trust.min(trust::HELD) }))
     }
 
+    /// Reads position and numbers at the end of the self-test.
     pub(crate) fn read(&mut self) {
         self.newest = self.find_newest();
-        let believed = self.believed();
-        self.is_unknown = believed.is_none();
-        (self.position, self.trust) = believed.unwrap_or((0, 0));
-        self.axis.memory_is_read(self.position);
-        let saved = journal::saved(self.eeprom.bytes(), self.slots(), self.parameters.numbers());
+        let stored = self.stored_position();
+        self.is_memory_invalid = stored.is_none();
+        (self.position, self.trust) = stored.unwrap_or((0, trust::LOST));
+        self.axis.set_initial_zero(self.position);
+        let saved = journal::saved_numbers(self.eeprom.bytes(), self.slots(), self.parameters.numbers());
         self.numbers = saved
             .and_then(|numbers| Numbers::in_range(&self.parameters, numbers))
             .unwrap_or_else(|| Numbers::new(&self.parameters));
-        self.is_changed = false;
+        self.has_unsaved_numbers = false;
     }
 
-    pub(crate) fn wants_closing(&self) -> bool {
-        let differs = |newest: Valid| {
+    /// Whether memory does not hold the position at a power failure.
+    pub(crate) fn needs_closing_record(&self) -> bool {
+        let differs = |newest: ValidRecord| {
             let entry = newest.entry;
-            entry.is_open || entry.position != self.position || entry.trust.min(1) != self.trust.min(1)
+            entry.is_open
+                || entry.position != self.position
+                || entry.trust.min(trust::HELD) != self.trust.min(trust::HELD)
         };
-        self.is_read && self.newest.is_none_or(differs)
+        self.is_memory_read && self.newest.is_none_or(differs)
     }
 
-    /// Whether a journal record is needed, and whether it is an open one.
-    fn wanted(&self) -> Option<bool> {
+    /// Whether the journal record that is needed is an open one; `None` if none is needed.
+    fn needed_record(&self) -> Option<bool> {
         match (self.state, self.parameters.memory.policy) {
             (State::Off, _) => None,
-            (State::PowerLoss, _) => self.wants_closing().then_some(false),
-            (_, Policy::PowerLoss) => self.wants_opening.then_some(true),
-            _ if self.motion.as_ref().is_some_and(|motion| motion.waits) => Some(true),
+            (State::PowerLoss, _) => self.needs_closing_record().then_some(false),
+            (_, Policy::PowerLoss) => self.needs_opening_record.then_some(true),
+            _ if self.motion.as_ref().is_some_and(|motion| motion.waits_for_memory) => Some(true),
             (state, Policy::WriteAhead) => {
-                let differs = |newest: Valid| {
+                let differs = |newest: ValidRecord| {
                     let entry = newest.entry;
                     entry.is_open || entry.position != self.position || entry.trust != self.trust
                 };
-                let rests = state.rests() && self.motion.is_none();
-                (rests && self.newest.is_none_or(differs)).then_some(false)
+                let is_idle = state.is_idle() && self.motion.is_none();
+                (is_idle && self.newest.is_none_or(differs)).then_some(false)
             }
         }
     }
@@ -84,7 +90,7 @@ impl Controller {
         if !self.eeprom.is_idle() {
             return;
         }
-        if let Some(is_open) = self.wanted() {
+        if let Some(is_open) = self.needed_record() {
             let (group, loop_) =
                 self.program.as_ref().map_or((0, 0), |program| (program.group, program.loop_));
             let entry = Entry {
@@ -94,17 +100,20 @@ impl Controller {
                 group: group as u8,
                 loop_: loop_ as u16,
             };
-            let (address, record) = journal::next(self.newest, self.slots(), entry);
-            self.eeprom.begin(now, address, record, self.is_stuck);
+            let (address, record) = journal::next_record(self.newest, self.slots(), entry);
+            self.eeprom.begin(now, address, record, self.is_sequence_exhausted);
             self.writes_journal = true;
-            self.wants_opening = false;
-        } else if self.wants_save && !matches!(self.state, State::Off | State::SelfTest | State::PowerLoss) {
-            let (address, bank) = journal::save(self.eeprom.bytes(), self.slots(), self.numbers.all());
+            self.needs_opening_record = false;
+        } else if self.needs_number_save
+            && !matches!(self.state, State::Off | State::SelfTest | State::PowerLoss)
+        {
+            let (address, bank) =
+                journal::numbers_record(self.eeprom.bytes(), self.slots(), self.numbers.all());
             self.eeprom.begin(now, address, bank, false);
-            (self.wants_save, self.is_stuck) = (false, false);
+            (self.needs_number_save, self.is_sequence_exhausted) = (false, false);
         }
         if self.eeprom.is_idle() {
-            self.is_stuck = false;
+            self.is_sequence_exhausted = false;
         }
     }
 }

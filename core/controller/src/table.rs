@@ -6,11 +6,12 @@
 //!                  f_n  = round_half_up(sqrt(f_1^2 + 2*a*S_(n-1)))  Hz
 //! ```
 //!
-//! Five rows of equal length are a block; the blocks before block b have 75*b*(b + 1) steps. So each row has a closed form
-//! and none is stored.
+//! Five rows of equal length form a block; the blocks before block b have 75*b*(b + 1) steps. So each row has a closed form,
+//! and no row is stored.
 
 /// Steps of the first row, and the increment per block.
 const FIRST_STEPS: u64 = 30;
+/// Rows of a block.
 const EQUAL_ROWS: u64 = 5;
 /// Half the steps of block b, divided by b.
 const HALF_BLOCK: u64 = FIRST_STEPS * EQUAL_ROWS / 2;
@@ -30,11 +31,13 @@ pub(crate) struct Row {
     pub(crate) rate_hz: u64,
 }
 
+/// Steps of the first `n` rows.
 const fn steps_after(n: u64) -> u64 {
     let (blocks, rest) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
     HALF_BLOCK * blocks * (blocks + 1) + FIRST_STEPS * rest * (blocks + 1)
 }
 
+/// The row (from 1) of a ramp step (from 1).
 fn row_of(step: u64) -> u64 {
     let before = step.saturating_sub(1);
     // The maximum b with 75*b*(b + 1) <= before.
@@ -46,8 +49,8 @@ fn row_of(step: u64) -> u64 {
 impl Table {
     fn rate_hz(self, n: u64) -> u64 {
         let start = u128::from(self.start_speed_hz);
-        let climbed = 2 * u128::from(self.acceleration_hz_s) * u128::from(steps_after(n.saturating_sub(1)));
-        let square = start * start + climbed;
+        let steps = u128::from(steps_after(n.saturating_sub(1)));
+        let square = start * start + 2 * u128::from(self.acceleration_hz_s) * steps;
         let root = square.isqrt();
         // Round up from root + 1/2 on, whose square is root^2 + root + 1/4.
         (root + u128::from(square > root * root + root)) as u64
@@ -58,8 +61,8 @@ impl Table {
         Row { first: steps_after(n - 1) + 1, last: steps_after(n), rate_hz: self.rate_hz(n) }
     }
 
-    /// S(r): steps of the rows before the first one of at least `rate_hz`.
-    pub(crate) fn climb(self, rate_hz: u32) -> u64 {
+    /// Steps of the rows before the first one of at least `rate_hz`.
+    pub(crate) fn steps_to(self, rate_hz: u32) -> u64 {
         let mut rows = 0;
         for bit in (0..ROW_BITS).rev() {
             let more = rows + (1 << bit);
@@ -76,9 +79,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_rows_come_out() {
+    fn rows_are_those_of_the_paper() {
         let table = Table { start_speed_hz: 1000, acceleration_hz_s: 1000 };
-        // A ramp step, and the rate of its row.
+        // Ramp step, rate of its row.
         let rows = [
             (1, 1000),
             (30, 1000),
@@ -95,14 +98,14 @@ mod tests {
         for (step, rate_hz) in rows {
             assert_eq!(table.row(step).rate_hz, rate_hz, "step {step}");
         }
-        // A speed, and the steps to it.
+        // Speed, steps to reach it.
         for (rate_hz, steps) in [(10, 0), (1000, 0), (1001, 30), (1030, 30), (1031, 60), (20_000, 200_460)] {
-            assert_eq!(table.climb(rate_hz), steps, "{rate_hz} Hz");
+            assert_eq!(table.steps_to(rate_hz), steps, "{rate_hz} Hz");
         }
     }
 
     #[test]
-    fn rows_add_up() {
+    fn closed_forms_equal_the_sums_of_rows() {
         let (mut sum, table) = (0, Table { start_speed_hz: 10, acceleration_hz_s: 5_000_000 });
         for n in 1..2000 {
             let first = sum + 1;
@@ -117,7 +120,7 @@ mod tests {
     #[test]
     fn the_longest_ramp_ends() {
         let table = Table { start_speed_hz: 10, acceleration_hz_s: 1 };
-        let steps = table.climb(10_000_000);
+        let steps = table.steps_to(10_000_000);
         assert!(table.row(steps).rate_hz < 10_000_000 && table.row(steps + 1).rate_hz >= 10_000_000);
     }
 }

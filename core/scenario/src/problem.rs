@@ -99,7 +99,7 @@ pub enum Cause {
     },
     StandAlone(stepscope_controller::Refusal),
     /// An endless program (CONTROLLER.md G5).
-    Work(stepscope_controller::Work),
+    TooManyGroups(stepscope_controller::TooManyGroups),
     /// A plant that cannot be simulated (F3, F5).
     Plant(stepscope_plant::Refused),
     /// Different supplies of the motors of one controller (F9).
@@ -218,7 +218,7 @@ impl fmt::Display for Cause {
                 "{channels} channels, but the first controller has {first_channels}; on a raw line all controllers need the same number; use {first_channels}, or the framed protocol"
             ),
             Self::StandAlone(refusal) => refusal.fmt(f),
-            Self::Work(work) => work.fmt(f),
+            Self::TooManyGroups(error) => error.fmt(f),
             Self::Plant(refused) => refused.fmt(f),
             Self::OtherSupply { supply_v, first_v } => write!(
                 f,

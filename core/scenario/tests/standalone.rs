@@ -25,28 +25,28 @@ fn every_refusal_names_its_field_and_the_numbers() {
         (
             r#"[{"max_speed_hz":300000}]"#,
             &[
-                "{at}.max_speed_hz: 300000 Hz is a step every 53 cycles at this clock; W + max(H + D, 1) is 80 cycles, so at most 200000 Hz",
+                "{at}.max_speed_hz: 300000 Hz is a step every 53 cycles, but a pulse with its pauses takes 80; use 10 to 200000 Hz",
             ],
         ),
         (
             r#"[{"home":{"coarse_hz":1500}}]"#,
             &[
-                "{at}.home.coarse_hz: 1500 Hz is above start_speed_hz 1000: homing stops at once and must stay in the start-stop range",
+                "{at}.home.coarse_hz: 1500 Hz is above `start_speed_hz`, but homing has no ramp; use 10 to 1000 Hz",
             ],
         ),
         (
             r#"[{"groups":[{"home":{}},{"move":{}},{"repeat":{"first":3}},{"jump":{"to":9}}]}]"#,
             &[
-                "{at}.groups[0].home: there is no `home`; give one or leave the group out",
-                "{at}.groups[2].repeat.first: 3 is not before this group (3); give a group before it",
-                "{at}.groups[3].jump.to: 9, but there are 4 groups; give 1 to 4",
+                "{at}.groups[0].home: the controller has no `home`; add one or remove this group",
+                "{at}.groups[2].repeat.first: 3 is not before this group (3); use 1 to 2",
+                "{at}.groups[3].jump.to: there is no group 9; use 1 to 4",
             ],
         ),
         (
             r#"[{"axis":{"max_switch_at_steps":5},"inputs":[{"cycle":9,"input":"limit_max"},{"cycle":4000,"input":"start"},{"cycle":4000,"input":"start","level":0}]}]"#,
             &[
-                "{at}.inputs[0]: limit_max is driven by axis.max_switch_at_steps; leave one of them out",
-                "{at}.inputs[2]: start has two levels at cycle 4000; give one",
+                "{at}.inputs[0]: limit_max is driven by axis.max_switch_at_steps; remove one of them",
+                "{at}.inputs[2]: start has two entries at cycle 4000; use one",
             ],
         ),
         (
@@ -55,14 +55,14 @@ fn every_refusal_names_its_field_and_the_numbers() {
                 "source.standalone[1].inputs[1].cycle: 0 cycles is out of range; use 1 to 9000000000000000 cycles",
                 "source.standalone[1].inputs[2]: the entry is empty; use an input, or `push_steps`",
                 "source.standalone[1].inputs[3]: an entry is an input or a push, not both; make two entries",
-                "source.standalone[1].inputs[0]: estop is for all controllers and the first one's; leave it out here",
+                "source.standalone[1].inputs[0]: estop applies to all controllers; use it only in the script of the first controller",
             ],
         ),
         (
             r#"[{"groups":[{"profile":{"intervals_q16":[5242880,5242879]}},{"profile":{"motion":{"sine":{"periods":1}}}}]}]"#,
             &[
                 "{at}.groups[1].profile.motion: moves in both directions, but a profile moves in one; use one group per direction",
-                "{at}.groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse allows; W + max(H + D, 1) is 5242880/65536 cycle, so give at least that",
+                "{at}.groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse with its pauses; use at least 5242880/65536 cycle",
             ],
         ),
         (
@@ -76,7 +76,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
         (r#"[{"groups":[]}]"#, &["{at}.groups: 0 groups; use 1 to 50"]),
         (
             r#"[{"soft_limits":{"min_steps":5,"max_steps":4}}]"#,
-            &["{at}.soft_limits.max_steps: 4 is out of range; give 5 to 2147483648"],
+            &["{at}.soft_limits.max_steps: 4 is out of range; use 5 to 2147483648"],
         ),
     ];
     for (given, expected) in rows {

@@ -92,7 +92,7 @@ impl Controllers {
         self.at_rest().then(|| match &self.generator {
             Generator::Bus => self.bus.idle_from(),
             Generator::Segments(_) => last.next(),
-            Generator::StandAlone(machine) => machine.rests_from(),
+            Generator::StandAlone(machine) => machine.idle_from(),
         })
     }
 

@@ -3,7 +3,7 @@
 use crate::{BUDGET_RECORDS, Cost};
 use alloc::{format, vec, vec::Vec};
 use core::fmt;
-use stepscope_controller::{Alarm, CheckedSetup, Press, StandAlone, State, Work, trust_name};
+use stepscope_controller::{Alarm, CheckedSetup, Press, StandAlone, State, TooManyGroups, trust_name};
 use stepscope_peripheral::{
     signal::{Record, Sink},
     units::{Cycles, Instant},
@@ -20,9 +20,9 @@ impl Cost {
         let mut counted = Counted(0);
         let until = run.map_or(Instant::NEVER, |Cycles(run)| Instant(run));
         let is_short = tried.run_events(until, MAX_TRIED_EVENTS, &mut counted) && !counted.is_paused();
-        if let Some(work) = tried.work() {
+        if let Some(work) = tried.too_many_groups() {
             let path = format!("source.standalone[{}].groups", work.controller);
-            return Err(vec![Problem::new(path, Cause::Work(work))]);
+            return Err(vec![Problem::new(path, Cause::TooManyGroups(work))]);
         }
         // An aborted trial does not show the end.
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
@@ -62,7 +62,7 @@ impl Sink for Counted {
 pub struct StandAloneSummary {
     pub panels: Vec<PanelSummary>,
     pub digest: u64,
-    pub work: Option<Work>,
+    pub work: Option<TooManyGroups>,
 }
 
 /// Ignored presses listed one by one.
@@ -98,7 +98,11 @@ impl StandAloneSummary {
                 ignored: machine.ignored(index).to_vec(),
             })
         };
-        Self { panels: (0..).map_while(one).collect(), digest: machine.panel_digest(), work: machine.work() }
+        Self {
+            panels: (0..).map_while(one).collect(),
+            digest: machine.panel_digest(),
+            work: machine.too_many_groups(),
+        }
     }
 }
 

@@ -193,7 +193,7 @@ fn the_eeprom_is_correct_after_a_power_cut_in_any_tick() {
             .expect("one controller");
             chip.power_off();
             let runner = Runner::power_up(chip.now(), &checked, &mut chip).expect("one controller");
-            match runner.machine().believed_after_power_up(0) {
+            match runner.machine().position_after_power_up(0) {
                 Some((position, 1..)) => {
                     assert_eq!(i64::from(position), chip.position, "{policy:?} {round}: cut in {cut}");
                     known += 1;
@@ -293,7 +293,10 @@ fn an_endless_program_neither_blocks_the_chip_nor_fills_its_memory() {
     })
     .expect("one controller");
     let machine = runner.machine();
-    assert_eq!((machine.state(0), machine.work(), machine.panel(0).len()), (Some(State::Running), None, 0));
+    assert_eq!(
+        (machine.state(0), machine.too_many_groups(), machine.panel(0).len()),
+        (Some(State::Running), None, 0)
+    );
 }
 
 #[test]

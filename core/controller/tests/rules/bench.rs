@@ -1,5 +1,6 @@
-//! A small controller whose cycles can be counted by hand: 1 kHz, W = 2, D = H = 1 (so Lm is 4 cycles), 100 Hz to start,
-//! a byte a cycle; READY in cycle 26, where the opening record is complete.
+//! A small controller whose cycles can be counted by hand: a clock of 1 kHz, pulses of 2 cycles with a setup and a hold time of
+//! 1 cycle each (so the minimum interval is 4 cycles), a start-stop rate of 100 Hz, and one cycle per byte of memory. The
+//! opening record is complete in cycle 26.
 
 use stepscope_controller::{
     StandAlone,
@@ -44,7 +45,7 @@ pub(crate) fn presses(presses: &[(u64, Signal)]) -> Vec<Input> {
     presses.iter().flat_map(|&(at, signal)| [level(at, signal, true), level(at + 1, signal, false)]).collect()
 }
 
-/// A run until nothing can change any more, or the cycle given.
+/// A run until its end or the given cycle.
 pub(crate) struct Run {
     pub(crate) machine: StandAlone,
     pub(crate) trace: Vec<Record>,

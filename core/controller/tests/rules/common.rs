@@ -1,4 +1,4 @@
-//! Random controllers with small numbers, in which everything happens within some 10^5 cycles.
+//! Random controllers with small numbers, so that all events are within some 10^5 cycles.
 
 use stepscope_controller::{
     input::{Change, Input, Signal},
@@ -28,8 +28,8 @@ impl Random {
         self.bits() % n
     }
 
-    pub(crate) fn range(&mut self, least: i64, greatest: i64) -> i64 {
-        least + self.below((greatest - least + 1) as u64) as i64
+    pub(crate) fn range(&mut self, min: i64, max: i64) -> i64 {
+        min + self.below((max - min + 1) as u64) as i64
     }
 
     pub(crate) fn one_in(&mut self, n: u64) -> bool {
@@ -134,10 +134,10 @@ fn inputs(random: &mut Random, is_first: bool, axis: Option<&Axis>, end: i64) ->
             inputs.push(input);
         }
     };
-    // A tendency: programs, hands on everything, or numbers.
-    let mood = random.below(4);
+    // What the presses are mostly about: programs, all inputs, or numbers.
+    let tendency = random.below(4);
     let count = random.range(1, 40);
-    // A person who lets it test itself, clears what it complains of, starts, and then presses one button after another.
+    // An operator waits for the self-test, clears an alarm, starts, and then presses one button after another.
     if random.one_in(2) {
         let mut at = random.range(600, 1500);
         let first = [Signal::Clear, random.of(&[Signal::Start, Signal::Start, Signal::Home, Signal::Debug])];
@@ -174,8 +174,8 @@ fn inputs(random: &mut Random, is_first: bool, axis: Option<&Axis>, end: i64) ->
             1 => Signal::Estop,
             2 | 3 => Signal::Start,
             4 => random.of(&SENSORS),
-            5 if mood == 3 => Signal::System,
-            6 if mood < 2 => Signal::Start,
+            5 if tendency == 3 => Signal::System,
+            6 if tendency < 2 => Signal::Start,
             7 => Signal::Clear,
             _ => Signal::ALL[random.below(Signal::ALL.len() as u64) as usize],
         };
@@ -257,7 +257,7 @@ fn parameters(random: &mut Random, clock_hz: i64, pulse: PulseTimes, is_first: b
     }
 }
 
-/// A setup that is never refused.
+/// A valid setup.
 pub(crate) fn setup(seed: u64) -> Setup {
     let random = &mut Random(seed);
     let mut times = |least| Cycles(random.range(least, 6) as u64);

@@ -1,4 +1,4 @@
-//! Numbers at the ends of their ranges: no time leaves its type, and nothing panics.
+//! Values at the ends of their ranges cause no overflow and no panic.
 
 use crate::common::Random;
 use stepscope_controller::{
@@ -18,9 +18,9 @@ use stepscope_peripheral::{
 const LAST_INPUT: u64 = 9_000_000_000_000_000;
 
 /// Pauses a run after some records.
-struct Few(u32);
+struct LimitedRecords(u32);
 
-impl Sink for Few {
+impl Sink for LimitedRecords {
     fn record(&mut self, _: Record) {
         self.0 = self.0.saturating_sub(1);
     }
@@ -111,7 +111,7 @@ fn parameters(random: &mut Random, max_hz: u32) -> Parameters {
 }
 
 #[test]
-fn nothing_breaks_at_the_ends_of_the_ranges() {
+fn values_at_the_ends_of_their_ranges_run() {
     let mut runs = 0;
     for seed in 0..2000 {
         let random = &mut Random(seed);
@@ -136,8 +136,8 @@ fn nothing_breaks_at_the_ends_of_the_ranges() {
         let setup = Setup { clock_hz, channels: 1, pulse, controllers: vec![parameters] };
         let checked = setup.check().unwrap_or_else(|refused| panic!("seed {seed}: {refused:?}"));
         let mut machine = StandAlone::new(&checked);
-        machine.run(Instant::NEVER, &mut Few(300));
-        machine.run(Instant(machine.now().0 + 1000), &mut Few(300));
+        machine.run(Instant::NEVER, &mut LimitedRecords(300));
+        machine.run(Instant(machine.now().0 + 1000), &mut LimitedRecords(300));
         runs += 1;
     }
     assert!(runs > 500, "{runs} runs");

@@ -1,12 +1,6 @@
-//! The rules of CONTROLLER.md, each as a table or a run that can be counted by hand, and the equality of both speeds on
-//! random controllers.
+//! The rules of CONTROLLER.md as tables and runs that can be counted by hand, and random controllers.
 #![cfg(not(target_arch = "wasm32"))]
-#![allow(
-    clippy::panic,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "what cannot be run fails the test"
-)]
+#![allow(clippy::panic, clippy::unwrap_used, clippy::expect_used, reason = "an invalid setup fails the test")]
 
 mod bench;
 mod common;

@@ -1,4 +1,4 @@
-//! Buttons, jogs, homing and the panel (G2, G6, G8), on the bench's small controller.
+//! Buttons, jogs, homing and the panel (G2, G6, G8), with the small controller of `bench`.
 
 use crate::bench::{self, Run, level, pressed, presses, run, run_all, small, to_the_right};
 use stepscope_controller::{
@@ -20,7 +20,7 @@ fn held(parameters: Parameters, button: Signal, from: u64, to: u64) -> Run {
 }
 
 #[test]
-fn ten_hertz_held_for_half_a_second_are_five_steps() {
+fn half_a_second_at_10_hz_is_five_steps() {
     let press = |at, is_down| level(at, JogPlus, is_down);
     let inputs = vec![press(4_000_000, true), press(12_000_000, false)];
     let jog = Jog { speed_hz: 10, ..Jog::default() };
@@ -32,29 +32,29 @@ fn ten_hertz_held_for_half_a_second_are_five_steps() {
 }
 
 #[test]
-fn a_tap_is_one_step_after_the_least_interval() {
+fn a_tap_is_one_step_after_the_minimum_interval() {
     let run = held(small(), JogPlus, 30, 36);
     assert_eq!(run.edges(), "DIR+31 STEP+35 STEP-37");
     assert_eq!(run.panel_from(28), ["31 Jog t1 g0/0", "38 Ready t1 g0/0"]);
     assert_eq!(held(small(), JogMinus, 30, 36).position(), -1);
-    assert_eq!(held(small(), JogPlus, 30, 35).position(), 1, "it rises before the release is heard");
+    assert_eq!(held(small(), JogPlus, 30, 35).position(), 1, "STEP rises before the release is handled");
     let soon = held(small(), JogPlus, 30, 34);
     assert_eq!((soon.edges().as_str(), soon.panel_from(32)[0].as_str()), ("DIR+31", "35 Ready t1 g0/0"));
 }
 
 #[test]
-fn the_other_buttons_press_ends_a_jog_and_another_needs_a_press() {
+fn the_opposite_jog_button_ends_a_jog_without_starting_another() {
     let inputs = vec![level(30, JogPlus, true), level(50, JogMinus, true)];
     let run = run(Parameters { inputs, ..small() });
     assert_eq!((run.position(), run.end().as_str()), (2, "Ready"));
-    // Both in one cycle: the jog ends where it begins.
+    // Both in one cycle: the jog ends in the cycle in which it begins.
     let inputs = vec![level(30, JogPlus, true), level(30, JogMinus, true)];
     let both = bench::run(Parameters { inputs, ..small() });
     assert_eq!((both.position(), both.panel_from(28)), (0, vec![]));
 }
 
 #[test]
-fn a_jog_beyond_the_start_stop_range_costs_trust_unless_it_has_a_ramp() {
+fn a_jog_above_the_start_stop_rate_loses_the_position_unless_it_has_a_ramp() {
     for (release, trust) in [(Release::AtOnce, 0), (Release::Ramp, 1)] {
         let jog = Jog { speed_hz: 200, release, level: 5, ..Jog::default() };
         let run = held(Parameters { jog, ..small() }, JogPlus, 30, 900);
@@ -77,7 +77,7 @@ fn a_jog_ends_at_the_soft_limits_while_the_position_is_trusted() {
 }
 
 #[test]
-fn the_e_stop_cuts_a_pulse_which_counts() {
+fn the_e_stop_cuts_a_pulse_that_still_counts() {
     let mut inputs = presses(&[(30, Start), (60, Clear), (80, Clear)]);
     inputs.extend([level(51, Estop, true), level(70, Estop, false)]);
     let run = run(Parameters { inputs, debounce_cycles: 0, ..small() });
@@ -86,12 +86,12 @@ fn the_e_stop_cuts_a_pulse_which_counts() {
     assert_eq!(
         (run.position(), run.machine.ignored(0).len()),
         (2, 1),
-        "clear does nothing while it is pressed"
+        "clear has no effect while the emergency stop is pressed"
     );
 }
 
 #[test]
-fn an_e_stop_in_self_test_lets_the_test_go_on() {
+fn an_e_stop_in_self_test_is_an_alarm_after_the_test() {
     let run = run(Parameters { inputs: vec![level(5, Estop, true), level(7, Estop, false)], ..small() });
     assert_eq!(run.edges(), "EN-6");
     let expected = ["0 SelfTest t0 g0/0", "11 SelfTest t1 g0/0", "27 Alarm:Estop t1 g0/0"];
@@ -99,7 +99,7 @@ fn an_e_stop_in_self_test_lets_the_test_go_on() {
 }
 
 #[test]
-fn zero_by_hand_is_sure_and_the_return_comes_back_to_it() {
+fn the_return_goes_to_a_zero_set_in_debug() {
     let inputs = [(30, Debug), (40, OkButton), (50, Debug), (60, Start), (120, Zero)];
     let run = pressed(small(), &inputs);
     let expected = [
@@ -120,8 +120,8 @@ fn zero_by_hand_is_sure_and_the_return_comes_back_to_it() {
 }
 
 #[test]
-fn homing_seeks_goes_off_and_comes_back_slowly() {
-    // The home switch is closed from place -5 to -3; the axis is at 0 and believes so.
+fn homing_seeks_backs_off_and_returns_slowly() {
+    // The home switch is closed from -5 to -3. The axis and the controller are at 0.
     let axis = Some(Axis { home_from_steps: Some(-5), home_to_steps: Some(-3), ..Axis::default() });
     let home = Home { coarse_hz: 100, fine_hz: 50, pull_off_steps: 2, ..Home::default() };
     let row = |position_steps| {
@@ -129,7 +129,7 @@ fn homing_seeks_goes_off_and_comes_back_slowly() {
         pressed(Parameters { home, axis: axis.clone(), ..small() }, &[(30, Signal::Home)])
     };
     let run = row(0);
-    // Three steps to -3; off to -2 and one more to -1, as the due one is the first of two; fine to -3.
+    // Three steps to -3; off to -2 and one more to -1, because the pending step is the first of two; fine to -3.
     assert_eq!(run.rises(), [41, 51, 61, 74, 84, 94, 117, 137, 157]);
     assert_eq!((run.position(), run.machine.axis_position(0), run.machine.trust(0)), (0, Some(-3), Some(2)));
     assert_eq!(run.machine.axis_error(0), Some(0));
@@ -139,13 +139,13 @@ fn homing_seeks_goes_off_and_comes_back_slowly() {
 }
 
 #[test]
-fn homing_that_does_not_find_its_switch_is_an_alarm() {
+fn homing_without_a_switch_is_an_alarm() {
     let home = Some(Home { coarse_hz: 100, max_travel_steps: 5, ..Home::default() });
     let inputs = presses(&[(30, Signal::Home)]);
     let parameters = Parameters { home, inputs, ..small() };
-    let alone = run(parameters.clone());
-    assert_eq!((alone.end().as_str(), alone.position()), ("Alarm:Homing", -5));
-    // Held closed: five steps off it, and it is still closed.
+    let open = run(parameters.clone());
+    assert_eq!((open.end().as_str(), open.position()), ("Alarm:Homing", -5));
+    // The switch is stuck: it is still closed after five steps.
     let mut stuck = parameters;
     stuck.inputs.push(level(20, HomeSwitch, true));
     let stuck = run(stuck);
@@ -154,7 +154,7 @@ fn homing_that_does_not_find_its_switch_is_an_alarm() {
 }
 
 #[test]
-fn a_group_home_goes_on_from_zero() {
+fn a_program_continues_from_zero_after_homing() {
     let axis = Some(Axis { home_from_steps: Some(-5), home_to_steps: Some(-3), ..Axis::default() });
     let home = Some(Home { coarse_hz: 100, fine_hz: 50, pull_off_steps: 2, ..Home::default() });
     let groups = vec![Group::Home, to_the_right(4)];
@@ -197,7 +197,7 @@ fn numbers_are_entered_digit_by_digit() {
 }
 
 #[test]
-fn the_last_six_digits_count_and_clear_is_a_zero() {
+fn an_entry_has_its_last_six_digits_and_clear_enters_zero() {
     let keys = [Key1, Key2, Key4, Key0, Key0, Key0, Key1];
     let mut all: Vec<_> = keys.iter().enumerate().map(|(index, &key)| (40 + 2 * index as u64, key)).collect();
     all.insert(0, (30, System));
@@ -207,7 +207,7 @@ fn the_last_six_digits_count_and_clear_is_a_zero() {
 }
 
 #[test]
-fn saved_numbers_survive_the_power() {
+fn saved_numbers_survive_a_power_cut() {
     let buttons = [(30, System), (40, Key4), (50, OkButton), (60, Back)];
     for (falls, expected) in [(70, 1), (300, 4)] {
         let mut inputs = presses(&buttons);
@@ -218,11 +218,11 @@ fn saved_numbers_survive_the_power() {
 }
 
 #[test]
-fn power_e_stop_and_clear_are_for_all_and_the_bus_shows_the_and_of_en() {
+fn power_e_stop_and_clear_apply_to_all_and_the_bus_has_the_and_of_en() {
     let quick = Parameters { inputs: vec![level(100, Estop, true), level(110, Estop, false)], ..small() };
     let mut quick = Parameters { debounce_cycles: 0, ..quick };
     quick.inputs.extend(presses(&[(120, Clear)]));
-    // The second one still hears the stop when clear is pressed.
+    // The second one still debounces the release of the stop when clear is pressed.
     let slow = Parameters { debounce_cycles: 30, ..small() };
     let run = run_all(vec![quick, slow], 1000);
     let states = [0, 1].map(|i| (run.machine.state(i), run.machine.alarm(i), run.machine.enabled(i)));
@@ -232,7 +232,7 @@ fn power_e_stop_and_clear_are_for_all_and_the_bus_shows_the_and_of_en() {
 }
 
 #[test]
-fn a_hand_moves_the_axis_while_the_motor_is_off() {
+fn the_axis_can_be_pushed_while_the_motor_is_off() {
     let push = |at, steps| Input { cycle: Instant(at), change: Change::Push(steps) };
     let inputs = vec![push(50, 9), level(60, Estop, true), push(60, 9), push(61, 5), push(62, -20)];
     let axis = Some(Axis { hard_min_steps: Some(-10), ..Axis::default() });
@@ -240,9 +240,9 @@ fn a_hand_moves_the_axis_while_the_motor_is_off() {
     assert_eq!((run.machine.axis_position(0), run.machine.axis_error(0)), (Some(-10), Some(-10)));
 }
 
-/// An axis that does not start at what memory says is where it was then: what counts is what happens later.
+/// The first position read from memory counts as correct, wherever the axis starts.
 #[test]
-fn before_a_zero_is_set_the_axis_error_counts_from_the_position_in_memory() {
+fn the_axis_error_is_relative_to_the_position_in_memory_until_zero_is_set() {
     let axis = Some(Axis { start_steps: 50, hard_max_steps: Some(51), ..Axis::default() });
     let row = |inputs| {
         let run = run(Parameters { inputs, axis: axis.clone(), ..small() });
@@ -251,7 +251,7 @@ fn before_a_zero_is_set_the_axis_error_counts_from_the_position_in_memory() {
     assert_eq!(row(vec![]), (0, Some(50), Some(0)));
     // The program's three steps to the right end at 51: two are lost.
     assert_eq!(row(presses(&[(30, Signal::Start)])), (3, Some(51), Some(-2)));
-    // A cut of the power and a second reading change nothing; a zero that is set does.
+    // A power cut and a second read change nothing; setting zero does.
     let cut = [level(200, Signal::Power, false), level(900, Signal::Power, true)];
     let mut inputs = presses(&[(30, Signal::Start)]);
     inputs.extend(cut);

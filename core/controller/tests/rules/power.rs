@@ -1,4 +1,4 @@
-//! Power cuts and memory (G2, G7): what is written when, what is left, and what is believed after it.
+//! Power cuts and memory (G2, G7): what is written when, what a cut leaves, and the position after it.
 
 use crate::{
     bench::{self, level, presses, run, small},
@@ -11,7 +11,7 @@ use stepscope_controller::{
 };
 use stepscope_peripheral::{signal::Record, units::Instant};
 
-/// The bench's controller with a cut of the power, and back.
+/// The same controller with a power cut.
 fn cut(parameters: Parameters, falls: u64, back: u64) -> Parameters {
     let mut inputs = parameters.inputs.clone();
     inputs.extend([level(falls, Power, false), level(back, Power, true)]);
@@ -19,17 +19,17 @@ fn cut(parameters: Parameters, falls: u64, back: u64) -> Parameters {
 }
 
 #[test]
-fn the_record_that_is_requested_at_16_bytes_of_8_5_ms_takes_136_ms() {
+fn a_record_of_16_bytes_of_8_5_ms_takes_136_ms() {
     let setup = Setup::default();
     let mut machine = StandAlone::new(&setup.check().unwrap());
     machine.run(Instant::NEVER, &mut Vec::new());
-    // Read in 1600; READY shows in the cycle after the record is complete.
+    // Memory is read in 1600; READY appears in the cycle after the record is complete.
     assert_eq!(machine.panel(0).last().map(|record| record.cycle.0), Some(1600 + 136 * 16_000 + 1));
     assert_eq!(17 * 136_000, 2_312_000, "144.5 ms at 16 MHz");
 }
 
 #[test]
-fn a_cut_stops_the_motor_closes_the_record_and_dies() {
+fn a_cut_stops_the_motor_closes_the_record_and_switches_off() {
     let parameters = Parameters { inputs: presses(&[(30, Start)]), ..small() };
     let run = run(cut(parameters, 51, 500));
     assert_eq!(run.edges(), "DIR+31 STEP+41 STEP-43 STEP+51 STEP-52 EN-52 DIR-152 EN+501");
@@ -46,8 +46,8 @@ fn a_cut_stops_the_motor_closes_the_record_and_dies() {
 }
 
 #[test]
-fn power_that_comes_back_in_time_restarts_when_the_record_is_closed() {
-    // Back in, the restart's first cycle: the closing record is written from 51 to 67.
+fn power_back_within_the_hold_up_time_restarts_after_the_closing_record() {
+    // When power is back, first cycle of the restart. The closing record is written from 51 to 67.
     for (back, restart) in [(52, 68), (66, 68), (67, 68), (68, 69), (151, 152)] {
         let parameters = Parameters { inputs: presses(&[(30, Start)]), ..small() };
         let run = run(cut(parameters, 51, back));
@@ -57,7 +57,7 @@ fn power_that_comes_back_in_time_restarts_when_the_record_is_closed() {
 }
 
 #[test]
-fn a_stop_that_is_held_through_a_restart_keeps_the_motor_off() {
+fn an_e_stop_held_through_a_restart_keeps_the_motor_off() {
     let inputs = vec![level(100, Power, false), level(150, Estop, true), level(300, Power, true)];
     let run = run(Parameters { inputs, ..small() });
     assert_eq!(run.edges(), "EN-101");
@@ -65,12 +65,12 @@ fn a_stop_that_is_held_through_a_restart_keeps_the_motor_off() {
 }
 
 #[test]
-fn without_hold_up_it_dies_at_once() {
+fn without_hold_up_time_it_switches_off_immediately() {
     let mut parameters = small();
     parameters.memory.hold_up_cycles = 0;
     let run = run(cut(parameters, 100, 200));
     assert_eq!(run.panel_from(28)[..2], ["101 Off t0 g0/0", "201 SelfTest t0 g0/0"]);
-    assert_eq!(run.end(), "Ready", "the open record is there: its position, trust 0");
+    assert_eq!(run.end(), "Ready", "the open record remains: its position, trust 0");
     assert_eq!(run.machine.trust(0), Some(0));
 }
 
@@ -84,8 +84,8 @@ fn a_memory_without_a_record_is_an_alarm() {
 }
 
 #[test]
-fn seventeen_bytes_less_a_cycle_of_hold_up_are_just_enough() {
-    // w, hold-up less than 17*w, whether each cut leaves the position known, wherever a save of numbers stands.
+fn a_hold_up_time_of_17_bytes_minus_one_cycle_is_the_minimum() {
+    // Byte write time w, hold-up = 17*w - less, whether every cut leaves the position known during a save of numbers.
     for (w, less, expected) in [(7, 1, true), (7, 2, false), (1, 1, true), (1, 2, false), (2, 2, false)] {
         let mut parameters = small();
         parameters.memory.byte_write_cycles = w;
@@ -103,7 +103,7 @@ fn seventeen_bytes_less_a_cycle_of_hold_up_are_just_enough() {
 }
 
 #[test]
-fn whatever_is_cut_a_closed_record_has_the_position_to_the_step() {
+fn a_trusted_position_after_any_cut_is_correct() {
     let mut known = [0_u32; 2];
     for policy in [Policy::PowerLoss, Policy::WriteAhead] {
         for hold_up_cycles in [0, 5, 16, 40] {
@@ -130,7 +130,7 @@ fn whatever_is_cut_a_closed_record_has_the_position_to_the_step() {
 }
 
 #[test]
-fn a_sequence_number_that_wraps_ends_a_run_all_the_same() {
+fn a_run_with_the_maximum_sequence_number_ends() {
     for policy in [Policy::PowerLoss, Policy::WriteAhead] {
         let mut record = vec![0xff, 0xff, 0xff, 0xff, 5, 0, 0, 0, 2, 0, 0, 0];
         let check = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI).checksum(&record);
@@ -142,7 +142,7 @@ fn a_sequence_number_that_wraps_ends_a_run_all_the_same() {
         let mut machine = StandAlone::new(&setup.check().unwrap());
         let mut trace: Vec<Record> = Vec::new();
         machine.run(Instant::NEVER, &mut trace);
-        assert!(machine.at_rest() && machine.position(0) == Some(5), "{policy:?}: the memory never opens");
+        assert!(machine.at_rest() && machine.position(0) == Some(5), "{policy:?}: no record can be newer");
         let now = machine.now();
         machine.run(Instant(now.0 + 1000), &mut trace);
         assert_eq!(machine.now(), Instant(now.0 + 1000));
@@ -150,11 +150,11 @@ fn a_sequence_number_that_wraps_ends_a_run_all_the_same() {
 }
 
 #[test]
-fn random_runs_with_cuts_believe_no_wrong_position() {
+fn random_runs_with_cuts_never_trust_a_wrong_position() {
     for seed in 0..300 {
         let mut setup = common::setup(seed);
         for controller in &mut setup.controllers {
-            // Nothing that sets a position anew.
+            // Without inputs and groups that set a new position.
             controller.memory.initial = Initial::Factory;
             controller.home = None;
             controller.groups.retain(|group| !matches!(group, stepscope_controller::parameters::Group::Home));
@@ -170,7 +170,7 @@ fn random_runs_with_cuts_believe_no_wrong_position() {
         for until in (100..20_000).step_by(97) {
             machine.run(Instant(until), &mut Vec::new());
             for i in 0..checked.controllers().len() {
-                if let Some((position, 1..)) = machine.believed_after_power_up(i) {
+                if let Some((position, 1..)) = machine.position_after_power_up(i) {
                     assert_eq!(
                         position,
                         machine.positions()[i],

@@ -1,4 +1,4 @@
-//! What is refused, with its numbers, and what is only warned of (CONTROLLER.md, "Refused").
+//! Errors and warnings with their numbers (CONTROLLER.md, "Refused").
 
 use crate::bench::{level, small};
 use stepscope_controller::{
@@ -12,29 +12,28 @@ use stepscope_controller::{
 };
 use stepscope_peripheral::units::Instant;
 
-/// What is refused of one controller at 1 MHz with the bus's own times.
+/// The errors of one controller at 1 MHz with the default pulse times.
 fn refused(parameters: Parameters) -> Vec<String> {
     let setup = Setup { clock_hz: 1_000_000, controllers: vec![parameters], ..Setup::default() };
     setup.check().err().unwrap_or_default().iter().map(ToString::to_string).collect()
 }
 
-/// A controller that holds at 1 MHz: a pulse takes 80 cycles.
+/// A valid controller at 1 MHz: a pulse with its pauses takes 80 cycles.
 fn good() -> Parameters {
     Parameters { max_speed_hz: 12_500, ..Parameters::default() }
 }
 
 #[test]
-fn the_contracts_own_examples_are_refused_in_its_words() {
+fn errors_have_numbers_and_a_remedy() {
     let rows = [
         (
             Parameters { max_speed_hz: 20_000, ..good() },
-            "controller 0: max_speed_hz: 20000 Hz is a step every 50 cycles at this clock; W + max(H + D, 1) is 80 cycles, so \
-             at most 12500 Hz",
+            "controller 0: max_speed_hz: 20000 Hz is a step every 50 cycles, but a pulse with its pauses takes 80; \
+             use 10 to 12500 Hz",
         ),
         (
             Parameters { home: Some(Home { coarse_hz: 1500, ..Home::default() }), ..good() },
-            "controller 0: home.coarse_hz: 1500 Hz is above start_speed_hz 1000: homing stops at once and must stay in the \
-             start-stop range",
+            "controller 0: home.coarse_hz: 1500 Hz is above `start_speed_hz`, but homing has no ramp; use 10 to 1000 Hz",
         ),
         (
             Parameters {
@@ -45,18 +44,15 @@ fn the_contracts_own_examples_are_refused_in_its_words() {
                 ],
                 ..good()
             },
-            "controller 0: groups[2].repeat.first: 3 is not before this group (3); give a group before it",
+            "controller 0: groups[2].repeat.first: 3 is not before this group (3); use 1 to 2",
         ),
         (
-            Parameters {
-                groups: vec![Group::Jump(Jump { to: 9, ..Jump::default() }); 4].into_iter().take(4).collect(),
-                ..good()
-            },
-            "controller 0: groups[0].jump.to: 9, but there are 4 groups; give 1 to 4",
+            Parameters { groups: vec![Group::Jump(Jump { to: 9, ..Jump::default() }); 4], ..good() },
+            "controller 0: groups[0].jump.to: there is no group 9; use 1 to 4",
         ),
         (
             Parameters { groups: vec![Group::Home], ..good() },
-            "controller 0: groups[0].home: there is no `home`; give one or leave the group out",
+            "controller 0: groups[0].home: the controller has no `home`; add one or remove this group",
         ),
         (
             Parameters {
@@ -64,14 +60,14 @@ fn the_contracts_own_examples_are_refused_in_its_words() {
                 inputs: vec![level(7, Signal::LimitMax, true)],
                 ..good()
             },
-            "controller 0: inputs[0]: limit_max is driven by axis.max_switch_at_steps; leave one of them out",
+            "controller 0: inputs[0]: limit_max is driven by axis.max_switch_at_steps; remove one of them",
         ),
         (
             Parameters {
                 inputs: vec![level(4000, Signal::Start, true), level(4000, Signal::Start, false)],
                 ..good()
             },
-            "controller 0: inputs[1]: start has two levels at cycle 4000; give one",
+            "controller 0: inputs[1]: start has two entries at cycle 4000; use one",
         ),
         (
             Parameters {
@@ -81,8 +77,8 @@ fn the_contracts_own_examples_are_refused_in_its_words() {
                 })],
                 ..good()
             },
-            "controller 0: groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse allows; W + max(H \
-             + D, 1) is 5242880/65536 cycle, so give at least that",
+            "controller 0: groups[0].profile.intervals_q16[1]: 5242879/65536 cycle is shorter than a pulse with its \
+             pauses; use at least 5242880/65536 cycle",
         ),
     ];
     for (parameters, expected) in rows {
@@ -92,7 +88,7 @@ fn the_contracts_own_examples_are_refused_in_its_words() {
 }
 
 #[test]
-fn each_other_rule_names_its_field() {
+fn each_error_names_its_field() {
     let until = |input| {
         let until = Some(Until { input, level: true });
         vec![Group::Move(Move { until, ..Move::default() })]
@@ -141,20 +137,20 @@ fn each_other_rule_names_its_field() {
 }
 
 #[test]
-fn all_problems_are_reported_at_once_and_those_of_the_bus_too() {
+fn all_errors_of_the_bus_and_the_controllers_are_reported_together() {
     let second = Parameters { inputs: vec![level(9, Signal::Power, false)], decimals: 9, ..good() };
     let setup = Setup { channels: 1, controllers: vec![good(), second], ..Setup::default() };
     let refused: Vec<String> = setup.check().unwrap_err().iter().map(ToString::to_string).collect();
     let expected = [
-        "source.standalone: 2 is out of range; give 1 to 1",
-        "controller 1: decimals: 9 is out of range; give 0 to 3",
-        "controller 1: inputs[0]: power is for all controllers and the first one's; leave it out here",
+        "source.standalone: 2 is out of range; use 1 to 1",
+        "controller 1: decimals: 9 is out of range; use 0 to 3",
+        "controller 1: inputs[0]: power applies to all controllers; use it only in the script of the first controller",
     ];
     assert_eq!(refused, expected);
 }
 
 #[test]
-fn warnings_tell_of_what_may_not_be_meant() {
+fn unintended_values_are_warnings() {
     let memory = Memory { byte_write_cycles: 10, hold_up_cycles: 168, ..Memory::default() };
     let jog = Jog { speed_hz: 1001, ..Jog::default() };
     let risky =
@@ -169,9 +165,9 @@ fn warnings_tell_of_what_may_not_be_meant() {
     assert!(fine.check().unwrap().warnings().is_empty());
 }
 
-/// G3: 36 rows from 1000 at 3000 Hz/s, 4200 steps, come to 5119 Hz.
+/// 36 rows from 1000 Hz at 3000 Hz/s are 4200 steps and end at 5119 Hz.
 #[test]
-fn a_move_that_never_comes_to_its_speed_is_reported() {
+fn a_move_that_never_reaches_its_speed_is_a_warning() {
     let warned = |length, short_move| {
         let own = Move { length, speed_hz: 5000, level: 3, ..Move::default() };
         let groups = vec![Group::Home, Group::Move(own)];
@@ -181,15 +177,15 @@ fn a_move_that_never_comes_to_its_speed_is_reported() {
         let checked = Setup { controllers: vec![numbers], ..Setup::default() }.check().unwrap();
         checked.warnings().first().map(ToString::to_string)
     };
-    let warning = "controller 0: groups[1].move.speed_hz: 8399 steps are too short for 5000 Hz, which takes 8400 up and down: the \
-                whole move goes at 1000 Hz; a higher level needs fewer, and short_move \"reverse\" goes up as far as they allow";
+    let warning = "controller 0: groups[1].move.speed_hz: the whole move runs at 1000 Hz, because 5000 Hz needs \
+                   8400 steps and the move has 8399; use a higher `acceleration_level` or `short_move` \"reverse\"";
     assert_eq!(warned(8399, ShortMove::Document).as_deref(), Some(warning));
     assert_eq!(warned(8400, ShortMove::Document), None);
     assert_eq!(warned(8399, ShortMove::TurnRound), None);
 }
 
 #[test]
-fn a_live_input_is_held_to_the_rules_of_a_script() {
+fn an_entered_input_follows_the_rules_of_a_script() {
     let axis = Some(Axis { max_switch_at_steps: Some(9), ..Axis::default() });
     let inputs = vec![level(50, Signal::Clear, true)];
     let first = Parameters { inputs, axis, ..small() };
@@ -206,11 +202,11 @@ fn a_live_input_is_held_to_the_rules_of_a_script() {
     assert_eq!(enter(20, 0, start), Ok(()));
     assert_eq!(enter(20, 1, start), Ok(()), "each controller has its own buttons");
     assert_eq!(enter(20, 2, start), Err(NotEntered::NoController.to_string()));
-    let most = limits::INPUT_CYCLE.end();
-    assert_eq!(enter(19, 0, start), Err(format!("cycle 19 is out of range; give 20 to {most}")));
-    assert!(enter(20, 0, start).unwrap_err().contains("two levels"));
-    assert!(enter(50, 0, Signal::Clear).unwrap_err().contains("two levels"));
-    assert!(enter(60, 1, Signal::Clear).unwrap_err().contains("for all"));
+    let max = limits::INPUT_CYCLE.end();
+    assert_eq!(enter(19, 0, start), Err(format!("cycle 19 is out of range; use 20 to {max}")));
+    assert!(enter(20, 0, start).unwrap_err().contains("two entries"));
+    assert!(enter(50, 0, Signal::Clear).unwrap_err().contains("two entries"));
+    assert!(enter(60, 1, Signal::Clear).unwrap_err().contains("all controllers"));
     assert!(enter(60, 0, Signal::LimitMax).unwrap_err().contains("axis.max_switch_at_steps"));
     assert_eq!(enter(60, 1, Signal::LimitMax), Ok(()));
 }

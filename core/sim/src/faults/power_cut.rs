@@ -199,7 +199,7 @@ impl Watched {
         let run = StandAlone::new(checked);
         // Before memory is read, its content is the truth.
         let truth = (0..run.controllers()).map(|index| {
-            let (position, trust) = run.believed_after_power_up(index).unwrap_or((0, 0));
+            let (position, trust) = run.position_after_power_up(index).unwrap_or((0, 0));
             Truth { zero: position.wrapping_neg(), before: (position.wrapping_neg(), 0), known: trust > 0 }
         });
         let truth: Vec<Truth> = truth.collect();

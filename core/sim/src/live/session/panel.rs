@@ -19,7 +19,7 @@ pub const MAX_RECORDED_INPUTS: usize = *limits::INPUTS.end() as usize;
 
 /// A recording with twice as many groups could not be run.
 pub(super) fn begins_many(machine: &StandAlone) -> bool {
-    machine.work().is_none() && machine.groups_begun() > limits::MAX_GROUPS_BEGUN / 2
+    machine.too_many_groups().is_none() && machine.groups_begun() > limits::MAX_GROUPS_BEGUN / 2
 }
 
 type OfController = (usize, Input);
@@ -70,7 +70,7 @@ impl Presses {
         let mut cycle = machine.now();
         while let Err(why) = machine.enter(cycle, controller, change) {
             match why {
-                NotEntered::Refused(Refusal::Twice { .. }) => cycle = cycle.next(),
+                NotEntered::Refused(Refusal::DuplicateInput { .. }) => cycle = cycle.next(),
                 other => return Err(other),
             }
         }
@@ -276,7 +276,7 @@ mod tests {
         assert!(!session.records_all());
         session.recording().verify().expect("the same");
         to(&mut session, 1_200_000);
-        assert!(session.run().stand_alone().expect("it is").work().is_some());
+        assert!(session.run().stand_alone().expect("it is").too_many_groups().is_some());
         session.recording().verify().expect("the same");
     }
 
