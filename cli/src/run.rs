@@ -141,7 +141,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut progress = Progress::new("run", arguments.show.progress);
     let finished = go(&experiment, &mut stations, &mut progress);
-    if let Some(work) = finished.stand_alone().and_then(StandAlone::work) {
+    if let Some(work) = finished.stand_alone().and_then(StandAlone::too_many_groups) {
         let at = format!("source.standalone[{}].groups", work.controller);
         return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::TooManyGroups(work))]));
     }
