@@ -62,7 +62,7 @@ fn scenario(controllers: usize, (baud, slot, ticks): (u32, u32, u32), seconds: u
         2000 * seconds
     );
     // The queue covers a machine that stops for more than a second.
-    let bus = format!(r#"{{ "step_period_cycles": {slot}, "queue_depth": 200, "boot_cycles": 0 }}"#);
+    let bus = format!(r#"{{ "step_period_cycles": {slot}, "queue_depth": 200, "self_test_cycles": 0 }}"#);
     let other = |address| format!(r#"{{ "address": {address}, "bus": {bus}, "axes": {axes} }}"#);
     let others: Vec<String> = (1..controllers).map(other).collect();
     let others = if others.is_empty() {
@@ -227,7 +227,7 @@ fn day() {
     // 20 ms: M = 100 slots of 200 us. At 9600 baud a frame of 32 ticks takes nearly that long.
     const TICK_MS: u64 = 20;
     const TICKS: u64 = 32;
-    let json = r#"{ "bus": { "channels": 16, "step_period_cycles": 3200, "queue_depth": 64, "boot_cycles": 0 },
+    let json = r#"{ "bus": { "channels": 16, "step_period_cycles": 3200, "queue_depth": 64, "self_test_cycles": 0 },
         "line": { "protocol": "framed", "address": 0, "baud": 9600 } }"#;
     println!("a day of session at full speed, 16 channels moving");
     let server = Server::start(&file("live-day.json", json), &["--pace", "max"]);

@@ -77,8 +77,8 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 Move::Trapezoid(Trapezoid {
                     distance,
                     start_speed,
-                    top_speed,
-                    acceleration,
+                    max_speed: top_speed,
+                    max_acceleration: acceleration,
                     method,
                     timer_hz,
                 })

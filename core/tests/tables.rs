@@ -32,8 +32,8 @@ fn trapezoid(steps: f64, start: f64, top: f64, acceleration: f64, method: Trapez
     Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(steps),
         start_speed: steps_s(start),
-        top_speed: steps_s(top),
-        acceleration: Acceleration::StepsPerSecond2(acceleration),
+        max_speed: steps_s(top),
+        max_acceleration: Acceleration::StepsPerSecond2(acceleration),
         method,
         timer_hz: 1_000_000,
     })

@@ -22,7 +22,7 @@ fn bus() -> Bus {
         pulse_width_cycles: 20,
         dir_setup_cycles: 10,
         queue_depth: 4,
-        boot_cycles: 500,
+        self_test_cycles: 500,
         ..Bus::default()
     }
 }

@@ -21,7 +21,7 @@ pub fn bus(config: &Config) -> Bus {
         pulse_phasing: if config.staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
         settle_cycles: config.settle as u32,
         queue_depth: config.queue_depth as u8,
-        boot_cycles: config.boot as u32,
+        self_test_cycles: config.boot as u32,
     }
 }
 

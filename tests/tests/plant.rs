@@ -149,7 +149,7 @@ fn the_documents_table_5_comes_out_as_its_encoder_reads_it() {
 /// Four patent-set motors with a self-test of Ts = 32768.
 fn self_test(plant: &str, bus: &str) -> String {
     format!(
-        r#"{{"bus":{{"channels":4,"slots":4,"step_period_cycles":32768,"boot_cycles":3145729,"pulse_phasing":"staggered"{bus}}},
+        r#"{{"bus":{{"channels":4,"slots":4,"step_period_cycles":32768,"self_test_cycles":3145729,"pulse_phasing":"staggered"{bus}}},
             "source":{{"packets":{{"packets":["81818181","81818181"]}}}},
             "plant":{{"self_test":true,"motors":[{PATENT_MOTOR}]{plant}}}}}"#
     )
@@ -345,7 +345,7 @@ fn both_speeds_and_all_slices_give_the_same_edges_and_the_same_plant() {
         ),
         (
             small(
-                r#"},"bus":{"channels":2,"slots":4,"step_period_cycles":1000,"pulse_width_cycles":10,"dir_setup_cycles":10,"boot_cycles":48001,
+                r#"},"bus":{"channels":2,"slots":4,"step_period_cycles":1000,"pulse_width_cycles":10,"dir_setup_cycles":10,"self_test_cycles":48001,
                     "pulse_phasing":"staggered"},"source":{"packets":{"packets":["8181"]}},"plant":{"self_test":true,"tail_s":0.01}}"#,
             ),
             1,

@@ -39,7 +39,7 @@ mod tests {
             recording.trace
         };
         // The same move by a controller whose start-up takes longer.
-        let (own, model) = (recorded(r#"{"bus":{"boot_cycles":4000}}"#), recorded("{}"));
+        let (own, model) = (recorded(r#"{"bus":{"self_test_cycles":4000}}"#), recorded("{}"));
         assert_eq!(Report::of(&own, 16_000_000, 1, None).channels[0].figures.steps, 3200);
         let (own, model) = (steps(&own, 0), steps(&model, 0));
         let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };

@@ -66,8 +66,8 @@ parameters! { (Clone, Debug, PartialEq)
         /// Left negative.
         pub distance: Distance = Distance::Steps(2000.0),
         pub start_speed: Speed = Speed::StepsPerSecond(250.0),
-        pub top_speed: Speed = Speed::StepsPerSecond(4000.0),
-        pub acceleration: Acceleration = Acceleration::StepsPerSecond2(9000.0),
+        pub max_speed: Speed = Speed::StepsPerSecond(4000.0),
+        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(9000.0),
         pub method: TrapezoidMethod = TrapezoidMethod::Table,
         /// Clock of the timer that counts the reloads; only for the table.
         pub timer_hz: u32 = 1_000_000,

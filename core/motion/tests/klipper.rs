@@ -75,8 +75,8 @@ fn trapezoid(steps: f64) -> Move {
     Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(steps),
         start_speed: Speed::StepsPerSecond(250.0),
-        top_speed: Speed::StepsPerSecond(20_000.0),
-        acceleration: Acceleration::StepsPerSecond2(9000.0),
+        max_speed: Speed::StepsPerSecond(20_000.0),
+        max_acceleration: Acceleration::StepsPerSecond2(9000.0),
         ..Trapezoid::default()
     })
 }

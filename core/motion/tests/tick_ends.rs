@@ -27,8 +27,8 @@ fn by_table(steps: f64) -> [Move; 2] {
         Move::Trapezoid(Trapezoid {
             distance: distance.clone(),
             start_speed: speed.clone(),
-            top_speed: speed.clone(),
-            acceleration: Acceleration::StepsPerSecond2(1000.0),
+            max_speed: speed.clone(),
+            max_acceleration: Acceleration::StepsPerSecond2(1000.0),
             method: TrapezoidMethod::Table,
             timer_hz: 1_000_000,
         }),
@@ -100,8 +100,8 @@ fn by_every_cycle_as_many_are_due_as_whole_numbers_say() {
                 let trapezoid = Trapezoid {
                     distance,
                     start_speed: speed.clone(),
-                    top_speed: speed,
-                    acceleration: Acceleration::StepsPerSecond2(1000.0),
+                    max_speed: speed,
+                    max_acceleration: Acceleration::StepsPerSecond2(1000.0),
                     method: TrapezoidMethod::Table,
                     timer_hz,
                 };

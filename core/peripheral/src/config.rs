@@ -73,7 +73,7 @@ pub struct Bus {
     /// Maximum ticks in the queue, 1 to 255.
     pub queue_depth: u8,
     /// Self-test after reset. Packets that end within it are dropped; framed ticks get BUSY.
-    pub boot_cycles: u32,
+    pub self_test_cycles: u32,
 }
 
 impl Default for Bus {
@@ -90,7 +90,7 @@ impl Default for Bus {
             pulse_phasing: PulsePhasing::default(),
             settle_cycles: 0,
             queue_depth: 16,
-            boot_cycles: 1600,
+            self_test_cycles: 1600,
         }
     }
 }
@@ -351,7 +351,7 @@ impl Config {
 
     /// End of the self-test.
     pub const fn boot(&self) -> Instant {
-        Instant(self.bus.boot_cycles as u64)
+        Instant(self.bus.self_test_cycles as u64)
     }
 
     /// Maximum ticks in the queue, 1 to 255.

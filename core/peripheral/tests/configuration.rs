@@ -24,7 +24,7 @@ const BUS: Bus = Bus {
     pulse_phasing: PulsePhasing::Simultaneous,
     settle_cycles: 0,
     queue_depth: 5,
-    boot_cycles: 7,
+    self_test_cycles: 7,
 };
 
 fn line() -> SerialLine {

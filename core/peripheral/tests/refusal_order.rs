@@ -41,10 +41,10 @@ const BUS: Bus = Bus {
     pulse_phasing: PulsePhasing::Simultaneous,
     settle_cycles: 0,
     queue_depth: 2,
-    boot_cycles: 0,
+    self_test_cycles: 0,
 };
 /// The same during the self-test.
-const BOOTING: Bus = Bus { boot_cycles: LONG, ..BUS };
+const BOOTING: Bus = Bus { self_test_cycles: LONG, ..BUS };
 
 /// Outcomes of the frames, and the replies.
 #[derive(Default)]

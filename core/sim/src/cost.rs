@@ -297,7 +297,7 @@ mod tests {
     fn a_slow_receivers_tick_begins_after_the_byte_has_been_sent() {
         // 10.4 cycles a bit are sent, 11 heard: the byte ends at 105 and is delivered there.
         let json = r#"{"clock_hz":1000,"line":{"baud":96,"receiver_baud":94},
-            "bus":{"boot_cycles":0},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"87"}]}}}"#;
+            "bus":{"self_test_cycles":0},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"87"}]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
         let run = experiment.run(&mut vec![]);
         assert_eq!(run.cycles().0, 105 + 1 + 32_000 + 1);
@@ -322,7 +322,7 @@ mod tests {
     fn replies_to_a_script_are_within_its_cost() {
         for channels in [1, 2, 16] {
             let json = format!(
-                r#"{{"bus":{{"channels":{channels},"boot_cycles":0}},"line":{{"protocol":"framed"}},
+                r#"{{"bus":{{"channels":{channels},"self_test_cycles":0}},"line":{{"protocol":"framed"}},
                 "source":{{"line":{{"sends":[{{"start_cycle":1,"frame":"0007"}}]}}}}}}"#
             );
             let experiment = Experiment::from_json(&json).expect("runs");

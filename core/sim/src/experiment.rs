@@ -350,7 +350,8 @@ mod tests {
 
     #[test]
     fn a_scripted_runs_end_counts_the_ticks_that_wait() {
-        let json = r#"{"source":{"line":{"sends":[{"bytes":"0505050505050505"}]}},"bus":{"boot_cycles":0}}"#;
+        let json =
+            r#"{"source":{"line":{"sends":[{"bytes":"0505050505050505"}]}},"bus":{"self_test_cycles":0}}"#;
         let experiment = Experiment::from_json(json).expect("no problems");
         let run = experiment.run(&mut Vec::new());
         assert!(run.cycles().0 > 8 * 32_000);

@@ -42,8 +42,8 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
                 Move::Trapezoid(Trapezoid {
                     distance,
                     start_speed: Speed::StepsPerSecond(start),
-                    top_speed: Speed::StepsPerSecond(start + climb),
-                    acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    max_speed: Speed::StepsPerSecond(start + climb),
+                    max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     method,
                     timer_hz: 1_000_000,
                 })

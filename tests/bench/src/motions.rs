@@ -46,7 +46,7 @@ fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
             step_period_cycles: 100 * micros,
             pulse_width_cycles: 10 * micros,
             dir_setup_cycles: 10 * micros,
-            boot_cycles: 1000 * micros,
+            self_test_cycles: 1000 * micros,
             ..Bus::default()
         },
         line: Line { baud: 50_000, ..Line::default() },
@@ -67,8 +67,8 @@ pub(crate) fn table_axis(steps: u32) -> Axis {
     let trapezoid = Trapezoid {
         distance: Distance::Steps(steps.into()),
         start_speed: speed(1.0),
-        top_speed: speed(200_000.0),
-        acceleration: Acceleration::StepsPerSecond2(200_000.0),
+        max_speed: speed(200_000.0),
+        max_acceleration: Acceleration::StepsPerSecond2(200_000.0),
         method: TrapezoidMethod::Exact,
         ..Trapezoid::default()
     };

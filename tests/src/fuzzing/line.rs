@@ -65,7 +65,7 @@ fn peripheral(bytes: &mut Unstructured<'_>) -> Result<Scenario> {
     let mut number = |least: u32, most: u32| bytes.int_in_range(least..=most);
     let (channels, slots, queue_depth) = (number(1, 16)?, number(1, 12)?, number(1, 4)?);
     let (width, setup, hold) = (number(1, 6)?, number(0, 5)?, number(0, 5)?);
-    let (spare, settle, boot_cycles) = (number(0, 255)?, number(0, 63)?, number(0, 1023)?);
+    let (spare, settle, self_test_cycles) = (number(0, 255)?, number(0, 63)?, number(0, 1023)?);
     let (clock_hz, bit_permille) = (number(1_000, 65_000)?, number(10_400, 26_000)?);
     let baud = (u64::from(clock_hz) * 1_000 / u64::from(bit_permille)) as u32;
     let receiver_baud = match number(0, 511)? {
@@ -90,7 +90,7 @@ fn peripheral(bytes: &mut Unstructured<'_>) -> Result<Scenario> {
             pulse_phasing: if staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
             settle_cycles: settle,
             queue_depth: queue_depth as u8,
-            boot_cycles,
+            self_test_cycles,
         },
         line: Line { baud, receiver_baud, address, ..Line::default() },
         ..Scenario::default()

@@ -38,7 +38,7 @@ const PLANTS: [&str; 3] = [
         "drive":{"regulator":"chopper","decay":"mixed","dac_levels":31}}}]},
         "source":{"segments":{"channels":[{"start_cycle":100,"segments":[{"steps":{"count":9,"interval_q16":104857600}}]},
         {"start_cycle":100,"segments":[{"steps":{"count":9,"interval_q16":104857600,"dir":0}}]}]}}}"#,
-    r#"{"bus":{"step_period_cycles":200,"slots":2,"boot_cycles":5000,"pulse_width_cycles":10,"dir_setup_cycles":2},
+    r#"{"bus":{"step_period_cycles":200,"slots":2,"self_test_cycles":5000,"pulse_width_cycles":10,"dir_setup_cycles":2},
         "line":{"baud":1000000},"run_cycles":7000,"plant":{"self_test":true,"step_cycles":8},
         "source":{"packets":{"packets":["81","81"]}}}"#,
     r#"{"run_cycles":20000,"plant":{"motors":[{"motor":{"sine_torque_mn_m":1000000,"sine_per_turn":1000}}]},

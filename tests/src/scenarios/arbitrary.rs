@@ -134,7 +134,7 @@ fn bus() -> BoxedStrategy<Bus> {
     let counts = (small_or_any(1), small_or_any(100), small_or_any(16));
     let times = (small_or_any(320), small_or_any(40), small_or_any(40), small_or_any(0), small_or_any(0));
     (modes, counts, times, small_or_any(1600))
-        .prop_map(|([burst, common, staggered], (channels, slots, queue_depth), times, boot_cycles)| {
+        .prop_map(|([burst, common, staggered], (channels, slots, queue_depth), times, self_test_cycles)| {
             let (step_period_cycles, pulse_width_cycles, dir_setup_cycles, dir_hold_cycles, settle_cycles) =
                 times;
             Bus {
@@ -149,7 +149,7 @@ fn bus() -> BoxedStrategy<Bus> {
                 pulse_phasing: if staggered { PulsePhasing::Staggered } else { PulsePhasing::Simultaneous },
                 settle_cycles,
                 queue_depth,
-                boot_cycles,
+                self_test_cycles,
             }
         })
         .boxed()
@@ -457,8 +457,8 @@ fn one_move() -> BoxedStrategy<Move> {
                 Move::Trapezoid(Trapezoid {
                     distance,
                     start_speed,
-                    top_speed,
-                    acceleration,
+                    max_speed: top_speed,
+                    max_acceleration: acceleration,
                     method,
                     timer_hz,
                 })

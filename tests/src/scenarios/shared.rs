@@ -29,7 +29,7 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
             scenario.line.baud *= faster;
             scenario.line.receiver_baud = scenario.line.receiver_baud.map(|baud| baud * faster);
             scenario.bus.step_period_cycles *= faster;
-            scenario.bus.boot_cycles = scenario.bus.boot_cycles.min(2_000);
+            scenario.bus.self_test_cycles = scenario.bus.self_test_cycles.min(2_000);
             scenario.line.glitches.truncate(1);
             if let Source::Packets(source) = &mut scenario.source {
                 for Hex(packet) in &mut source.packets {

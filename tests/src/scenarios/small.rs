@@ -64,7 +64,7 @@ fn peripheral() -> impl Strategy<Value = Scenario> {
                     },
                     settle_cycles: room + settle,
                     queue_depth: depth,
-                    boot_cycles: boot,
+                    self_test_cycles: boot,
                 },
                 line: Line {
                     baud,
@@ -154,8 +154,8 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                 Move::Trapezoid(Trapezoid {
                     distance: Distance::Steps(steps),
                     start_speed: speed((rate * start * top).max(1.0)),
-                    top_speed: speed((rate * top).max(1.0)),
-                    acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
+                    max_speed: speed((rate * top).max(1.0)),
+                    max_acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
                     method,
                     timer_hz: 1_000_000,
                 })

@@ -133,8 +133,8 @@ proptest! {
         let given = stepscope_core::motion::moves::Trapezoid {
             distance: Distance::Steps(steps),
             start_speed: speed(start),
-            top_speed: speed(top),
-            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            max_speed: speed(top),
+            max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
         };
@@ -308,8 +308,8 @@ fn own_curve() -> impl Strategy<Value = Move> {
                 Move::Trapezoid(stepscope_core::motion::moves::Trapezoid {
                     distance,
                     start_speed: speed(start),
-                    top_speed: speed((start * times).min(1e7)),
-                    acceleration: Acceleration::StepsPerSecond2(acceleration),
+                    max_speed: speed((start * times).min(1e7)),
+                    max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     method: TrapezoidMethod::Table,
                     timer_hz: timer as u32,
                 })

@@ -15,10 +15,10 @@ use crate::{
 
 /// Ticks of 20 ms, two channels and an address. What the queue holds is longer than a busy machine is late.
 const SHORT: &str = r#"{"line":{"protocol":"raw","address":7},
-    "bus":{"channels":2,"step_period_cycles":3200,"queue_depth":250,"boot_cycles":0},
+    "bus":{"channels":2,"step_period_cycles":3200,"queue_depth":250,"self_test_cycles":0},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]},{"moves":[{"cosine":{"distance":{"steps":-300},"duration_s":1}}]}]}}}"#;
 /// Long enough to be stopped on the way, on any machine.
-const LONG: &str = r#"{"line":{"protocol":"raw"},"bus":{"step_period_cycles":3200,"queue_depth":250,"boot_cycles":0},
+const LONG: &str = r#"{"line":{"protocol":"raw"},"bus":{"step_period_cycles":3200,"queue_depth":250,"self_test_cycles":0},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 const LEAD_NS: u64 = 200_000_000;
 

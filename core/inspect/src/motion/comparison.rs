@@ -110,8 +110,8 @@ impl Request {
                 Move::Trapezoid(Trapezoid {
                     distance,
                     start_speed: Speed::StepsPerSecond(start),
-                    top_speed: Speed::StepsPerSecond(top),
-                    acceleration: Acceleration::StepsPerSecond2((top - start) / ramp_s),
+                    max_speed: Speed::StepsPerSecond(top),
+                    max_acceleration: Acceleration::StepsPerSecond2((top - start) / ramp_s),
                     method,
                     timer_hz,
                 })

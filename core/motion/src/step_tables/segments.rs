@@ -207,8 +207,8 @@ mod tests {
         let table = Move::Trapezoid(Trapezoid {
             distance: Distance::Steps(300.0),
             start_speed: Speed::StepsPerSecond(250.0),
-            top_speed: Speed::StepsPerSecond(1200.0),
-            acceleration: Acceleration::StepsPerSecond2(9000.0),
+            max_speed: Speed::StepsPerSecond(1200.0),
+            max_acceleration: Acceleration::StepsPerSecond2(9000.0),
             ..Trapezoid::default()
         });
         let plan = plan(vec![table.clone(), Move::Dwell(Dwell { duration_s: 0.1 }), table.clone()]);

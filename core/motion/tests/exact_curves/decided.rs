@@ -121,8 +121,8 @@ fn every_step_of_a_trapezoid_is_in_its_exact_cycle() {
         let given = Trapezoid {
             distance: steps(count),
             start_speed: Speed::StepsPerSecond(start),
-            top_speed: Speed::StepsPerSecond(top),
-            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            max_speed: Speed::StepsPerSecond(top),
+            max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
         };

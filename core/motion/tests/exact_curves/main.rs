@@ -320,8 +320,8 @@ fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
     let given = Trapezoid {
         distance: Distance::Steps(steps as f64),
         start_speed: Speed::StepsPerSecond(start),
-        top_speed: Speed::StepsPerSecond(top),
-        acceleration: Acceleration::StepsPerSecond2(acceleration),
+        max_speed: Speed::StepsPerSecond(top),
+        max_acceleration: Acceleration::StepsPerSecond2(acceleration),
         method: TrapezoidMethod::Exact,
         timer_hz: 1,
     };
@@ -525,8 +525,8 @@ fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
         let given = Trapezoid {
             distance: Distance::Steps(20_001.0),
             start_speed: Speed::StepsPerSecond(start),
-            top_speed: Speed::StepsPerSecond(top),
-            acceleration: Acceleration::StepsPerSecond2(acceleration),
+            max_speed: Speed::StepsPerSecond(top),
+            max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
         };

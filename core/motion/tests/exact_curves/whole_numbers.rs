@@ -23,8 +23,8 @@ fn a_late_step_of_a_table_has_the_cycle_of_its_whole_numbers() {
     let table = plan(vec![Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(20_000.0),
         start_speed: Speed::StepsPerSecond(1.0),
-        top_speed: Speed::StepsPerSecond(2.0),
-        acceleration: Acceleration::StepsPerSecond2(1.0),
+        max_speed: Speed::StepsPerSecond(2.0),
+        max_acceleration: Acceleration::StepsPerSecond2(1.0),
         method: TrapezoidMethod::Table,
         timer_hz: u32::MAX,
     })]);

@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn time_passes_only_with_accesses_and_waits() {
-        let bus = Bus { slots: 4, boot_cycles: 0, ..Bus::default() };
+        let bus = Bus { slots: 4, self_test_cycles: 0, ..Bus::default() };
         let config = Config::new(16_000_000, &bus, &SerialLine::default()).expect("it holds");
         // Cycles per access, requested and actual.
         for (requested, access) in [(0, 1), (1, 1), (8, 8)] {

@@ -61,7 +61,7 @@ fn bus(channels: u8, queue_depth: u8) -> Bus {
         dir_setup_cycles: 3,
         dir_hold_cycles: 0,
         queue_depth,
-        boot_cycles: 0,
+        self_test_cycles: 0,
         ..Bus::default()
     }
 }

@@ -71,7 +71,7 @@ fields! {
             .term("Queue", "Ticks that wait in the controller, so motion continues while the host is busy. An empty queue during a motion is an underrun.")
             .from(PATENT),
         /// Self-test after reset. Packets that end during it are dropped; framed ticks get the reply BUSY.
-        boot_cycles: u32 => label("Self-test").named("self_test_cycles")
+        self_test_cycles: u32 => label("Self-test")
             .unit("cycles")
             .term("Self-test", "After reset the controller tests itself and drops what is sent.")
             .from(PATENT),

@@ -127,9 +127,9 @@ fields! {
         /// Rate of the first step.
         start_speed: Speed => START_SPEED,
         /// Rate of the plateau, at least the start speed. Short moves do not reach it.
-        top_speed: Speed => MAX_SPEED.named("max_speed").number(limits::SPEED_STEPS_S),
+        max_speed: Speed => MAX_SPEED.number(limits::SPEED_STEPS_S),
         /// Also the deceleration.
-        acceleration: Acceleration => MAX_ACCELERATION.named("max_acceleration"),
+        max_acceleration: Acceleration => MAX_ACCELERATION,
         /// How step times are computed.
         method: TrapezoidMethod => label("Step times")
             .term("Step times", "A small controller stores one pulse rate per step and loads a timer with clock / rate. Both are rounded to whole numbers, so each step is slightly early or late. Exact times have no such error.")

@@ -18,8 +18,8 @@ pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -
     let mechanics = quantities.mechanics();
     let limits = Limits {
         start_speed: given.start_speed.exact_in_steps(mechanics).ok()?,
-        top_speed: given.top_speed.exact_in_steps(mechanics).ok()?,
-        acceleration: given.acceleration.exact_in_steps(mechanics).ok()?,
+        top_speed: given.max_speed.exact_in_steps(mechanics).ok()?,
+        acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
     };
     Some(Trapezoid::within(steps, limits))
 }
@@ -31,9 +31,12 @@ pub(super) fn table(
 ) -> Option<TrapezoidTable> {
     let steps = check(quantities, given)?;
     let mechanics = quantities.mechanics();
-    let (start, top) = (given.start_speed.exact(mechanics).ok()?, given.top_speed.exact(mechanics).ok()?);
-    let table =
-        AccelerationTable::exact([&start, &top], &given.acceleration.exact(mechanics).ok()?, given.timer_hz);
+    let (start, top) = (given.start_speed.exact(mechanics).ok()?, given.max_speed.exact(mechanics).ok()?);
+    let table = AccelerationTable::exact(
+        [&start, &top],
+        &given.max_acceleration.exact(mechanics).ok()?,
+        given.timer_hz,
+    );
     match TrapezoidTable::new(steps, table, budget.table_rows) {
         Ok(table) => {
             budget.table_rows -= table.used_rows();
@@ -60,8 +63,8 @@ fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<i6
     };
     let steps = quantities.distance("distance", &given.distance);
     let start = quantities.speed_within("start_speed", &given.start_speed, starts);
-    let top = quantities.speed("max_speed", &given.top_speed);
-    let acceleration = quantities.acceleration("max_acceleration", &given.acceleration);
+    let top = quantities.speed("max_speed", &given.max_speed);
+    let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
     let timer_hz = match given.method {
         TrapezoidMethod::Table => quantities.range("timer_hz", given.timer_hz.into(), limits::TIMER_HZ, "Hz"),
         TrapezoidMethod::Exact => Some(0.0),

@@ -30,7 +30,7 @@ const BUS: Bus = Bus {
     pulse_phasing: PulsePhasing::Simultaneous,
     settle_cycles: 0,
     queue_depth: 2,
-    boot_cycles: 100,
+    self_test_cycles: 100,
 };
 
 #[derive(Default)]
@@ -161,8 +161,10 @@ fn without_a_register_reads_return_0_and_writes_are_ignored() {
 
 #[test]
 fn pushes_are_ignored_before_cycle_0_and_start_a_tick_in_the_next_cycle() {
-    let mut bench =
-        Bench::new(&Bus { boot_cycles: 0, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
+    let mut bench = Bench::new(
+        &Bus { self_test_cycles: 0, ..BUS },
+        &SerialLine { baud: 100_000, ..SerialLine::default() },
+    );
     assert_eq!((bench.push(0x01), bench.status(MOVING)), (CODE_DONE, 0), "RESULT has its reset value");
     bench.run_to(0);
     assert_eq!(bench.push(0x81), CODE_DONE);

@@ -40,7 +40,7 @@ type CorruptedSend = (Vec<u8>, bool);
 /// the executed orders, where the host ended, what it counted, and the bytes of each frame as it was
 /// meant.
 fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progress, Counts, Vec<Vec<u8>>) {
-    let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, boot_cycles: 5, ..Bus::default() };
+    let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, self_test_cycles: 5, ..Bus::default() };
     let line = LineSettings { baud: BAUD, protocol: Protocol::Framed, ..LineSettings::default() };
     let config = Config::new(CLOCK_HZ, &bus, &line.serial()).expect("it holds");
     let job = Job { address: 0, channels: 2, tick: config.tick(), queue_depth: 16, commands: ORDERS.into() };

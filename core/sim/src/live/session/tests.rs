@@ -18,7 +18,7 @@ fn sends(session: &Session) -> Vec<(u64, usize)> {
 }
 
 /// 10 cycles a bit and a bit more: a byte's place is floor(10*j*1050/100).
-const SLOW: &str = r#"{ "clock_hz": 1155, "line": { "baud": 100 }, "bus": { "boot_cycles": 0 } }"#;
+const SLOW: &str = r#"{ "clock_hz": 1155, "line": { "baud": 100 }, "bus": { "self_test_cycles": 0 } }"#;
 
 #[test]
 fn a_byte_joins_the_last_send_if_its_time_is_in_the_future() {
@@ -80,7 +80,7 @@ fn forced_levels_on_an_idle_line_have_passed_before_bytes() {
 #[test]
 fn a_reply_leaves_with_its_stop_bit_and_not_before() {
     let mut session = session(
-        r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#,
+        r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "self_test_cycles": 0 } }"#,
     );
     session.receive(&frame::emit(0, 4, &[]));
     let (mut ends, mut rounds) = (Vec::new(), 0);
@@ -101,7 +101,7 @@ fn a_reply_leaves_with_its_stop_bit_and_not_before() {
 
 #[test]
 fn bytes_of_a_reply_within_a_round_are_awaited_together() {
-    let json = r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "boot_cycles": 0 } }"#;
+    let json = r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" } , "bus": { "self_test_cycles": 0 } }"#;
     // A byte takes 160 cycles: round, rounds of a reply of 17 bytes.
     for (round, expected) in [(0, 17), (159, 17), (160, 9), (500, 5), (100_000, 1)] {
         let mut session = session(json);
@@ -134,7 +134,7 @@ fn random_scenario(random: &mut Random) -> String {
     let address = if several { r#", "address": 1"# } else { "" };
     let glitch = random.below(9000);
     format!(
-        r#"{{ "clock_hz": 4000, "bus": {{ "channels": 2, "slots": 5, "step_period_cycles": 90, "boot_cycles": 20, "queue_depth": 3 }},
+        r#"{{ "clock_hz": 4000, "bus": {{ "channels": 2, "slots": 5, "step_period_cycles": 90, "self_test_cycles": 20, "queue_depth": 3 }},
             "line": {{ "protocol": "{protocol}", "baud": {baud}, "receiver_baud": {receiver}{address},
                 "glitches": [ {{ "start_cycle": {}, "length_cycles": 30, "level": 0 }} ] }}{controllers} }}"#,
         1 + glitch
@@ -229,7 +229,7 @@ impl Sink for Executed {
 /// stops one of the two for a while. Gives where the host ended, what was ordered, and what was executed.
 fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
     let mut random = Random::new(seed);
-    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
         "line": { "protocol": "framed", "baud": 9000 } }"#;
     let mut device = session(json);
     let ticks = 1 + random.below(30);
@@ -324,7 +324,7 @@ fn a_stop_on_a_bad_line_leaves_the_first_ticks() {
 /// A host and a soft device whose connection ends after so many bytes in either direction. Gives how far the host was, ticks
 /// that it knows to be done, and what was ordered and executed.
 fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u8>, bool) {
-    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
         "line": { "protocol": "framed", "baud": 9000 } }"#;
     let mut device = session(json);
     let orders: Vec<u8> = vec![0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
@@ -378,7 +378,7 @@ fn a_connection_cut_at_any_byte_leaves_the_first_ticks() {
 /// A host and a soft device that is reset in each of these cycles. Gives where the host ended, and whether each STEP output had as
 /// many pulses as were ordered.
 fn with_resets(resets: &[u64], opening_tick: bool, restarts_with: u64) -> (Progress, bool, u64) {
-    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "boot_cycles": 20 },
+    let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
         "line": { "protocol": "framed", "baud": 9000 } }"#;
     let blank = session(json);
     let mut device = blank.clone();
@@ -527,7 +527,7 @@ fn the_first_frame_of_a_host_is_separate_from_the_last_host() {
     let status = frame::emit(0, 4, &[]);
     let json = |protocol| {
         format!(
-            r#"{{ "clock_hz": 1600, "line": {{ "baud": 100, "protocol": "{protocol}" }}, "bus": {{ "boot_cycles": 0 }} }}"#
+            r#"{{ "clock_hz": 1600, "line": {{ "baud": 100, "protocol": "{protocol}" }}, "bus": {{ "self_test_cycles": 0 }} }}"#
         )
     };
     // Up to a frame without its delimiter, and one that is too long.
@@ -554,8 +554,7 @@ fn the_first_frame_of_a_host_is_separate_from_the_last_host() {
 
 #[test]
 fn a_host_never_gets_replies_of_the_last_host() {
-    let json =
-        r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" }, "bus": { "boot_cycles": 0 } }"#;
+    let json = r#"{ "clock_hz": 1600, "line": { "baud": 100, "protocol": "framed" }, "bus": { "self_test_cycles": 0 } }"#;
     let status = frame::emit(0, 4, &[]);
     // 8 bytes of 160 cycles, then a reply of 17.
     for hangs_up in (0..5000).step_by(97) {
