@@ -1,20 +1,13 @@
-//! Bisection: the first integer for which a predicate holds, and the border between two numbers. The predicate changes
-//! once, from false to true. Only integers and + - * / are used, so every target gets the same bits.
-//!
-//! ```
-//! use stepscope_motion::bisection::border;
-//!
-//! let (low, high) = border(0.0, 2.0, |x| x * x <= 2.0);
-//! assert!(low * low <= 2.0 && high - low < 1e-15);
-//! ```
+//! Bisection: the first integer for which a predicate holds, and the border between two numbers. The predicate must change
+//! only once. Only integers and + - * / are used, so every target gets the same bits.
 
-/// Number of halvings: the distance shrinks to 2^-60, less than an f64 resolves unless one of the numbers is 0.
+/// Number of halvings. They reduce the distance to 2^-60, less than an f64 resolves unless one of the numbers is 0.
 pub const HALVINGS: u32 = 60;
 
 const MAX_FIRST: u64 = 1 << 32;
 
 /// The first number of `from..to` for which `holds`, or `to` if there is none.
-pub(crate) fn first(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
+pub(crate) fn first_in(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
     let (mut from, mut to) = (from, to);
     while from < to {
         let middle = from + (to - from) / 2;
@@ -25,11 +18,7 @@ pub(crate) fn first(from: u64, to: u64, holds: impl Fn(u64) -> bool) -> u64 {
 
 /// The first number from 0 on for which `holds`, below 2^32. The number of tries is logarithmic in the result.
 pub(crate) fn first_from_zero(holds: impl Fn(u64) -> bool) -> u64 {
-    let (mut from, mut to) = (0, 1);
-    while !holds(to) && to < MAX_FIRST {
-        (from, to) = (to, 2 * to);
-    }
-    first(from, to, holds)
+    first_near(0, MAX_FIRST, holds)
 }
 
 /// The first number of `0..end` for which `holds`, or `end` if there is none. The number of tries is logarithmic in its
@@ -48,11 +37,11 @@ pub(crate) fn first_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u6
         from = from.saturating_sub(width);
         width = width.saturating_mul(2);
     }
-    first(from, to, holds)
+    first_in(from, to, holds)
 }
 
-/// The border between `from`, where `holds` is true, and `to` (which may be less), where it is false: the last number for
-/// which it was true, and the first for which it was not. Neither `from` nor `to` is tried.
+/// The border between `from`, where `holds` is true, and `to`, where it is false and which may be less than `from`. Returns
+/// the closest numbers on both sides. Neither `from` nor `to` is tried.
 pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
     let (mut from, mut to) = (from, to);
     for _ in 0..HALVINGS {
@@ -64,15 +53,14 @@ pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bracket {
-    /// At or below the root.
-    /// Invariant: `low <= high`; the interval only shrinks.
+    /// Invariant: `low <= high`.
     pub(crate) low: f64,
     pub(crate) high: f64,
 }
 
 impl Bracket {
     pub(crate) fn new(low: f64, high: f64) -> Self {
-        debug_assert!(low <= high, "{low} to {high} holds no root");
+        debug_assert!(low <= high, "{low} to {high} contains no root");
         Self { low, high }
     }
 
@@ -92,50 +80,50 @@ mod tests {
     use core::cell::Cell;
 
     #[test]
-    fn the_first_that_holds_is_found_wherever_it_is() {
-        for answer in 0..=40 {
-            let holds = |n: u64| n >= answer;
-            assert_eq!(first_from_zero(holds), answer);
+    fn finds_the_first_number_in_any_range() {
+        for first in 0..=40 {
+            let holds = |n: u64| n >= first;
+            assert_eq!(first_from_zero(holds), first);
             for (from, to) in (0..40).flat_map(|from| (from..40).map(move |to| (from, to))) {
-                assert_eq!(first(from, to, holds), answer.clamp(from, to), "{answer} of {from}..{to}");
+                assert_eq!(first_in(from, to, holds), first.clamp(from, to), "{first} of {from}..{to}");
             }
             for (near, end) in (0..50).flat_map(|near| (0..40).map(move |end| (near, end))) {
-                assert_eq!(first_near(near, end, holds), answer.min(end), "{answer} near {near} of {end}");
+                assert_eq!(first_near(near, end, holds), first.min(end), "{first} near {near} of {end}");
             }
         }
-        for answer in [1 << 31, (1 << 32) - 1, 1 << 32] {
-            assert_eq!(first_from_zero(|n| n >= answer), answer);
+        for first in [1 << 31, (1 << 32) - 1, 1 << 32] {
+            assert_eq!(first_from_zero(|n| n >= first), first);
         }
-        assert_eq!(first_from_zero(|_| false), 1 << 32, "it gives up");
+        assert_eq!(first_from_zero(|_| false), 1 << 32, "the maximum");
     }
 
     #[test]
-    fn what_is_near_is_found_in_few_tries() {
-        // Answer, guess, tries at most.
+    fn finds_a_near_number_in_few_tries() {
+        // First number, guess, maximum tries.
         let rows =
             [(500, 500, 2), (501, 500, 3), (499, 500, 3), (510, 500, 10), (0, 500, 20), (999, 500, 20)];
-        for (answer, near, most) in rows {
+        for (first, near, max_tries) in rows {
             let tries = Cell::new(0);
             let found = first_near(near, 1000, |n| {
                 tries.set(tries.get() + 1);
-                n >= answer
+                n >= first
             });
-            assert_eq!(found, answer);
-            assert!(tries.get() <= most, "{answer} near {near}: {} tries", tries.get());
+            assert_eq!(found, first);
+            assert!(tries.get() <= max_tries, "{first} near {near}: {} tries", tries.get());
         }
     }
 
     #[test]
-    fn a_border_has_its_two_sides() {
+    fn returns_both_sides_of_a_border() {
         let root = 2.0_f64.sqrt();
         let (below, above) = border(0.0, 2.0, |x| x * x <= 2.0);
         assert!(below <= root && root <= above && above - below <= 2.0 * f64::EPSILON, "{below} {above}");
-        // The other way round the sides are, too.
+        // The sides are reversed if the ends are.
         let (above, below) = border(2.0, 0.0, |x| x * x > 2.0);
         assert!(below <= root && root <= above && above - below <= 2.0 * f64::EPSILON, "{below} {above}");
         assert_eq!((border(0.0, 8.0, |_| true).1, border(0.0, 8.0, |_| false).0), (8.0, 0.0));
         let (_, above) = border(0.0, 8.0, |_| false);
-        assert_eq!(above, 8.0 / (1_u64 << HALVINGS) as f64, "so many halvings and no more");
+        assert_eq!(above, 8.0 / (1_u64 << HALVINGS) as f64, "60 halvings");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //!               B   0  +1   0  -1   0
 //! two-phase     A  +1  -1  -1  +1  +1                      full steps, both on: sqrt(2) times the torque,
 //!               B  +1  +1  -1  -1  +1                      half a step from the one-phase positions
-//! 1-2-phase     A  +1  +1   0  -1  -1  -1   0  +1  +1      half steps, one and both in turn
+//! 1-2-phase     A  +1  +1   0  -1  -1  -1   0  +1  +1      half steps, one and both alternately
 //!               B   0  +1  +1  +1   0  -1  -1  -1   0
 //! microstep n   A   cos(90 deg*k/n)                        1/n of a full step, constant torque
 //!               B   sin(90 deg*k/n)
@@ -24,11 +24,12 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+/// A phase sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Excitation {
     OnePhase,
     TwoPhase,
-    /// One and two in turn: half steps.
+    /// One and two phases alternately: half steps.
     OneTwoPhase,
     /// Sine and cosine in this number of microsteps per full step; 0 counts as 1.
     Microstep(u16),
@@ -45,6 +46,7 @@ impl Excitation {
         }
     }
 
+    /// Steps of this excitation per electrical period.
     #[must_use]
     pub fn steps_per_period(self) -> u32 {
         4 * u32::from(self.steps_per_full_step())
@@ -55,13 +57,13 @@ impl Excitation {
     pub fn currents(self, steps: i64) -> (f64, f64) {
         let per_full = i64::from(self.steps_per_full_step());
         let phase = steps.rem_euclid(4 * per_full);
-        let (quarter, rest) = (phase / per_full, phase % per_full);
+        let (quarter, step) = (phase / per_full, phase % per_full);
         let (a, b) = match self {
             Self::TwoPhase => (1.0, 1.0),
-            _ if rest == 0 => (1.0, 0.0),
+            _ if step == 0 => (1.0, 0.0),
             Self::OnePhase | Self::OneTwoPhase => (1.0, 1.0),
             Self::Microstep(_) => {
-                let angle = FRAC_PI_2 * rest as f64 / per_full as f64;
+                let angle = FRAC_PI_2 * step as f64 / per_full as f64;
                 (libm::cos(angle), libm::sin(angle))
             }
         };
@@ -90,7 +92,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_sequences_are_the_ones_drawn() {
+    fn has_the_sequences_of_the_drawing() {
         let rows: [(Excitation, &[(f64, f64)]); 3] = [
             (Excitation::OnePhase, &[(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]),
             (Excitation::TwoPhase, &[(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]),
@@ -134,15 +136,15 @@ mod tests {
     }
 
     #[test]
-    fn the_currents_repeat_and_to_the_left_they_run_backwards() {
+    fn currents_are_periodic_and_reversed_to_the_left() {
         for excitation in ALL {
             let period = i64::from(excitation.steps_per_period());
             for k in -period..period {
                 assert_eq!(excitation.currents(k), excitation.currents(k + 3 * period), "{excitation:?} {k}");
-                let turned = excitation.currents(k).1.abs().max(excitation.currents(k).0.abs());
-                assert!(turned > 0.7 && turned <= 1.0);
+                let larger = excitation.currents(k).1.abs().max(excitation.currents(k).0.abs());
+                assert!(larger > 0.7 && larger <= 1.0);
             }
-            // The vector turns the same way with every step, by the same part of the period at full steps.
+            // The current vector rotates in the same direction with every step.
             for k in 0..period {
                 let ((a, b), (next_a, next_b)) = (excitation.currents(k), excitation.currents(k + 1));
                 assert!(a * next_b - b * next_a > 0.0, "{excitation:?} {k}");

@@ -1,8 +1,8 @@
-//! Texts about a move, with numbers as people write them.
+//! Formats numbers in texts about a move.
 
 use alloc::{format, string::String};
 
-/// An integer with digit groups and a true minus.
+/// `value` rounded to an integer, with groups of three digits and a minus sign (U+2212).
 #[must_use]
 pub fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
@@ -17,17 +17,16 @@ pub fn grouped(value: f64) -> String {
     text
 }
 
-/// Text about the longest ramp with which a bus can follow a move of `duration_s`.
+/// Text about the longest ramp of a move of `duration_s` within the bus limit; empty if there is none.
 pub(super) fn ramp_up_to(longest_s: Option<f64>, duration_s: f64) -> String {
     longest_s.map_or_else(String::new, |longest_s| {
         let longest_s = longest_s.min(duration_s / 2.0);
-        format!("; with a ramp of up to {longest_s:.4} s the bus can still follow")
+        format!("; the bus limit allows ramps of up to {longest_s:.4} s")
     })
 }
 
-/// A number with its noun, in the plural unless it is one.
-pub(super) fn count(number: u64, one: &str, several: &str) -> String {
-    format!("{} {}", grouped(number as f64), if number == 1 { one } else { several })
+pub(super) fn count(number: u64, singular: &str, plural: &str) -> String {
+    format!("{} {}", grouped(number as f64), if number == 1 { singular } else { plural })
 }
 
 #[cfg(test)]
@@ -35,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_grouped_by_thousands() {
+    fn groups_digits_by_thousands() {
         let rows = [
             (0.0, "0"),
             (999.4, "999"),

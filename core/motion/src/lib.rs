@@ -4,9 +4,9 @@
 //! ```text
 //! moves, mechanics, motor, limits    the input from a scenario
 //! curves                             position over time, one file per kind of move
-//! timing                             when each step is due, to the cycle
-//! planners                           moves to curves, axis by axis
-//! step_tables                        steps to ticks, segments and tables
+//! timing                             when each step is due, with clock-cycle accuracy
+//! planners                           from moves to curves, axis by axis
+//! step_tables                        from steps to ticks, segments and tables
 //! ```
 //!
 //! Positions are in steps, as f64; only [`round_half_up`] rounds them. Mathematics beyond + - * / and the square root comes
@@ -16,12 +16,12 @@
 //! use stepscope_motion::{moves::Axis, plan_axis};
 //!
 //! // By default an axis makes one turn of 3200 steps with a cosine S-curve.
-//! let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
+//! let plan = plan_axis(&Axis::default(), "x").expect("a valid axis");
 //! assert_eq!((plan.steps(), plan.duration_s()), (3200, 0.4));
 //! assert_eq!((plan.position(0.2), plan.speed(0.2)), (1600.0, 16_000.0));
 //! ```
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
+#![allow(missing_docs, reason = "a field whose name has its unit needs no comment that repeats it")]
 
 extern crate alloc;
 
@@ -58,25 +58,26 @@ pub use problem::{Cause, Problem, ValueError};
 pub use timing::ScheduledStep;
 pub use validator::{MAX_PROBLEMS, Validator};
 
+/// Maximum speed of a motion in steps/s.
 pub const MAX_SPEED: f64 = 1e7;
 
-/// floor(x + 1/2), exactly: the sum is not formed, so 0.49999999999999994 gives 0. Saturates; NaN gives 0.
+/// floor(x + 1/2), exact because the sum is not formed: 0.49999999999999994 gives 0. Saturates; NaN gives 0.
 #[must_use]
 pub fn round_half_up(x: f64) -> i64 {
     // Truncation is faster than `libm::floor` on every target. Both differences are exact, because |x - truncated| < 1.
     let truncated = x as i64;
-    let rest = x - truncated as f64;
-    if rest >= 0.5 {
+    let fraction = x - truncated as f64;
+    if fraction >= 0.5 {
         truncated.saturating_add(1)
-    } else if rest < -0.5 {
+    } else if fraction < -0.5 {
         truncated.saturating_sub(1)
     } else {
         truncated
     }
 }
 
-/// The square root. IEEE 754 defines every bit, so each target may use its own: wasm has an instruction for it, which is
-/// ten times as fast as `libm`.
+/// The square root. IEEE 754 defines every bit, so each target may use its own instruction. That of wasm is ten times as
+/// fast as `libm`.
 fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     let root = x.sqrt();
@@ -90,7 +91,7 @@ mod tests {
     use super::{round_half_up, square_root};
 
     #[test]
-    fn the_square_root_has_the_bits_that_libm_gives_it() {
+    fn square_root_has_the_bits_of_libm() {
         let grid = (0..100_000_u64).map(|i| f64::from_bits(i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1));
         for x in grid.chain([0.0, -0.0, 1e-320, 2.0, -1.0, f64::MAX, f64::INFINITY]) {
             let (found, expected) = (square_root(x), libm::sqrt(x));
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_are_rounded_up_and_nothing_else_is() {
+    fn rounds_at_exactly_half_up() {
         let below_half = 0.499_999_999_999_999_94;
         let rows = [
             (0.0, 0),

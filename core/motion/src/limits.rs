@@ -1,24 +1,17 @@
 //! The range of each number of a plan (DESIGN Part B); rules that combine several are checked with the curve.
-//!
-//! ```
-//! use stepscope_motion::{MAX_SPEED, limits};
-//!
-//! assert!(limits::MICROSTEPS.contains(&256.0));
-//! assert_eq!(*limits::SPEED_STEPS_S.end(), MAX_SPEED);
-//! ```
 
 use crate::{MAX_SPEED, motor::MAX_PEAK_CURRENT, moves::MAX_POINTS};
 use core::ops::RangeInclusive;
 
 pub const FULL_STEP_DEG: RangeInclusive<f64> = 0.001..=90.0;
 pub const MICROSTEPS: RangeInclusive<f64> = 1.0..=512.0;
-/// A radius, a lead or a step.
+/// A radius, a lead or the length of a step.
 pub const LENGTH_MM: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// A distance; it must round to at least one step.
 pub const STEPS: RangeInclusive<f64> = -1e9..=1e9;
 pub const SPEED_STEPS_S: RangeInclusive<f64> = 1e-6..=MAX_SPEED;
-/// A rate of a table; the minimum rounds to one pulse per second.
+/// A rate in a table. The minimum rounds to one pulse per second.
 pub const TABLE_RATE_STEPS_S: RangeInclusive<f64> = 0.5..=MAX_SPEED;
 pub const ACCELERATION_STEPS_S2: RangeInclusive<f64> = 1e-6..=1e13;
 pub const JERK_STEPS_S3: RangeInclusive<f64> = 1e-6..=1e19;
@@ -30,8 +23,8 @@ pub const PAUSE_S: RangeInclusive<f64> = 0.0..=*DURATION_S.end();
 pub const SLICE_S: RangeInclusive<f64> = 1e-5..=0.1;
 pub const TIMER_HZ: RangeInclusive<f64> = 1.0..=u32::MAX as f64;
 pub const LEVEL: RangeInclusive<f64> = 1.0..=5.0;
-/// Range of a sigmoid or time constants of an exponential. Below, the ramp is straight to one part in a thousand; above,
-/// it stands still most of its time.
+/// Range of a sigmoid or time constants of an exponential. Smaller values give a straight ramp to one part in a thousand,
+/// larger ones a speed that hardly changes for most of the ramp.
 pub const RAMP_PARAMETER: RangeInclusive<f64> = 0.1..=20.0;
 pub const PERIODS: RangeInclusive<f64> = 1.0..=1e6;
 /// Maximum deviation d1, in units of the amplitude.

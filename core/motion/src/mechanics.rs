@@ -1,7 +1,7 @@
 //! Distances, speeds, accelerations and jerks with units, and the mechanics that convert them to steps (DESIGN B1).
 //!
 //! `{"mm": 250}` and `{"steps": 6400}` are both distances. Millimeters and degrees need mechanics that define them;
-//! otherwise the quantity is refused.
+//! other mechanics refuse the quantity.
 //!
 //! ```
 //! use stepscope_motion::mechanics::{Distance, Mechanics, Screw};
@@ -20,8 +20,10 @@ use crate::{
 use core::f64::consts::PI;
 use stepscope_peripheral::parameters;
 
+/// What a step of the motor moves, and the units that follow from it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mechanics {
+    /// A bare shaft: degrees.
     Rotary(Rotary),
     /// A wheel, pulley or gear: 2*pi*radius mm per turn, and degrees.
     Wheel(Wheel),
@@ -38,6 +40,7 @@ impl Default for Mechanics {
 }
 
 parameters! { (Clone, Debug, PartialEq)
+    /// A bare shaft.
     pub struct Rotary {
         pub full_step_deg: f64 = 1.8,
         pub microsteps: u16 = 16,
@@ -50,19 +53,21 @@ parameters! { (Clone, Debug, PartialEq)
         pub radius_mm: f64 = 10.0,
     }
 
+    /// A lead screw on the shaft.
     pub struct Screw {
         pub full_step_deg: f64 = 1.8,
         pub microsteps: u16 = 16,
         pub lead_mm: f64 = 8.0,
     }
 
+    /// A linear motor, or any mechanics whose step length is known.
     pub struct Direct {
         pub step_mm: f64 = 0.01,
     }
 }
 
 impl Mechanics {
-    /// Full step in degrees and microsteps.
+    /// Full step in degrees and number of microsteps, if the mechanics have a shaft.
     pub(crate) fn shaft(&self) -> Option<(f64, u16)> {
         match self {
             Self::Rotary(m) => Some((m.full_step_deg, m.microsteps)),
@@ -72,19 +77,19 @@ impl Mechanics {
         }
     }
 
-    /// Full step of the motor in degrees, if the mechanics have one.
+    /// Full step of the motor in degrees, if the mechanics have a shaft.
     #[must_use]
     pub fn full_step_deg(&self) -> Option<f64> {
         self.shaft().map(|(full_step_deg, _)| full_step_deg)
     }
 
-    /// Angle of one step in degrees, if the mechanics have one.
+    /// Angle of one step in degrees, if the mechanics have a shaft.
     #[must_use]
     pub fn step_deg(&self) -> Option<f64> {
         self.shaft().map(|(full_step_deg, microsteps)| full_step_deg / f64::from(microsteps))
     }
 
-    /// Length of one step in mm, if the mechanics have one.
+    /// Length of one step in mm, if the mechanics define it.
     #[must_use]
     pub fn step_mm(&self) -> Option<f64> {
         match self {
@@ -95,28 +100,28 @@ impl Mechanics {
         }
     }
 
-    /// Whether `number` and the mechanics' own numbers, which must be above 0, have decimals.
-    fn has_decimals(&self, number: f64) -> bool {
-        let (one, other) = match self {
-            Self::Rotary(m) => (m.full_step_deg, 1.0),
-            Self::Wheel(m) => (m.full_step_deg, 1.0),
-            Self::Screw(m) => (m.full_step_deg, m.lead_mm),
-            Self::Direct(m) => (m.step_mm, 1.0),
+    /// Whether `number` is finite and the mechanics' numbers are finite and above 0, as exact conversions require.
+    fn can_convert(&self, number: f64) -> bool {
+        let numbers = match self {
+            Self::Rotary(m) => [m.full_step_deg, 1.0],
+            Self::Wheel(m) => [m.full_step_deg, 1.0],
+            Self::Screw(m) => [m.full_step_deg, m.lead_mm],
+            Self::Direct(m) => [m.step_mm, 1.0],
         };
-        number.is_finite() && [one, other].iter().all(|own| *own > 0.0 && own.is_finite())
+        number.is_finite() && numbers.iter().all(|number| *number > 0.0 && number.is_finite())
     }
 
-    fn degrees(&self, given: Exact) -> Option<Exact> {
+    fn degrees_to_steps(&self, degrees: Exact) -> Option<Exact> {
         let (full_step_deg, microsteps) = self.shaft()?;
-        Some(given.times(microsteps.into()).divided_by(full_step_deg))
+        Some(degrees.times(microsteps.into()).divided_by(full_step_deg))
     }
 
     /// Millimeters in steps; `None` for a wheel, whose circumference contains pi.
-    fn millimeters(&self, given: Exact) -> Option<Exact> {
+    fn millimeters_to_steps(&self, millimeters: Exact) -> Option<Exact> {
         match self {
             Self::Rotary(_) | Self::Wheel(_) => None,
-            Self::Screw(m) => self.degrees(given.times(360.0).divided_by(m.lead_mm)),
-            Self::Direct(m) => Some(given.divided_by(m.step_mm)),
+            Self::Screw(m) => self.degrees_to_steps(millimeters.times(360.0).divided_by(m.lead_mm)),
+            Self::Direct(m) => Some(millimeters.divided_by(m.step_mm)),
         }
     }
 
@@ -130,8 +135,10 @@ impl Mechanics {
     }
 }
 
+/// Mechanics of this kind do not define the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchUnit {
+    /// As in JSON, such as `mm_s`.
     pub unit: &'static str,
     pub mechanics: &'static str,
 }
@@ -145,6 +152,7 @@ macro_rules! quantity {
         }
 
         impl $name {
+            /// The number in its unit.
             #[must_use]
             pub const fn value(&self) -> f64 {
                 match self {
@@ -152,6 +160,7 @@ macro_rules! quantity {
                 }
             }
 
+            /// The unit as in JSON, such as `steps` or `mm_s`.
             #[must_use]
             pub const fn unit(&self) -> &'static str {
                 match self {
@@ -163,14 +172,14 @@ macro_rules! quantity {
             ///
             /// # Errors
             /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
-            pub fn step(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-                let step: Option<f64> = match self {
+            pub fn step_size(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
+                let step_size: Option<f64> = match self {
                     $(Self::$variant(_) => {
                         let of: fn(&Mechanics) -> Option<f64> = $factor;
                         of(mechanics)
                     })*
                 };
-                step.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
+                step_size.ok_or(NoSuchUnit { unit: self.unit(), mechanics: mechanics.name() })
             }
 
             /// The quantity in steps (per s, s^2 or s^3), correctly rounded from its decimals; with pi, a quotient.
@@ -178,27 +187,27 @@ macro_rules! quantity {
             /// # Errors
             /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
-                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
                 Ok(self.exact_quotient(mechanics).map_or(quotient, |exact| exact.nearest()))
             }
 
             /// [`Self::in_steps`] in 106 bits; with pi, the decimal of the quotient.
-            #[allow(dead_code, reason = "distances are whole steps")]
+            #[allow(dead_code, reason = "not for distances, which are whole steps")]
             pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
-                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
                 Ok(self.exact_quotient(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
             }
 
             /// The quantity in steps as a fraction; with pi, the decimal of the quotient.
-            #[allow(dead_code, reason = "only tables need it")]
+            #[allow(dead_code, reason = "only for the quantities of tables")]
             pub(super) fn exact(&self, mechanics: &Mechanics) -> Result<Exact, NoSuchUnit> {
-                let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+                let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
                 Ok(self.exact_quotient(mechanics).unwrap_or_else(|| Exact::of(quotient)))
             }
 
             /// The quantity in steps as a fraction; `None` if it is in steps, contains pi, or is out of any range.
             fn exact_quotient(&self, mechanics: &Mechanics) -> Option<Exact> {
-                if !mechanics.has_decimals(self.value()) {
+                if !mechanics.can_convert(self.value()) {
                     return None;
                 }
                 match self {
@@ -213,10 +222,11 @@ macro_rules! quantity {
 }
 
 quantity! {
+    /// A distance or a position, negative to the left.
     Distance,
     Steps = "steps" per |_| Some(1.0), by |_, _| None;
-    Millimeters = "mm" per Mechanics::step_mm, by Mechanics::millimeters;
-    Degrees = "deg" per Mechanics::step_deg, by Mechanics::degrees;
+    Millimeters = "mm" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
+    Degrees = "deg" per Mechanics::step_deg, by Mechanics::degrees_to_steps;
 }
 
 impl Distance {
@@ -225,45 +235,48 @@ impl Distance {
     /// # Errors
     /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
     pub fn whole_steps(&self, mechanics: &Mechanics) -> Result<i64, NoSuchUnit> {
-        let quotient = self.step(mechanics).map(|step| self.value() / step)?;
+        let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
         Ok(self.exact_quotient(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))
     }
 
-    /// The distance from `first`, in the same unit, to this position in steps, in 106 bits.
+    /// The distance in steps, in 106 bits, from position `first` to this position in the same unit.
     pub(super) fn exact_steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
-        let quotient = (self.value() - first) / self.step(mechanics)?;
-        if !mechanics.has_decimals(self.value() - first) {
+        let quotient = (self.value() - first) / self.step_size(mechanics)?;
+        if !mechanics.can_convert(self.value() - first) {
             return Ok(quotient.into());
         }
         let travel = Exact::difference(self.value(), first);
         let exact = match self {
             Self::Steps(_) => Some(travel),
-            Self::Millimeters(_) => mechanics.millimeters(travel),
-            Self::Degrees(_) => mechanics.degrees(travel),
+            Self::Millimeters(_) => mechanics.millimeters_to_steps(travel),
+            Self::Degrees(_) => mechanics.degrees_to_steps(travel),
         };
         Ok(exact.map_or(quotient.into(), |exact| exact.double()))
     }
 }
 
 quantity! {
+    /// A speed.
     Speed,
     StepsPerSecond = "steps_s" per |_| Some(1.0), by |_, _| None;
-    MillimetersPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimeters;
-    DegreesPerSecond = "deg_s" per Mechanics::step_deg, by Mechanics::degrees;
+    MillimetersPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
+    DegreesPerSecond = "deg_s" per Mechanics::step_deg, by Mechanics::degrees_to_steps;
     TurnsPerMinute = "rpm" per |mechanics| mechanics.step_deg().map(|deg| deg / 6.0),
-    by |mechanics, rpm| mechanics.degrees(rpm.times(6.0));
+    by |mechanics, rpm| mechanics.degrees_to_steps(rpm.times(6.0));
 }
 
 quantity! {
+    /// An acceleration.
     Acceleration,
     StepsPerSecond2 = "steps_s2" per |_| Some(1.0), by |_, _| None;
-    MillimetersPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimeters;
-    DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg, by Mechanics::degrees;
+    MillimetersPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
+    DegreesPerSecond2 = "deg_s2" per Mechanics::step_deg, by Mechanics::degrees_to_steps;
 }
 
 quantity! {
+    /// A jerk.
     Jerk,
     StepsPerSecond3 = "steps_s3" per |_| Some(1.0), by |_, _| None;
-    MillimetersPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimeters;
-    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg, by Mechanics::degrees;
+    MillimetersPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
+    DegreesPerSecond3 = "deg_s3" per Mechanics::step_deg, by Mechanics::degrees_to_steps;
 }

@@ -9,8 +9,8 @@
 //!
 //! let motor = Motor { supply_v: 36.0, load_torque_mn_m: 50.0, ..Motor::default() };
 //! let with_motor = Axis { motor: Some(motor), ..Axis::default() };
-//! let plan = plan_axis(&with_motor, "x").expect("it holds");
-//! assert_eq!(plan, plan_axis(&Axis::default(), "x").expect("it holds"));
+//! let plan = plan_axis(&with_motor, "x").expect("a valid axis");
+//! assert_eq!(plan, plan_axis(&Axis::default(), "x").expect("a valid axis"));
 //! ```
 
 use stepscope_peripheral::parameters;
@@ -22,7 +22,9 @@ pub const MAX_PEAK_CURRENT: f64 = 1.4143;
 parameters! { (Clone, Debug, PartialEq)
     /// A two-phase hybrid stepper motor with a current-regulating bipolar driver, and its load.
     pub struct Motor {
+        /// Per phase.
         pub rated_current_a: f64 = 1.5,
+        /// Of one phase, as is the inductance.
         pub resistance_ohm: f64 = 1.6,
         pub inductance_mh: f64 = 4.3,
         /// With both phases at the rated current.
@@ -42,16 +44,20 @@ parameters! { (Clone, Debug, PartialEq)
         pub friction_mn_m: f64 = 5.0,
         /// Breakaway torque; `None` for the friction.
         pub stiction_mn_m: Option<f64> = None,
+        /// Viscous friction of the rotor in µN·m·s per rad.
         pub viscous_un_m_s: f64 = 300.0,
+        /// Amplitude of the detent torque, which has four periods per electrical period.
         pub detent_torque_mn_m: f64 = 0.0,
+        /// Constant torque on the load, such as the weight of a vertical axis.
         pub gravity_torque_mn_m: f64 = 0.0,
         /// Amplitude of a torque that depends on the angle of the load.
         pub sine_torque_mn_m: f64 = 0.0,
-        /// Its periods per turn of the load.
+        /// Periods of the sine torque per turn of the load.
         pub sine_per_turn: f64 = 1.0,
         pub sine_phase_deg: f64 = 0.0,
-        /// Stiffness of the coupling in N*m/rad; without it rotor and load are one mass.
+        /// Stiffness of the coupling in N·m per rad; `None` makes rotor and load one mass.
         pub coupling_n_m_rad: Option<f64> = None,
+        /// Damping of the coupling in µN·m·s per rad.
         pub coupling_un_m_s: f64 = 0.0,
         pub drive: Drive = Drive::default(),
     }
@@ -64,6 +70,7 @@ parameters! { (Clone, Debug, PartialEq)
         pub decay_share: f64 = 0.31,
         /// Off-time of a chopper.
         pub off_us: f64 = 20.0,
+        /// Time after switching on during which the chopper ignores the current.
         pub blank_us: f64 = 1.0,
         /// Steps of the digital-to-analog converter from 0 to the peak current; `None` for an ideal one.
         pub dac_levels: Option<u16> = None,
@@ -74,6 +81,7 @@ parameters! { (Clone, Debug, PartialEq)
     }
 }
 
+/// How the driver regulates the phase current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Regulator {
     /// The mean of an ideal chopper.
@@ -83,8 +91,10 @@ pub enum Regulator {
     Chopper,
 }
 
+/// How the phase current falls during the off-time of a chopper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Decay {
+    /// The phase is shorted.
     Slow,
     /// The bus voltage drives the current back.
     #[default]

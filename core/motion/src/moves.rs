@@ -10,7 +10,7 @@
 //! let go = Move::Cosine(Cosine { distance: Distance::Steps(1600.0), ..Cosine::default() });
 //! let wait = Move::Dwell(Dwell { duration_s: 0.25 });
 //! let axis = Axis { moves: vec![go, wait], ..Axis::default() };
-//! let plan = plan_axis(&axis, "x").expect("it holds");
+//! let plan = plan_axis(&axis, "x").expect("a valid axis");
 //! assert_eq!((plan.steps(), plan.duration_s()), (1600, 0.65));
 //! ```
 
@@ -21,6 +21,7 @@ use crate::{
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::parameters;
 
+/// One move of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Move {
     Trapezoid(Trapezoid),
@@ -63,7 +64,7 @@ impl Default for Move {
 parameters! { (Clone, Debug, PartialEq)
     /// Trapezoid by acceleration table (Sonobe 2011).
     pub struct Trapezoid {
-        /// Left negative.
+        /// Negative to the left, like every distance.
         pub distance: Distance = Distance::Steps(2000.0),
         pub start_speed: Speed = Speed::StepsPerSecond(250.0),
         pub max_speed: Speed = Speed::StepsPerSecond(4000.0),
@@ -75,16 +76,16 @@ parameters! { (Clone, Debug, PartialEq)
 
     /// Fixed distance by a staircase of rates (Zhang 2012).
     pub struct Staircase {
-        /// The paper's L; left negative.
+        /// The paper's L.
         pub distance: Distance = Distance::Steps(10_000.0),
-        /// Speed of the plateau, f_s; of the whole move if it is not above the start speed.
+        /// Speed of the plateau, the paper's f_s. A top speed up to the start speed is that of the whole move.
         pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
         /// Acceleration level 1 to 5: 1000 to 5000 steps/s^2.
         pub level: u8 = 3,
         pub short_move: ShortMove = ShortMove::Document,
         /// First rate of the table, f_1.
         pub start_speed: Speed = Speed::StepsPerSecond(1000.0),
-        /// The table ends with the first rate above this, f_max, which also limits the top speed.
+        /// The paper's f_max: the table ends with the first rate above it, and the top speed is at most this.
         pub max_speed: Speed = Speed::StepsPerSecond(20_000.0),
     }
 
@@ -105,7 +106,7 @@ parameters! { (Clone, Debug, PartialEq)
         pub duration_s: f64 = 0.4,
         pub ramp_s: f64 = 0.2,
         pub shape: RampShape = RampShape::Sigmoid,
-        /// The argument of 1/(1 + e^-x) goes from minus to plus this in a ramp, 0.1 to 20; only for the sigmoid.
+        /// In a ramp x of 1/(1 + e^-x) goes from minus to plus this value, 0.1 to 20; only for the sigmoid.
         pub sigmoid_range: f64 = 6.0,
         /// Time constants per ramp, 0.1 to 20; only for the exponential.
         pub time_constants: f64 = 4.0,
@@ -135,15 +136,18 @@ parameters! { (Clone, Debug, PartialEq)
         pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
     }
 
+    /// A distance at a constant speed, without ramps.
     pub struct Constant {
         pub distance: Distance = Distance::Steps(1000.0),
         pub speed: Speed = Speed::StepsPerSecond(1000.0),
     }
 
+    /// A pause.
     pub struct Dwell {
         pub duration_s: f64 = 0.1,
     }
 
+    /// A curve through points, by lines or smooth (Steffen 1990).
     pub struct Points {
         pub unit: PointUnit = PointUnit::Steps,
         pub interpolation: Interpolation = Interpolation::Smooth,
@@ -165,10 +169,10 @@ parameters! { (Clone, Debug, PartialEq)
 /// Step times of a trapezoid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TrapezoidMethod {
-    /// The paper's: a table with a whole pulse rate and a timer's whole reload per step.
+    /// The paper's: a table with an integer pulse rate and an integer timer reload per step.
     #[default]
     Table,
-    /// Each step where the ideal curve crosses its half-integer.
+    /// Step k is due where the ideal curve crosses k - 1/2.
     Exact,
 }
 
@@ -178,17 +182,17 @@ pub enum ShortMove {
     /// The paper's: the whole move at the start speed.
     #[default]
     Document,
-    /// As many rows of the table as fit up, and down again.
+    /// As many rows of the table as fit, up and down again.
     Reverse,
 }
 
 /// Step times of a cosine S-curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CosineMethod {
-    /// Each step where the ideal curve crosses its half-integer.
+    /// Step k is due where the ideal curve crosses k - 1/2.
     #[default]
     Exact,
-    /// The paper's: slices of whole steps, compensated until their sum is right.
+    /// The paper's: slices of whole steps, compensated until they add up to the distance.
     Sliced,
 }
 
@@ -209,6 +213,7 @@ pub enum RampShape {
 /// Maximum points per move.
 pub const MAX_POINTS: usize = 4096;
 
+/// Unit of the positions of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointUnit {
     #[default]
@@ -218,6 +223,7 @@ pub enum PointUnit {
 }
 
 impl PointUnit {
+    /// A position in this unit.
     #[must_use]
     pub const fn of(self, position: f64) -> Distance {
         match self {
@@ -228,16 +234,17 @@ impl PointUnit {
     }
 }
 
-/// The connection of points.
+/// How points are connected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The speed jumps at each point.
+    /// By lines: the speed jumps at each point.
     Straight,
-    /// Cubics that turn only where the points do, from rest to rest.
+    /// By monotone cubics, which reverse only at points, from rest to rest.
     #[default]
     Smooth,
 }
 
+/// A point of a curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// The first point's time is the start of the move.
@@ -251,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_time_is_requested_where_it_is_a_parameter() {
+    fn requested_duration_exists_where_it_is_a_parameter() {
         let point = |time_s| Point { time_s, position: 0.0 };
         let points = vec![point(0.5), point(0.7), point(2.0)];
         let rows = [

@@ -10,7 +10,7 @@
 //! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
 //! ```
 
-use alloc::string::String;
+use alloc::{format, string::String};
 use core::fmt;
 use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
 
@@ -91,7 +91,6 @@ impl fmt::Display for ValueError {
     }
 }
 
-/// Completes "use …" for a motion with too much of something.
 fn smaller_load(of: &str) -> &'static str {
     match of {
         "table rows" => "a higher acceleration or a lower top speed",
@@ -240,7 +239,7 @@ impl fmt::Display for Cause {
                     write!(f, "; use at most {}", u64::MAX)
                 } else {
                     let min = pulse.min_interval().0 << FRACTION_BITS;
-                    write!(f, ", {}; use at least {min}, or shorter pulse times", TooShortFor(*pulse))
+                    write!(f, ", {}; use at least {min}, or shorter pulse times", pulse_needs(*pulse))
                 }
             }
             Self::SegmentEnd { next } => write!(
@@ -253,23 +252,19 @@ impl fmt::Display for Cause {
                 f,
                 "step {step} comes {interval} cycles after {}, {}; use a slower motion or shorter pulse times",
                 if *step == 1 { "the start" } else { "the previous step" },
-                TooShortFor(*pulse)
+                pulse_needs(*pulse)
             ),
         }
     }
 }
 
-struct TooShortFor(PulseTimes);
-
-impl fmt::Display for TooShortFor {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let PulseTimes { width, setup, hold } = self.0;
-        let min = self.0.min_interval().0;
-        write!(f, "but a pulse needs {min} (width {} + max(hold {} + setup {}, 1))", width.0, hold.0, setup.0)
-    }
+fn pulse_needs(pulse: PulseTimes) -> String {
+    let PulseTimes { width, setup, hold } = pulse;
+    let min = pulse.min_interval().0;
+    let (width, setup, hold) = (width.0, setup.0, hold.0);
+    format!("but a pulse needs {min} (width {width} + max(hold {hold} + setup {setup}, 1))")
 }
 
-/// A number in as few digits as a message needs, the same on every target.
 struct Short(f64);
 
 impl fmt::Display for Short {
@@ -279,10 +274,10 @@ impl fmt::Display for Short {
         if value == libm::trunc(value) && magnitude < 1e17 {
             write!(f, "{value:.0}")
         } else if (1e-3..1e6).contains(&magnitude) {
-            let text = alloc::format!("{value:.4}");
+            let text = format!("{value:.4}");
             f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
         } else {
-            let text = alloc::format!("{value:.5e}");
+            let text = format!("{value:.5e}");
             match text.split_once('e') {
                 Some((digits, power)) => {
                     write!(f, "{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))

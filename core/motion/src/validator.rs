@@ -9,13 +9,13 @@ pub const MAX_PROBLEMS: usize = 100;
 
 /// Collects problems with the path of the current value. It lists at most [`MAX_PROBLEMS`], and counts all.
 ///
-/// A `step` of a path is the name of a field, or several with dots between them; empty for the value itself.
+/// A `field` is the name of a field, or several with dots between them; empty for the current value itself.
 #[derive(Clone, Debug)]
 pub struct Validator<C = Cause> {
     path: String,
     problems: Vec<Problem<C>>,
     /// Number of problems, including those not listed.
-    found: usize,
+    count: usize,
 }
 
 impl<C> Default for Validator<C> {
@@ -25,50 +25,50 @@ impl<C> Default for Validator<C> {
 }
 
 impl<C> Validator<C> {
-    /// For the part at `path`.
+    /// A validator of the value at `path`.
     #[must_use]
     pub fn within(path: impl Into<String>) -> Self {
-        Self { path: path.into(), problems: Vec::new(), found: 0 }
+        Self { path: path.into(), problems: Vec::new(), count: 0 }
     }
 
-    /// Enters a step; returns the argument of [`Self::leave`].
-    #[must_use = "leave takes it"]
-    pub fn enter(&mut self, step: &str) -> usize {
-        let outside = self.path.len();
-        if outside > 0 && !step.is_empty() {
+    /// Appends a field to the path; returns the argument of [`Self::leave`].
+    #[must_use = "pass it to leave"]
+    pub fn enter(&mut self, field: &str) -> usize {
+        let outer_len = self.path.len();
+        if outer_len > 0 && !field.is_empty() {
             self.path.push('.');
         }
-        self.path.push_str(step);
-        outside
+        self.path.push_str(field);
+        outer_len
     }
 
-    /// Enters an entry of a list.
-    #[must_use = "leave takes it"]
+    /// Appends the index of a list's entry to the path; returns the argument of [`Self::leave`].
+    #[must_use = "pass it to leave"]
     pub fn enter_entry(&mut self, index: usize) -> usize {
-        let outside = self.path.len();
+        let outer_len = self.path.len();
         // Writing to a string cannot fail.
         let _ = write!(self.path, "[{index}]");
-        outside
+        outer_len
     }
 
-    /// Leaves a step or entry.
-    pub fn leave(&mut self, outside: usize) {
-        self.path.truncate(outside);
+    /// Shortens the path to `outer_len` bytes.
+    pub fn leave(&mut self, outer_len: usize) {
+        self.path.truncate(outer_len);
     }
 
-    /// Calls `what` within a step.
-    pub fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.enter(step);
-        let result = what(self);
-        self.leave(outside);
+    /// Calls `check` with the path of a field.
+    pub fn at<T>(&mut self, field: &str, check: impl FnOnce(&mut Self) -> T) -> T {
+        let outer_len = self.enter(field);
+        let result = check(self);
+        self.leave(outer_len);
         result
     }
 
-    /// Calls `what` within an entry of a list.
-    pub fn at_entry<T>(&mut self, index: usize, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.enter_entry(index);
-        let result = what(self);
-        self.leave(outside);
+    /// Calls `check` with the path of a list's entry.
+    pub fn at_entry<T>(&mut self, index: usize, check: impl FnOnce(&mut Self) -> T) -> T {
+        let outer_len = self.enter_entry(index);
+        let result = check(self);
+        self.leave(outer_len);
         result
     }
 
@@ -78,43 +78,43 @@ impl<C> Validator<C> {
         &self.path
     }
 
-    /// Whether the value at `step` has a listed problem.
+    /// Whether `field` has a listed problem.
     #[must_use]
-    pub fn has_problem(&mut self, step: &str) -> bool {
-        self.at(step, |here| here.problems.iter().any(|problem| problem.path == here.path))
+    pub fn has_problem(&mut self, field: &str) -> bool {
+        self.at(field, |here| here.problems.iter().any(|problem| problem.path == here.path))
     }
 }
 
 impl<C: From<ValueError>> Validator<C> {
-    /// Adds a problem of the value at `step`.
-    pub fn add(&mut self, step: &str, cause: impl Into<C>) {
-        self.found += 1;
+    /// Adds a problem of `field`.
+    pub fn add(&mut self, field: &str, cause: impl Into<C>) {
+        self.count += 1;
         if self.problems.len() < MAX_PROBLEMS {
-            let outside = self.enter(step);
+            let outer_len = self.enter(field);
             self.problems.push(Problem::new(self.path.as_str(), cause));
-            self.leave(outside);
+            self.leave(outer_len);
         }
     }
 
     /// Adds problems with complete paths, such as those of a plan.
     pub fn extend<D: Into<C>>(&mut self, problems: impl IntoIterator<Item = Problem<D>>) {
         for Problem { path, cause } in problems {
-            self.found += 1;
+            self.count += 1;
             if self.problems.len() < MAX_PROBLEMS {
                 self.problems.push(Problem { path, cause: cause.into() });
             }
         }
     }
 
-    /// The value of a result, or adds its problems.
+    /// Returns the value of a result, or adds its problems.
     pub fn take<T, D: Into<C>>(&mut self, result: Result<T, Vec<Problem<D>>>) -> Option<T> {
         result.map_err(|problems| self.extend(problems)).ok()
     }
 
-    /// A number, if it is in its range.
+    /// Returns a number that is in its range, or adds a problem. NaN is in no range.
     pub fn range(
         &mut self,
-        step: &str,
+        field: &str,
         given: f64,
         range: RangeInclusive<f64>,
         unit: &'static str,
@@ -122,43 +122,44 @@ impl<C: From<ValueError>> Validator<C> {
         if range.contains(&given) {
             return Some(given);
         }
-        let (least, most) = range.into_inner();
-        self.add(step, ValueError::Range { given, min: least, max: most, unit });
+        let (min, max) = range.into_inner();
+        self.add(field, ValueError::Range { given, min, max, unit });
         None
     }
 
-    /// Checks an integer; problems report it as f64, which is exact for all allowed values.
+    /// Checks an integer. A problem has it as f64, which is exact for all allowed values.
     pub fn whole(
         &mut self,
-        step: &str,
+        field: &str,
         given: impl Into<u64>,
         range: RangeInclusive<u64>,
         unit: &'static str,
     ) {
         let given = given.into();
         if !range.contains(&given) {
-            let (given, least, most) = (given as f64, *range.start() as f64, *range.end() as f64);
-            self.add(step, ValueError::Range { given, min: least, max: most, unit });
+            let (given, min, max) = (given as f64, *range.start() as f64, *range.end() as f64);
+            self.add(field, ValueError::Range { given, min, max, unit });
         }
     }
 
-    /// Checks the number `of` something.
-    pub fn length(&mut self, step: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
+    /// Checks the length of a text or list; `of` is check it counts, such as `moves`.
+    pub fn length(&mut self, field: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
         if !range.contains(&given) {
-            let (least, most) = range.into_inner();
-            self.add(step, ValueError::Length { given, min: least, max: most, of });
+            let (min, max) = range.into_inner();
+            self.add(field, ValueError::Length { given, min, max, of });
         }
     }
 
     /// Number of problems so far, including those not listed.
     #[must_use]
     pub const fn count(&self) -> usize {
-        self.found
+        self.count
     }
 
+    /// Whether there are no problems so far.
     #[must_use]
     pub const fn is_ok(&self) -> bool {
-        self.found == 0
+        self.count == 0
     }
 
     /// The listed problems.
@@ -167,7 +168,7 @@ impl<C: From<ValueError>> Validator<C> {
         self.problems
     }
 
-    /// Returns the value.
+    /// Returns `value`, or the problems if there are any.
     ///
     /// # Errors
     /// The listed problems.
@@ -181,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn problems_whose_paths_are_whole_are_listed_after_those_before_them() {
+    fn lists_problems_in_the_order_they_are_added() {
         let mut validator = Validator::<Cause>::default();
         validator.add("a", Cause::NoSegmentSteps);
         validator.extend([Problem::<Cause>::new("b.c", Cause::NoSegmentSteps)]);
@@ -191,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_listed_any_more_is_wrong_all_the_same() {
+    fn counts_problems_beyond_the_maximum_of_listed_ones() {
         let mut validator = Validator::<Cause>::default();
         for _ in 0..MAX_PROBLEMS {
             validator.add("a", Cause::NoSegmentSteps);

@@ -1,4 +1,4 @@
-//! The acceleration table (DESIGN B2, Sonobe 2011): one pulse rate per step in whole pps, and a timer's reload for each.
+//! The acceleration table (DESIGN B2, Sonobe 2011): one integer pulse rate per step, and a timer's reload for each.
 //!
 //! ```text
 //! rate[k]   = round_half_up(sqrt(v0^2 + 2*a*k))     k = 0 .. top - 1
@@ -10,6 +10,7 @@
 
 use crate::{curves::climb::Climb, timing::Exact};
 
+/// Pulse rates and timer reloads of a ramp.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccelerationTable {
     climb: Climb,
@@ -32,6 +33,7 @@ impl AccelerationTable {
         Self { top: climb.steps_to(top), climb, top_rate: top.rounded().unsigned_abs(), timer_hz }
     }
 
+    /// Clock of the timer that counts the reloads.
     #[must_use]
     pub fn timer_hz(&self) -> u32 {
         self.timer_hz
@@ -43,7 +45,7 @@ impl AccelerationTable {
         self.top
     }
 
-    /// Pulse rate of a row in whole pps, not decreasing; rows after the last are like the last.
+    /// Pulse rate of a row in steps/s, not decreasing; rows after the last have its rate.
     #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
         if row < self.top { self.climb.rate(row) } else { self.top_rate }
@@ -61,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_rates_come_out() {
+    fn has_the_rates_of_the_paper() {
         let step_mm = 0.393;
         let table = AccelerationTable::new(100.0 / step_mm, 1000.0 / step_mm, 3500.0 / step_mm, 1_000_000);
         for (row, rate) in (0..).zip([254, 287, 317, 344, 369, 392, 414, 435]) {

@@ -6,8 +6,8 @@
 //! v0 = 6.1, a = 9.52:   6.1^2 + 2*9.52*1 = 56.25 = 7.5^2, so rate(1) is 8; in f64 the root is 7.499999999999999
 //! ```
 //!
-//! An f64 decides unless its root is next to a half. There the squares are compared as integers, so a tie of the given
-//! decimals is a tie.
+//! An f64 decides unless its root is next to a half. There the squares are compared as integers, so that ties of decimals
+//! are rounded up.
 
 use crate::{bisection::first_near, round_half_up, square_root, timing::Exact};
 use num_bigint::BigUint;
@@ -15,19 +15,21 @@ use num_bigint::BigUint;
 /// Maximum relative error of a speed in f64: 64 roundings.
 const MAX_ERROR: f64 = 32.0 * f64::EPSILON;
 
-/// Maximum steps of an exact search; no move has as many.
+/// Maximum steps of an exact search; no move has that many.
 const MAX_STEPS: u64 = 1 << 52;
 /// From this speed on an f64 has no halves.
 const MAX_SPEED: f64 = (1_u64 << 51) as f64;
 
-/// The speed after `steps` from `start` at `acceleration`, in whole steps/s.
-///
-/// # Errors
-/// The whole part, if the speed is so near to a half that only [`Climb::rate`] decides.
-pub(crate) fn quick_rate(start: f64, acceleration: f64, steps: u64) -> Result<u64, u64> {
-    let speed = square_root(start * start + 2.0 * acceleration * steps as f64);
-    let is_near = speed < MAX_SPEED && libm::fabs(speed - libm::floor(speed) - 0.5) <= MAX_ERROR * speed;
-    if is_near { Err(speed as u64) } else { Ok(round_half_up(speed).unsigned_abs()) }
+fn speed_after(start: f64, acceleration: f64, steps: u64) -> f64 {
+    square_root(start * start + 2.0 * acceleration * steps as f64)
+}
+
+/// The rate after `steps` from `start` steps/s at `acceleration` steps/s^2; `None` if the speed is so close to a half that
+/// only [`Climb::rate`] decides.
+pub(crate) fn quick_rate(start: f64, acceleration: f64, steps: u64) -> Option<u64> {
+    let speed = speed_after(start, acceleration, steps);
+    let is_near_half = speed < MAX_SPEED && libm::fabs(speed - libm::floor(speed) - 0.5) <= MAX_ERROR * speed;
+    (!is_near_half).then(|| round_half_up(speed).unsigned_abs())
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -43,17 +45,18 @@ pub(crate) struct Climb {
 impl Climb {
     /// From `start` >= 0 in steps/s with `acceleration` > 0 in steps/s^2.
     pub(crate) fn new(start: &Exact, acceleration: &Exact) -> Self {
-        let (start_over, start_under) = start.magnitude();
-        let (over, under) = acceleration.magnitude();
-        let square_under = start_under * start_under;
-        let base = start_over * start_over * under;
-        let slope = over * &square_under * 2_u8;
-        let unit = square_under * under;
+        let (start_numerator, start_denominator) = start.magnitude();
+        let (numerator, denominator) = acceleration.magnitude();
+        let squared_denominator = start_denominator * start_denominator;
+        let base = start_numerator * start_numerator * denominator;
+        let slope = numerator * &squared_denominator * 2_u8;
+        let unit = squared_denominator * denominator;
         Self { start: start.nearest(), acceleration: acceleration.nearest(), base, slope, unit }
     }
 
     pub(crate) fn rate(&self, steps: u64) -> u64 {
-        quick_rate(self.start, self.acceleration, steps).unwrap_or_else(|below| {
+        quick_rate(self.start, self.acceleration, steps).unwrap_or_else(|| {
+            let below = speed_after(self.start, self.acceleration, steps) as u64;
             below + u64::from(self.reaches(steps, &(2 * below + 1).into(), &2_u8.into()))
         })
     }
@@ -66,13 +69,13 @@ impl Climb {
         if near >= MAX_STEPS {
             return near;
         }
-        let (over, under) = top.magnitude();
-        first_near(near, 2 * MAX_STEPS, |steps| self.reaches(steps, over, under))
+        let (numerator, denominator) = top.magnitude();
+        first_near(near, 2 * MAX_STEPS, |steps| self.reaches(steps, numerator, denominator))
     }
 
-    fn reaches(&self, steps: u64, over: &BigUint, under: &BigUint) -> bool {
+    fn reaches(&self, steps: u64, numerator: &BigUint, denominator: &BigUint) -> bool {
         let square = &self.slope * steps + &self.base;
-        square * under * under >= over * over * &self.unit
+        square * denominator * denominator >= numerator * numerator * &self.unit
     }
 }
 
@@ -85,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_of_decimals_goes_up_and_what_is_less_goes_down() {
+    fn rounds_ties_of_decimals_up_and_smaller_numbers_down() {
         // Start speed, acceleration, steps, rate.
         let rows = [
             (6.1, 9.52, 1, 8),
@@ -104,9 +107,8 @@ mod tests {
         }
     }
 
-    /// Start speeds of one decimal and halves above them: the acceleration that makes each a tie, as a decimal.
     #[test]
-    fn every_tie_of_short_decimals_goes_up() {
+    fn rounds_every_tie_of_short_decimals_up() {
         let mut ties = 0;
         for tenths in 5..200_u32 {
             for (half, steps) in
@@ -129,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_speed_that_is_reached_exactly_is_reached() {
+    fn counts_a_speed_that_is_reached_exactly() {
         // Start, acceleration, top speed; the steps to it.
         let rows = [
             (6.1, 9.52, 7.5, 1),
@@ -149,9 +151,9 @@ mod tests {
         }
     }
 
-    /// 3/8 of a degree a second at 80/9 steps a degree: no decimal is 10/3, and 100/9 + 2*203.125/9 is 7.5^2.
+    /// 3/8 degree per second at 80/9 steps per degree: 10/3 is no decimal, and 100/9 + 2*203.125/9 is 7.5^2.
     #[test]
-    fn a_quotient_that_is_no_decimal_keeps_its_ties() {
+    fn rounds_ties_of_periodic_quotients_up() {
         let steps = |degrees: f64| Exact::of(degrees).times(80.0).divided_by(9.0);
         assert_eq!(Climb::new(&steps(0.375), &steps(2.539_062_5)).rate(1), 8);
     }

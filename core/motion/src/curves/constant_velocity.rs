@@ -10,13 +10,13 @@ use crate::{
     curves::curve::signed,
     timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run},
 };
-use alloc::{boxed::Box, string::String, vec::Vec};
+use alloc::{boxed::Box, string::String};
 
+/// A move at a constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     steps: i64,
     speed: f64,
-    /// The same in 106 bits.
     exact_speed: Double,
     duration_s: f64,
 }
@@ -25,10 +25,10 @@ impl Constant {
     /// `steps` (left negative) at `speed` > 0 steps/s.
     #[must_use]
     pub fn new(steps: i64, speed: f64) -> Self {
-        Self::within(steps, Double::decimal(speed))
+        Self::from_exact(steps, Double::decimal(speed))
     }
 
-    pub(crate) fn within(steps: i64, exact_speed: Double) -> Self {
+    pub(crate) fn from_exact(steps: i64, exact_speed: Double) -> Self {
         let speed = exact_speed.high;
         Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
     }
@@ -73,16 +73,8 @@ impl Curve for Constant {
         signed(self.steps, self.speed)
     }
 
-    fn acceleration(&self, _: f64) -> f64 {
-        0.0
-    }
-
     fn peaks(&self) -> Peaks {
         Peaks { speed: self.speed, ..Peaks::default() }
-    }
-
-    fn breakpoints_s(&self) -> Vec<f64> {
-        Vec::new()
     }
 
     fn detail(&self, _: f64) -> String {
@@ -90,12 +82,14 @@ impl Curve for Constant {
     }
 }
 
+/// A pause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dwell {
     duration_s: f64,
 }
 
 impl Dwell {
+    /// A pause of `duration_s` >= 0.
     #[must_use]
     pub fn new(duration_s: f64) -> Self {
         Self { duration_s }
@@ -133,16 +127,8 @@ impl Curve for Dwell {
         0.0
     }
 
-    fn acceleration(&self, _: f64) -> f64 {
-        0.0
-    }
-
     fn peaks(&self) -> Peaks {
         Peaks::default()
-    }
-
-    fn breakpoints_s(&self) -> Vec<f64> {
-        Vec::new()
     }
 
     fn detail(&self, _: f64) -> String {

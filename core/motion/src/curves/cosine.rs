@@ -25,6 +25,7 @@ use crate::{
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::f64::consts::PI;
 
+/// A cosine S-curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cosine {
     halves: Mirrored,
@@ -47,8 +48,8 @@ impl Cosine {
         self.top_speed
     }
 
-    /// The longest ramp in s with a top speed of at most `speed` steps/s, T - n/speed, of which up to T/2 can be used;
-    /// `None` if even no ramp is too fast.
+    /// The longest ramp in s with a top speed of at most `speed` steps/s, T - n/speed; a move can use up to T/2 of it.
+    /// `None` if the move is too fast even without ramps.
     #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
@@ -59,13 +60,9 @@ impl Cosine {
         (t < self.ramp_s).then(|| PI * t / self.ramp_s)
     }
 
-    pub(crate) fn part(&self, t: f64) -> f64 {
-        self.near_part(self.halves.nearer_end(t))
-    }
-
-    fn near_part(&self, t: f64) -> f64 {
-        // (1 - cos x)/2 = sin^2(x/2), which is exact near 0.
-        self.phase(t).map_or(1.0, |phase| {
+    pub(crate) fn relative_speed(&self, t: f64) -> f64 {
+        // (1 - cos x)/2 = sin^2(x/2), which does not cancel near 0.
+        self.phase(self.halves.nearer_end(t)).map_or(1.0, |phase| {
             let sine = libm::sin(phase / 2.0);
             sine * sine
         })
@@ -135,7 +132,7 @@ impl MirroredCurve for Cosine {
         Some(self.top_speed * PI / (2.0 * self.ramp_s) * libm::sin(self.phase(t)?))
     }
 
-    /// Time of a position in the first half: the phase solves x - sin(x) = pi*position/(steps of the ramp).
+    /// The phase solves x - sin(x) = pi*position/(steps of the ramp).
     fn half_time_s(&self, position: f64) -> f64 {
         let ramp_steps = self.ramp_steps();
         if position >= ramp_steps {
@@ -153,7 +150,7 @@ impl MirroredCurve for Cosine {
         let speed = self.top_speed;
         if self.ramp_s > 0.0 {
             let acceleration = speed * PI / (2.0 * self.ramp_s);
-            // f_max*pi^2/(2*t_s^2), at both ends of each ramp.
+            // The jerk has its maximum f_max*pi^2/(2*t_s^2) at both ends of each ramp.
             Peaks { speed, acceleration, jerk: acceleration * PI / self.ramp_s, ..Peaks::default() }
         } else {
             Peaks { speed, ..Peaks::default() }
@@ -171,8 +168,8 @@ const MAX_NEWTON_STEPS: u32 = 10;
 
 /// The x of 0..=pi with x - sin(x) = `level`.
 fn phase_at(level: f64) -> f64 {
-    // The series of the inverse is slightly low. x - sin(x) rises and is convex, so after the first step of Newton's method
-    // the phase is above the root and falls toward it.
+    // The inverse series is slightly low. x - sin(x) rises and is convex, so the first step of Newton's method passes the
+    // root, and the others fall toward it.
     let root = libm::cbrt(6.0 * level);
     let square = root * root;
     let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
@@ -193,7 +190,7 @@ mod tests {
     use crate::Curve;
 
     #[test]
-    fn the_documents_top_speed_and_longest_ramp_come_out() {
+    fn has_the_top_speed_and_longest_ramp_of_the_paper() {
         assert_eq!(Cosine::new(6400, 0.4, 0.2).top_speed(), 32_000.0);
         let curve = Cosine::new(3200, 0.4, 0.2);
         let longest = curve.longest_ramp_s(19_200.0).unwrap();
@@ -222,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_is_exact_and_the_middle_is_half_of_the_way() {
+    fn ends_exactly_and_is_half_way_in_the_middle() {
         for steps in [1, -1, 3, 6400, 999_999_999, -1_000_000_000] {
             for ramp_s in [0.0, 0.05, 0.15] {
                 let curve = Cosine::new(steps, 0.3, ramp_s);
@@ -237,20 +234,20 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_is_at_each_place_at_its_time() {
+    fn time_is_the_inverse_of_position() {
         for (steps, ramp_s) in [(1, 0.15), (7, 0.05), (-6400, 0.15), (6401, 0.0), (1_000_000_000, 0.1)] {
             let curve = Cosine::new(steps, 0.3, ramp_s);
             let count = curve.halves.count();
             for i in 0..=5000 {
-                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 5000.0 };
-                let place = if place > count { count } else { place };
-                let t = curve.time_s(place);
-                // Within a cycle of 1 GHz, and the digits of the position.
+                let target = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 5000.0 };
+                let target = if target > count { count } else { target };
+                let t = curve.time_s(target);
+                // Within a cycle of 1 GHz and the rounding of the position.
                 let at = |t: f64| libm::fabs(curve.position(t));
                 let digits = count * 1e-15;
                 assert!(
-                    at(t - 1e-9) <= place + digits && at(t + 1e-9) >= place - digits,
-                    "{place} of {steps}"
+                    at(t - 1e-9) <= target + digits && at(t + 1e-9) >= target - digits,
+                    "{target} of {steps}"
                 );
             }
         }

@@ -7,13 +7,14 @@
 //!     0         h     length h, mean slope d, slopes m0 and m1 at the ends, from 0 to 2*d
 //! ```
 //!
-//! Both are computed from the nearer end, where they are small, so steps next to a turn keep their digits.
+//! Both are computed from the nearer end, where they are small, so steps next to a reversal lose no digits.
 
 use crate::{bisection::Bracket, curves::curve::greater, square_root, timing::Number};
 
 /// Maximum steps of Newton's method; eight are enough.
 const MAX_NEWTON_STEPS: u32 = 64;
 
+/// Times in s, positions in steps and speeds in steps/s at the start and the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cubic<N = f64> {
     pub(crate) from_s: N,
@@ -24,7 +25,7 @@ pub(crate) struct Cubic<N = f64> {
     pub(crate) to_speed: N,
 }
 
-/// The cubic from one of its ends: x is the time from it, the travel has no sign.
+/// The cubic over the time x from one of its ends: the travel is near_speed*x + square*x^2 + cube*x^3.
 #[derive(Clone, Copy)]
 pub(crate) struct FromEnd<N = f64> {
     near_speed: N,
@@ -57,7 +58,7 @@ impl FromEnd {
             let missing = travel - self.travel(x);
             bracket.narrow(x, missing >= 0.0);
             let next = x + missing / self.speed(x);
-            // The comparison also rejects NaN, for a slope of 0.
+            // The comparison also rejects NaN, from a slope of 0.
             let next = if next >= bracket.low && next <= bracket.high { next } else { bracket.middle() };
             let done = libm::fabs(next - x) <= x * f64::EPSILON;
             x = next;
@@ -96,10 +97,11 @@ impl<N: Number> Cubic<N> {
     }
 }
 
+/// Slope at the point between two pieces of length h and mean slope d (Steffen 1990); 0 where the curve reverses.
 pub(crate) fn slope_between<N: Number>((h0, d0): (N, N), (h1, d1): (N, N)) -> N {
-    let none = N::from(0.0);
-    if !((d0 > none && d1 > none) || (d0 < none && d1 < none)) {
-        return none;
+    let zero = N::from(0.0);
+    if !((d0 > zero && d1 > zero) || (d0 < zero && d1 < zero)) {
+        return zero;
     }
     let parabola = (d0 * h1 + d1 * h0) / (h0 + h1);
     let smaller = |a: N, b: N| if b.magnitude() < a.magnitude() { b } else { a };
@@ -134,28 +136,27 @@ impl Cubic {
         6.0 * self.seen_from_start().cube
     }
 
-    pub(crate) fn turn_s(&self) -> Option<f64> {
+    /// Time of the inflection point, where the speed has its extreme; `None` if it is outside.
+    pub(crate) fn inflection_s(&self) -> Option<f64> {
         let polynomial = self.seen_from_start();
-        let turn_s = self.from_s - polynomial.square / (3.0 * polynomial.cube);
-        (turn_s > self.from_s && turn_s < self.to_s).then_some(turn_s)
+        let inflection_s = self.from_s - polynomial.square / (3.0 * polynomial.cube);
+        (inflection_s > self.from_s && inflection_s < self.to_s).then_some(inflection_s)
     }
 
-    /// When it is at `position`, which lies within it.
     pub(crate) fn crossing(&self, position: f64) -> Crossing {
         let travel = self.to - self.from;
-        let (behind, ahead) = (position - self.from, self.to - position);
-        // Mirrored so that the travel is to the right.
-        let right = |end: FromEnd| {
+        let (from_start, to_end) = (position - self.from, self.to - position);
+        let mirrored_to_right = |end: FromEnd| {
             let sign = if travel < 0.0 { -1.0 } else { 1.0 };
             FromEnd { near_speed: sign * end.near_speed, square: sign * end.square, cube: sign * end.cube }
         };
-        if libm::fabs(behind) <= libm::fabs(ahead) {
-            let travel = libm::fabs(behind);
-            let x = right(self.seen_from_start()).time(travel, self.length_s());
+        if libm::fabs(from_start) <= libm::fabs(to_end) {
+            let travel = libm::fabs(from_start);
+            let x = mirrored_to_right(self.seen_from_start()).time(travel, self.length_s());
             Crossing { time_s: self.from_s + x, s_per_step: x / travel }
         } else {
-            let travel = libm::fabs(ahead);
-            let x = right(self.seen_from_end()).time(travel, self.length_s());
+            let travel = libm::fabs(to_end);
+            let x = mirrored_to_right(self.seen_from_end()).time(travel, self.length_s());
             Crossing { time_s: self.to_s - x, s_per_step: x / travel }
         }
     }
@@ -164,7 +165,7 @@ impl Cubic {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) time_s: f64,
-    /// Time from the nearer end divided by the travel; NaN at the end.
+    /// Time from the nearer end divided by the travel from there; NaN at an end.
     pub(crate) s_per_step: f64,
 }
 
@@ -173,8 +174,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_has_the_time_at_which_the_cubic_is_there() {
-        // Slopes in parts of the mean one, from 0 to 2.
+    fn time_is_the_inverse_of_position() {
+        // Slopes at the ends in units of the mean slope, from 0 to 2.
         let parts = [0.0, 1e-12, 0.3, 1.0, 1.7, 2.0];
         for (from, to) in [(0.0, 1000.0), (7.25, 7.5), (-3.0, -1e9), (1e9, -1e9)] {
             for (first, last) in parts.iter().flat_map(|first| parts.map(|last| (*first, last))) {
@@ -185,12 +186,12 @@ mod tests {
                 assert_eq!((cubic.crossing(from).time_s, cubic.crossing(to).time_s), (from_s, to_s));
                 let mut before = from_s;
                 for part in [1e-15, 1e-9, 1e-3, 0.2, 0.49, 0.5, 0.51, 0.9, 0.999, 1.0 - 1e-9] {
-                    let place = from + (to - from) * part;
-                    let t = cubic.crossing(place).time_s;
+                    let position = from + (to - from) * part;
+                    let t = cubic.crossing(position).time_s;
                     assert!(t >= before && t <= to_s, "{from} {to} {first} {last} {part}: {t}");
                     // The time has 1.5e-11 s as its last digit there.
-                    let off = libm::fabs(cubic.position(t) - place);
-                    let digit = (libm::fabs(mean) + 1.0) * 4e-11 + 4e-16 * libm::fabs(place);
+                    let off = libm::fabs(cubic.position(t) - position);
+                    let digit = (libm::fabs(mean) + 1.0) * 4e-11 + 4e-16 * libm::fabs(position);
                     assert!(off <= digit, "{from} {to} {first} {last} {part}: {off} {digit}");
                     before = t;
                 }
@@ -199,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_turn_the_time_keeps_its_digits() {
+    fn loses_no_digits_next_to_a_reversal() {
         // y = 3*x^2 - 2*x^3 from its bottom: half a step of a billion is at sqrt(0.5/3e9) and a little.
         let cubic = Cubic { from_s: 0.0, to_s: 1.0, from: 0.0, to: 1e9, from_speed: 0.0, to_speed: 0.0 };
         let root = libm::sqrt(0.5 / 3e9);
@@ -212,11 +213,11 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_line_has_no_curvature_at_all() {
+    fn a_straight_line_has_no_curvature() {
         let speed = 0.1 / 0.3;
         let line = Cubic { from_s: 0.1, to_s: 0.4, from: 0.2, to: 0.3, from_speed: speed, to_speed: speed };
         let mean = line.mean_speed();
         let line = Cubic { from_speed: mean, to_speed: mean, ..line };
-        assert_eq!((line.acceleration(0.2), line.jerk(), line.turn_s()), (0.0, 0.0, None));
+        assert_eq!((line.acceleration(0.2), line.jerk(), line.inflection_s()), (0.0, 0.0, None));
     }
 }

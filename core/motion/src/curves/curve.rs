@@ -8,35 +8,41 @@ use alloc::{format, string::String, vec::Vec};
 /// Times are in s, positions in steps from the start of the move, left negative. Before the start the position is 0,
 /// after the end [`Curve::steps`].
 pub trait Curve {
+    /// Duration of the move in s.
     fn duration_s(&self) -> f64;
 
+    /// Position at the end, in whole steps.
     fn steps(&self) -> i64;
 
-    /// Position at `t`. Rounded half up it gives the steps due by `t`; at the end it is exactly [`Curve::steps`].
+    /// Position at `t`, exactly [`Curve::steps`] at the end. Rounded half up it is the number of steps due by `t`.
     fn position(&self, t: f64) -> f64;
 
     /// Speed at `t` in steps/s: at the start the first of the move, at the end the last.
     fn speed(&self, t: f64) -> f64;
 
-    /// Acceleration at `t` in steps/s^2, without the jumps of the speed.
-    fn acceleration(&self, t: f64) -> f64;
+    /// Acceleration at `t` in steps/s^2, without the jumps of the speed; by default that of constant rates.
+    fn acceleration(&self, _t: f64) -> f64 {
+        0.0
+    }
 
     /// Maxima within the move, without the jumps at its start and end.
     fn peaks(&self) -> Peaks;
 
-    /// Times in s at which the formula changes, rising: between them position, speed and acceleration are smooth and
-    /// monotonic. Of a periodic move only those of the first period.
-    fn breakpoints_s(&self) -> Vec<f64>;
+    /// Rising times in s at which the formula changes: between them position, speed and acceleration are smooth and
+    /// monotonic. An oscillation has only those of its first period.
+    fn breakpoints_s(&self) -> Vec<f64> {
+        Vec::new()
+    }
 
-    /// When a curve without reversal is at `position`, in s; `position` in steps without sign, between start and end.
-    /// Step k is due at k - 1/2.
+    /// Time in s at which a curve without reversals is at `position`, in steps without sign, between start and end. Step k
+    /// is due at k - 1/2.
     ///
     /// The default bisects; a formula that can be solved for the time is faster.
     fn time_s(&self, position: f64) -> f64 {
         border(0.0, self.duration_s(), |t| libm::fabs(self.position(t)) < position).1
     }
 
-    /// A short text about the move, on a bus with a maximum rate of `limit_steps_s`; may be empty.
+    /// A short description of the move on a bus with a maximum rate of `limit_steps_s`; may be empty.
     fn detail(&self, _limit_steps_s: f64) -> String {
         self.peaks().to_text()
     }
@@ -45,27 +51,30 @@ pub trait Curve {
 /// Maximum magnitudes of a move or an axis, in steps and s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks {
+    /// Speed in steps/s.
     pub speed: f64,
     /// Without the jumps of the speed.
     pub acceleration: f64,
     /// Jump of the speed; a motor must start or stop at this rate.
     pub jump: f64,
+    /// Without the jumps of the acceleration.
     pub jerk: f64,
     /// Jump of the acceleration, which makes the jerk infinite.
     pub acceleration_jump: f64,
 }
 
 impl Peaks {
-    /// Of constant rates one after another, the first of them after `before`.
+    /// Peaks of consecutive constant rates, the first of which follows `before`.
     pub(crate) fn of_rates(mut before: Option<f64>, rates: impl Iterator<Item = f64>) -> Self {
         rates.fold(Self::default(), |peaks, speed| {
             let jump = before.replace(speed).map_or(0.0, |before| libm::fabs(speed - before));
-            peaks.or(Self { speed, jump, ..Self::default() })
+            peaks.max(Self { speed, jump, ..Self::default() })
         })
     }
 
+    /// The maximum of each number.
     #[must_use]
-    pub fn or(self, other: Self) -> Self {
+    pub fn max(self, other: Self) -> Self {
         Self {
             speed: greater(self.speed, other.speed),
             acceleration: greater(self.acceleration, other.acceleration),
@@ -75,6 +84,7 @@ impl Peaks {
         }
     }
 
+    /// Maximum speed and acceleration as a text.
     #[must_use]
     pub fn to_text(self) -> String {
         format!("peak {} steps/s, {} steps/s\u{b2}", grouped(self.speed), grouped(self.acceleration))
@@ -85,7 +95,7 @@ pub(crate) fn signed(steps: i64, magnitude: f64) -> f64 {
     if steps < 0 { -magnitude } else { magnitude }
 }
 
-/// The greater of two numbers, in plain comparisons: the bits of `libm`'s maximum differ for NaN and -0.
+/// The greater of two numbers by one comparison, because the bits of `libm`'s maximum differ for NaN and -0.
 pub(crate) fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
@@ -99,7 +109,7 @@ mod tests {
     use crate::{Curve, curves::trapezoid::Trapezoid};
 
     #[test]
-    fn a_time_is_found_in_a_curve_that_has_only_positions() {
+    fn finds_a_time_by_bisection() {
         for steps in [1, -2, 801, -40_000] {
             let curve = Trapezoid::new(steps, 250.0, 4000.0, 9000.0);
             let times = curve.step_times(1_000_000_000).map(|cycle| cycle as f64 * 1e-9);

@@ -18,7 +18,7 @@
 //! | acceleration, below V: no plateau | from v*(v/A + A/J) = n | A/J |
 //! | distance: jerk phases only | J*t_j^2 | cbrt(n/(2*J)) |
 //!
-//! The time of a step is the root of its phase's polynomial, from the end where it is small, so no digits cancel.
+//! The time of a step is a root of the polynomial of its phase, from the end where it is small, so no digits cancel.
 
 use crate::{
     Peaks,
@@ -39,11 +39,15 @@ const JERK_PARTS: u32 = 16;
 /// Maximum speed, acceleration and jerk of a move in steps and s, each above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<N = f64> {
+    /// In steps/s.
     pub speed: N,
+    /// In steps/s^2.
     pub acceleration: N,
+    /// In steps/s^3.
     pub jerk: N,
 }
 
+/// A jerk-limited move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JerkLimited {
     halves: Mirrored,
@@ -54,10 +58,13 @@ pub struct JerkLimited {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Phases<N> {
     jerk: N,
+    /// t_j.
     jerk_s: N,
-    steady_s: N,
-    /// v, the maximum speed reached.
+    /// t_a.
+    constant_s: N,
+    /// v, the maximum speed of the move.
     peak_speed: N,
+    /// t_r.
     ramp_s: N,
     /// s_r, at most half of the steps.
     ramp_steps: N,
@@ -66,64 +73,73 @@ struct Phases<N> {
 
 impl<N: Number> Phases<N> {
     fn new(steps: i64, Limits { speed, acceleration, jerk }: Limits<N>) -> Self {
-        let all = N::from(steps.unsigned_abs() as f64);
-        // To the top speed, with constant acceleration if the maximum acceleration is reached first.
+        let distance = N::from(steps.unsigned_abs() as f64);
+        // A ramp to the maximum speed, with constant acceleration if the maximum acceleration is reached first.
         let full_jerk_s = acceleration / jerk;
-        let (jerk_s, steady_s) = if speed > acceleration * full_jerk_s {
+        let (jerk_s, constant_s) = if speed > acceleration * full_jerk_s {
             (full_jerk_s, (speed / acceleration - full_jerk_s).or_zero())
         } else {
             ((speed / jerk).square_root(), 0.0.into())
         };
-        let ramp_s = jerk_s * 2.0 + steady_s;
+        let ramp_s = jerk_s * 2.0 + constant_s;
         let ramp_steps = speed * ramp_s * 0.5;
-        if ramp_steps * 2.0 <= all {
-            let duration_s = all / speed + ramp_s;
-            return Self { jerk, jerk_s, steady_s, peak_speed: speed, ramp_s, ramp_steps, duration_s };
+        if ramp_steps * 2.0 <= distance {
+            let duration_s = distance / speed + ramp_s;
+            return Self { jerk, jerk_s, constant_s, peak_speed: speed, ramp_s, ramp_steps, duration_s };
         }
-        let (jerk_s, steady_s, peak_speed) = if all > acceleration * 2.0 * full_jerk_s * full_jerk_s {
+        let (jerk_s, constant_s, peak_speed) = if distance > acceleration * 2.0 * full_jerk_s * full_jerk_s {
             // v*(v/A + t_j) = n, solved without cancellation.
-            let root = (full_jerk_s * full_jerk_s + all * 4.0 / acceleration).square_root();
-            let peak_speed = all * 2.0 / (full_jerk_s + root);
+            let root = (full_jerk_s * full_jerk_s + distance * 4.0 / acceleration).square_root();
+            let peak_speed = distance * 2.0 / (full_jerk_s + root);
             (full_jerk_s, (peak_speed / acceleration - full_jerk_s).or_zero(), peak_speed)
         } else {
-            let jerk_s = (all / (jerk * 2.0)).cube_root();
+            let jerk_s = (distance / (jerk * 2.0)).cube_root();
             (jerk_s, 0.0.into(), jerk * jerk_s * jerk_s)
         };
-        let ramp_s = jerk_s * 2.0 + steady_s;
-        Self { jerk, jerk_s, steady_s, peak_speed, ramp_s, ramp_steps: all * 0.5, duration_s: ramp_s * 2.0 }
+        let ramp_s = jerk_s * 2.0 + constant_s;
+        Self {
+            jerk,
+            jerk_s,
+            constant_s,
+            peak_speed,
+            ramp_s,
+            ramp_steps: distance * 0.5,
+            duration_s: ramp_s * 2.0,
+        }
     }
 
-    /// J*t_j, the maximum acceleration reached.
+    /// J*t_j, the maximum acceleration of the move.
     fn peak_acceleration(&self) -> N {
         self.jerk * self.jerk_s
     }
 
     fn phase_ends_s(&self) -> [N; 3] {
-        [self.jerk_s, self.jerk_s + self.steady_s, self.ramp_s]
+        [self.jerk_s, self.jerk_s + self.constant_s, self.ramp_s]
     }
 
-    fn first_steps(&self) -> N {
+    fn first_phase_steps(&self) -> N {
         self.jerk * self.jerk_s * self.jerk_s * self.jerk_s / 6.0
     }
 
-    fn first_speed(&self) -> N {
+    fn first_phase_speed(&self) -> N {
         self.jerk * self.jerk_s * self.jerk_s * 0.5
     }
 
     fn position(&self, t: N) -> N {
-        let [rising, steady, ramp] = self.phase_ends_s();
-        if t < rising {
+        let [jerk_end, constant_end, ramp_end] = self.phase_ends_s();
+        if t < jerk_end {
             self.jerk * t * t * t / 6.0
-        } else if t < steady {
-            let x = t - rising;
-            self.first_steps() + (self.first_speed() + self.peak_acceleration() * x * 0.5) * x
-        } else if t < ramp {
-            self.ramp_steps - self.travel_left(ramp - t)
+        } else if t < constant_end {
+            let x = t - jerk_end;
+            self.first_phase_steps() + (self.first_phase_speed() + self.peak_acceleration() * x * 0.5) * x
+        } else if t < ramp_end {
+            self.ramp_steps - self.travel_left(ramp_end - t)
         } else {
-            self.ramp_steps + self.peak_speed * (t - ramp)
+            self.ramp_steps + self.peak_speed * (t - ramp_end)
         }
     }
 
+    /// Travel in the last `left_s` of a ramp, within its last phase.
     fn travel_left(&self, left_s: N) -> N {
         (self.peak_speed - self.jerk * left_s * left_s / 6.0) * left_s
     }
@@ -135,17 +151,17 @@ impl JerkLimited {
     pub fn new(steps: i64, limits: Limits) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
-        Self::within(steps, Limits { speed, acceleration, jerk })
+        Self::from_exact(steps, Limits { speed, acceleration, jerk })
     }
 
-    pub(crate) fn within(steps: i64, limits: Limits<Double>) -> Self {
+    pub(crate) fn from_exact(steps: i64, limits: Limits<Double>) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
         let phases = Phases::new(steps, Limits { speed, acceleration, jerk });
         Self { halves: Mirrored { steps, duration_s: phases.duration_s }, phases, limits }
     }
 
-    /// Maximum speed reached, in steps/s.
+    /// Maximum speed of the move in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.phases.peak_speed
@@ -155,13 +171,13 @@ impl JerkLimited {
     /// three.
     #[must_use]
     pub fn phases_s(&self) -> [f64; 4] {
-        let Phases { jerk_s, steady_s, ramp_s, duration_s, .. } = self.phases;
-        [jerk_s, steady_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]
+        let Phases { jerk_s, constant_s, ramp_s, duration_s, .. } = self.phases;
+        [jerk_s, constant_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]
     }
 
     pub(crate) fn changes(&self) -> Vec<f64> {
         let last = self.phases.ramp_steps - self.phases.travel_left(self.phases.jerk_s);
-        self.halves.changes(&[self.phases.first_steps(), last, self.phases.ramp_steps])
+        self.halves.changes(&[self.phases.first_phase_steps(), last, self.phases.ramp_steps])
     }
 }
 
@@ -200,26 +216,26 @@ impl MirroredCurve for JerkLimited {
     }
 
     fn half_speed(&self, t: f64) -> f64 {
-        let [rising, steady, ramp] = self.phases.phase_ends_s();
-        if t < rising {
+        let [jerk_end, constant_end, ramp_end] = self.phases.phase_ends_s();
+        if t < jerk_end {
             self.phases.jerk * t * t / 2.0
-        } else if t < steady {
-            self.phases.first_speed() + self.phases.peak_acceleration() * (t - rising)
-        } else if t < ramp {
-            self.phases.peak_speed - self.phases.jerk * (ramp - t) * (ramp - t) / 2.0
+        } else if t < constant_end {
+            self.phases.first_phase_speed() + self.phases.peak_acceleration() * (t - jerk_end)
+        } else if t < ramp_end {
+            self.phases.peak_speed - self.phases.jerk * (ramp_end - t) * (ramp_end - t) / 2.0
         } else {
             self.phases.peak_speed
         }
     }
 
     fn half_acceleration(&self, t: f64) -> Option<f64> {
-        let [rising, steady, ramp] = self.phases.phase_ends_s();
-        Some(if t < rising {
+        let [jerk_end, constant_end, ramp_end] = self.phases.phase_ends_s();
+        Some(if t < jerk_end {
             self.phases.jerk * t
-        } else if t < steady {
+        } else if t < constant_end {
             self.phases.peak_acceleration()
-        } else if t < ramp {
-            self.phases.jerk * (ramp - t)
+        } else if t < ramp_end {
+            self.phases.jerk * (ramp_end - t)
         } else {
             0.0
         })
@@ -227,25 +243,25 @@ impl MirroredCurve for JerkLimited {
 
     fn half_time_s(&self, position: f64) -> f64 {
         let Phases { jerk, jerk_s, peak_speed, ramp_s, ramp_steps, .. } = self.phases;
-        let past_first = position - self.phases.first_steps();
+        let past_first = position - self.phases.first_phase_steps();
         if past_first <= 0.0 {
             return libm::cbrt(6.0 * position / jerk);
         }
-        let left = ramp_steps - position;
-        if left <= 0.0 {
-            return ramp_s - left / peak_speed;
+        let steps_left = ramp_steps - position;
+        if steps_left <= 0.0 {
+            return ramp_s - steps_left / peak_speed;
         }
-        if left > self.phases.travel_left(jerk_s) {
-            let (speed, acceleration) = (self.phases.first_speed(), self.phases.peak_acceleration());
+        if steps_left > self.phases.travel_left(jerk_s) {
+            let (speed, acceleration) = (self.phases.first_phase_speed(), self.phases.peak_acceleration());
             let root = square_root(speed * speed + 2.0 * acceleration * past_first);
             return jerk_s + 2.0 * past_first / (speed + root);
         }
         // v*u - J*u^3/6 rises and is concave up to t_j, with a slope above v/2: Newton's method approaches the root from
         // below and never passes it.
-        let mut u = left / peak_speed;
+        let mut u = steps_left / peak_speed;
         for _ in 0..MAX_NEWTON_STEPS {
             let slope = peak_speed - jerk * u * u / 2.0;
-            let correction = (left - self.phases.travel_left(u)) / slope;
+            let correction = (steps_left - self.phases.travel_left(u)) / slope;
             u += correction;
             if correction <= u * f64::EPSILON {
                 break;
@@ -264,18 +280,18 @@ impl MirroredCurve for JerkLimited {
     }
 
     fn half_breakpoints_s(&self) -> Vec<f64> {
-        let [rising_s, steady_s, ramp_s] = self.phases.phase_ends_s();
+        let [jerk_end_s, constant_end_s, ramp_end_s] = self.phases.phase_ends_s();
         let parts = |from_s: f64, to_s: f64| {
             (1..=JERK_PARTS)
                 .map(move |part| from_s + (to_s - from_s) * f64::from(part) / f64::from(JERK_PARTS))
         };
-        parts(0.0, rising_s).chain([steady_s]).chain(parts(steady_s, ramp_s)).collect()
+        parts(0.0, jerk_end_s).chain([constant_end_s]).chain(parts(constant_end_s, ramp_end_s)).collect()
     }
 
     fn text(&self, _: f64) -> String {
         let phases: Vec<String> = self.phases_s().iter().map(|phase_s| format!("{phase_s:.4}")).collect();
         format!(
-            "{}, {} steps/s\u{b3}; phases of {} s and back",
+            "{}, {} steps/s\u{b3}; phases of {} s, then mirrored",
             self.all_peaks().to_text(),
             grouped(self.phases.jerk),
             phases.join(", ")
@@ -292,7 +308,7 @@ mod tests {
         JerkLimited::new(steps, Limits { speed, acceleration, jerk })
     }
 
-    /// One of each row of the module's table, the borders between them, and their mirror images.
+    /// One move for each row of the module's table, one for each limit between them, and extremes.
     const MOVES: [(i64, f64, f64, f64); 9] = [
         (10_000, 4000.0, 20_000.0, 400_000.0),
         (10_000, 1000.0, 20_000.0, 100_000.0),
@@ -306,17 +322,17 @@ mod tests {
     ];
 
     #[test]
-    fn a_limit_out_of_its_range_is_refused_at_its_field() {
+    fn refuses_a_limit_out_of_range_with_its_path() {
         use crate::mechanics::{Acceleration, Distance, Jerk, Speed};
         let speed = Speed::StepsPerSecond;
         let (acceleration, jerk) = (Acceleration::StepsPerSecond2, Jerk::StepsPerSecond3);
-        let fits = moves::JerkLimited::default;
+        let valid = moves::JerkLimited::default;
         let rows = [
-            (moves::JerkLimited { distance: Distance::Steps(0.0), ..fits() }, "distance"),
-            (moves::JerkLimited { max_speed: speed(0.0), ..fits() }, "max_speed"),
-            (moves::JerkLimited { max_acceleration: acceleration(1e14), ..fits() }, "max_acceleration"),
-            (moves::JerkLimited { max_jerk: jerk(0.0), ..fits() }, "max_jerk"),
-            (moves::JerkLimited { max_jerk: jerk(1e20), ..fits() }, "max_jerk"),
+            (moves::JerkLimited { distance: Distance::Steps(0.0), ..valid() }, "distance"),
+            (moves::JerkLimited { max_speed: speed(0.0), ..valid() }, "max_speed"),
+            (moves::JerkLimited { max_acceleration: acceleration(1e14), ..valid() }, "max_acceleration"),
+            (moves::JerkLimited { max_jerk: jerk(0.0), ..valid() }, "max_jerk"),
+            (moves::JerkLimited { max_jerk: jerk(1e20), ..valid() }, "max_jerk"),
         ];
         for (given, field) in rows {
             let axis = moves::Axis { moves: vec![moves::Move::JerkLimited(given)], ..Default::default() };
@@ -327,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn each_row_of_the_table_has_its_phases() {
+    fn has_the_phases_of_each_row_of_the_table() {
         // Phases in s, peak speed.
         let rows = [
             ([0.05, 0.15, 0.05, 2.25], 4000.0),
@@ -349,15 +365,20 @@ mod tests {
     }
 
     #[test]
-    fn no_limit_is_passed_and_one_is_reached_at_every_time() {
+    fn reaches_one_limit_in_each_phase_and_exceeds_none() {
         for (steps, speed, acceleration, jerk) in MOVES {
             let made = curve(steps, speed, acceleration, jerk);
-            let (peaks, most) = (made.peaks(), 1.0 + 1e-12);
-            assert!(peaks.speed <= speed * most && peaks.acceleration <= acceleration * most, "{steps}");
+            let (peaks, tolerance) = (made.peaks(), 1.0 + 1e-12);
+            assert!(
+                peaks.speed <= speed * tolerance && peaks.acceleration <= acceleration * tolerance,
+                "{steps}"
+            );
             assert_eq!(peaks.jerk, jerk);
-            // In no phase is there room under all three limits.
-            let [rising, steady, _] = made.phases.phase_ends_s();
-            assert!(steady <= rising || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12, "{steps}");
+            let [jerk_end, constant_end, _] = made.phases.phase_ends_s();
+            assert!(
+                constant_end <= jerk_end || (peaks.acceleration / acceleration - 1.0).abs() < 1e-12,
+                "{steps}"
+            );
             assert!(made.phases_s()[3] <= 0.0 || peaks.speed == speed, "{steps}");
         }
     }
@@ -381,22 +402,22 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_is_at_each_place_at_its_time() {
+    fn time_is_the_inverse_of_position() {
         for (steps, speed, acceleration, jerk) in MOVES {
             let made = curve(steps, speed, acceleration, jerk);
             let count = steps.unsigned_abs() as f64;
             let mut before = (0.0, 0.0);
             for i in 0..=4000 {
-                let place = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 4000.0 };
-                if place > count {
+                let target = if i < 100 { 0.5 + f64::from(i) } else { count * f64::from(i) / 4000.0 };
+                if target > count {
                     continue;
                 }
-                let t = made.time_s(place);
-                let off = (made.position(t).abs() - place).abs();
-                // Of the position its digits, and of the time what the speed makes of its digits.
-                assert!(off <= 4e-15 * (count + made.peak_speed() * t), "{place} of {steps}: {off} off");
-                assert!(place < before.0 || t >= before.1, "{place} of {steps}");
-                before = (place, t);
+                let t = made.time_s(target);
+                let off = (made.position(t).abs() - target).abs();
+                // The rounding of the position, and that of the time times the speed.
+                assert!(off <= 4e-15 * (count + made.peak_speed() * t), "{target} of {steps}: {off} off");
+                assert!(target < before.0 || t >= before.1, "{target} of {steps}");
+                before = (target, t);
             }
         }
     }

@@ -39,12 +39,12 @@ impl Mirrored {
         t <= self.duration_s / 2.0
     }
 
-    /// Time from the nearer end, 0 outside.
+    /// Time from the nearer end of the move, 0 outside.
     pub(crate) fn nearer_end(&self, t: f64) -> f64 {
         greater(0.0, if self.is_first_half(t) { t } else { self.duration_s - t })
     }
 
-    /// Positions in steps without sign at which the formula changes, from those of the first half.
+    /// Completes positions (without sign) at which the formula changes in the first half by those of the second.
     pub(crate) fn changes(&self, first_half: &[f64]) -> Vec<f64> {
         let count = self.count();
         let before = first_half.iter().copied().filter(|position| *position < count / 2.0);
@@ -95,7 +95,7 @@ impl<C: MirroredCurve> Curve for C {
 
     fn position(&self, t: f64) -> f64 {
         let halves = self.halves();
-        // The middle belongs to both halves; without this limit they could pass it by a rounding.
+        // Without this limit, rounding could move the middle, which belongs to both halves.
         let travelled = lesser(self.half_position(halves.nearer_end(t)), halves.count() / 2.0);
         halves.signed(if halves.is_first_half(t) { travelled } else { halves.count() - travelled })
     }
@@ -120,11 +120,11 @@ impl<C: MirroredCurve> Curve for C {
     }
 
     fn time_s(&self, position: f64) -> f64 {
-        let left = self.halves().count() - position;
-        if position <= left {
+        let steps_left = self.halves().count() - position;
+        if position <= steps_left {
             self.half_time_s(position)
         } else {
-            self.halves().duration_s - self.half_time_s(left)
+            self.halves().duration_s - self.half_time_s(steps_left)
         }
     }
 

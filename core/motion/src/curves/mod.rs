@@ -1,8 +1,8 @@
-//! Curves: the position of an axis over time, and when its steps are due (DESIGN Part B). One file per kind of move:
+//! Curves: the position of an axis over time, and the times of its steps (DESIGN Part B). One file per kind of move:
 //!
 //! ```text
 //! trapezoid, trapezoid_table     B2    / uniform acceleration, exact or by a table of timer reloads \
-//! staircase                      B3    _-_     rates that are each held for some steps
+//! staircase                      B3    _-_     a staircase of constant rates
 //! cosine, sliced, ramps          B4    ( S )   a distance in a given time, with shaped ramps
 //! sine_segments, sine            B5 B6 \/\/    around a middle position
 //! jerk_limited, points           B6    within limits, or through points
@@ -46,12 +46,12 @@ pub use acceleration_table::AccelerationTable;
 pub use constant_velocity::{Constant, Dwell};
 pub use cosine::Cosine;
 pub use jerk_limited::{JerkLimited, Limits as JerkLimits};
-pub use points::{Between, Points};
+pub use points::Points;
 pub use ramp::{Exponential, Ramp, Sigmoid, longest_ramp_s};
 pub use ramps::Ramps;
 pub use sine::Sine;
 pub use sine_segments::{Memory, Segment, SineSegments};
-pub use sliced::{NotSliced, Sliced, TimeError};
+pub use sliced::{NotSliced, Slice, Sliced, TimeError};
 pub use staircase::Staircase;
 pub use staircase_table::StaircaseTable;
 pub use trapezoid::Trapezoid;

@@ -1,4 +1,4 @@
-//! Shared parts of oscillations around a middle position (DESIGN B5, B6): whole periods from one extreme and back.
+//! Shared parts of oscillations (DESIGN B5, B6): whole periods from one extreme to the other and back.
 //!
 //! ```text
 //!  0   |\        /\        /   position from the start: the right extreme or, with a negative
@@ -30,13 +30,11 @@ impl Oscillation {
         self.period_s * f64::from(self.periods)
     }
 
-    /// Duration in cycles.
     pub(crate) fn length(&self, clock_hz: u32) -> CycleTime {
         let duration = Exact::of(self.period_s).times(self.periods.into());
         CycleTime::exact(&duration.times(clock_hz.into()))
     }
 
-    /// A period in cycles.
     pub(crate) fn period(&self, clock_hz: u32) -> Double {
         Exact::of(self.period_s).times(clock_hz.into()).double()
     }
@@ -56,6 +54,7 @@ impl Oscillation {
         greater(0.0, turns - libm::floor(turns))
     }
 
+    /// Mirrors a number of an oscillation that starts at the right extreme, if it starts at the left one.
     pub(crate) fn signed(&self, rightwards: f64) -> f64 {
         if self.starts_right { rightwards } else { -rightwards }
     }

@@ -25,35 +25,39 @@ use core::f64::consts::PI;
 pub const POINTS: u16 = 2048;
 /// Points of the angle per quarter.
 pub const QUARTER: u16 = POINTS / 4;
+const POINTS_PER_PI: f64 = POINTS as f64 / 2.0;
+/// Equal parts of a chord at whose ends the deviation is computed.
 const CHORD_PARTS: u16 = 100;
 const _: () = assert!(4 * QUARTER == POINTS);
 
 /// y = cos at a point of the angle, 0..=[`QUARTER`].
 pub fn cosine_at(point: u16) -> f64 {
-    // cos(pi/2) of the rounded pi is not 0.
-    if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / 1024.0) }
+    // The cosine of pi/2 in f64 is not 0.
+    if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / POINTS_PER_PI) }
 }
 
 /// Breakpoints of a quarter, from 0 to [`QUARTER`], for the maximum deviation `d1` in units of the amplitude.
 ///
 /// A chord extends to the last point at which its maximum deviation from the cosine, over 101 equidistant points, is at
-/// most `d1`, and at least to the next point. A longer chord deviates more, so the search begins at the length of the
-/// previous chord, which is seldom far off.
+/// most `d1`, and at least to the next point. The search begins at the length of the previous chord, which is similar.
 pub fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
-    let (mut from, mut longer) = (0, 0);
+    // The length of a chord beyond one point.
+    let (mut from, mut extension) = (0, 0);
     while from < QUARTER {
         let next = from + 1;
         let y_from = cosine_at(from);
-        let holds = |to: u16| deviation((from, y_from), to) <= d1;
-        longer = first_near(longer, (QUARTER - next).into(), |longer| !holds(next + longer as u16 + 1));
-        from = next + longer as u16;
+        let is_within = |to: u16| deviation((from, y_from), to) <= d1;
+        extension = first_near(extension, (QUARTER - next).into(), |extension| {
+            !is_within(next + extension as u16 + 1)
+        });
+        from = next + extension as u16;
         points.push(from);
     }
     points
 }
 
-/// The next larger `d1` that gives other breakpoints, if there is one.
+/// The smallest larger `d1` with other breakpoints; `None` if there is none.
 pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
     let chords = breakpoints.iter().zip(breakpoints.iter().skip(1));
     chords
@@ -69,7 +73,7 @@ pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
 fn deviation((from, y_from): (u16, f64), to: u16) -> f64 {
     let y_to = cosine_at(to);
     let length = f64::from(to - from);
-    let summit = libm::asin((y_from - y_to) * 1024.0 / (PI * length)) * 1024.0 / PI;
+    let summit = libm::asin((y_from - y_to) * POINTS_PER_PI / (PI * length)) * POINTS_PER_PI / PI;
     let nearest = round_half_up((summit - f64::from(from)) / length * f64::from(CHORD_PARTS)) as u16;
     (nearest.saturating_sub(1)..=CHORD_PARTS.min(nearest + 1))
         .fold(0.0, |max, k| greater(max, deviation_at(k, from, to, y_from, y_to)))
@@ -79,22 +83,23 @@ fn deviation_at(k: u16, from: u16, to: u16, y_from: f64, y_to: f64) -> f64 {
     let part = f64::from(k) / f64::from(CHORD_PARTS);
     let chord = y_from + (y_to - y_from) * part;
     let point = f64::from(from) + f64::from(to - from) * part;
-    libm::fabs(chord - libm::cos(PI * point / 1024.0))
+    libm::fabs(chord - libm::cos(PI * point / POINTS_PER_PI))
 }
 
 pub(crate) struct Folded {
     pub(crate) point: f64,
-    pub(crate) right: bool,
-    pub(crate) leftwards: bool,
+    /// Whether the position is right of the middle.
+    pub(crate) is_right: bool,
+    pub(crate) goes_left: bool,
 }
 
 /// Folds a point of a period, 0..=2048, into the first quarter.
 pub(crate) fn fold(point: f64) -> Folded {
-    let leftwards = point < f64::from(2 * QUARTER);
-    let half = if leftwards { point } else { f64::from(POINTS) - point };
-    let right = half <= f64::from(QUARTER);
-    let point = if right { half } else { f64::from(2 * QUARTER) - half };
-    Folded { point: greater(0.0, point), right, leftwards }
+    let goes_left = point < f64::from(2 * QUARTER);
+    let half = if goes_left { point } else { f64::from(POINTS) - point };
+    let is_right = half <= f64::from(QUARTER);
+    let point = if is_right { half } else { f64::from(2 * QUARTER) - half };
+    Folded { point: greater(0.0, point), is_right, goes_left }
 }
 
 #[cfg(test)]
@@ -102,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_breakpoints_come_out() {
+    fn has_the_breakpoints_of_the_paper() {
         let rows: [(f64, &[u16]); 4] = [
             (0.0054, &[0, 67, 136, 208, 287, 381, 512]),
             (0.006, &[0, 71, 144, 221, 307, 413, 512]),
@@ -118,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_deviation_is_the_least_that_gives_other_breakpoints() {
+    fn next_deviation_is_the_smallest_with_other_breakpoints() {
         for d1 in [0.002, 0.0054, 0.006, 0.015, 0.1] {
             let points = breakpoints(d1);
             let next = next_deviation(&points).expect("a chord can be longer");
@@ -137,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_summits_neighbours_stand_for_all_101_points_of_every_chord() {
+    fn the_points_next_to_the_summit_have_the_maximum_of_every_chord() {
         for from in 0..QUARTER {
             for to in from + 1..=QUARTER {
                 let (y_from, y_to) = (cosine_at(from), cosine_at(to));

@@ -14,25 +14,27 @@
 //! ```
 //!
 //! A sigmoid cut off at +-r starts with a jump and does not reach its speed, as the paper finds. Here it is shifted and
-//! stretched to meet both ends. Near the start most terms cancel; each formula is written so that none do.
+//! stretched to reach both ends. The formulas are written so that terms do not cancel near the start.
 
 mod exact;
 
 use crate::{bisection::Bracket, curves::curve::lesser, square_root};
 
-/// Maximum steps of Newton's method; from the guesses here seven are enough.
+/// Maximum steps of Newton's method; seven are enough.
 const MAX_STEPS: u32 = 100;
 
 /// The longest ramp in s with which `steps` in `duration_s` need a top speed of at most `speed` steps/s, for ramps of area
-/// `area` (1/2 for every symmetric shape); up to half of the duration can be used. `None` if even no ramp is too fast.
+/// `area` (1/2 for symmetric shapes). A move can use up to half of its duration. `None` if the move is too fast even
+/// without ramps.
 ///
-/// The paper has t_s <= t_i - n/f_s; for any other area it is t_s <= (t_i - n/f_s)/(2*(1 - area)).
+/// The paper has t_s <= t_i - n/f_s; for other areas it is t_s <= (t_i - n/f_s)/(2*(1 - area)).
 #[must_use]
 pub fn longest_ramp_s(steps: u64, duration_s: f64, speed: f64, area: f64) -> Option<f64> {
     let ramp_s = (duration_s - steps as f64 / speed) / (2.0 * (1.0 - area));
     (ramp_s >= 0.0).then_some(ramp_s)
 }
 
+/// The shape of a ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ramp {
     Sigmoid(Sigmoid),
@@ -49,6 +51,7 @@ pub struct Sigmoid {
     range: f64,
     /// tanh(range/2), the part of the height within the range.
     part: f64,
+    /// sinh(range/2).
     sinh: f64,
     /// 1/(1 + e^range), the value at the start of the range.
     low: f64,
@@ -58,6 +61,7 @@ pub struct Sigmoid {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exponential {
     constants: f64,
+    /// 1 - e^-constants, the part of the height within the range.
     part: f64,
 }
 
@@ -120,6 +124,7 @@ impl Ramp {
         }
     }
 
+    /// Maximum g'.
     #[must_use]
     pub fn max_slope(&self) -> f64 {
         match self {
@@ -147,7 +152,7 @@ impl Ramp {
         }
     }
 
-    /// The x of 0..=1 with G(x) = `travel`, 0..=[`Ramp::area`], to the last digits.
+    /// The x of 0..=1 with G(x) = `travel`, which is in 0..=[`Ramp::area`].
     #[must_use]
     pub fn at_travel(&self, travel: f64) -> f64 {
         let guess = match self {
@@ -164,14 +169,14 @@ impl Ramp {
         self.newton(travel, lesser(guess, 1.0))
     }
 
-    /// Finds the x with G(x) = `travel`. G rises and is convex, so Newton's method falls toward the root from above; a
-    /// step that leaves the bracket is replaced by a bisection.
+    /// Finds the x with G(x) = `travel`. G rises and is convex, so Newton's method approaches the root from above. A step
+    /// that leaves the bracket is replaced by a bisection.
     fn newton(&self, travel: f64, guess: f64) -> f64 {
         let (mut bracket, mut x) = (Bracket::new(0.0, 1.0), guess);
         for _ in 0..MAX_STEPS {
-            let over = self.travel(x) - travel;
-            bracket.narrow(x, over < 0.0);
-            let next = x - over / self.speed(x);
+            let excess = self.travel(x) - travel;
+            bracket.narrow(x, excess < 0.0);
+            let next = x - excess / self.speed(x);
             if libm::fabs(next - x) <= 4.0 * f64::EPSILON * x {
                 return lesser(next, 1.0);
             }
@@ -198,19 +203,19 @@ impl Sigmoid {
         let (p, z) = (self.low, 2.0 * self.range * x);
         let climbed = p * libm::expm1(z);
         let area = if z <= 1.0 {
-            // Logarithm and exponential without their first terms, which cancel.
-            logarithm_rest(climbed) + p * exponential_rest(z)
+            // The first terms of logarithm and exponential cancel, so both are computed without them.
+            logarithm_remainder(climbed) + p * exponential_remainder(z)
         } else {
             libm::log1p(climbed) - p * z
         };
         area / (2.0 * self.range * self.part)
     }
 
-    /// e^z - 1 - z is close to a square for small z, and to e^z for large z.
+    /// Solves e^z - 1 - z approximately: it is close to z^2/2 for small z, and to e^z for large z.
     fn guess(&self, travel: f64) -> f64 {
         let area = 2.0 * self.range * self.part * travel;
-        let rest = libm::expm1(area) / (self.low * (1.0 - self.low));
-        libm::log1p(rest + square_root(2.0 * rest)) / (2.0 * self.range)
+        let remainder = libm::expm1(area) / (self.low * (1.0 - self.low));
+        libm::log1p(remainder + square_root(2.0 * remainder)) / (2.0 * self.range)
     }
 
     fn max_curvature(&self) -> f64 {
@@ -224,17 +229,17 @@ impl Sigmoid {
 impl Exponential {
     /// G = (e^-z - 1 + z)/(k*(1 - e^-k)) with z = k*x.
     fn travel(&self, x: f64) -> f64 {
-        exponential_rest(-self.constants * x) / (self.constants * self.part)
+        exponential_remainder(-self.constants * x) / (self.constants * self.part)
     }
 
     fn guess(&self, travel: f64) -> f64 {
-        let rest = travel * self.constants * self.part;
-        (square_root(2.0 * rest) + rest / 3.0) / self.constants
+        let remainder = travel * self.constants * self.part;
+        (square_root(2.0 * remainder) + remainder / 3.0) / self.constants
     }
 }
 
 /// e^z - 1 - z without cancellation.
-fn exponential_rest(z: f64) -> f64 {
+fn exponential_remainder(z: f64) -> f64 {
     if libm::fabs(z) > 0.5 {
         return libm::expm1(z) - z;
     }
@@ -247,7 +252,7 @@ fn exponential_rest(z: f64) -> f64 {
 }
 
 /// ln(1 + x) - x for x of 0..=1, without cancellation.
-fn logarithm_rest(x: f64) -> f64 {
+fn logarithm_remainder(x: f64) -> f64 {
     // With s = x/(2 + x), up to 1/3, ln(1 + x) = 2*(s + s^3/3 + s^5/5 + …), and 2*s - x = -x*s.
     let s = x / (2.0 + x);
     let square = s * s;

@@ -1,6 +1,6 @@
 //! A move with two ramps of a given shape, exact in distance and in time (DESIGN B4).
 //!
-//! The cosine S-curve with a shape g of area A (`ramp`) in place of the cosine:
+//! The cosine S-curve with a shape g of area A (`ramp`) instead of the cosine:
 //!
 //! ```text
 //!  f_max |     .--------.       f_max = n/(T - 2*t_s*(1 - A))      n/(T - t_s) where A is 1/2
@@ -23,6 +23,7 @@ use crate::{
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
+/// A move with two shaped ramps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ramps {
     halves: Mirrored,
@@ -54,8 +55,7 @@ impl Ramps {
         self.top_speed
     }
 
-    /// The longest ramp in s with a top speed of at most `speed` ([`longest_ramp_s`]), of which up to T/2 can be used;
-    /// `None` if even no ramp is too fast.
+    /// The longest ramp in s with a top speed of at most `speed` steps/s ([`longest_ramp_s`]).
     #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, self.area)
@@ -70,6 +70,7 @@ impl Ramps {
         (t < self.ramp_s).then(|| t / self.ramp_s)
     }
 
+    /// Time that a ramp takes longer than its travel at top speed.
     fn lost_s(&self) -> f64 {
         self.ramp_s * (1.0 - self.area)
     }
@@ -91,7 +92,6 @@ impl Schedule for Ramps {
         let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
         let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
         let (shape, count) = (self.ramp.exact(), self.halves.steps.unsigned_abs());
-        // Both ramps lose the same time compared with a start at top speed.
         let lost = ramp * (Double::from(1.0) - shape.area());
         let top_speed = Double::from(count) / (duration - lost * 2.0);
         Box::new(move |k, since| {
@@ -126,27 +126,27 @@ impl MirroredCurve for Ramps {
         Some(self.top_speed / self.ramp_s * self.ramp.slope(self.part(t)?))
     }
 
-    /// The acceleration jumps at the end of a ramp, twice as far if the other ramp follows without a plateau.
+    /// The acceleration jumps at the end of a ramp, by twice as much if the other ramp follows without a plateau.
     fn all_peaks(&self) -> Peaks {
         if self.ramp_s <= 0.0 {
             return Peaks { speed: self.top_speed, ..Peaks::default() };
         }
         let scale = self.top_speed / self.ramp_s;
-        let turns = 2.0 * self.ramp_s >= self.halves.duration_s;
+        let has_no_plateau = 2.0 * self.ramp_s >= self.halves.duration_s;
         let last = scale * self.ramp.slope(1.0);
         Peaks {
             speed: self.top_speed,
             acceleration: scale * self.ramp.max_slope(),
             jerk: scale / self.ramp_s * self.ramp.max_curvature(),
-            acceleration_jump: if turns { 2.0 * last } else { last },
+            acceleration_jump: if has_no_plateau { 2.0 * last } else { last },
             ..Peaks::default()
         }
     }
 
     fn half_breakpoints_s(&self) -> Vec<f64> {
-        // A sharper shape needs more parts; the middle stays a breakpoint.
-        let times = 1 + (self.ramp.sharpness() / 8.0) as u32;
-        parts_s(self.ramp_s, times * RAMP_PARTS).collect()
+        // Sharper shapes need more parts. An integer factor preserves the breakpoint in the middle.
+        let factor = 1 + (self.ramp.sharpness() / 8.0) as u32;
+        parts_s(self.ramp_s, factor * RAMP_PARTS).collect()
     }
 
     fn half_time_s(&self, position: f64) -> f64 {

@@ -9,7 +9,7 @@
 //!      0     T/2     T           and T/2 minus that of the remaining travel, k = A+1..=2*A
 //! ```
 //!
-//! The arcsine is only used up to 45 degrees, so no time is a small difference of large numbers.
+//! The arcsine is only used up to 45 degrees, so that no digits cancel.
 
 use crate::{
     Curve, Peaks,
@@ -23,6 +23,7 @@ use core::f64::consts::{PI, TAU};
 const PERIOD_PARTS: u32 = 128;
 const MAX_SAVED: u64 = 65_536;
 
+/// An exact sine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sine {
     pub(crate) oscillation: Oscillation,
@@ -53,7 +54,8 @@ impl Schedule for Sine {
         self.oscillation.length(clock_hz)
     }
 
-    /// All half periods have the same times from their starts, which are saved: an arcsine takes 20 times as long.
+    /// One run per half period. They have the same times from their starts, which are saved, because an arcsine takes 20
+    /// times as long.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let Oscillation { amplitude, period_s, periods, .. } = self.oscillation;
         let (travel, half_cycles) = (2 * amplitude, period_s / 2.0 * f64::from(clock_hz));
@@ -66,11 +68,14 @@ impl Schedule for Sine {
                 let part = move |step: f64| part_of_half(step as u64 + 1, amplitude);
                 return Run::new(travel, right, max_error, move |step| (halves + part(step)) * half_cycles);
             }
-            Run { count: travel, right, times: Box::new(Saved { parts, halves, half_cycles, max_error }) }
+            Run {
+                count: travel,
+                right,
+                times: Box::new(SavedTimes { parts, halves, half_cycles, max_error }),
+            }
         }))
     }
 
-    /// In its half period the travel from the nearer extreme is 2*A*sin^2(pi*t/T).
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let travel = 2 * self.oscillation.amplitude;
         let period = self.oscillation.period(clock_hz);
@@ -86,14 +91,14 @@ impl Schedule for Sine {
     }
 }
 
-struct Saved {
+struct SavedTimes {
     parts: Rc<[f64]>,
     halves: f64,
     half_cycles: f64,
     max_error: f64,
 }
 
-impl Times for Saved {
+impl Times for SavedTimes {
     fn fill(&mut self, first: f64, times: &mut [f64]) -> f64 {
         for (time, part) in times.iter_mut().zip(self.parts.iter().skip(first as usize)) {
             *time = (self.halves + part) * self.half_cycles;
@@ -142,10 +147,10 @@ impl Curve for Sine {
     }
 
     fn peaks(&self) -> Peaks {
-        let turning = self.angular_speed();
-        let speed = self.amplitude() * turning;
-        let acceleration = speed * turning;
-        Peaks { speed, acceleration, jump: 0.0, jerk: acceleration * turning, acceleration_jump: 0.0 }
+        let omega = self.angular_speed();
+        let speed = self.amplitude() * omega;
+        let acceleration = speed * omega;
+        Peaks { speed, acceleration, jump: 0.0, jerk: acceleration * omega, acceleration_jump: 0.0 }
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
@@ -171,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_stand_where_the_cosine_is_half_way_between_two() {
+    fn steps_are_due_where_the_cosine_crosses_half_integers() {
         // One step either side: cos = 1/2 and -1/2, at 60 and 120 degrees.
         for (found, expected) in period(1).into_iter().zip([1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, 5.0 / 3.0]) {
             assert!((found - expected).abs() < 1e-15, "{found}");
@@ -186,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn every_period_has_its_steps_and_both_halves_mirror_each_other() {
+    fn half_periods_have_equal_mirrored_steps() {
         for amplitude in [1, 2, 3, 1000, -777] {
             let (sine, travel) = (Sine::new(amplitude, 0.5, 3), 2 * amplitude.unsigned_abs());
             let runs: Vec<Run> = sine.runs(1000).collect();

@@ -24,6 +24,7 @@ use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 const MAX_LISTED: usize = 12;
 
+/// A segment of the first quarter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
     /// First and last point of the angle, of 2048 per period.
@@ -32,16 +33,16 @@ pub struct Segment {
     pub from_deg: f64,
     pub to_deg: f64,
     pub steps: u64,
+    /// In steps/s.
     pub rate: f64,
     pub duration_s: f64,
     /// Distance of its start from the middle, in steps.
     from_steps: u64,
 }
 
-/// A segment within the motion; its steps are in the middles of as many equal parts.
+/// A segment in any quarter of the motion. It has one equal part per step, in whose middle the step is due.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Interval {
-    /// In points of the angle from the start.
+pub(crate) struct MotionSegment {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) steps: u64,
@@ -58,6 +59,7 @@ pub struct Memory {
     pub intervals: u64,
 }
 
+/// A sine by segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SineSegments {
     pub(crate) oscillation: Oscillation,
@@ -71,21 +73,21 @@ impl SineSegments {
     /// amplitude starts at the left extreme. `d1` is the maximum deviation in units of the amplitude.
     #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32, d1: f64) -> Self {
-        let steps = amplitude.unsigned_abs();
-        let vertex = |point| round_half_up(steps as f64 * cosine_at(point)).unsigned_abs();
+        let amplitude_steps = amplitude.unsigned_abs() as f64;
+        let vertex = |point| round_half_up(amplitude_steps * cosine_at(point)).unsigned_abs();
         let segments = breakpoints(d1)
             .windows(2)
             .filter_map(|pair| {
                 let &[from, to] = pair else { return None };
                 let duration_s = f64::from(to - from) * period_s / f64::from(POINTS);
-                let count = vertex(from) - vertex(to);
+                let steps = vertex(from) - vertex(to);
                 Some(Segment {
                     from,
                     to,
                     from_deg: f64::from(from) * 360.0 / f64::from(POINTS),
                     to_deg: f64::from(to) * 360.0 / f64::from(POINTS),
-                    steps: count,
-                    rate: count as f64 / duration_s,
+                    steps,
+                    rate: steps as f64 / duration_s,
                     duration_s,
                     from_steps: vertex(from),
                 })
@@ -107,34 +109,42 @@ impl SineSegments {
         &self.segments
     }
 
+    /// Memory of the segments of a quarter, and of a table of intervals.
     #[must_use]
     pub fn memory(&self) -> Memory {
-        let long = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
-        let each = if long { 8 } else { 6 };
+        let has_long_segments = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
+        let each = if has_long_segments { 8 } else { 6 };
         Memory { segments: self.segments.len() as u64 * each, intervals: self.oscillation.amplitude * 4 }
     }
 
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = Interval> + '_ {
+    pub(crate) fn motion_segments(&self) -> impl Iterator<Item = MotionSegment> + '_ {
         let quarters =
             (0..self.oscillation.periods).flat_map(|period| (0..4_u16).map(move |quarter| (period, quarter)));
         quarters.flat_map(move |(period, quarter)| {
-            let origin = f64::from(period) * f64::from(POINTS);
-            let right = self.oscillation.starts_right == (quarter >= 2);
-            (0..self.segments.len()).map(move |index| {
-                // Odd quarters have the segments in reverse order.
-                let (mirrored, last) = (quarter % 2 == 1, self.segments.len() - 1);
-                let segment = self.segments.get(if mirrored { last - index } else { index });
-                let (near, far, steps) = segment.map_or((0, 0, 0), |s| (s.from, s.to, s.steps));
-                let base = if quarter >= 2 { 2 * QUARTER } else { 0 };
-                let (from, to) = if mirrored { (2 * QUARTER - far, 2 * QUARTER - near) } else { (near, far) };
-                let (from, to) = (origin + f64::from(base + from), origin + f64::from(base + to));
-                Interval { from, to, steps, right }
+            let last = self.segments.len().saturating_sub(1);
+            (0..self.segments.len()).filter_map(move |index| {
+                // Odd quarters mirror the first one.
+                let segment = self.segments.get(if quarter % 2 == 1 { last - index } else { index })?;
+                Some(self.in_quarter(segment, period, quarter))
             })
         })
     }
 
-    fn first_period(&self) -> impl Iterator<Item = Interval> + '_ {
-        self.pieces().take(4 * self.segments.len())
+    fn in_quarter(&self, segment: &Segment, period: u32, quarter: u16) -> MotionSegment {
+        let (near, far) = (segment.from, segment.to);
+        let (from, to) = if quarter % 2 == 1 { (2 * QUARTER - far, 2 * QUARTER - near) } else { (near, far) };
+        let base = if quarter >= 2 { 2 * QUARTER } else { 0 };
+        let origin = f64::from(period) * f64::from(POINTS);
+        MotionSegment {
+            from: origin + f64::from(base + from),
+            to: origin + f64::from(base + to),
+            steps: segment.steps,
+            right: self.oscillation.starts_right == (quarter >= 2),
+        }
+    }
+
+    fn first_period(&self) -> impl Iterator<Item = MotionSegment> + '_ {
+        self.motion_segments().take(4 * self.segments.len())
     }
 
     /// Time per point of the angle in s.
@@ -148,7 +158,7 @@ impl SineSegments {
         let found = self.segments.partition_point(|segment| {
             // A boundary belongs to the segment after it in time.
             let end = f64::from(segment.to);
-            if folded.leftwards == folded.right { end <= folded.point } else { end < folded.point }
+            if folded.goes_left == folded.is_right { end <= folded.point } else { end < folded.point }
         });
         let segment = self.segments.get(found).or(self.segments.last());
         (folded, segment)
@@ -158,7 +168,7 @@ impl SineSegments {
     fn rate_at(&self, t: f64) -> f64 {
         let (folded, segment) = self.locate(t);
         let rate = segment.map_or(0.0, |segment| segment.rate);
-        if folded.leftwards { -rate } else { rate }
+        if folded.goes_left { -rate } else { rate }
     }
 }
 
@@ -167,32 +177,31 @@ impl Schedule for SineSegments {
         self.oscillation.length(clock_hz)
     }
 
+    /// One run per segment, because each has its own rate.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
         let per_point = self.point_s() * clock;
-        let intervals = self.pieces().filter(|interval| interval.steps > 0);
-        Box::new(intervals.map(move |Interval { from, to, steps, right }| {
-            let each = (to - from) / steps as f64;
-            Run::new(steps, right, max_error, move |step| (from + (step + 0.5) * each) * per_point)
+        let segments = self.motion_segments().filter(|segment| segment.steps > 0);
+        Box::new(segments.map(move |MotionSegment { from, to, steps, right }| {
+            let points_per_step = (to - from) / steps as f64;
+            Run::new(steps, right, max_error, move |step| (from + (step + 0.5) * points_per_step) * per_point)
         }))
     }
 
-    /// A step's time is a quotient of the period's decimal; in f64 its error is at most 6 u.
+    /// The time of a step is a fraction of the period. In f64 its error is at most 6 u.
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let period = self.oscillation.period(clock_hz);
-        let of_period = 4 * self.oscillation.amplitude;
-        let mut before = 0;
-        let intervals: Vec<(u64, Interval)> = self
-            .first_period()
-            .map(|interval| {
-                before += interval.steps;
-                (before, interval)
-            })
-            .collect();
+        let steps_per_period = 4 * self.oscillation.amplitude;
+        // Each segment of a period with the number of steps up to its end.
+        let (mut segments, mut count) = (Vec::with_capacity(4 * self.segments.len()), 0);
+        for segment in self.first_period() {
+            count += segment.steps;
+            segments.push((count, segment));
+        }
         Box::new(move |k, since| {
-            let (periods, step) = ((k - 1) / of_period, (k - 1) % of_period);
-            let index = intervals.partition_point(|(end, _)| *end <= step);
-            let Some((end, Interval { from, to, steps, .. })) = intervals.get(index) else {
+            let (periods, step) = ((k - 1) / steps_per_period, (k - 1) % steps_per_period);
+            let index = segments.partition_point(|(end, _)| *end <= step);
+            let Some((end, MotionSegment { from, to, steps, .. })) = segments.get(index) else {
                 debug_assert!(false, "step {k} is in no segment");
                 return false;
             };
@@ -220,17 +229,13 @@ impl Curve for SineSegments {
         let Some(segment) = segment else { return 0.0 };
         let along = (folded.point - f64::from(segment.from)) / f64::from(segment.to - segment.from);
         let from_middle = segment.from_steps as f64 - segment.steps as f64 * along;
-        let position = if folded.right { from_middle } else { -from_middle };
+        let position = if folded.is_right { from_middle } else { -from_middle };
         self.oscillation.signed(position - self.oscillation.amplitude as f64)
     }
 
     fn speed(&self, t: f64) -> f64 {
         let last = self.segments.first().map_or(0.0, |segment| segment.rate);
         self.oscillation.signed(if t >= self.duration_s() { last } else { self.rate_at(t) })
-    }
-
-    fn acceleration(&self, _: f64) -> f64 {
-        0.0
     }
 
     /// The speed jumps between segments; acceleration and jerk are 0.
@@ -241,7 +246,7 @@ impl Curve for SineSegments {
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
-        self.first_period().map(|interval| interval.to * self.point_s()).collect()
+        self.first_period().map(|segment| segment.to * self.point_s()).collect()
     }
 
     fn detail(&self, _: f64) -> String {
@@ -268,7 +273,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_vertex_of_a_period_is_a_whole_step_in_its_time() {
+    fn vertices_are_whole_steps_at_their_times() {
         for amplitude in [1000, -1000, 1, 70_001] {
             let sine = SineSegments::new(amplitude, 0.5, 3, 0.006);
             let steps = amplitude.unsigned_abs() as f64;
@@ -291,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn every_period_has_its_steps_and_after_the_last_there_are_none() {
+    fn every_period_has_the_same_number_of_steps() {
         for (amplitude, periods) in [(500, 3), (-7, 1), (1, 2), (64, 5)] {
             let sine = SineSegments::new(amplitude, 0.5, periods, 0.006);
             let (mut made, mut last, mut times) = (0, 0.0, [0.0; 512]);
@@ -311,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn segments_add_up_to_the_quarter_and_fit_in_little_memory() {
+    fn segments_add_up_to_the_quarter() {
         let sine = SineSegments::new(1000, 0.5, 1, 0.006);
         assert_eq!(sine.segments().iter().map(|s| s.steps).sum::<u64>(), 1000);
         let whole: f64 = sine.segments().iter().map(|s| s.duration_s).sum();

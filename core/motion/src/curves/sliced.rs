@@ -1,12 +1,12 @@
 //! Cosine S-curve in slices of whole steps, as in the paper (DESIGN B4, `sliced`; Song, Han, Lu 2021, 2.2).
 //!
-//! Slice i of length TS has floor(f(i*TS)*TS) steps, where f is the cosine S-curve of n' steps ([`Cosine`]). Rounded down
-//! they are too few, so the paper compensates in two stages:
+//! Slice i of length TS has floor(f(i*TS)*TS) steps, where f is the cosine S-curve of n' steps ([`Cosine`]). Rounding down
+//! leaves too few steps, so the paper compensates in two stages:
 //!
 //! ```text
 //! coarse n' grows by n - N, which raises f_max = n'/(T - t_s), until N, the sum of all slices, reaches n
 //! fine   the excess steps are removed from the end of the plateau, which shortens it: the time error;
-//!        without a plateau the last steps of the tail are removed, so its last slices stand still
+//!        without a plateau they are removed from the end of the tail, so its last slices have no steps
 //! ```
 //!
 //! The steps within a slice are equidistant, so the curve is a polyline that crosses its half-integers at the steps.
@@ -20,20 +20,30 @@ use crate::{
     timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
-use compensation::{NEARLY, Slices, slices_in};
+use compensation::{CompensatedSlices, ROUNDING_TOLERANCE, UncompensatedSlices, slices_in};
 
+/// A cosine S-curve in slices of whole steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sliced {
     exact: Cosine,
-    compensated: u64,
-    /// Start of each slice in s, and the end of the last; rising.
-    /// Invariant: at least two entries.
-    starts_s: Vec<f64>,
-    exact_starts: Vec<Double>,
-    /// Steps before each slice without sign, and all steps.
-    /// Invariant: as long as `starts_s`, from 0 to the move's steps, not decreasing.
-    sums: Vec<u32>,
-    top_rate: f64,
+    compensated_steps: u64,
+    slices: CompensatedSlices,
+}
+
+/// A slice of a move. Its steps have no sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slice {
+    pub from_s: f64,
+    pub to_s: f64,
+    /// Steps of the move before the slice.
+    pub steps_before: u32,
+    pub steps: u32,
+}
+
+impl Slice {
+    fn rate(self) -> f64 {
+        f64::from(self.steps) / (self.to_s - self.from_s)
+    }
 }
 
 /// Why a move cannot be sliced.
@@ -78,22 +88,24 @@ impl Sliced {
             return Err(NotSliced::Slices { needed });
         }
         let rate = exact.top_speed();
-        if rate * slice_s < 1.0 - NEARLY {
+        if rate * slice_s < 1.0 - ROUNDING_TOLERANCE {
             return Err(NotSliced::TooShort { rate });
         }
-        let slices = Slices::of(&exact, needed, slice_s);
-        let (compensated, top_speed) =
-            slices.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
-        let (exact_starts, starts_s, sums, top_rate) = slices.fine(top_speed, &exact);
+        let uncompensated = UncompensatedSlices::of(&exact, needed, slice_s);
+        let (compensated_steps, top_speed) =
+            uncompensated.coarse(&exact, ramp_s).ok_or(NotSliced::TooFew { slices: needed })?;
+        let slices = uncompensated.fine(top_speed, &exact);
+        let CompensatedSlices { starts_s, sums, .. } = &slices;
         debug_assert!(starts_s.len() >= 2 && starts_s.is_sorted_by(|a, b| a < b), "a slice without a length");
         debug_assert!(sums.len() == starts_s.len() && sums.first() == Some(&0) && sums.is_sorted());
         debug_assert!(
             sums.last().copied().map(u64::from) == Some(steps.unsigned_abs()),
             "the slices do not contain all steps"
         );
-        Ok(Self { exact, compensated, starts_s, exact_starts, sums, top_rate })
+        Ok(Self { exact, compensated_steps, slices })
     }
 
+    /// The curve without slices.
     #[must_use]
     pub fn exact(&self) -> &Cosine {
         &self.exact
@@ -102,29 +114,28 @@ impl Sliced {
     /// n', the steps of the compensated curve.
     #[must_use]
     pub fn compensated_steps(&self) -> u64 {
-        self.compensated
+        self.compensated_steps
     }
 
-    /// Maximum rate of a slice in steps/s, floor(f*TS)/TS, from its steps and length: the difference of two late times
-    /// has lost digits.
+    /// Maximum rate of a slice in steps/s, floor(f*TS)/TS. It is computed from steps and length, because the difference of two
+    /// late times has lost digits.
     #[must_use]
     pub fn top_rate(&self) -> f64 {
-        self.top_rate
+        self.slices.top_rate
     }
 
-    /// Number of slices without those that the plateau lost.
+    /// Number of slices, without those that were removed from the plateau.
     #[must_use]
     pub fn slice_count(&self) -> u64 {
-        self.starts_s.len().saturating_sub(1) as u64
+        self.starts_s().len().saturating_sub(1) as u64
     }
 
-    /// Start and end in s and steps without sign of each slice.
-    pub fn slices(&self) -> impl Iterator<Item = (f64, f64, u32)> + '_ {
-        let ends = self.starts_s.iter().skip(1).zip(self.sums.iter().skip(1));
-        let starts = self.starts_s.iter().zip(&self.sums);
-        starts.zip(ends).map(|((from, before), (to, after))| (*from, *to, after - before))
+    /// The slices in the order of their times.
+    pub fn slices(&self) -> impl Iterator<Item = Slice> + '_ {
+        (0..self.starts_s().len()).map_while(|index| self.slice(index))
     }
 
+    /// How much earlier or later the move ends than requested.
     #[must_use]
     pub fn time_error(&self) -> TimeError {
         let requested_s = self.exact.duration_s();
@@ -134,62 +145,68 @@ impl Sliced {
         TimeError { end_s, relative: end_s / requested_s, last_step_s }
     }
 
-    fn slice_of(&self, position: f64) -> usize {
-        self.sums.partition_point(|sum| f64::from(*sum) <= position).saturating_sub(1)
+    fn starts_s(&self) -> &[f64] {
+        &self.slices.starts_s
     }
 
-    fn slice(&self, index: usize) -> Option<(f64, f64, u32, u32)> {
-        let (from, to) = (self.starts_s.get(index)?, self.starts_s.get(index + 1)?);
-        let (before, after) = (self.sums.get(index)?, self.sums.get(index + 1)?);
-        Some((*from, *to, *before, after - before))
+    fn slice_index(&self, position: f64) -> usize {
+        self.slices.sums.partition_point(|sum| f64::from(*sum) <= position).saturating_sub(1)
     }
 
-    fn at(&self, t: f64) -> Option<(f64, f64, u32, u32)> {
-        let after = self.starts_s.partition_point(|start_s| *start_s <= t);
-        let last = self.starts_s.len().saturating_sub(2);
+    fn slice(&self, index: usize) -> Option<Slice> {
+        let (from_s, to_s) = (*self.starts_s().get(index)?, *self.starts_s().get(index + 1)?);
+        let sums = &self.slices.sums;
+        let (steps_before, steps_after) = (*sums.get(index)?, *sums.get(index + 1)?);
+        Some(Slice { from_s, to_s, steps_before, steps: steps_after - steps_before })
+    }
+
+    fn slice_at(&self, t: f64) -> Option<Slice> {
+        let after = self.starts_s().partition_point(|start_s| *start_s <= t);
+        let last = self.starts_s().len().saturating_sub(2);
         self.slice(after.saturating_sub(1).min(last))
     }
 }
 
 impl Schedule for Sliced {
     fn length(&self, clock_hz: u32) -> CycleTime {
-        let duration_s = self.exact_starts.last().copied().unwrap_or_default();
+        let duration_s = self.slices.exact_starts_s.last().copied().unwrap_or_default();
         CycleTime::of(duration_s * f64::from(clock_hz))
     }
 
+    /// One run per slice, because each has its own rate.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
-        Box::new(self.slices().map(move |(from, to, count)| {
-            let each = (to - from) / f64::from(count.max(1));
-            Run::new(count.into(), self.steps() >= 0, max_error, move |step| {
-                (from + (step + 0.5) * each) * clock
+        Box::new(self.slices().map(move |Slice { from_s, to_s, steps, .. }| {
+            let interval_s = (to_s - from_s) / f64::from(steps.max(1));
+            Run::new(steps.into(), self.steps() >= 0, max_error, move |step| {
+                (from_s + (step + 0.5) * interval_s) * clock
             })
         }))
     }
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         Box::new(move |k, since| {
-            let index = self.slice_of(k as f64 - 0.5);
-            let (Some(&[from, to]), Some((_, _, before, count))) =
-                (self.exact_starts.get(index..index + 2), self.slice(index))
+            let index = self.slice_index(k as f64 - 0.5);
+            let (Some(&[from_s, to_s]), Some(slice)) =
+                (self.slices.exact_starts_s.get(index..index + 2), self.slice(index))
             else {
                 return false;
             };
-            let halves = Double::from(2 * (k - u64::from(before)) - 1);
-            let step_s = from + (to - from) * halves / f64::from(2 * count.max(1));
+            let half_intervals = Double::from(2 * (k - u64::from(slice.steps_before)) - 1);
+            let step_s = from_s + (to_s - from_s) * half_intervals / f64::from(2 * slice.steps.max(1));
             since > step_s * f64::from(clock_hz)
         })
     }
 
-    /// Each shortened slice adds its roundings to those before.
+    /// Each shortened slice adds roundings to the starts of the slices after it.
     fn max_error_s(&self) -> f64 {
-        (MAX_ERROR + 4.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s()
+        (MAX_ERROR + 4.0 * ROUNDING * self.starts_s().len() as f64) * self.duration_s()
     }
 }
 
 impl Curve for Sliced {
     fn duration_s(&self) -> f64 {
-        self.starts_s.last().copied().unwrap_or(0.0)
+        self.starts_s().last().copied().unwrap_or(0.0)
     }
 
     fn steps(&self) -> i64 {
@@ -200,31 +217,31 @@ impl Curve for Sliced {
         if t >= self.duration_s() {
             return self.steps() as f64;
         }
-        let Some((from, to, before, count)) = self.at(t).filter(|_| t > 0.0) else { return 0.0 };
-        signed(self.steps(), f64::from(before) + f64::from(count) * ((t - from) / (to - from)))
+        let Some(Slice { from_s, to_s, steps_before, steps }) = self.slice_at(t).filter(|_| t > 0.0) else {
+            return 0.0;
+        };
+        let part = (t - from_s) / (to_s - from_s);
+        signed(self.steps(), f64::from(steps_before) + f64::from(steps) * part)
     }
 
     fn speed(&self, t: f64) -> f64 {
-        signed(self.steps(), self.at(t).map_or(0.0, |(from, to, _, count)| f64::from(count) / (to - from)))
-    }
-
-    fn acceleration(&self, _: f64) -> f64 {
-        0.0
+        signed(self.steps(), self.slice_at(t).map_or(0.0, Slice::rate))
     }
 
     /// The speed jumps between slices; acceleration and jerk are 0.
     fn peaks(&self) -> Peaks {
-        Peaks::of_rates(None, self.slices().map(|(from, to, count)| f64::from(count) / (to - from)))
+        Peaks::of_rates(None, self.slices().map(Slice::rate))
     }
 
     fn breakpoints_s(&self) -> Vec<f64> {
-        let inside = 1..self.starts_s.len().saturating_sub(1);
-        self.starts_s.get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
+        let inside = 1..self.starts_s().len().saturating_sub(1);
+        self.starts_s().get(inside).map_or_else(Vec::new, <[f64]>::to_vec)
     }
 
     fn time_s(&self, position: f64) -> f64 {
-        let (from, to, before, count) = self.slice(self.slice_of(position)).unwrap_or_default();
-        from + (position - f64::from(before)) * (to - from) / f64::from(count.max(1))
+        let slice = self.slice(self.slice_index(position)).unwrap_or_default();
+        let steps = position - f64::from(slice.steps_before);
+        slice.from_s + steps * (slice.to_s - slice.from_s) / f64::from(slice.steps.max(1))
     }
 
     fn detail(&self, limit_steps_s: f64) -> String {
@@ -235,7 +252,7 @@ impl Curve for Sliced {
              the last step {:.3} ms {}{}",
             grouped(peak),
             grouped(slices as f64),
-            grouped(self.compensated as f64),
+            grouped(self.compensated_steps as f64),
             0.0 - 1e3 * error.end_s,
             0.0 - 100.0 * error.relative,
             1e3 * libm::fabs(error.last_step_s),

@@ -1,5 +1,5 @@
 //! Fixed distance by a staircase of rates (DESIGN B3, Zhang 2012): the rows of the [`StaircaseTable`] up, the plateau, and
-//! the same rows down. Each step comes one period of its rate after the step before.
+//! the same rows down. Each step follows the previous one after one period of its rate.
 //!
 //! ```text
 //! rate |       ________          L steps, S in the rows up to f_s
@@ -7,30 +7,31 @@
 //!      |   _|            |_      L > 2S       as drawn
 //!      | _|                |_    L = 2S       without the plateau
 //!      ||S               S| |    L < 2S       all at f_1 (the paper), or as many rows as fit
-//!      +---------------------    twice, and the rest at the next rate
+//!      +---------------------    up and down, and the other steps at the next rate
 //! ```
 
-use crate::moves::ShortMove;
 use crate::{
     Curve, Peaks,
-    bisection::first,
+    bisection::first_in,
     curves::{
         curve::{greater, signed},
         mirrored::Mirrored,
         staircase_table::StaircaseTable,
-        stepped::{self, Counts},
+        stepped::{self, ExactTime},
     },
     format::{count, grouped},
+    moves::ShortMove,
     timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
+/// A move by a staircase of rates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Staircase {
     steps: i64,
     table: StaircaseTable,
     ramp_steps: u64,
-    /// Rate between the ramps, even if no step has it.
+    /// Rate between the ramps, in steps/s, even if no step has it.
     plateau_rate: u64,
     /// Start of each row of the ramp, and its end, in s.
     /// Invariant: at least one entry, the first 0, rising.
@@ -89,16 +90,19 @@ impl Staircase {
     }
 
     /// Steps of each ramp, the paper's S.
+    /// Duration of each ramp in s.
     #[must_use]
     pub fn ramp_steps(&self) -> u64 {
         self.ramp_steps
     }
 
+    /// Duration of each ramp in s.
     #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.starts_s.last().copied().unwrap_or(0.0)
     }
 
+    /// Steps between the ramps.
     #[must_use]
     pub fn plateau_steps(&self) -> u64 {
         self.count() - 2 * self.ramp_steps
@@ -114,15 +118,15 @@ impl Staircase {
         self.steps.unsigned_abs()
     }
 
-    fn row(&self, k: u64) -> u64 {
-        first(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
+    fn row_of_step(&self, k: u64) -> u64 {
+        first_in(1, self.ramp_rows(), |row| StaircaseTable::steps_after(row) >= k)
     }
 
-    fn ramp_time(&self, k: u64) -> f64 {
+    fn ramp_step_s(&self, k: u64) -> f64 {
         if k == 0 {
             return 0.0;
         }
-        let before = self.row(k) - 1;
+        let before = self.row_of_step(k) - 1;
         let start_s = self.starts_s.get(before as usize).copied().unwrap_or(0.0);
         start_s + (k - StaircaseTable::steps_after(before)) as f64 / self.table.rate(before + 1) as f64
     }
@@ -132,11 +136,11 @@ impl Staircase {
     pub fn step_s(&self, k: u64) -> f64 {
         let left = self.count().saturating_sub(k);
         if k <= self.ramp_steps {
-            self.ramp_time(k)
+            self.ramp_step_s(k)
         } else if left >= self.ramp_steps {
             self.ramp_s() + (k - self.ramp_steps) as f64 / self.plateau_rate as f64
         } else {
-            self.duration_s - self.ramp_time(left)
+            self.duration_s - self.ramp_step_s(left)
         }
     }
 
@@ -161,7 +165,7 @@ impl Staircase {
         StaircaseTable::steps_after(row) + (since * self.table.rate(row + 1) as f64) as u64
     }
 
-    fn fallen(&self, t: f64) -> u64 {
+    fn steps_due(&self, t: f64) -> u64 {
         let (ramp_s, left_s) = (self.ramp_s(), self.duration_s - t);
         let guess = if t < ramp_s {
             self.guess_in_ramp(t)
@@ -170,13 +174,14 @@ impl Staircase {
         } else {
             self.count().saturating_sub(self.guess_in_ramp(greater(0.0, left_s)))
         };
-        stepped::fallen(t, guess, self.count(), Counts::Then, |k| self.step_s(k))
+        stepped::steps_due(t, guess, self.count(), ExactTime::Included, |k| self.step_s(k))
     }
 
+    /// Rate of interval `i` (from 0), which ends with step i + 1.
     fn rate(&self, i: u64) -> u64 {
         let from_end = self.count().saturating_sub(i).max(1);
         let nearer = from_end.min(i + 1);
-        if nearer <= self.ramp_steps { self.table.rate(self.row(nearer)) } else { self.plateau_rate }
+        if nearer <= self.ramp_steps { self.table.rate(self.row_of_step(nearer)) } else { self.plateau_rate }
     }
 }
 
@@ -185,7 +190,7 @@ impl Schedule for Staircase {
         CycleTime::of(self.exact_duration() * f64::from(clock_hz))
     }
 
-    /// One run per row, which saves the search for the row of each step.
+    /// One run per row, which avoids the search for the row of each step.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let (clock, max_error) = (f64::from(clock_hz), self.max_error_s() * f64::from(clock_hz));
         let (right, rows) = (self.steps >= 0, self.ramp_rows());
@@ -203,7 +208,7 @@ impl Schedule for Staircase {
         });
         let down = (1..=rows).rev().map(move |n| {
             let (rate, start_s, steps) = row(n);
-            // The last step up is the first step down, and the last step is at the end.
+            // The last step of the first ramp begins the second one, whose last step is at the end of the move.
             let steps = steps - u64::from(n == rows) + u64::from(n == 1);
             let (first, duration_s) = (steps as f64 - if n == 1 { 1.0 } else { 0.0 }, self.duration_s);
             Run::new(steps, right, max_error, move |step| {
@@ -216,8 +221,8 @@ impl Schedule for Staircase {
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let (starts, duration) = (self.exact_starts(), self.exact_duration());
         let ramp_s = starts.last().copied().unwrap_or_default();
-        let climbed = move |k: u64| {
-            let before = self.row(k) - 1;
+        let ramp_step_s = move |k: u64| {
+            let before = self.row_of_step(k) - 1;
             let since = Double::from(k - StaircaseTable::steps_after(before));
             let start = starts.get(before as usize).copied().unwrap_or_default();
             start + since / Double::from(self.table.rate(before + 1))
@@ -225,17 +230,17 @@ impl Schedule for Staircase {
         Box::new(move |k, since| {
             let left = self.count().saturating_sub(k);
             let step_s = if k <= self.ramp_steps {
-                climbed(k)
+                ramp_step_s(k)
             } else if left >= self.ramp_steps {
                 ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
             } else {
-                duration - climbed(left)
+                duration - ramp_step_s(left)
             };
             since > step_s * f64::from(clock_hz)
         })
     }
 
-    /// Each row adds its roundings to those before.
+    /// Each row adds roundings to the starts of the rows after it.
     fn max_error_s(&self) -> f64 {
         (MAX_ERROR + 2.0 * ROUNDING * self.starts_s.len() as f64) * self.duration_s
     }
@@ -254,17 +259,13 @@ impl Curve for Staircase {
         if t >= self.duration_s {
             return self.steps as f64;
         }
-        let fallen = self.fallen(t);
-        signed(self.steps, stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
+        let due = self.steps_due(t);
+        signed(self.steps, stepped::position(t, due, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
-        let interval = self.fallen(t).min(self.count().saturating_sub(1));
+        let interval = self.steps_due(t).min(self.count().saturating_sub(1));
         signed(self.steps, self.rate(interval) as f64)
-    }
-
-    fn acceleration(&self, _: f64) -> f64 {
-        0.0
     }
 
     /// The speed jumps between rows; acceleration and jerk are 0.
@@ -273,7 +274,7 @@ impl Curve for Staircase {
         Peaks::of_rates(None, rates.map(|rate| rate as f64))
     }
 
-    /// The first interval rises half a step only.
+    /// In the first interval the position rises by half a step only, so its end is a breakpoint, too.
     fn breakpoints_s(&self) -> Vec<f64> {
         let rows = self.starts_s.iter().skip(1).copied();
         let halves = Mirrored { steps: self.steps, duration_s: self.duration_s };
@@ -287,7 +288,7 @@ impl Curve for Staircase {
         match (self.ramp_rows(), plateau) {
             (0, plateau) => format!("no ramp: {}", plateau.unwrap_or_default()),
             (rows, plateau) => format!(
-                "{} with {} each way, {} between",
+                "{} with {} per ramp, {} between",
                 count(rows, "row", "rows"),
                 count(self.ramp_steps, "step", "steps"),
                 plateau.as_deref().unwrap_or("none")
@@ -310,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn the_four_cases_of_a_move_are_the_documents() {
+    fn has_the_four_cases_of_the_paper() {
         use ShortMove::{Document, Reverse};
         // At level 1 the rows to 1100 steps/s are 1000, 1030, 1058, 1086: S = 120.
         // steps, f_s, rule; rows, S, plateau's steps, its rate
@@ -335,7 +336,7 @@ mod tests {
 
     /// t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s.
     #[test]
-    fn the_times_are_the_documents_formulas() {
+    fn times_follow_the_formulas_of_the_paper() {
         // L, level, f_s
         let rows = [(17_233, 3.0, 5000), (17_233, 1.0, 3000), (500_000, 5.0, 20_000), (2000, 2.0, 1500)];
         for (steps, level, rate) in rows {
@@ -343,28 +344,28 @@ mod tests {
             let (f_s, f_1, a) = (rate as f64, 1000.0, 1000.0 * level);
             let t_r = (f_s - f_1) / a;
             let t_m = (steps as f64 - (f_1 + f_s) * t_r) / f_s;
-            // A row holds the rate that uniform acceleration has at its start, and the last one may
-            // go past f_s; a whole rate is off by half a step/s.
+            // A row has the rate of uniform acceleration at its start, and the last one may exceed f_s; rounding a
+            // rate changes it by up to half a step/s.
             let rate = |n: u64| made.table().rate(n) as f64;
-            let dwell = |n: u64, rate: f64| StaircaseTable::steps_in(n) as f64 / rate;
-            let late: f64 = (1..=made.ramp_rows()).map(|n| dwell(n, rate(n)) - dwell(n, rate(n + 1))).sum();
-            let past = dwell(made.ramp_rows(), f_s);
+            let row_s = |n: u64, rate: f64| StaircaseTable::steps_in(n) as f64 / rate;
+            let late: f64 = (1..=made.ramp_rows()).map(|n| row_s(n, rate(n)) - row_s(n, rate(n + 1))).sum();
+            let past = row_s(made.ramp_rows(), f_s);
             let ramp_s = made.ramp_s();
             assert!(ramp_s > t_r * 0.9995 && ramp_s < (t_r + late + past) * 1.0005, "{ramp_s} is not {t_r}");
             let t_m_made = made.plateau_steps() as f64 / f_s;
             assert!((made.duration_s() - 2.0 * ramp_s - t_m_made).abs() < 1e-12);
-            // The plateau is shorter by what the ramps go past f_s.
+            // The plateau is shorter by the steps of the ramps beyond f_s.
             assert!(t_m_made <= t_m * 1.001 && t_m - t_m_made < 2.0 * past, "{t_m_made} is not {t_m}");
             let all = made.duration_s() / (2.0 * t_r + t_m);
             assert!((0.999..1.05).contains(&all), "{all}");
         }
-        // Alone at f_1 or below: L/f.
+        // At f_1 or below without ramps: L/f.
         assert_eq!(staircase(1500, 3.0, 5000, ShortMove::Document).duration_s(), 1.5);
         assert_eq!(staircase(1500, 3.0, 500, ShortMove::Document).duration_s(), 3.0);
     }
 
     #[test]
-    fn each_step_comes_a_period_of_its_rate_after_the_one_before() {
+    fn each_step_follows_the_previous_one_after_a_period_of_its_rate() {
         for (steps, rate, rule) in [
             (1, 900, ShortMove::Document),
             (500, 1100, ShortMove::Document),
@@ -380,27 +381,26 @@ mod tests {
                 assert!((made.step_s(k) - t).abs() < 1e-9, "step {k} of {steps}: {} {t}", made.step_s(k));
                 let due = |t: f64| round_half_up(made.position(t)).unsigned_abs();
                 let at = made.step_s(k);
-                // In its own instant one to the left is not due yet (B7), but for the end, which is where the move ends.
-                let then = if steps < 0 && k < count { k - 1 } else { k };
+                // At its exact time a step to the left is not due yet (B7), except for the end of the move.
+                let at_time = if steps < 0 && k < count { k - 1 } else { k };
                 assert_eq!(
                     (due(at - 1e-7), due(at), due(at + 1e-7)),
-                    (k - 1, then, k),
+                    (k - 1, at_time, k),
                     "step {k} of {steps}"
                 );
             }
             assert_eq!(made.step_s(count), made.duration_s());
             assert_eq!(made.position(made.duration_s()), steps as f64);
-            // Up and down through the same rates.
             assert!((0..count).all(|i| made.rate(i) == made.rate(count - 1 - i)), "{steps}");
             assert_eq!(made.rate(0), made.rate(0).min(1000));
         }
     }
 
     #[test]
-    fn what_there_is_to_say_of_a_move_fits_all_of_its_cases() {
+    fn describes_each_case_of_a_move() {
         let rows = [
-            (500, 1100, "4 rows with 120 steps each way, 260 steps at 1\u{202f}100/s between"),
-            (240, 1100, "4 rows with 120 steps each way, none between"),
+            (500, 1100, "4 rows with 120 steps per ramp, 260 steps at 1\u{202f}100/s between"),
+            (240, 1100, "4 rows with 120 steps per ramp, none between"),
             (239, 1100, "no ramp: 239 steps at 1\u{202f}000/s"),
             (500, 900, "no ramp: 500 steps at 900/s"),
         ];
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn peaks_are_the_highest_rate_and_the_greatest_jump() {
+    fn peaks_are_the_maximum_rate_and_the_maximum_jump() {
         let made = staircase(-500, 1.0, 1100, ShortMove::Document);
         assert_eq!(made.peaks(), Peaks { speed: 1100.0, jump: 30.0, ..Peaks::default() });
         assert_eq!((made.speed(0.0), made.speed(made.duration_s())), (-1000.0, -1000.0));

@@ -1,4 +1,4 @@
-//! The staircase table (DESIGN B3, Zhang 2012): rates that are each held for some steps.
+//! The staircase table (DESIGN B3, Zhang 2012): each row has a rate and the number of steps at this rate.
 //!
 //! ```text
 //! row n (from 1)   dS_n = 30*(1 + floor((n - 1)/5))      steps
@@ -18,6 +18,7 @@ use crate::{
 const FIRST_STEPS: u64 = 30;
 const EQUAL_ROWS: u64 = 5;
 
+/// Rates and steps of the rows of a ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StaircaseTable {
     start_speed: f64,
@@ -37,11 +38,12 @@ impl StaircaseTable {
     #[must_use]
     pub fn rate(&self, n: u64) -> u64 {
         let steps = Self::steps_after(n.saturating_sub(1));
-        quick_rate(self.start_speed, self.acceleration, steps).unwrap_or_else(|_| {
+        quick_rate(self.start_speed, self.acceleration, steps).unwrap_or_else(|| {
             Climb::new(&Exact::of(self.start_speed), &Exact::of(self.acceleration)).rate(steps)
         })
     }
 
+    /// Steps of row `n` (from 1).
     #[must_use]
     pub fn steps_in(n: u64) -> u64 {
         FIRST_STEPS * (1 + n.saturating_sub(1) / EQUAL_ROWS)
@@ -50,8 +52,8 @@ impl StaircaseTable {
     /// Total steps of the rows 1 to `n`.
     #[must_use]
     pub fn steps_after(n: u64) -> u64 {
-        let (blocks, rest) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
-        FIRST_STEPS * (EQUAL_ROWS * blocks * (blocks + 1) / 2 + rest * (blocks + 1))
+        let (blocks, rows_left) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
+        FIRST_STEPS * (EQUAL_ROWS * blocks * (blocks + 1) / 2 + rows_left * (blocks + 1))
     }
 
     /// Number of rows before the rate is at least `rate`: the rows of a ramp to it.
@@ -66,6 +68,7 @@ impl StaircaseTable {
         first_from_zero(|rows| 2 * Self::steps_after(rows + 1) > steps)
     }
 
+    /// Number of rows, up to the one before the first rate above the maximum speed.
     #[must_use]
     pub fn rows(&self) -> u64 {
         first_from_zero(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
@@ -77,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_documents_rows_come_out() {
+    fn has_the_rows_of_the_paper() {
         let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
         // n, dS_n, S_n, the rate after it
         let rows = [
@@ -98,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_add_up() {
+    fn adds_up_the_steps_of_rows() {
         let mut sum = 0;
         for n in 1..1000 {
             sum += StaircaseTable::steps_in(n);
@@ -110,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ramp_has_the_rows_below_its_rate() {
+    fn counts_the_rows_below_a_rate() {
         let table = StaircaseTable::new(1000.0, 20_000.0, 1000.0);
         let rows = [(1, 0), (1000, 0), (1001, 1), (1030, 1), (1031, 2), (19_970, 255), (20_000, 256)];
         for (rate, expected) in rows {

@@ -21,6 +21,7 @@ use crate::{
 };
 use alloc::{boxed::Box, vec::Vec};
 
+/// A trapezoid with exact step times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trapezoid {
     halves: Mirrored,
@@ -39,7 +40,7 @@ pub(crate) struct Limits<N> {
 struct Half<N> {
     start_speed: N,
     acceleration: N,
-    /// Maximum speed reached: the top speed, or that of a triangle.
+    /// The top speed, or the maximum speed of a triangle.
     peak_speed: N,
     /// At most half of the steps.
     ramp_steps: N,
@@ -50,17 +51,17 @@ struct Half<N> {
 impl<N: Number> Half<N> {
     fn new(steps: i64, limits: Limits<N>) -> Self {
         let Limits { start_speed: v0, top_speed: v1, acceleration } = limits;
-        let all = N::from(steps.unsigned_abs() as f64);
+        let distance = N::from(steps.unsigned_abs() as f64);
         // (v1 - v0)*(v1 + v0) does not cancel like v1^2 - v0^2.
         let whole_ramp = (v1 - v0) * (v1 + v0) / (acceleration * 2.0);
-        let (peak_speed, ramp_steps) = if whole_ramp * 2.0 <= all {
+        let (peak_speed, ramp_steps) = if whole_ramp * 2.0 <= distance {
             (v1, whole_ramp)
         } else {
-            ((v0 * v0 + acceleration * all).square_root(), all * 0.5)
+            ((v0 * v0 + acceleration * distance).square_root(), distance * 0.5)
         };
         // s = (v0 + v)/2 * t, without cancellation.
         let ramp_s = ramp_steps * 2.0 / (v0 + peak_speed);
-        let duration_s = ramp_s * 2.0 + (all - ramp_steps * 2.0) / peak_speed;
+        let duration_s = ramp_s * 2.0 + (distance - ramp_steps * 2.0) / peak_speed;
         Self { start_speed: v0, acceleration, peak_speed, ramp_steps, ramp_s, duration_s }
     }
 
@@ -80,10 +81,10 @@ impl Trapezoid {
     pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
         let [start_speed, top_speed, acceleration] =
             [start_speed, top_speed, acceleration].map(Double::decimal);
-        Self::within(steps, Limits { start_speed, top_speed, acceleration })
+        Self::from_exact(steps, Limits { start_speed, top_speed, acceleration })
     }
 
-    pub(crate) fn within(steps: i64, limits: Limits<Double>) -> Self {
+    pub(crate) fn from_exact(steps: i64, limits: Limits<Double>) -> Self {
         let Limits { start_speed, top_speed, acceleration } = limits;
         let [start_speed, top_speed, acceleration] =
             [start_speed, top_speed, acceleration].map(|number| number.high);
@@ -91,18 +92,20 @@ impl Trapezoid {
         Self { halves: Mirrored { steps, duration_s: half.duration_s }, half, limits }
     }
 
-    /// Maximum speed reached, in steps/s.
+    /// Maximum speed of the move in steps/s.
     #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.half.peak_speed
     }
 
+    /// Duration of each ramp in s.
     #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.half.ramp_s
     }
 
     /// Steps of each ramp, not rounded.
+    /// Duration of each ramp in s.
     #[must_use]
     pub fn ramp_steps(&self) -> f64 {
         self.half.ramp_steps
@@ -156,7 +159,7 @@ impl MirroredCurve for Trapezoid {
         (t < self.half.ramp_s).then_some(self.half.acceleration)
     }
 
-    /// Time of a position in the first half: t = 2*s/(v0 + v), which does not cancel like (v - v0)/a.
+    /// t = 2*s/(v0 + v), which does not cancel like (v - v0)/a.
     fn half_time_s(&self, position: f64) -> f64 {
         let Half { start_speed, acceleration, peak_speed, ramp_steps, ramp_s, .. } = self.half;
         if position < ramp_steps {
@@ -169,9 +172,9 @@ impl MirroredCurve for Trapezoid {
 
     fn all_peaks(&self) -> Peaks {
         let acceleration = if self.half.ramp_s > 0.0 { self.half.acceleration } else { 0.0 };
-        // The acceleration is reversed at the tip of a triangle, else it ends where the plateau begins.
-        let turns = 2.0 * self.half.ramp_s >= self.halves.duration_s;
-        let acceleration_jump = if turns { 2.0 * acceleration } else { acceleration };
+        // At the tip of a triangle the acceleration is reversed.
+        let is_triangle = 2.0 * self.half.ramp_s >= self.halves.duration_s;
+        let acceleration_jump = if is_triangle { 2.0 * acceleration } else { acceleration };
         Peaks { speed: self.half.peak_speed, acceleration, acceleration_jump, ..Peaks::default() }
     }
 
@@ -185,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_moves_have_a_plateau_and_short_ones_are_triangles() {
+    fn long_moves_have_a_plateau_and_short_moves_are_triangles() {
         // (steps, start, top, acceleration), [peak speed, ramp s, ramp steps, duration s]
         let rows = [
             ((10_000, 1000.0, 5000.0, 8000.0), [5000.0, 0.5, 1500.0, 2.4]),
@@ -205,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_square_of_the_speed_grows_with_the_travel() {
+    fn squared_speed_is_linear_in_the_travel() {
         let curve = Trapezoid::new(4000, 300.0, 4000.0, 9000.0);
         for i in 0..100 {
             let t = curve.ramp_s() * f64::from(i) / 100.0;

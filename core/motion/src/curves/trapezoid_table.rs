@@ -1,7 +1,7 @@
 //! Trapezoid by acceleration table (DESIGN B2, Sonobe 2011).
 //!
-//! A timer interrupt makes one step and loads the reload of the next interval from the [`AccelerationTable`]. Interval i
-//! (from 0) of n has row min(i, n - 1 - i, top), so a short move is a triangle; step k is due at the sum of the first k
+//! A timer interrupt makes one step and loads the timer with the next interval from the [`AccelerationTable`]. Interval i
+//! (from 0) of n has row min(i, n - 1 - i, top), so a short move is a triangle. Step k is due at the sum of the first k
 //! reloads, and the move ends with its last step:
 //!
 //! ```text
@@ -19,13 +19,14 @@ use crate::{
     curves::{
         acceleration_table::AccelerationTable,
         curve::{greater, signed},
-        stepped::{self, Counts},
+        stepped::{self, ExactTime},
     },
     format::grouped,
     timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule},
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
+/// A trapezoid by an acceleration table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrapezoidTable {
     steps: i64,
@@ -69,7 +70,7 @@ impl TrapezoidTable {
             sums.push(sum);
         }
         debug_assert!(sums.len() >= 2 && sums.is_sorted_by(|a, b| a < b), "a row without a reload");
-        debug_assert!(steps.unsigned_abs() > 2 * ramp, "no interval is between the ramps");
+        debug_assert!(steps.unsigned_abs() > 2 * ramp, "no interval between the ramps");
         Ok(Self { steps, table, ramp, sums })
     }
 
@@ -79,6 +80,7 @@ impl TrapezoidTable {
         &self.table
     }
 
+    /// Rows of the whole table.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.table.top().saturating_add(1)
@@ -127,18 +129,21 @@ impl TrapezoidTable {
     fn step_time(&self, k: u64, clock_hz: u32) -> CycleTime {
         let timer_hz = u128::from(self.table.timer_hz().max(1));
         let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
-        let (whole, rest) = (product / timer_hz, product % timer_hz);
-        CycleTime { whole: whole as u64, part: Double::from(rest as u64) / Double::from(timer_hz as u64) }
+        let (whole, remainder) = (product / timer_hz, product % timer_hz);
+        CycleTime {
+            whole: whole as u64,
+            part: Double::from(remainder as u64) / Double::from(timer_hz as u64),
+        }
     }
 
     fn first_sum(&self, ticks: u64, near: u64) -> u64 {
         first_near(near, self.sums.len() as u64, |steps| self.sum(steps) >= ticks)
     }
 
-    /// Number of steps by `t`; `near` is where the search begins and only affects its duration.
-    fn fallen(&self, t: f64, near: u64, counts: Counts) -> u64 {
+    /// Number of steps due by `t`; the search begins at `near`, which only affects its duration.
+    fn steps_without_sign(&self, t: f64, near: u64, exact_time: ExactTime) -> u64 {
         let count = self.count();
-        // The timer ticks give a guess that may be wrong by one; the times decide.
+        // Timer ticks in f64 give a guess that may be wrong by one.
         let ticks = (t * f64::from(self.table.timer_hz())) as u64;
         let (up, all) = (self.sum(self.ramp), self.step_ticks(count));
         let guess = if ticks < up {
@@ -149,13 +154,13 @@ impl TrapezoidTable {
             let left = all.saturating_sub(ticks);
             count - self.first_sum(left, count.saturating_sub(near))
         };
-        stepped::fallen(t, guess, count, counts, |k| self.step_s(k))
+        stepped::steps_due(t, guess, count, exact_time, |k| self.step_s(k))
     }
 
-    /// Steps due by `t`; `before` is an earlier result, where the search begins.
+    /// Steps due by `t`; the search begins at `before`, an earlier result.
     pub(crate) fn steps_due(&self, t: f64, before: i64) -> i64 {
-        let fallen = self.fallen(t, before.unsigned_abs(), Counts::of(self.steps)) as i64;
-        if self.steps < 0 { -fallen } else { fallen }
+        let due = self.steps_without_sign(t, before.unsigned_abs(), ExactTime::of(self.steps)) as i64;
+        if self.steps < 0 { -due } else { due }
     }
 
     fn row(&self, i: u64) -> u64 {
@@ -169,7 +174,7 @@ impl TrapezoidTable {
         if reload == 0 { 0.0 } else { f64::from(self.table.timer_hz()) / reload as f64 }
     }
 
-    /// Difference of the speeds of interval `i` and the one before, divided by the time between their middles.
+    /// Difference of the speeds of interval `i` and the previous one, divided by the time between their middles.
     fn acceleration_into(&self, i: u64) -> f64 {
         let (before, after) = (self.interval_speed(i.saturating_sub(1)), self.interval_speed(i));
         let between = (1.0 / before + 1.0 / after) / 2.0;
@@ -177,7 +182,7 @@ impl TrapezoidTable {
     }
 
     fn interval(&self, t: f64) -> u64 {
-        self.fallen(t, 0, Counts::Then).min(self.count().saturating_sub(1))
+        self.steps_without_sign(t, 0, ExactTime::Included).min(self.count().saturating_sub(1))
     }
 }
 
@@ -186,17 +191,19 @@ impl Schedule for TrapezoidTable {
         self.step_time(self.count(), clock_hz)
     }
 
+    /// Three runs, because the plateau needs no table of sums.
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let per_tick = f64::from(clock_hz) / f64::from(self.table.timer_hz());
         let (max_error, right) = (self.max_error_s() * f64::from(clock_hz), self.steps >= 0);
-        let by_sums =
-            move |past: u64| move |step: f64| self.step_ticks(past + step as u64 + 1) as f64 * per_tick;
-        let (start, each) = (self.sum(self.ramp) as f64, self.plateau_reload() as f64);
+        let by_sums = move |steps_before: u64| {
+            move |step: f64| self.step_ticks(steps_before + step as u64 + 1) as f64 * per_tick
+        };
+        let (start, reload) = (self.sum(self.ramp) as f64, self.plateau_reload() as f64);
         let plateau = self.count() - 2 * self.ramp;
         Box::new(
             [
                 Run::new(self.ramp, right, max_error, by_sums(0)),
-                Run::new(plateau, right, max_error, move |step| (start + (step + 1.0) * each) * per_tick),
+                Run::new(plateau, right, max_error, move |step| (start + (step + 1.0) * reload) * per_tick),
                 Run::new(self.ramp, right, max_error, by_sums(self.ramp + plateau)),
             ]
             .into_iter(),
@@ -221,24 +228,24 @@ impl Curve for TrapezoidTable {
         if t >= self.duration_s() {
             return self.steps as f64;
         }
-        let fallen = self.fallen(t, 0, Counts::Then);
-        signed(self.steps, stepped::position(t, fallen, self.count(), |k| self.step_s(k)))
+        let due = self.steps_without_sign(t, 0, ExactTime::Included);
+        signed(self.steps, stepped::position(t, due, self.count(), |k| self.step_s(k)))
     }
 
     fn speed(&self, t: f64) -> f64 {
         signed(self.steps, self.interval_speed(self.interval(t)))
     }
 
-    /// The slope from the middle of this interval to that of the next, which shows the effect of the table's integers.
+    /// The slope from the middle of this interval to that of the next, which shows the effect of the table's rounding.
     fn acceleration(&self, t: f64) -> f64 {
         let i = self.interval(t);
         signed(self.steps, if i + 1 < self.count() { self.acceleration_into(i + 1) } else { 0.0 })
     }
 
-    /// The acceleration is constant in an interval and then jumps; the jerk is 0.
+    /// The acceleration is constant in an interval and jumps at its end; the jerk is 0.
     fn peaks(&self) -> Peaks {
         let mut peaks = Peaks::default();
-        // The table's second half mirrors the first; after the ramp they meet.
+        // The second half mirrors the first.
         for i in 0..=self.ramp {
             let (slope, next) = (self.acceleration_into(i), self.acceleration_into(i + 1));
             peaks.speed = greater(peaks.speed, self.interval_speed(i));
@@ -253,7 +260,7 @@ impl Curve for TrapezoidTable {
         peaks
     }
 
-    /// Includes one interval after the ramp, whose slope shows the end of the ramp.
+    /// One more interval than the ramp has, because its slope shows the end of the ramp.
     fn breakpoints_s(&self) -> Vec<f64> {
         let near = self.used_rows().min(self.count());
         let far = self.count().saturating_sub(self.used_rows()).max(near + 1);
@@ -275,10 +282,9 @@ mod tests {
         TrapezoidTable::new(steps, table, 1_000_000).unwrap()
     }
 
-    /// The paper's program as it runs: the interrupt counts a step, moves the index by at most one towards its
-    /// target and loads the reload; `target` is what the main program has set by then. Returned are the timer's
-    /// ticks at each step.
-    fn program(table: &AccelerationTable, count: u64, target: impl Fn(u64, u64) -> u64) -> Vec<u64> {
+    /// Simulates the paper's program: the interrupt counts a step, moves the index by at most one toward the target that the
+    /// main program has set, and reloads the timer. Returns the timer ticks at each step.
+    fn simulate_program(table: &AccelerationTable, count: u64, target: impl Fn(u64, u64) -> u64) -> Vec<u64> {
         let (mut now, mut index, mut made) = (0, 0, 0);
         let mut reload = table.reload(index);
         let mut ticks = Vec::new();
@@ -298,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn the_steps_are_those_of_the_interrupt_program() {
+    fn steps_agree_with_the_interrupt_program() {
         let short = (1..200).map(|n| (n, 700.0)).chain([(500, 700.0), (501, 1e5), (7, 250.0)]);
         let mut seed = 2011_u64;
         let any = core::iter::from_fn(|| {
@@ -308,8 +314,9 @@ mod tests {
         for (count, top_speed) in short.chain(any.take(200)) {
             let table = table(count as i64, top_speed);
             let top = table.table().top();
-            // Steps that are left after the interval to come: from an index no higher the program can still stop.
-            let expected = program(table.table(), count, |made, _| top.min(count.saturating_sub(made + 1)));
+            // The program can stop from an index up to the number of steps left after the next interval.
+            let expected =
+                simulate_program(table.table(), count, |made, _| top.min(count.saturating_sub(made + 1)));
             let found: Vec<u64> = (1..=count).map(|k| table.step_ticks(k)).collect();
             assert_eq!(found, expected, "{count} steps to {top_speed}");
             assert_eq!(found.first(), Some(&table.table().reload(0)), "the first reload");
@@ -323,21 +330,21 @@ mod tests {
         }
     }
 
-    /// The paper's main program knows two targets only, the top and 0, and looks between two interrupts whether the
-    /// steps to stop are all that is left. The same steps come out, except that a triangle of an even count climbs one
-    /// row more and makes its last step at row 1, not at row 0.
+    /// The paper's main program has two targets, the top and 0, and checks between interrupts whether only the steps to stop
+    /// are left. The steps are the same, except that a triangle with an even count goes one row higher and makes its last step
+    /// at row 1 instead of row 0.
     #[test]
-    fn with_two_targets_an_even_triangle_alone_ends_one_row_too_fast() {
+    fn with_two_targets_only_an_even_triangle_ends_one_row_too_fast() {
         for count in 2..300 {
             let table = table(count as i64, 700.0);
             let top = table.table().top();
-            // The index that the last interrupt has loaded is known to the main program: it looks after it.
-            let looked = core::cell::Cell::new(top);
-            let two = program(table.table(), count, |made, index| {
-                let aim = looked.get();
+            // The main program runs after the interrupt, so it has the new index.
+            let main_target = core::cell::Cell::new(top);
+            let two = simulate_program(table.table(), count, |made, index| {
+                let aim = main_target.get();
                 let next = if index < aim { index + 1 } else { index.saturating_sub(u64::from(index > aim)) };
                 if made + next + 1 >= count {
-                    looked.set(0);
+                    main_target.set(0);
                 }
                 aim
             });
@@ -355,22 +362,25 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_due_at_its_time_to_the_left_after_it_and_never_before() {
+    fn a_step_is_due_at_its_time_or_to_the_left_right_after_it() {
         for (steps, sign) in [(1, 1), (2, -1), (40, 1), (41, -1), (2000, 1), (2001, -1)] {
             let table = table(steps * sign, 700.0);
             for k in 1..=steps {
                 let ticks = table.step_ticks(k as u64) as f64;
                 let due = |ticks: f64| sign * round_half_up(table.position(ticks / 1e6));
-                // The end is where the move ends.
-                let then = if sign < 0 && k < steps { k - 1 } else { k };
-                assert_eq!((due(ticks - 1.0), due(ticks), due(ticks + 1.0)), (k - 1, then, k), "of {steps}");
+                let at_time = if sign < 0 && k < steps { k - 1 } else { k };
+                assert_eq!(
+                    (due(ticks - 1.0), due(ticks), due(ticks + 1.0)),
+                    (k - 1, at_time, k),
+                    "of {steps}"
+                );
             }
             assert_eq!(table.position(table.duration_s()), (steps * sign) as f64);
         }
     }
 
     #[test]
-    fn a_table_that_cannot_be_is_refused() {
+    fn refuses_too_many_rows_and_a_slow_timer() {
         let new = |steps, top, timer| {
             TrapezoidTable::new(steps, AccelerationTable::new(250.0, top, 9000.0, timer), 100).err()
         };
@@ -379,7 +389,7 @@ mod tests {
         assert_eq!(new(201, 1e6, 1_000_000), Some(NoTable::Rows { needed: 101 }));
         assert_eq!(new(50, 600.0, 600), None);
         assert_eq!(new(50, 600.0, 599), Some(NoTable::Timer { rate: 600.0 }));
-        // Two steps use row 0 alone, of a reload of 1.
+        // Two steps use only row 0, whose reload is 1.
         assert_eq!(new(2, 600.0, 250), None);
         let two = TrapezoidTable::new(2, AccelerationTable::new(250.0, 600.0, 9000.0, 250), 100).unwrap();
         assert!(two.sums.is_sorted_by(|a, b| a < b), "{two:?}");
@@ -387,13 +397,13 @@ mod tests {
     }
 
     #[test]
-    fn where_a_search_begins_does_not_change_what_it_finds() {
+    fn the_start_of_a_search_does_not_change_its_result() {
         for steps in [1, 2, -41, 2000, -2001] {
             let table = table(steps, 700.0);
-            for look in -1..400 {
-                let t = table.duration_s() * f64::from(look) / 397.0;
-                let waits = i64::from(steps < 0 && t == table.duration_s());
-                let due = round_half_up(table.position(t)) + waits;
+            for sample in -1..400 {
+                let t = table.duration_s() * f64::from(sample) / 397.0;
+                let is_after_end = i64::from(steps < 0 && t == table.duration_s());
+                let due = round_half_up(table.position(t)) + is_after_end;
                 for before in [0, due - 1, due, due + 3, steps, i64::MIN, i64::MAX] {
                     assert_eq!(table.steps_due(t, before), due, "{steps} steps, {t} s, {before} before");
                 }
@@ -402,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn what_whole_rates_do_to_the_acceleration_shows() {
+    fn acceleration_shows_the_rounding_of_rates() {
         let table = table(2000, 4000.0);
         let peaks = table.peaks();
         assert!(peaks.speed >= 4000.0 && peaks.speed < 4001.0, "{peaks:?}");

@@ -1,7 +1,7 @@
 //! The motion of one axis: its moves one after another.
 //!
 //! ```text
-//! position  |        _____ _        each move begins at the end of the one before; the position is
+//! position  |        _____ _        each move begins at the end of the previous one; the position is
 //!           |      /       \        0 before the first move, and constant after the last
 //!           |____/          \___
 //!            dwell cosine  constant
@@ -13,23 +13,26 @@ use crate::{
 };
 use alloc::vec::Vec;
 
+/// A move and where it begins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedMove {
     pub start_s: f64,
+    /// Position at the start.
     pub start_steps: i64,
     pub profile: Profile,
 }
 
+/// The planned motion of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisPlan {
-    /// Invariant: at least one; each starts at the end of the one before.
+    /// Invariant: at least one; each starts at the end of the previous one.
     moves: Vec<PlannedMove>,
     duration_s: f64,
     steps: i64,
 }
 
 impl AxisPlan {
-    pub(crate) fn of(profiles: Vec<Profile>) -> Self {
+    pub(crate) fn from_profiles(profiles: Vec<Profile>) -> Self {
         let (mut start_s, mut start_steps) = (0.0, 0);
         let moves = profiles
             .into_iter()
@@ -43,22 +46,26 @@ impl AxisPlan {
         Self { moves, duration_s: start_s, steps: start_steps }
     }
 
+    /// The moves, at least one.
     #[must_use]
     pub fn moves(&self) -> &[PlannedMove] {
-        debug_assert!(!self.moves.is_empty(), "an axis without a move was not refused");
+        debug_assert!(!self.moves.is_empty(), "an axis without moves was accepted");
         &self.moves
     }
 
+    /// Duration of all moves in s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
+    /// Position after all moves, in steps.
     #[must_use]
     pub fn steps(&self) -> i64 {
         self.steps
     }
 
+    /// Number of steps in both directions.
     #[must_use]
     pub fn step_count(&self) -> u64 {
         self.moves.iter().fold(0, |sum: u64, planned| sum.saturating_add(planned.profile.step_count()))
@@ -79,30 +86,31 @@ impl AxisPlan {
         })
     }
 
-    fn at(&self, t: f64) -> Option<(&PlannedMove, f64)> {
+    fn move_at(&self, t: f64) -> Option<(&PlannedMove, f64)> {
         let after = self.moves.partition_point(|planned| planned.start_s <= t);
         let planned = self.moves.get(after.saturating_sub(1))?;
         Some((planned, t - planned.start_s))
     }
 
+    /// Position at `t` s in steps.
     #[must_use]
     pub fn position(&self, t: f64) -> f64 {
         if t >= self.duration_s {
             return self.steps as f64;
         }
-        self.at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
+        self.move_at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
     }
 
-    /// Steps due by `t` s, in the digits of an f64; [`Self::due_by`] is exact for a cycle. At the very time of a table's
-    /// step it counts if it goes to the right, and not yet if it goes to the left.
+    /// Steps due by `t` s, with the error of an f64; [`Self::due_by`] is exact for a cycle. A table's step that is due exactly
+    /// at `t` counts if it goes to the right, and not yet if it goes to the left.
     ///
     /// A move starts at a whole step, so only its own part is rounded.
     #[must_use]
     pub fn steps_due(&self, t: f64) -> i64 {
-        // At the end of a move its last step may still be pending.
+        // At the end of a move its last step may not be due yet.
         let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);
         if let Some(PlannedMove { profile, start_s, start_steps }) = self.moves.get(ended)
-            && profile.last_step_waits()
+            && profile.last_step_is_after_end()
             && *start_s + profile.duration_s() == t
         {
             return start_steps.saturating_add(profile.steps()).saturating_add(1);
@@ -110,47 +118,48 @@ impl AxisPlan {
         if t >= self.duration_s {
             return self.steps;
         }
-        let Some((PlannedMove { profile, start_steps, .. }, since)) = self.at(t) else { return 0 };
+        let Some((PlannedMove { profile, start_steps, .. }, since_start)) = self.move_at(t) else { return 0 };
         start_steps.saturating_add(match profile {
-            Profile::TrapezoidTable(table) => table.steps_due(since, 0),
-            profile => round_half_up(profile.position(since)),
+            Profile::TrapezoidTable(table) => table.steps_due(since_start, 0),
+            profile => round_half_up(profile.position(since_start)),
         })
     }
 
     /// Speed at `t` s in steps/s; 0 outside the motion.
     #[must_use]
     pub fn speed(&self, t: f64) -> f64 {
-        self.while_moving(t, |profile, t| profile.speed(t))
+        self.value_while_moving(t, |profile, t| profile.speed(t))
     }
 
     /// Acceleration at `t` s in steps/s^2; 0 outside the motion and where the speed jumps.
     #[must_use]
     pub fn acceleration(&self, t: f64) -> f64 {
-        self.while_moving(t, |profile, t| profile.acceleration(t))
+        self.value_while_moving(t, |profile, t| profile.acceleration(t))
     }
 
-    fn while_moving(&self, t: f64, of: fn(&Profile, f64) -> f64) -> f64 {
+    fn value_while_moving(&self, t: f64, of: fn(&Profile, f64) -> f64) -> f64 {
         if t < 0.0 || t >= self.duration_s {
             return 0.0;
         }
-        self.at(t).map_or(0.0, |(planned, t)| of(&planned.profile, t))
+        self.move_at(t).map_or(0.0, |(planned, t)| of(&planned.profile, t))
     }
 
     /// Maximum magnitudes of the axis, with the jumps at and between the ends of moves.
     #[must_use]
     pub fn peaks(&self) -> Peaks {
-        // Speed and acceleration at the end of the previous move.
-        let (mut peaks, mut before) = (Peaks::default(), (0.0, 0.0));
-        let jumps = |(speed, acceleration): (f64, f64), from: (f64, f64)| Peaks {
-            jump: libm::fabs(speed - from.0),
-            acceleration_jump: libm::fabs(acceleration - from.1),
+        let (mut peaks, mut last_speed, mut last_acceleration) = (Peaks::default(), 0.0, 0.0);
+        let jumps = |speed: f64, acceleration: f64| Peaks {
+            jump: libm::fabs(speed),
+            acceleration_jump: libm::fabs(acceleration),
             ..Peaks::default()
         };
         for PlannedMove { profile, .. } in &self.moves {
-            let at = |t: f64| (profile.speed(t), profile.acceleration(t));
-            peaks = peaks.or(profile.peaks()).or(jumps(at(0.0), before));
-            before = at(profile.duration_s());
+            let (speed, acceleration) = (profile.speed(0.0), profile.acceleration(0.0));
+            peaks =
+                peaks.max(profile.peaks()).max(jumps(speed - last_speed, acceleration - last_acceleration));
+            last_speed = profile.speed(profile.duration_s());
+            last_acceleration = profile.acceleration(profile.duration_s());
         }
-        peaks.or(jumps((0.0, 0.0), before))
+        peaks.max(jumps(last_speed, last_acceleration))
     }
 }

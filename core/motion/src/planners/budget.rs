@@ -1,4 +1,4 @@
-//! Limits of memory, work and speed that the axes of a scenario share.
+//! Limits of memory, work and speed that all axes of a scenario share.
 
 use crate::{
     MAX_SPEED,
@@ -22,16 +22,16 @@ impl Default for Budget {
     }
 }
 
-/// The problem of a motion that needs `needed` of something of which only `left` of `max` are left.
+/// The problem of a motion that needs `needed` of something of which `left` of `max` are left.
 pub(crate) fn exceeded(max: u64, left: u64, needed: u64, of: &'static str) -> ValueError {
     ValueError::too_much((max - left).saturating_add(needed), max, of)
 }
 
-/// Refuses a speed that follows from other numbers and is too high.
-pub(crate) fn hold_speed(quantities: &mut Quantities<'_>, step: &str, rate: f64) -> Option<()> {
+/// Adds a problem of a speed in steps/s that follows from other numbers, if it is too high.
+pub(crate) fn check_speed(quantities: &mut Quantities<'_>, field: &str, rate: f64) -> Option<()> {
     if rate <= MAX_SPEED {
         return Some(());
     }
-    quantities.refuse(step, Cause::TooFast { rate, max: MAX_SPEED });
+    quantities.refuse(field, Cause::TooFast { rate, max: MAX_SPEED });
     None
 }

@@ -7,56 +7,57 @@
 //! ```
 
 use crate::{
-    AxisPlan, PlannedMove, Profile,
-    curves::{sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP},
+    AxisPlan, Curve, PlannedMove, Profile,
+    curves::{
+        oscillation::Oscillation, sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP,
+        trapezoid_table::TrapezoidTable,
+    },
     timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, tie},
 };
 
-/// Steps of an axis due by one cycle after another.
+/// Counts the steps of an axis that are due by one cycle after another.
 ///
 /// ```
 /// use stepscope_motion::{moves::Axis, plan_axis};
 ///
-/// let plan = plan_axis(&Axis::default(), "x").expect("it holds");
+/// let plan = plan_axis(&Axis::default(), "x").expect("a valid axis");
 /// let mut due = plan.due_by(16_000_000);
 /// assert_eq!((due.steps(0), due.steps(u64::MAX)), (0, plan.steps()));
 /// ```
 pub struct DueBy<'p> {
     clock_hz: u32,
     moves: &'p [PlannedMove],
-    current: Option<Current<'p>>,
-    end: CycleTime,
-    steps: i64,
+    current: Option<CurrentMove<'p>>,
+    total_steps: i64,
 }
 
-struct Current<'p> {
+struct CurrentMove<'p> {
     planned: &'p PlannedMove,
     start: CycleTime,
+    end: CycleTime,
     max_error: f64,
     is_due_before: IsDueBefore<'p>,
+    /// Steps of the move due by the previous cycle, where the next search begins.
     due: i64,
 }
 
 impl AxisPlan {
-    /// Returns how many steps are due by cycles at `clock_hz`.
+    /// Returns a counter of the steps due by cycles at `clock_hz`.
     #[must_use]
     pub fn due_by(&self, clock_hz: u32) -> DueBy<'_> {
-        let clock_hz = clock_hz.max(1);
-        let (start, moves) = (CycleTime::default(), self.moves());
-        let current = moves.first().map(|planned| Current::new(planned, start, clock_hz));
-        let end = moves.first().map_or(start, |planned| planned.profile.schedule().length(clock_hz));
-        DueBy { clock_hz, moves, current, end, steps: self.steps() }
+        let (clock_hz, moves) = (clock_hz.max(1), self.moves());
+        let current = moves.first().map(|planned| CurrentMove::new(planned, CycleTime::default(), clock_hz));
+        DueBy { clock_hz, moves, current, total_steps: self.steps() }
     }
 
-    /// Minimum number of whole spans of `cycles`, at least one, until all moves have ended and all steps are due.
+    /// Minimum number of spans of `cycles`, at least one, until all moves have ended and all steps are due.
     pub(crate) fn spans(&self, cycles: u64, clock_hz: u32) -> u64 {
-        let length = |end: CycleTime, planned: &PlannedMove| {
-            end.plus(planned.profile.schedule().length(clock_hz.max(1)))
-        };
         let cycles = cycles.max(1);
-        let end = self.moves().iter().fold(CycleTime::default(), length);
+        let end = self.moves().iter().fold(CycleTime::default(), |end, planned| {
+            end.plus(planned.profile.schedule().length(clock_hz.max(1)))
+        });
         let mut spans = (end.whole / cycles).max(1);
-        // One more for a rest, and for a last step at the very end of the span, which belongs to the next.
+        // One more if the end is within a span, or if the last step is due in the cycle after the span.
         while !end.is_by(spans.saturating_mul(cycles))
             || self.due_by(clock_hz).steps(spans.saturating_mul(cycles)) != self.steps()
         {
@@ -70,116 +71,150 @@ impl AxisPlan {
 }
 
 impl DueBy<'_> {
-    /// Steps due by a cycle. Cycles must not fall from one call to the next.
+    /// Steps due by `cycle`, which must be at least that of the previous call.
     ///
     /// A move starts at a whole step, so only its own part is rounded.
     pub fn steps(&mut self, cycle: u64) -> i64 {
-        while self.end.is_by(cycle) {
-            let Some(Current { planned: PlannedMove { profile, start_steps, .. }, .. }) = &self.current
-            else {
-                break;
-            };
-            if profile.last_step_waits() && self.end.is_at(cycle) {
+        while let Some(current) = &mut self.current {
+            let end = current.end;
+            if !end.is_by(cycle) {
+                return current.steps(cycle, self.clock_hz);
+            }
+            let PlannedMove { profile, start_steps, .. } = current.planned;
+            if profile.last_step_is_after_end() && end.is_at(cycle) {
                 return start_steps + profile.steps() + 1;
             }
             self.moves = self.moves.get(1..).unwrap_or_default();
-            self.current = self.moves.first().map(|planned| Current::new(planned, self.end, self.clock_hz));
-            let length = self.moves.first().map(|planned| planned.profile.schedule().length(self.clock_hz));
-            self.end = self.end.plus(length.unwrap_or_default());
+            self.current = self.moves.first().map(|planned| CurrentMove::new(planned, end, self.clock_hz));
         }
-        match &mut self.current {
-            Some(current) => current.steps(cycle, self.clock_hz),
-            None => self.steps,
-        }
+        self.total_steps
     }
 }
 
 impl Profile {
-    /// Maximum error of a position in f64: the error of the time at maximum speed, and as many roundings of the travel.
+    /// Maximum error of a position in f64: the error of the time at maximum speed, and the same number of roundings of the
+    /// travel.
     fn max_position_error(&self) -> f64 {
-        let (reach, factor) = match (self, self.oscillation()) {
+        let (max_distance, factor) = match (self, self.oscillation()) {
             (_, Some(oscillation)) => (2.0 * oscillation.amplitude as f64, 1.0),
-            (Self::Points(points), _) => (points.reach(), points.max_error_factor()),
+            (Self::Points(points), _) => (points.max_distance(), points.max_error_factor()),
             (one_way, _) => (one_way.steps().unsigned_abs() as f64, 1.0),
         };
-        // The curve of a staircase keeps this distance from a half before and after a step.
+        // The curve of a staircase has this distance from a half before and after a step.
         let distance = if matches!(self, Self::Staircase(_)) { 2.0 * PAST_THE_STEP } else { 0.0 };
         // Both the time and the curve's formula have this error.
         let error_s = self.schedule().max_error_s() + MAX_ERROR * self.duration_s();
-        (self.peaks().speed * error_s + MAX_ERROR * reach) * factor + distance
+        (self.peaks().speed * error_s + MAX_ERROR * max_distance) * factor + distance
     }
 }
 
-impl<'p> Current<'p> {
+#[derive(Clone, Copy)]
+struct Elapsed {
+    cycle: u64,
+    start: CycleTime,
+    clock_hz: u32,
+}
+
+impl Elapsed {
+    /// In s, with the error of an f64.
+    fn since_f64(self) -> f64 {
+        let cycles = self.cycle.wrapping_sub(self.start.whole) as i64 as f64;
+        (cycles - self.start.part.high) / f64::from(self.clock_hz)
+    }
+
+    /// In cycles, in 106 bits; a tie later for a step to the right, which is due at the cycle itself, and a tie earlier for
+    /// one to the left.
+    fn since_exact(self, right: bool) -> Double {
+        let since = Double::from(self.cycle.wrapping_sub(self.start.whole)) - self.start.part;
+        let tie = tie(self.cycle);
+        if right { since + tie } else { since - tie }
+    }
+}
+
+impl<'p> CurrentMove<'p> {
     fn new(planned: &'p PlannedMove, start: CycleTime, clock_hz: u32) -> Self {
-        let profile = &planned.profile;
+        let schedule = planned.profile.schedule();
         Self {
             planned,
             start,
-            max_error: profile.max_position_error(),
-            is_due_before: profile.schedule().is_due_before(clock_hz),
+            end: start.plus(schedule.length(clock_hz)),
+            max_error: planned.profile.max_position_error(),
+            is_due_before: schedule.is_due_before(clock_hz),
             due: 0,
         }
     }
 
     fn steps(&mut self, cycle: u64, clock_hz: u32) -> i64 {
-        let clock = f64::from(clock_hz);
-        let since = cycle.wrapping_sub(self.start.whole) as i64 as f64;
-        let t = (since - self.start.part.high) / clock;
-        // At the cycle itself a step to the right is due, one to the left only after it.
-        let since = |right: bool| {
-            let since = Double::from(cycle.wrapping_sub(self.start.whole)) - self.start.part;
-            let tie = tie(cycle);
-            if right { since + tie } else { since - tie }
-        };
-        let is_due = |k: u64, right: bool| (self.is_due_before)(k, since(right));
-        let profile = &self.planned.profile;
-        let (count, right) = (profile.steps().unsigned_abs(), profile.steps() >= 0);
-        let due = match profile {
-            Profile::TrapezoidTable(table) => {
-                let fallen = table.steps_due(t, self.due).unsigned_abs();
-                let is_near = |k: u64| {
-                    (1..=count).contains(&k)
-                        && libm::fabs(table.step_s(k) - t) <= MAX_ERROR * profile.duration_s()
-                };
-                let fallen = match (is_near(fallen), is_near(fallen + 1)) {
-                    (_, true) => fallen + u64::from(is_due(fallen + 1, right)),
-                    (true, _) => fallen - u64::from(!is_due(fallen, right)),
-                    _ => fallen,
-                };
-                if right { fallen as i64 } else { -(fallen as i64) }
-            }
-            Profile::Points(points) => points.due_by(t, self.max_error, |right| since(right) / clock),
+        let elapsed = Elapsed { cycle, start: self.start, clock_hz };
+        self.due = match &self.planned.profile {
+            Profile::TrapezoidTable(table) => self.table_due(table, elapsed),
+            Profile::Points(points) => points.due_by(elapsed.since_f64(), self.max_error, |right| {
+                elapsed.since_exact(right) / f64::from(clock_hz)
+            }),
             Profile::Sine(Sine { oscillation }) | Profile::SineSegments(SineSegments { oscillation, .. }) => {
-                let travel = 2 * oscillation.amplitude;
-                let half = (2.0 * t / oscillation.period_s) as u64;
-                let from_start = libm::fabs(profile.position(t));
-                let (back, right) = (half % 2 == 1, oscillation.goes_right(half));
-                let travelled = if back { travel as f64 - from_start } else { from_start };
-                let due = due_near(travelled, travel, self.max_error, |k| is_due(half * travel + k, right));
-                let from_start = if back { travel - due } else { due } as i64;
-                if oscillation.starts_right { -from_start } else { from_start }
+                self.oscillation_due(oscillation, elapsed)
             }
-            one_way => {
-                let travelled = libm::fabs(one_way.position(t));
-                // The move has not ended, so its last step is not due.
-                let last = count as f64 - 0.5;
-                let travelled = if one_way.ends_with_a_step() && travelled > last { last } else { travelled };
-                let due = due_near(travelled, count, self.max_error, |k| is_due(k, right));
-                if right { due as i64 } else { -(due as i64) }
-            }
+            one_way => self.one_way_due(one_way, elapsed),
         };
-        self.due = due;
-        self.planned.start_steps.saturating_add(due)
+        self.planned.start_steps.saturating_add(self.due)
+    }
+
+    fn is_due(&self, k: u64, right: bool, elapsed: Elapsed) -> bool {
+        (self.is_due_before)(k, elapsed.since_exact(right))
+    }
+
+    /// A table has exact times instead of an exact position, so the times of the two nearest steps are compared.
+    fn table_due(&self, table: &TrapezoidTable, elapsed: Elapsed) -> i64 {
+        let (count, right, t) = (table.steps().unsigned_abs(), table.steps() >= 0, elapsed.since_f64());
+        let is_near = |k: u64| {
+            (1..=count).contains(&k) && libm::fabs(table.step_s(k) - t) <= MAX_ERROR * table.duration_s()
+        };
+        let mut due = table.steps_due(t, self.due).unsigned_abs();
+        if is_near(due + 1) {
+            due += u64::from(self.is_due(due + 1, right, elapsed));
+        } else if is_near(due) {
+            due -= u64::from(!self.is_due(due, right, elapsed));
+        }
+        signed(due, right)
+    }
+
+    /// An oscillation reverses after each half period, so its steps are counted from the last extreme.
+    fn oscillation_due(&self, oscillation: &Oscillation, elapsed: Elapsed) -> i64 {
+        let t = elapsed.since_f64();
+        let steps_per_half = 2 * oscillation.amplitude;
+        let half = (2.0 * t / oscillation.period_s) as u64;
+        let (returns, right) = (half % 2 == 1, oscillation.goes_right(half));
+        let from_start = libm::fabs(self.planned.profile.position(t));
+        let from_extreme = if returns { steps_per_half as f64 - from_start } else { from_start };
+        let due = due_near(from_extreme, steps_per_half, self.max_error, |k| {
+            self.is_due(half * steps_per_half + k, right, elapsed)
+        });
+        signed(if returns { steps_per_half - due } else { due }, !oscillation.starts_right)
+    }
+
+    fn one_way_due(&self, profile: &Profile, elapsed: Elapsed) -> i64 {
+        let (count, right) = (profile.steps().unsigned_abs(), profile.steps() >= 0);
+        let mut travel = libm::fabs(profile.position(elapsed.since_f64()));
+        // The move has not ended, so a step at its end is not due.
+        let last = count as f64 - 0.5;
+        if profile.ends_with_a_step() && travel > last {
+            travel = last;
+        }
+        signed(due_near(travel, count, self.max_error, |k| self.is_due(k, right, elapsed)), right)
     }
 }
 
-/// How many of `count` steps, step k at k - 1/2, are due at a position in f64.
+fn signed(steps: u64, right: bool) -> i64 {
+    if right { steps as i64 } else { -(steps as i64) }
+}
+
+/// How many of `count` steps, step k at k - 1/2, are due at a position whose error is at most `max_error`; `is_due` decides
+/// for a step within the error.
 fn due_near(position: f64, count: u64, max_error: f64, is_due: impl Fn(u64) -> bool) -> u64 {
-    let past = position + 0.5;
-    let k = (past + 0.5) as u64;
-    if libm::fabs(past - k as f64) > max_error || k == 0 || k > count {
-        return (past as u64).min(count);
+    let raised = position + 0.5;
+    let k = (raised + 0.5) as u64;
+    if libm::fabs(raised - k as f64) > max_error || k == 0 || k > count {
+        return (raised as u64).min(count);
     }
     k - u64::from(!is_due(k))
 }

@@ -1,4 +1,4 @@
-//! From the moves of a scenario to the plan of an axis and its steps (DESIGN Part B).
+//! Plans the moves of an axis, and counts the steps due by a cycle (DESIGN Part B).
 
 pub(crate) mod axis;
 pub(crate) mod budget;

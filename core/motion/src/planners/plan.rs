@@ -1,7 +1,7 @@
-//! From a scenario's axis to its plan, or to all its problems.
+//! Plans an axis of a scenario, or reports all its problems.
 //!
-//! A number is checked with the path of its field; what follows from several numbers (a top speed, a table's length) is
-//! checked when the curve is made.
+//! A number is checked with the path of its field. What follows from several numbers (a top speed, a table's length) is
+//! checked with the curve.
 
 mod motor;
 
@@ -16,7 +16,6 @@ use crate::{
 use alloc::{format, string::String, vec::Vec};
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
-/// Maximum duration of an axis in s.
 const MAX_DURATION_S: f64 = 1e6;
 
 /// Plans several lists of axes with their paths, one list per controller. All of them together share the limits of tables
@@ -30,7 +29,7 @@ pub fn plan_lists<'a>(
     let (mut plans, mut problems, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     for (path, axes) in lists {
         let mut list = Vec::new();
-        // The number of axes is checked elsewhere.
+        // The scenario checks the number of axes.
         for (index, axis) in axes.iter().take(MAX_CHANNELS).enumerate() {
             match plan_within(axis, &format!("{path}[{index}]"), &mut budget) {
                 Ok(plan) => list.push(plan),
@@ -50,7 +49,7 @@ pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
     let mechanics = Mechanics::default();
     let mut quantities = Quantities::new(&mechanics, path);
     let profile = Profile::plan(&mut quantities, motion, &mut Budget::default());
-    let plan = AxisPlan::of(profile.into_iter().collect());
+    let plan = AxisPlan::from_profiles(profile.into_iter().collect());
     quantities.validator.end(plan)
 }
 
@@ -69,13 +68,13 @@ fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan,
     let mut quantities = Quantities::new(&axis.mechanics, path);
     motor::check(&mut quantities, axis);
     quantities.validator.length("moves", axis.moves.len(), limits::MOVES, "moves");
-    // The length of the list is already refused.
+    // More moves already have a problem.
     let moves = axis.moves.iter().take(*limits::MOVES.end()).enumerate();
     let profiles = quantities.at("moves", |quantities| {
-        let plan = |(index, each)| quantities.at_entry(index, |here| Profile::plan(here, each, budget));
+        let plan = |(index, given)| quantities.at_entry(index, |here| Profile::plan(here, given, budget));
         moves.filter_map(plan).collect()
     });
-    let plan = AxisPlan::of(profiles);
+    let plan = AxisPlan::from_profiles(profiles);
     if plan.duration_s() > MAX_DURATION_S {
         let cause = ValueError::TooMuch { given: plan.duration_s(), max: MAX_DURATION_S, of: "seconds" };
         quantities.refuse("moves", cause);

@@ -1,6 +1,6 @@
 //! The curve of a move of any kind.
 //!
-//! The kinds are listed three times: [`Profile`] declares them, [`Profile::schedule`] matches them, and [`Profile::plan`] makes them.
+//! The kinds are listed three times: [`Profile`] declares them, [`Profile::schedule`] matches them, and [`Profile::plan`] plans them.
 
 mod constant;
 mod jerk_limited;
@@ -33,6 +33,7 @@ use crate::{
 };
 use core::ops::Deref;
 
+/// The curve of a planned move, by its kind and method.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     Trapezoid(Trapezoid),
@@ -100,12 +101,13 @@ impl Profile {
         }
     }
 
-    /// Period in s and number of periods of a periodic move.
+    /// Period in s and number of periods of an oscillation; `None` for other moves.
     #[must_use]
     pub fn repeats(&self) -> Option<(f64, u32)> {
         self.oscillation().map(|oscillation| (oscillation.period_s, oscillation.periods))
     }
 
+    /// Number of steps in both directions.
     #[must_use]
     pub fn step_count(&self) -> u64 {
         match (self, self.oscillation()) {
@@ -124,25 +126,23 @@ impl Profile {
         }
     }
 
-    /// The cycle of step `k` (from 1) after the move's start, at `clock_hz`; `None` past the last one. It computes all steps
-    /// before it.
+    /// The cycle of step `k` (from 1) after the move's start, at `clock_hz`; `None` after the last step.
     #[must_use]
     pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
         let steps = MoveSteps::new(self.schedule(), CycleTime::default(), clock_hz);
-        steps.after(k.checked_sub(1)?).map(|step| step.cycle)
+        steps.step_after(k.checked_sub(1)?).map(|step| step.cycle)
     }
 
     pub(crate) fn ends_with_a_step(&self) -> bool {
         matches!(self, Self::TrapezoidTable(_) | Self::Staircase(_))
     }
 
-    /// Whether that step, to the left, is not due yet at its very time (B7).
-    pub(crate) fn last_step_waits(&self) -> bool {
+    /// Whether the last step is not due yet at the end of the move, because it goes to the left (B7).
+    pub(crate) fn last_step_is_after_end(&self) -> bool {
         self.ends_with_a_step() && self.steps() < 0
     }
 }
 
-/// A profile is the curve of its kind.
 impl Deref for Profile {
     type Target = dyn Curve;
 

@@ -9,18 +9,20 @@ use crate::{
 };
 use core::ops::RangeInclusive;
 
+/// A validator of quantities in the units of an axis.
 pub(crate) struct Quantities<'s> {
     mechanics: &'s Mechanics,
-    /// With invalid mechanics only quantities in steps can be checked.
-    mechanics_hold: bool,
+    /// If false, only quantities in steps can be checked.
+    has_valid_mechanics: bool,
     pub(crate) validator: Validator,
 }
 
 impl<'s> Quantities<'s> {
     pub(crate) fn new(mechanics: &'s Mechanics, path: &str) -> Self {
-        let mut quantities = Self { mechanics, mechanics_hold: true, validator: Validator::within(path) };
+        let mut quantities =
+            Self { mechanics, has_valid_mechanics: true, validator: Validator::within(path) };
         quantities.at("mechanics", Self::check_mechanics);
-        quantities.mechanics_hold = quantities.validator.is_ok();
+        quantities.has_valid_mechanics = quantities.validator.is_ok();
         quantities
     }
 
@@ -46,104 +48,100 @@ impl<'s> Quantities<'s> {
         self.mechanics
     }
 
-    pub(crate) fn at<T>(&mut self, step: &str, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.validator.enter(step);
-        let made = what(self);
-        self.validator.leave(outside);
-        made
+    pub(crate) fn at<T>(&mut self, field: &str, check: impl FnOnce(&mut Self) -> T) -> T {
+        let outer_len = self.validator.enter(field);
+        let result = check(self);
+        self.validator.leave(outer_len);
+        result
     }
 
-    pub(crate) fn at_entry<T>(&mut self, index: usize, what: impl FnOnce(&mut Self) -> T) -> T {
-        let outside = self.validator.enter_entry(index);
-        let made = what(self);
-        self.validator.leave(outside);
-        made
+    pub(crate) fn at_entry<T>(&mut self, index: usize, check: impl FnOnce(&mut Self) -> T) -> T {
+        let outer_len = self.validator.enter_entry(index);
+        let result = check(self);
+        self.validator.leave(outer_len);
+        result
     }
 
-    pub(crate) fn refuse(&mut self, step: &str, cause: impl Into<Cause>) {
-        self.validator.add(step, cause);
+    pub(crate) fn refuse(&mut self, field: &str, cause: impl Into<Cause>) {
+        self.validator.add(field, cause);
     }
 
-    /// A number in its range, which NaN never is.
     pub(crate) fn range(
         &mut self,
-        step: &str,
+        field: &str,
         given: f64,
         range: RangeInclusive<f64>,
         unit: &'static str,
     ) -> Option<f64> {
-        self.validator.range(step, given, range, unit)
-    }
-
-    pub(crate) fn duration(&mut self, step: &str, given_s: f64) -> Option<f64> {
-        self.range(step, given_s, limits::DURATION_S, "s")
-    }
-
-    pub(crate) fn pause(&mut self, step: &str, given_s: f64) -> Option<f64> {
-        self.range(step, given_s, limits::PAUSE_S, "s")
+        self.validator.range(field, given, range, unit)
     }
 
     /// A distance in whole steps, rounded half up, not 0; left negative.
-    pub(crate) fn distance(&mut self, step: &str, given: &Distance) -> Option<i64> {
-        let sizes = given.step(self.mechanics);
-        self.check(step, given.value(), given.unit(), sizes, limits::STEPS)?;
+    pub(crate) fn distance(&mut self, field: &str, given: &Distance) -> Option<i64> {
+        let step_size = given.step_size(self.mechanics);
+        self.check(field, given.value(), given.unit(), step_size, limits::STEPS)?;
         let whole = given.whole_steps(self.mechanics).ok()?;
         if whole == 0 {
             let steps = given.in_steps(self.mechanics).ok()?;
-            self.refuse(step, Cause::NoSteps { steps });
+            self.refuse(field, Cause::NoSteps { steps });
             return None;
         }
         Some(whole)
     }
 
-    pub(crate) fn speed(&mut self, step: &str, given: &Speed) -> Option<f64> {
-        self.speed_within(step, given, limits::SPEED_STEPS_S)
+    pub(crate) fn speed(&mut self, field: &str, given: &Speed) -> Option<f64> {
+        self.speed_within(field, given, limits::SPEED_STEPS_S)
     }
 
-    /// A speed within limits, in steps/s.
     pub(crate) fn speed_within(
         &mut self,
-        step: &str,
+        field: &str,
         given: &Speed,
         range: RangeInclusive<f64>,
     ) -> Option<f64> {
-        self.check(step, given.value(), given.unit(), given.step(self.mechanics), range)?;
+        self.check(field, given.value(), given.unit(), given.step_size(self.mechanics), range)?;
         given.in_steps(self.mechanics).ok()
     }
 
-    pub(crate) fn acceleration(&mut self, step: &str, given: &Acceleration) -> Option<f64> {
-        let sizes = given.step(self.mechanics);
-        self.check(step, given.value(), given.unit(), sizes, limits::ACCELERATION_STEPS_S2)?;
+    pub(crate) fn acceleration(&mut self, field: &str, given: &Acceleration) -> Option<f64> {
+        let step_size = given.step_size(self.mechanics);
+        self.check(field, given.value(), given.unit(), step_size, limits::ACCELERATION_STEPS_S2)?;
         given.in_steps(self.mechanics).ok()
     }
 
-    pub(crate) fn jerk(&mut self, step: &str, given: &Jerk) -> Option<f64> {
-        self.check(step, given.value(), given.unit(), given.step(self.mechanics), limits::JERK_STEPS_S3)?;
+    pub(crate) fn jerk(&mut self, field: &str, given: &Jerk) -> Option<f64> {
+        self.check(
+            field,
+            given.value(),
+            given.unit(),
+            given.step_size(self.mechanics),
+            limits::JERK_STEPS_S3,
+        )?;
         given.in_steps(self.mechanics).ok()
     }
 
-    /// One step in the unit of a distance, if the axis has that unit.
-    pub(crate) fn step_of(&mut self, step: &str, given: &Distance) -> Option<f64> {
-        self.size(step, given.value(), given.unit(), given.step(self.mechanics))
+    pub(crate) fn step_size_of(&mut self, field: &str, given: &Distance) -> Option<f64> {
+        self.usable_step_size(field, given.value(), given.unit(), given.step_size(self.mechanics))
     }
 
-    /// The distance in steps between two positions in the same unit, in which one step is `size`.
-    pub(crate) fn travel(&mut self, first: f64, given: &Distance, size: f64) -> Option<Double> {
-        self.in_own_unit("", given.value(), size, limits::STEPS, given.unit())?;
+    /// The distance in steps between two positions in the same unit, in which one step is `step_size`.
+    pub(crate) fn travel(&mut self, first: f64, given: &Distance, step_size: f64) -> Option<Double> {
+        self.check_in_own_unit("", given.value(), step_size, limits::STEPS, given.unit())?;
         given.exact_steps_from(first, self.mechanics).ok()
     }
 
-    fn size(
+    /// One step in a quantity's unit; `None` with a problem, or with invalid mechanics.
+    fn usable_step_size(
         &mut self,
-        step: &str,
+        field: &str,
         given: f64,
         unit: &'static str,
-        size: Result<f64, NoSuchUnit>,
+        step_size: Result<f64, NoSuchUnit>,
     ) -> Option<f64> {
-        match size {
-            Ok(size) => (self.mechanics_hold || unit.starts_with("steps")).then_some(size),
+        match step_size {
+            Ok(size) => (self.has_valid_mechanics || unit.starts_with("steps")).then_some(size),
             Err(NoSuchUnit { unit, mechanics }) => {
-                self.refuse(step, Cause::NoSuchUnit { given, unit, mechanics });
+                self.refuse(field, Cause::NoSuchUnit { given, unit, mechanics });
                 None
             }
         }
@@ -151,25 +149,25 @@ impl<'s> Quantities<'s> {
 
     fn check(
         &mut self,
-        step: &str,
+        field: &str,
         given: f64,
         unit: &'static str,
-        size: Result<f64, NoSuchUnit>,
+        step_size: Result<f64, NoSuchUnit>,
         range: RangeInclusive<f64>,
     ) -> Option<f64> {
-        let size = self.size(step, given, unit, size)?;
-        self.in_own_unit(step, given, size, range, unit)
+        let step_size = self.usable_step_size(field, given, unit, step_size)?;
+        self.check_in_own_unit(field, given, step_size, range, unit)
     }
 
     /// Checks a quantity against limits in steps, which a problem reports in the quantity's unit.
-    fn in_own_unit(
+    fn check_in_own_unit(
         &mut self,
-        step: &str,
+        field: &str,
         given: f64,
-        size: f64,
+        step_size: f64,
         range: RangeInclusive<f64>,
         unit: &'static str,
     ) -> Option<f64> {
-        self.range(step, given, range.start() * size..=range.end() * size, unit)
+        self.range(field, given, range.start() * step_size..=range.end() * step_size, unit)
     }
 }

@@ -1,4 +1,4 @@
-//! A step table with few entries (DESIGN B8): every step is within a given number of cycles of its due cycle.
+//! Compresses steps into few entries (DESIGN B8): every step is within a tolerance of its due cycle.
 //!
 //! ```text
 //! due      |    |   |  |  | | | |         a window around each due cycle
@@ -6,18 +6,17 @@
 //! entry    \___ interval, add, count      one parabola through the windows of its steps
 //! ```
 //!
-//! The list is replayed in the integers of its format, like in the segment engine: the number of steps is exact, no step
-//! leaves its window, and an entry passes on only the error of its last step.
+//! Times are computed in the integers of the format, as in the segment engine: the number of steps is exact, no step leaves
+//! its window, and only the error of an entry's last step affects the next entry.
 //!
-//! If the windows are narrow enough, the fewest entries are searched for ([`super::fewest`]). Else, and for the quick
-//! search, each entry is the longest whose last step is within an eighth of its window, and a cycle, of the middle. (If
-//! windows are single cycles, it is the longest of all, less an eighth.) The very longest entry ends at the edge of a
-//! window, a bad position to begin the next one: such lists have about an eighth more entries.
+//! If the windows are narrow enough, the fewest entries are searched for ([`super::fewest`]). Otherwise, and for the quick
+//! search, each entry is the longest whose last step is near the middle of its window ([`super::longest`]). The longest entry
+//! of all would end at the edge of a window, a bad start for the next entry: such lists have about an eighth more entries.
 
 use super::{
     entry_format::EntryFormat,
-    fewest::{self, Piece, Section},
-    longest::{Ahead, Window},
+    fewest::{self, FoundEntry, Section},
+    longest::{LookAhead, Window},
     segments::START,
     timing_error::TimingError,
 };
@@ -32,6 +31,7 @@ use stepscope_peripheral::{
     units::Cycles,
 };
 
+/// Maximum tolerance of a compressed list.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Maximum entries of a list: 64 MB.
 pub(super) const MAX_ENTRIES: usize = 2_000_000;
@@ -42,20 +42,23 @@ const WORK_PER_STEP: u64 = 1 << 10;
 const LAST: u64 = LAST_CYCLE.0 - START.0;
 const READ: usize = 256;
 
+/// Which errors a tolerance allows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// Early or late.
     #[default]
     Both,
-    /// Early, never late: the window of Klipper's step compression.
+    /// Only early, like Klipper's step compression.
     Early,
 }
 
+/// Maximum timing error of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tolerance {
     /// At most [`MAX_TOLERANCE`].
     pub cycles: Cycles,
-    /// At most this part of the shorter interval next to it (of [`Side::Early`] the one before): 2 for a half.
+    /// Also limits the error to a part of the shorter interval next to the step, or for [`Side::Early`] of the interval before
+    /// it: 2 for a half.
     pub interval_part: Option<NonZeroU32>,
     pub side: Side,
 }
@@ -79,12 +82,13 @@ impl Tolerance {
     }
 }
 
+/// A compressed list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compressed {
     pub list: SegmentList,
     pub error: TimingError,
-    /// Maximum number of entries above the minimum: 0 if it is proven minimal, more if it was cut into sections, `None`
-    /// if the search was not run or not completed.
+    /// Maximum number of entries above the minimum: 0 if the list is proven minimal, more if it was cut into sections, `None`
+    /// if the search for the minimum was not run or not completed.
     pub surplus: Option<u64>,
 }
 
@@ -138,14 +142,13 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             tolerance,
             format,
             pulse,
-            before: 0,
+            last_cycle: 0,
             count: 0,
         };
         windows.read();
         Ok(Self { windows, writer: Writer::new(format) })
     }
 
-    /// Compresses section after section into the fewest entries; returns the surplus, or `None` if steps are left.
     fn fewest(&mut self) -> Result<Option<u64>, Cause> {
         let mut ready = VecDeque::new();
         let (last, surplus) = self.sections(&mut ready)?;
@@ -153,8 +156,8 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Ok(surplus)
     }
 
-    /// The same; returns the cycle of the last step in an entry, and the surplus. `ready` gets the steps that were read but
-    /// are in no entry.
+    /// Compresses sections; returns the cycle of the last compressed step, and the surplus. `ready` gets the steps that were
+    /// read but not compressed.
     fn sections(&mut self, ready: &mut VecDeque<(Window, bool)>) -> Result<(u64, Option<u64>), Cause> {
         let (format, pulse) = (self.windows.format, self.windows.pulse);
         let min = pulse.min_interval().0 << format.fraction_bits;
@@ -172,32 +175,33 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             let near =
                 |before: u64, window: &Window| window.high.saturating_sub(before) <= format.max_interval();
             if !near(self.writer.time, first) {
-                self.writer.wait(first.first(self.writer.time, min, format).wait);
+                self.writer.wait(first.single_step(self.writer.time, min, format).wait);
             }
-            // Up to a rest longer than any interval.
+            // A section ends before a pause that is longer than any interval.
             let pairs = steps.iter().zip(steps.iter().skip(1));
-            let there = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
-            let is_cut = more && there == steps.len();
-            // If some times are near enough, another list may do without the wait.
-            let waits =
-                steps.get(there - 1).zip(steps.get(there)).is_some_and(|((before, _), (window, _))| {
+            let length = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
+            let is_cut = more && length == steps.len();
+            // If some times of the two steps are close enough, another list may not need the wait.
+            let may_not_need_wait =
+                steps.get(length - 1).zip(steps.get(length)).is_some_and(|((before, _), (window, _))| {
                     window.low.saturating_sub(before.high) <= format.max_interval()
                 });
-            let section = Section::new(format, min, self.writer.time, steps.get(..there).unwrap_or_default());
-            let Some(left) = work.checked_sub(there as u64) else { return Ok((last, None)) };
+            let section =
+                Section::new(format, min, self.writer.time, steps.get(..length).unwrap_or_default());
+            let Some(left) = work.checked_sub(length as u64) else { return Ok((last, None)) };
             work = left;
-            let Some(pieces) = section.pieces(is_cut, &mut work) else { return Ok((last, None)) };
+            let Some(entries) = section.fewest_entries(is_cut, &mut work) else { return Ok((last, None)) };
             let mut done = 0;
-            for Piece { count, interval, add } in pieces {
-                let of_piece = steps.get(done..done + count).unwrap_or_default();
-                let right = of_piece.first().is_some_and(|(_, right)| *right);
-                let windows = of_piece.iter().map(|(window, _)| window);
-                self.writer.steps(count, windows, (interval as u64, add, right));
-                (done, last) = (done + count, of_piece.last().map_or(last, |(window, _)| window.due));
+            for FoundEntry { count, interval, add } in entries {
+                let entry_steps = steps.get(done..done + count).unwrap_or_default();
+                let right = entry_steps.first().is_some_and(|(_, right)| *right);
+                let windows = entry_steps.iter().map(|(window, _)| window);
+                self.writer.steps(windows, (interval as u64, add, right));
+                (done, last) = (done + count, entry_steps.last().map_or(last, |(window, _)| window.due));
             }
-            // Only for steps in entries, so that many short pieces of a section do not count repeatedly.
+            // Only compressed steps count, because the others are searched again in the next section.
             work += WORK_PER_STEP * done as u64;
-            cuts += u64::from(is_cut || done < there) + 2 * u64::from(waits);
+            cuts += u64::from(is_cut || done < length) + 2 * u64::from(may_not_need_wait);
             ready.drain(..done);
             self.writer.check_length()?;
         }
@@ -205,7 +209,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
 
     fn quick(&mut self) -> Result<(), Cause> {
         let Self { windows, writer } = self;
-        let mut ahead = Ahead::new(windows.format, windows.pulse.min_interval().0);
+        let mut ahead = LookAhead::new(windows.format, windows.pulse.min_interval().0);
         let mut length = 64;
         while let Some(ScheduledStep { right, .. }) = windows.next {
             windows.fill(right, &mut ahead)?;
@@ -213,9 +217,9 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
                 ahead.longest(writer.time, length, |ahead| windows.fill(right, ahead))?
             {
                 writer.wait(longest.wait);
-                let taken = ahead.taken(longest.count);
-                writer.steps(taken.len(), taken.iter(), (longest.interval, longest.add, right));
-                ahead.take(longest.count);
+                let windows = ahead.first_windows(longest.count);
+                writer.steps(windows.iter(), (longest.interval, longest.add, right));
+                ahead.remove(longest.count);
                 length = longest.count;
                 writer.check_length()?;
             }
@@ -232,13 +236,12 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
 struct Windows<I> {
     steps: I,
     next: Option<ScheduledStep>,
-    /// Later steps that were read before, the last first.
+    /// Steps to be read again, the last first.
     returned: Vec<ScheduledStep>,
     tolerance: Tolerance,
     format: EntryFormat,
     pulse: PulseTimes,
-    before: u64,
-    /// Number of steps with windows.
+    last_cycle: u64,
     count: u64,
 }
 
@@ -247,22 +250,22 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         self.next = self.returned.pop().or_else(|| self.steps.next());
     }
 
-    fn put_back(&mut self, before: u64, steps: &VecDeque<(Window, bool)>) {
-        (self.before, self.count) = (before, self.count - steps.len() as u64);
+    fn put_back(&mut self, last_cycle: u64, steps: &VecDeque<(Window, bool)>) {
+        (self.last_cycle, self.count) = (last_cycle, self.count - steps.len() as u64);
         self.returned.extend(self.next);
         let steps = steps.iter().rev();
         self.returned.extend(steps.map(|(window, right)| ScheduledStep { cycle: window.due, right: *right }));
         self.read();
     }
 
-    /// Reads some windows of steps in one direction; returns false at its end.
-    fn fill(&mut self, right: bool, ahead: &mut Ahead) -> Result<bool, Cause> {
+    /// Reads windows of steps in one direction; returns false after the last of them.
+    fn fill(&mut self, right: bool, ahead: &mut LookAhead) -> Result<bool, Cause> {
         for _ in 0..READ {
             if self.next.is_none_or(|step| step.right != right) {
                 return Ok(false);
             }
             let window = self.window()?;
-            ahead.more().push(window);
+            ahead.windows_mut().push(window);
         }
         Ok(true)
     }
@@ -272,11 +275,11 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         self.read();
         let after = self.next.map(|after| after.cycle.saturating_sub(step.cycle));
         self.count += 1;
-        let before = step.cycle.saturating_sub(self.before);
+        let before = step.cycle.saturating_sub(self.last_cycle);
         if before < self.pulse.min_interval().0 {
             return Err(Cause::StepTooSoon { step: self.count, interval: before, pulse: self.pulse });
         }
-        self.before = step.cycle;
+        self.last_cycle = step.cycle;
         let (earliest, latest) = self.tolerance.window(step.cycle, before, after);
         if latest > LAST {
             return Err(ValueError::too_much(latest, LAST, "cycles").into());
@@ -315,11 +318,10 @@ impl Writer {
 
     fn steps<'w>(
         &mut self,
-        count: usize,
-        windows: impl Iterator<Item = &'w Window>,
+        windows: impl ExactSizeIterator<Item = &'w Window>,
         (interval, add, right): (u64, i64, bool),
     ) {
-        let mut next = interval;
+        let (count, mut next) = (windows.len() as u32, interval);
         for window in windows {
             self.time = self.time.wrapping_add(next);
             next = next.wrapping_add_signed(add);
@@ -328,9 +330,9 @@ impl Writer {
                 "{} is not in {window:?}",
                 self.time
             );
-            self.error.step((self.time >> self.format.fraction_bits).abs_diff(window.due));
+            self.error.add((self.time >> self.format.fraction_bits).abs_diff(window.due));
         }
-        let (count, shift) = (count as u32, self.format.shift());
+        let shift = self.format.shift();
         let (interval, add) = (interval << shift, add << shift);
         if !self.extends_last(count, interval, add, right) {
             self.segments.push(Segment::Steps { count, interval, add, right });
@@ -368,9 +370,9 @@ mod tests {
         cycles.iter().map(|&cycle| ScheduledStep { cycle, right: true }).collect()
     }
 
-    /// Climbs and falls by about 2^63, which as differences of 64 bits look like climbs alone.
+    /// Cycles that rise and fall by about 2^63, whose 64-bit differences look like rises.
     #[test]
-    fn a_list_that_falls_from_beyond_all_cycles_is_refused_as_too_long() {
+    fn refuses_cycles_beyond_the_last_one() {
         let far = 1 << 63;
         for climbs in [[2_000_000, far + 1_999_000, 1_998_000], [far, far + 5_000_000, 6_000_000]] {
             let cycles = [&[1_000_000][..], &climbs, &[7_000_000, 8_000_000, 9_000_000]].concat();
@@ -393,13 +395,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_a_parabola_is_one_entry() {
+    fn a_parabola_is_one_entry() {
         let rows: [(Vec<u64>, usize); 5] = [
             (vec![], 0),
             (vec![7], 1),
             ((1..=1000).map(|k| k * 80).collect(), 1),
             ((1..=1000).map(|k| k * 20_000 - k * (k - 1) / 2 * 3).collect(), 1),
-            // 5/3 cycles of rounding only.
+            // More steps than the count of an entry.
             ((1..=70_000).map(|k| k * 80).collect(), 2),
         ];
         for (due, expected) in rows {
@@ -408,11 +410,11 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_and_a_long_rest_end_an_entry() {
+    fn a_change_of_direction_and_a_long_pause_end_an_entry() {
         let mut due: Vec<ScheduledStep> = right(&[10, 20, 30]);
         due.extend([40, 50, 1 << 40].map(|cycle| ScheduledStep { cycle, right: false }));
         let made = compressed(due.clone(), Tolerance::of(Cycles(0)), EntryFormat::TICKS, PULSE).unwrap();
-        let ways: Vec<Option<bool>> = made
+        let directions: Vec<Option<bool>> = made
             .list
             .segments
             .iter()
@@ -421,12 +423,12 @@ mod tests {
                 Segment::Dwell(_) => None,
             })
             .collect();
-        assert_eq!(ways, [Some(true), Some(false), None, Some(false)]);
+        assert_eq!(directions, [Some(true), Some(false), None, Some(false)]);
         assert_eq!(TimingError::of(&made.list, due), Some(made.error));
     }
 
     #[test]
-    fn the_last_cycles_that_there_are_can_be_reached() {
+    fn steps_can_be_in_the_last_cycles() {
         let last = LAST_CYCLE.0 - 1;
         let due = [last - 20, last - 10, last];
         for format in EntryFormat::ALL {

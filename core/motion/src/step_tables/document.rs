@@ -1,27 +1,28 @@
-//! The table of a motion's paper as segments (DESIGN B8): its rates, each held for some steps.
+//! The table of a motion's paper as segments (DESIGN B8): consecutive rates, each for some steps.
 //!
-//! An interval is rounded once, to the unit of the format. The rounding of a rate adds up over its steps, as in a controller
-//! that counts such intervals: that is the table's timing error.
+//! An interval is rounded once, to the unit of the format. This error accumulates over the steps of a rate, as in a
+//! controller that counts such intervals.
 
-use crate::step_tables::{compressed::MAX_ENTRIES, entry_format::EntryFormat, segments::START};
 use crate::{
     AxisPlan, Curve, Profile,
-    curves::{sine_segments::SineSegments, trapezoid_table::TrapezoidTable},
+    curves::{sine_segments::SineSegments, staircase_table::StaircaseTable, trapezoid_table::TrapezoidTable},
     problem::{Cause, ValueError},
     round_half_up,
+    step_tables::{compressed::MAX_ENTRIES, entry_format::EntryFormat, segments::START},
 };
 use alloc::{boxed::Box, vec::Vec};
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
+/// Steps at a constant rate. Times are in cycles.
 #[derive(Clone, Copy, Debug)]
 struct Rate {
-    /// From the end of the rate before to the first step.
+    /// From the end of the previous rate to the first step.
     first: f64,
-    each: f64,
+    interval: f64,
     count: u64,
     right: bool,
-    /// Duration, from the end of the rate before.
-    lasts: f64,
+    /// From the end of the previous rate to the end of this one.
+    duration: f64,
 }
 
 /// The table of the plan, with times in units of `format`.
@@ -31,24 +32,23 @@ struct Rate {
 pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> Result<SegmentList, Cause> {
     let clock = f64::from(clock_hz);
     let mut table = Table { format, segments: Vec::new() };
-    let mut last = 0.0;
+    let mut last_step = 0.0;
     for planned in plan.moves() {
-        let start = planned.start_s * clock;
-        let mut now = start;
+        let mut now = planned.start_s * clock;
         for rate in rates(&planned.profile, clock_hz)? {
-            // Relative to the last step instead of the end of the rate before.
-            let first = now + rate.first - last;
+            // Relative to the last step instead of the end of the previous rate.
+            let first = now + rate.first - last_step;
             if rate.count > 0 {
-                table.rate(Rate { first, ..rate })?;
-                last = now + rate.first + (rate.count - 1) as f64 * rate.each;
+                table.add_rate(Rate { first, ..rate })?;
+                last_step = now + rate.first + (rate.count - 1) as f64 * rate.interval;
             }
-            now += rate.lasts;
+            now += rate.duration;
         }
     }
     Ok(SegmentList { start: START, segments: table.segments })
 }
 
-/// Bytes of the plan's tables as in their papers; `None` if a move has none.
+/// Bytes of the plan's tables as in their papers; `None` if a move has no table.
 ///
 /// A row of an acceleration table is a reload of 2 bytes, or 4 if one needs them; of a staircase a rate and its steps, 4
 /// bytes together; sine segments are those of a quarter ([`SineSegments::memory`]). A constant rate is a 4-byte interval
@@ -72,43 +72,41 @@ fn reload_bytes(table: &TrapezoidTable) -> u64 {
     if table.table().reload(0) > u16::MAX.into() { 4 } else { 2 }
 }
 
-/// The rates of a move, one after another.
 fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rate> + '_>, Cause> {
     let clock = f64::from(clock_hz);
     let right = profile.steps() >= 0;
-    let held =
-        move |each: f64, count: u64| Rate { first: each, each, count, right, lasts: count as f64 * each };
+    // The first step follows after one interval.
+    let rate = move |interval: f64, count: u64| {
+        let duration = count as f64 * interval;
+        Rate { first: interval, interval, count, right, duration }
+    };
     Ok(match profile {
         Profile::TrapezoidTable(table) => {
             let rows = table.used_rows() - 1;
             let cycles =
                 move |row| table.table().reload(row) as f64 * clock / f64::from(table.table().timer_hz());
             let plateau = table.steps().unsigned_abs() - 2 * rows;
-            let up = (0..rows).map(move |row| held(cycles(row), 1));
-            let down = (0..rows).rev().map(move |row| held(cycles(row), 1));
-            Box::new(up.chain([held(cycles(rows), plateau)]).chain(down))
+            let up = (0..rows).map(move |row| rate(cycles(row), 1));
+            let down = (0..rows).rev().map(move |row| rate(cycles(row), 1));
+            Box::new(up.chain([rate(cycles(rows), plateau)]).chain(down))
         }
         Profile::Staircase(staircase) => {
             let rows = staircase.ramp_rows();
-            let row = move |n| {
-                held(
-                    clock / staircase.table().rate(n) as f64,
-                    crate::curves::staircase_table::StaircaseTable::steps_in(n),
-                )
-            };
+            let row = move |n| rate(clock / staircase.table().rate(n) as f64, StaircaseTable::steps_in(n));
             let plateau =
-                staircase.plateau_rate().map(|rate| held(clock / rate as f64, staircase.plateau_steps()));
+                staircase.plateau_rate().map(|top| rate(clock / top as f64, staircase.plateau_steps()));
             Box::new((1..=rows).map(row).chain(plateau).chain((1..=rows).rev().map(row)))
         }
-        Profile::Sliced(sliced) => Box::new(sliced.slices().map(move |(from, to, count)| {
-            let lasts = (to - from) * clock;
-            let each = lasts / f64::from(count.max(1));
-            Rate { first: each / 2.0, each, count: count.into(), right, lasts }
+        Profile::Sliced(sliced) => Box::new(sliced.slices().map(move |slice| {
+            let duration = (slice.to_s - slice.from_s) * clock;
+            let interval = duration / f64::from(slice.steps.max(1));
+            Rate { first: interval / 2.0, interval, count: slice.steps.into(), right, duration }
         })),
         Profile::SineSegments(sine) => Box::new(sine_rates(sine, clock)),
         Profile::Constant(constant) => {
-            let each = clock / libm::fabs(constant.speed(0.0));
-            Box::new([Rate { first: each / 2.0, ..held(each, profile.steps().unsigned_abs()) }].into_iter())
+            let interval = clock / libm::fabs(constant.speed(0.0));
+            let steps = rate(interval, profile.steps().unsigned_abs());
+            Box::new([Rate { first: interval / 2.0, ..steps }].into_iter())
         }
         Profile::Dwell(_) => Box::new(core::iter::empty()),
         _ => {
@@ -120,10 +118,10 @@ fn rates(profile: &Profile, clock_hz: u32) -> Result<Box<dyn Iterator<Item = Rat
 
 fn sine_rates(sine: &SineSegments, clock: f64) -> impl Iterator<Item = Rate> + '_ {
     let cycles_per_point = sine.point_s() * clock;
-    sine.pieces().filter(|piece| piece.steps > 0).map(move |piece| {
-        let each = (piece.to - piece.from) * cycles_per_point / piece.steps as f64;
-        let lasts = piece.steps as f64 * each;
-        Rate { first: each / 2.0, each, count: piece.steps, right: piece.right, lasts }
+    sine.motion_segments().filter(|segment| segment.steps > 0).map(move |segment| {
+        let interval = (segment.to - segment.from) * cycles_per_point / segment.steps as f64;
+        let duration = segment.steps as f64 * interval;
+        Rate { first: interval / 2.0, interval, count: segment.steps, right: segment.right, duration }
     })
 }
 
@@ -133,13 +131,13 @@ struct Table {
 }
 
 impl Table {
-    fn rate(&mut self, rate: Rate) -> Result<(), Cause> {
-        let (first, each) = (self.rounded(rate.first), self.rounded(rate.each));
-        if first == each {
-            self.steps(rate.count, each, rate.right);
+    fn add_rate(&mut self, rate: Rate) -> Result<(), Cause> {
+        let (first, interval) = (self.rounded(rate.first), self.rounded(rate.interval));
+        if first == interval {
+            self.add_steps(rate.count, interval, rate.right);
         } else {
-            self.steps(1, first, rate.right);
-            self.steps(rate.count - 1, each, rate.right);
+            self.add_steps(1, first, rate.right);
+            self.add_steps(rate.count - 1, interval, rate.right);
         }
         if self.segments.len() > MAX_ENTRIES {
             return Err(
@@ -149,13 +147,12 @@ impl Table {
         Ok(())
     }
 
-    /// In 1/65536 cycle, rounded to the format's unit.
     fn rounded(&self, cycles: f64) -> u64 {
         let units = round_half_up(cycles * f64::from(1_u32 << self.format.fraction_bits));
         units.max(0).unsigned_abs() << (FRACTION_BITS - self.format.fraction_bits)
     }
 
-    fn steps(&mut self, mut count: u64, interval: u64, right: bool) {
+    fn add_steps(&mut self, mut count: u64, interval: u64, right: bool) {
         while count > 0 {
             let part = count.min(u32::MAX.into()) as u32;
             count -= u64::from(part);

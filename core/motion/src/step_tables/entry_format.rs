@@ -1,8 +1,8 @@
-//! The entries of a step table in a controller (DESIGN B8): the widths of their numbers.
+//! The format of a step table's entries (DESIGN B8): the widths of their numbers.
 //!
 //! ```text
 //! entry               interval, count, add
-//! count > 0           count steps, each `interval` after the one before; then interval += add
+//! count > 0           count steps, each `interval` after the previous one; then interval += add
 //! count = 0           no step: waits `interval`, then DIR = add (0 left, 1 right)
 //! ```
 //!
@@ -12,6 +12,7 @@ use crate::problem::{Cause, ValueError};
 use alloc::vec::Vec;
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
+/// Widths of an entry's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EntryFormat {
     pub name: &'static str,
@@ -35,51 +36,58 @@ impl EntryFormat {
     /// Whole cycles in 8 bytes, like Klipper's queue_step.
     pub const TICKS: Self =
         Self { name: "ticks", fraction_bits: 0, interval_bits: 32, count_bits: 16, add_bits: 16 };
+    /// All formats.
     pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
 
+    /// Bytes per entry.
     #[must_use]
     pub const fn bytes(self) -> u64 {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
 
+    /// In units.
     #[must_use]
     pub const fn max_interval(self) -> u64 {
         u64::MAX >> (64 - self.interval_bits)
     }
 
+    /// Maximum steps per entry.
     #[must_use]
     pub const fn max_count(self) -> u32 {
         u32::MAX >> (32 - self.count_bits)
     }
 
+    /// In units.
     #[must_use]
     pub const fn min_add(self) -> i64 {
         i64::MIN >> (64 - self.add_bits)
     }
 
+    /// In units.
     #[must_use]
     pub const fn max_add(self) -> i64 {
         i64::MAX >> (64 - self.add_bits)
     }
 
+    /// Bits of a segment's fraction that the format does not have.
     pub(super) const fn shift(self) -> u32 {
         FRACTION_BITS - self.fraction_bits
     }
 
     /// The list's segments as entries of this format.
     ///
-    /// A segment too large for an entry becomes several: a wait before a long interval, an entry per step for a large add,
-    /// several entries for a large count.
+    /// A segment that is too large for an entry becomes several entries: a wait before a long interval, one entry per step for
+    /// a large add, or parts of a large count.
     ///
     /// # Errors
-    /// The first time that is no multiple of this format's unit.
+    /// A time that is not a multiple of this format's unit.
     pub fn pack(self, list: &SegmentList) -> Result<Vec<Entry>, Cause> {
         let mut packer = Packer { format: self, entries: Vec::new(), right: false };
         for segment in &list.segments {
             match *segment {
                 Segment::Dwell(dwell) => packer.wait(self.units(dwell)?),
                 Segment::Steps { count, interval, add, right } => {
-                    packer.turn(right);
+                    packer.set_direction(right);
                     let add = if count == 1 { 0 } else { add };
                     self.units(add.unsigned_abs())?;
                     packer.steps(count, self.units(interval)?, add >> self.shift());
@@ -120,13 +128,14 @@ const _: () = {
     }
 };
 
+/// An entry of a step table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Time before the first step, or of the wait, in units.
     pub interval: u64,
     /// Steps; 0 for a wait.
     pub count: u32,
-    /// Increment of the interval in units; of a wait the level of DIR after it.
+    /// Increment of the interval in units; for a wait the level of DIR after it.
     pub add: i64,
 }
 
@@ -137,7 +146,7 @@ struct Packer {
 }
 
 impl Packer {
-    fn turn(&mut self, right: bool) {
+    fn set_direction(&mut self, right: bool) {
         if right != self.right {
             self.right = right;
             self.entries.push(Entry { interval: 0, count: 0, add: right.into() });
@@ -187,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_entry_does_not_hold_becomes_several() {
+    fn divides_segments_that_are_too_large_for_an_entry() {
         let q16 = pack(EntryFormat::Q16, vec![steps(9, 100, -2, false), Segment::Dwell(7)]);
         assert_eq!(q16, Ok(vec![(100 << 16, 9, -2 << 16), (7, 0, 0)]));
         let rows = [
@@ -210,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_has_the_bytes_of_its_numbers() {
+    fn formats_have_their_sizes_and_ranges() {
         assert_eq!(EntryFormat::ALL.map(EntryFormat::bytes), [20, 8, 8]);
         let ticks = EntryFormat::TICKS;
         assert_eq!((ticks.max_interval(), ticks.max_count()), (0xffff_ffff, 0xffff));

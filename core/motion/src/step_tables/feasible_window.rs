@@ -1,4 +1,4 @@
-//! One entry of a step table through the windows of some of its steps (DESIGN B8).
+//! Finds one entry of a step table through the windows of some of its steps (DESIGN B8).
 //!
 //! Step n of an entry is n*interval + n*(n-1)/2*add after the entry's start. Divided by n this is a straight line over
 //! x = (n - 1)/2, and each step's window is a gate for it:
@@ -7,35 +7,35 @@
 //! low_n/n <= interval + add*(n-1)/2 <= high_n/n          all numbers integers
 //! ```
 //!
-//! For a given add the intervals that pass all gates are a range of length `room`, which is concave in add. So the two
-//! tightest gates of an add without room also tell the direction and the minimum distance of an add with room. That bound
-//! is exact for any subset of the gates: fewer gates never refuse what all gates allow.
+//! For a given add, the intervals that pass all gates are a range of length `room`, which is concave in add. So the two
+//! tightest gates of an add without room determine the direction and the minimum distance of an add with room. This bound is
+//! valid for any subset of the gates: fewer gates never refuse what all gates allow.
 
+/// The times that step `n` (from 1) of an entry may have, in units from the entry's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Gate {
     pub(super) n: i64,
-    /// Earliest and latest time in units.
     pub(super) low: i64,
     pub(super) high: i64,
 }
 
+/// Entries that pass all gates: an add, and a range of intervals in units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Fit {
-    /// Minimum and maximum interval in units.
-    pub(super) least: i64,
-    pub(super) most: i64,
+    pub(super) min: i64,
+    pub(super) max: i64,
     pub(super) add: i64,
 }
 
 /// Maximum number of adds tried; only gates with less than one unit of room need as many.
 const MAX_PROBES: u32 = 64;
-/// Maximum time of a gate in units, and maximum part of an add in it, so that all sums fit in 64 bits.
+/// Maximum time of a gate in units, and maximum contribution of an add to it, so that all sums fit in 64 bits.
 pub(super) const MAX_TIME: u64 = 1 << 60;
 
 struct Probe {
     add: i64,
-    least: i64,
-    most: i64,
+    min: i64,
+    max: i64,
     /// Twice the slope of the room over add.
     slope: i64,
     /// Minimum distance of the next add with room, in the direction of growing room.
@@ -43,29 +43,28 @@ struct Probe {
 }
 
 impl Probe {
-    /// Evaluates all gates; `None` if there are none.
     fn at(gates: &[Gate], add: i64) -> Option<Self> {
         let (low, high) = tightest(gates, add)?;
-        let least = ceiling(low.low, low.n);
-        let most = high.high.div_euclid(high.n);
+        let min = ceiling(low.low, low.n);
+        let max = high.high.div_euclid(high.n);
         let slope = low.n - high.n;
         // low.low/low.n - high.high/high.n over a common denominator: the add changes it by the slope.
         let [low_n, high_n] = [low.n, high.n].map(i128::from);
         let missing = i128::from(low.low) * high_n - i128::from(high.high) * low_n;
         let mut ahead = 1;
         if missing > 0 && slope != 0 {
-            let each = low_n * high_n * i128::from(slope.abs());
-            ahead = i64::try_from((2 * missing + each - 1) / each).unwrap_or(i64::MAX);
+            let per_add = low_n * high_n * i128::from(slope.abs());
+            ahead = i64::try_from((2 * missing + per_add - 1) / per_add).unwrap_or(i64::MAX);
         }
-        Some(Self { add, least, most, slope, ahead })
+        Some(Self { add, min, max, slope, ahead })
     }
 
     fn room(&self) -> i64 {
-        self.most - self.least
+        self.max - self.min
     }
 
     fn fit(&self) -> Option<Fit> {
-        (self.room() >= 0).then_some(Fit { least: self.least, most: self.most, add: self.add })
+        (self.room() >= 0).then_some(Fit { min: self.min, max: self.max, add: self.add })
     }
 }
 
@@ -86,8 +85,8 @@ fn tightest(gates: &[Gate], add: i64) -> Option<(Gate, Gate)> {
     Some((low, high))
 }
 
-pub(super) const fn ceiling(over: i64, under: i64) -> i64 {
-    over.div_euclid(under) + (over.rem_euclid(under) > 0) as i64
+pub(super) const fn ceiling(numerator: i64, denominator: i64) -> i64 {
+    numerator.div_euclid(denominator) + (numerator.rem_euclid(denominator) > 0) as i64
 }
 
 impl Gate {
@@ -102,13 +101,21 @@ impl Gate {
     }
 }
 
+/// When the search for an add ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Goal {
+    /// At the first add that passes.
+    Any,
+    /// When the room is at least three quarters of the maximum.
+    Roomy,
+}
+
 /// An interval and an add of `adds` (minimum, maximum) that pass all gates, if there are any.
 ///
-/// The search begins at `guess`. With `centre` it continues until the room is at least three quarters of the maximum,
-/// without it until a first add passes.
+/// The search begins at `guess` and ends as `goal` requires.
 ///
 /// Every gate's times and add*n*(n-1)/2 for `adds` must be within [`MAX_TIME`].
-pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) -> Option<Fit> {
+pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, goal: Goal) -> Option<Fit> {
     let (mut left, mut right) = adds;
     let (mut below, mut above): (Option<Probe>, Option<Probe>) = (None, None);
     let mut best: Option<Fit> = None;
@@ -120,14 +127,14 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
         add = add.clamp(left, right);
         let probe = Probe::at(gates, add)?;
         if let Some(fit) = probe.fit()
-            && best.is_none_or(|best| probe.room() > best.most - best.least)
+            && best.is_none_or(|best| probe.room() > best.max - best.min)
         {
             best = Some(fit);
-            if !centre {
+            if goal == Goal::Any {
                 break;
             }
         }
-        // Without room so far it goes beyond the bound by half, to reach the other side.
+        // Without room so far, the search exceeds the bound by half to reach the other side.
         let far = if best.is_none() { probe.ahead.saturating_add(probe.ahead / 2) } else { probe.step() };
         if probe.slope > 0 {
             left = add.saturating_add(probe.ahead);
@@ -141,8 +148,8 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
             break;
         }
         if let (Some(below), Some(above)) = (&below, &above) {
-            let (summit, most) = summit(below, above);
-            if best.is_some_and(|best| most - (best.most - best.least) <= most / 4) {
+            let (summit, max_room) = summit(below, above);
+            if best.is_some_and(|best| max_room - (best.max - best.min) <= max_room / 4) {
                 break;
             }
             add = summit;
@@ -152,17 +159,18 @@ pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, centre: bool) ->
 }
 
 impl Probe {
-    /// Distance of the next add, if there is room here.
+    /// Distance of the next add to try if there is room at this one.
     fn step(&self) -> i64 {
         (2 * self.room()).checked_div(self.slope.abs()).unwrap_or(1).max(1)
     }
 }
 
+/// The add where the lines through two probes intersect, and the room there.
 fn summit(below: &Probe, above: &Probe) -> (i64, i64) {
-    let apart = i128::from(above.add) - i128::from(below.add);
+    let distance = i128::from(above.add) - i128::from(below.add);
     let (up, down) = (i128::from(below.slope), i128::from(-above.slope));
     let drop = 2 * (i128::from(above.room()) - i128::from(below.room()));
-    let along = (drop + down * apart) / (up + down).max(1);
+    let along = (drop + down * distance) / (up + down).max(1);
     let room = i128::from(below.room()) + up * along / 2;
     let narrow = |x: i128| i64::try_from(x).unwrap_or(i64::MAX);
     (narrow(i128::from(below.add) + along), narrow(room))
@@ -177,7 +185,7 @@ mod tests {
         rand_core::{Rng, SeedableRng},
     };
 
-    /// All adds and their least and greatest interval, one after another.
+    /// All adds with their ranges of intervals, by exhaustive search.
     fn all(gates: &[Gate], adds: (i64, i64)) -> Vec<Fit> {
         let passes = |interval: i64, add: i64| {
             gates.iter().all(|gate| {
@@ -187,15 +195,14 @@ mod tests {
         };
         let fit = |add| {
             let intervals: Vec<i64> = (-400..400).filter(|&interval| passes(interval, add)).collect();
-            Some(Fit { least: *intervals.first()?, most: *intervals.last()?, add })
+            Some(Fit { min: *intervals.first()?, max: *intervals.last()?, add })
         };
         (adds.0..=adds.1).filter_map(fit).collect()
     }
 
-    /// Where two gates leave no room, the look says how many adds further they are first without a gap: there, and not
-    /// one add before.
+    /// If two gates leave no room, `ahead` is the distance of the first add without a gap between them.
     #[test]
-    fn a_look_ahead_is_the_least_that_closes_the_gap() {
+    fn ahead_is_the_minimum_distance_that_closes_the_gap() {
         let mut noise = Xoshiro256StarStar::seed_from_u64(2);
         let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
         let mut seen = 0;
@@ -203,7 +210,7 @@ mod tests {
             let gate = |n, low| Gate { n, low, high: low + 3 };
             let (first, second) = (gate(draw(1, 9), draw(0, 300)), gate(draw(1, 9), draw(0, 300)));
             let probe = Probe::at(&[first, second], 0).expect("there are gates");
-            // The interval that one asks for at least, less what the other has at most.
+            // The minimum interval of one gate minus the maximum of the other, times both n.
             let gap = |low: Gate, high: Gate, add: i64| {
                 let (low, high) = (low.shifted(add), high.shifted(add));
                 low.low * high.n - high.high * low.n
@@ -215,14 +222,14 @@ mod tests {
             if low.n == high.n {
                 continue;
             }
-            let further = |adds: i64| if probe.slope > 0 { adds } else { -adds };
+            let toward = |adds: i64| if probe.slope > 0 { adds } else { -adds };
             assert!(
-                gap(low, high, further(probe.ahead)) <= 0,
+                gap(low, high, toward(probe.ahead)) <= 0,
                 "{first:?} {second:?}: {} is too few",
                 probe.ahead
             );
             assert!(
-                gap(low, high, further(probe.ahead - 1)) > 0,
+                gap(low, high, toward(probe.ahead - 1)) > 0,
                 "{first:?} {second:?}: {} is too many",
                 probe.ahead
             );
@@ -232,24 +239,24 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_is_found_where_trying_all_finds_one_and_nowhere_else() {
+    fn finds_a_fit_exactly_if_an_exhaustive_search_does() {
         let mut noise = Xoshiro256StarStar::seed_from_u64(1);
         let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
         let (mut passed, mut refused) = (0, 0);
         for _ in 0..20_000 {
             let (interval, add) = (draw(20, 60), draw(-3, 3));
-            let (count, wide, off) = (draw(1, 8), draw(0, 9), draw(0, 12));
+            let (count, width, off) = (draw(1, 8), draw(0, 9), draw(0, 12));
             let gates: Vec<Gate> = (1..=count)
                 .map(|n| {
                     let middle = n * interval + n * (n - 1) / 2 * add + draw(-off, off);
-                    Gate { n, low: middle - wide / 2, high: middle + wide - wide / 2 }
+                    Gate { n, low: middle - width / 2, high: middle + width - width / 2 }
                 })
                 .collect();
             let adds = (-12, 12);
             let expected = all(&gates, adds);
             let guess = draw(-20, 20);
-            for centre in [false, true] {
-                let found = fit(&gates, adds, guess, centre);
+            for goal in [Goal::Any, Goal::Roomy] {
+                let found = fit(&gates, adds, guess, goal);
                 match found {
                     Some(found) => assert!(expected.contains(&found), "{gates:?}: {found:?}"),
                     None => assert!(expected.is_empty(), "{gates:?}: {expected:?}"),

@@ -1,4 +1,4 @@
-//! The fewest entries through the windows of a list's steps (DESIGN B8).
+//! Finds the fewest entries through the windows of a list's steps (DESIGN B8).
 //!
 //! ```text
 //! layer e      for each step, the times of its window that at most e entries can reach: one bit per time
@@ -6,43 +6,45 @@
 //! last         the last step of a layer that can have any time at all
 //! ```
 //!
-//! The number of the first layer that reaches the last step is the minimum, and the path back through the layers is the
-//! list. The search is exhaustive:
+//! The number of the first layer that reaches the last step is the minimum. The path back through the layers is the list. The
+//! search is exhaustive:
 //!
-//! 1. An entry without its last or first steps is an entry. So a layer never shrinks from a step to the next, and entries
-//!    only need to begin from the layer's full step to its last.
-//! 2. From each of these steps every interval and add that the windows allow is tried. The start times are a range that
-//!    each window narrows ([`Section::narrowed`]), so they are processed together, as a shifted copy of the step's bits.
+//! 1. An entry without its last or first steps is an entry. So entries only need to begin at steps from the layer's full step
+//!    to its last.
+//! 2. From each of these steps, every interval and add that the windows allow is tried. Each window narrows the range of
+//!    start times ([`Section::narrowed`]), which are processed together, as a shifted copy of the step's bits.
 //! 3. Entries of one and two steps have a closed form ([`Section::one_and_two`]), short ones are tried per time
-//!    ([`Section::short`]), and entries to full steps are skipped. What is left is about the square of a window's width over
-//!    the cube of the count.
+//!    ([`Section::short`]), and entries to full steps are skipped. The other combinations are about the square of a window's
+//!    width over the cube of the count.
 //!
 //! A long list is cut into sections, which costs at most one entry per cut if neighboring windows do not overlap.
 
 use crate::step_tables::{entry_format::EntryFormat, feasible_window::ceiling, longest::Window};
 use alloc::{vec, vec::Vec};
 
-/// Maximum width of a window in units: the work grows with its square.
+/// Maximum width of a window in units, because the work grows with its square.
 pub(super) const MAX_WIDTH: u64 = 1 << 12;
 pub(super) const MAX_STEPS: usize = 1 << 17;
+/// Maximum steps of an entry that is tried per time.
 const SHORT: usize = 4;
 /// Maximum words of a section's layers, 32 MB; larger sections are cut.
 const MAX_WORDS: usize = 1 << 22;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Piece {
+pub(super) struct FoundEntry {
     pub(super) count: usize,
     pub(super) interval: i64,
     pub(super) add: i64,
 }
 
+/// The times of a step, in units from the section's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct StepWindow {
     low: i64,
     high: i64,
     due: i64,
-    /// The last step of an entry that begins here: the direction changes after it.
-    end: usize,
+    /// The last step before the next change of direction; an entry that begins here ends there at the latest.
+    last_in_direction: usize,
 }
 
 impl StepWindow {
@@ -54,22 +56,22 @@ impl StepWindow {
 /// Steps that are searched together. Step 0 is their start.
 pub(super) struct Section {
     format: EntryFormat,
-    /// Minimum and maximum interval in units.
-    least: i64,
-    most: i64,
+    min_interval: i64,
+    max_interval: i64,
     windows: Vec<StepWindow>,
-    /// Words per step.
     stride: usize,
 }
 
+/// The times that a number of entries can reach, from step `first` on.
 struct Layer {
     first: usize,
     stride: usize,
     words: Vec<u64>,
 }
 
+/// Times of one step at which entries begin.
 #[derive(Clone, Copy)]
-struct Begin<'a> {
+struct StartTimes<'a> {
     step: usize,
     bits: &'a [u64],
     first: i64,
@@ -79,33 +81,33 @@ struct Begin<'a> {
 impl Section {
     /// The steps of `given`, each with its direction, after the time `from`. No window is wider than [`MAX_WIDTH`] or
     /// farther from the one before than an entry's interval allows.
-    pub(super) fn new(format: EntryFormat, least: u64, from: u64, given: &[(Window, bool)]) -> Self {
+    pub(super) fn new(format: EntryFormat, min_interval: u64, from: u64, given: &[(Window, bool)]) -> Self {
         let time = |units: u64| units.wrapping_sub(from) as i64;
-        let mut windows = vec![StepWindow { low: 0, high: 0, due: 0, end: 0 }];
+        let mut windows = vec![StepWindow { low: 0, high: 0, due: 0, last_in_direction: 0 }];
         windows.extend(given.iter().map(|(window, _)| StepWindow {
             low: time(window.low),
             high: time(window.high),
             due: time(window.due << format.fraction_bits),
-            end: 0,
+            last_in_direction: 0,
         }));
-        let mut end = given.len();
+        let mut last_in_direction = given.len();
         for (step, window) in windows.iter_mut().enumerate().rev() {
-            window.end = end;
+            window.last_in_direction = last_in_direction;
             let directions = step.checked_sub(1).and_then(|before| given.get(before..=step));
             if let Some([(_, before), (_, after)]) = directions
                 && before != after
             {
-                end = step;
+                last_in_direction = step;
             }
         }
         let stride = windows.iter().map(|window| window.width().div_ceil(64)).max().unwrap_or(1);
-        let most = i64::try_from(format.max_interval()).unwrap_or(i64::MAX);
-        Self { format, least: least as i64, most, windows, stride }
+        let max_interval = i64::try_from(format.max_interval()).unwrap_or(i64::MAX);
+        Self { format, min_interval: min_interval as i64, max_interval, windows, stride }
     }
 
-    /// The fewest entries to the last step or, if `more` steps follow, to a step from which to continue. `None` if more than
-    /// `work` is needed, from which the work done is subtracted.
-    pub(super) fn pieces(&self, more: bool, work: &mut u64) -> Option<Vec<Piece>> {
+    /// The fewest entries to the last step or, if the list `is_cut` after it, to a step from which to continue. Subtracts the
+    /// work done from `work`; `None` if it is not enough.
+    pub(super) fn fewest_entries(&self, is_cut: bool, work: &mut u64) -> Option<Vec<FoundEntry>> {
         let last = self.windows.len() - 1;
         let mut words = vec![0; self.stride];
         words[0] = 1;
@@ -117,7 +119,7 @@ impl Section {
                 return None;
             }
             words_used += next.words.len();
-            if layers.len() > 1 && (words_used > MAX_WORDS || more && next.last() == last) {
+            if layers.len() > 1 && (words_used > MAX_WORDS || is_cut && next.last() == last) {
                 break;
             }
             layers.push(next);
@@ -125,9 +127,9 @@ impl Section {
         self.path_back(&layers)
     }
 
+    /// The layer with one more entry; `None` if `work` is not enough.
     fn next(&self, layer: &Layer, work: &mut u64) -> Option<Layer> {
         let mut next = Layer { first: layer.first, stride: self.stride, words: layer.words.clone() };
-        // The copy, and the search for entries of one and two steps.
         let mut spent = layer.words.len() as u64;
         for step in layer.first..=layer.last() {
             if let Some(begin) = self.begin(layer, step) {
@@ -135,47 +137,52 @@ impl Section {
             }
         }
         *work = work.checked_sub(spent)?;
+        // The first step that is not full in the next layer.
         let mut open = layer.first;
         for step in layer.first..=layer.last() {
             while next.is_full(open, self.windows.get(open).map_or(0, |window| window.width())) {
                 open += 1;
             }
             if let Some(begin) = self.begin(layer, step) {
-                let least = open.saturating_sub(step).max(3);
+                let min_count = open.saturating_sub(step).max(3);
                 let mut spent = 0;
-                for count in least..=SHORT {
+                for count in min_count..=SHORT {
                     spent += self.short(begin, count, &mut next);
                 }
-                spent += self.longer(begin, layer, least.max(SHORT + 1), &mut next);
+                spent += self.longer(begin, layer, min_count.max(SHORT + 1), &mut next);
                 *work = work.checked_sub(spent)?;
             }
         }
-        next.forget(&self.windows);
+        next.remove_before_last_full(&self.windows);
         Some(next)
     }
 
-    fn begin<'a>(&self, layer: &'a Layer, step: usize) -> Option<Begin<'a>> {
+    fn begin<'a>(&self, layer: &'a Layer, step: usize) -> Option<StartTimes<'a>> {
         let bits = layer.bits(step)?;
         let (first, last) = ends(bits)?;
         let low = self.windows[step].low;
-        Some(Begin { step, bits, first: low + first, last: low + last })
+        Some(StartTimes { step, bits, first: low + first, last: low + last })
     }
 
-    fn one_and_two(&self, begin: Begin<'_>, next: &mut Layer) -> u64 {
+    /// Marks the times that entries of one and two steps reach; returns the number of start times examined.
+    fn one_and_two(&self, begin: StartTimes<'_>, next: &mut Layer) -> u64 {
         let Some(&one) = self.windows.get(begin.step + 1) else { return 1 };
-        next.set(begin.step + 1, one, (begin.first + self.least, one.high));
-        let Some(&two) =
-            self.windows.get(begin.step + 2).filter(|_| begin.step + 2 <= self.windows[begin.step].end)
+        next.set(begin.step + 1, one, (begin.first + self.min_interval, one.high));
+        let Some(&two) = self
+            .windows
+            .get(begin.step + 2)
+            .filter(|_| begin.step + 2 <= self.windows[begin.step].last_in_direction)
         else {
             return 1;
         };
         let (min_add, max_add) = (self.format.min_add(), self.format.max_add());
-        // The minimum and the maximum interval through the first window determine the range.
+        // The times of the first step determine the range of the second.
         let range = |from: i64| {
-            let (soon, late) = (one.low.max(from + self.least), one.high.min(from + self.most));
-            (soon <= late).then(|| {
-                let low = (soon + self.least).max((2 * soon - from).saturating_add(min_add));
-                let high = (late + self.most).min((2 * late - from).saturating_add(max_add));
+            let (min_one, max_one) =
+                (one.low.max(from + self.min_interval), one.high.min(from + self.max_interval));
+            (min_one <= max_one).then(|| {
+                let low = (min_one + self.min_interval).max((2 * min_one - from).saturating_add(min_add));
+                let high = (max_one + self.max_interval).min((2 * max_one - from).saturating_add(max_add));
                 (low, high)
             })
         };
@@ -185,8 +192,10 @@ impl Section {
             spent += 1;
             let Some((low, high)) = range(from) else { continue };
             next.set(begin.step + 2, two, (low, high));
-            if high >= two.high && low <= two.low.max(one.low.max(from + self.least) + self.least) {
-                // No later one reaches other times.
+            if high >= two.high
+                && low <= two.low.max(one.low.max(from + self.min_interval) + self.min_interval)
+            {
+                // Later start times reach no other times.
                 return spent;
             }
         }
@@ -197,9 +206,11 @@ impl Section {
     ///
     /// With time 0 at the start and `time` at the end, step m is at m*time/count - add*m*(count - m)/2: so the windows
     /// allow a range of adds, and the interval is an integer for every add, or for every second.
-    fn short(&self, begin: Begin<'_>, count: usize, next: &mut Layer) -> u64 {
+    fn short(&self, begin: StartTimes<'_>, count: usize, next: &mut Layer) -> u64 {
         let end = begin.step + count;
-        let Some(&window) = self.windows.get(end).filter(|_| end <= self.windows[begin.step].end) else {
+        let Some(&window) =
+            self.windows.get(end).filter(|_| end <= self.windows[begin.step].last_in_direction)
+        else {
             return 1;
         };
         let inner = &self.windows[begin.step + 1..end];
@@ -217,14 +228,14 @@ impl Section {
                     part if 2 * part == n => 1,
                     _ => return false,
                 };
-                let (mut least, mut most) = self.adds_of(lasts, n);
+                let (mut min, mut max) = self.adds_of(lasts, n);
                 for (m, window) in (1..).zip(inner) {
                     let (bend, far) = (n * m * (n - m), 2 * m * lasts);
-                    least = least.max(ceiling(far - 2 * n * (window.high - from), bend));
-                    most = most.min((far - 2 * n * (window.low - from)).div_euclid(bend));
+                    min = min.max(ceiling(far - 2 * n * (window.high - from), bend));
+                    max = max.min((far - 2 * n * (window.low - from)).div_euclid(bend));
                 }
                 // With an even count every second add has an integer interval.
-                if n % 2 == 0 && (least - odd).rem_euclid(2) == 1 { least < most } else { least <= most }
+                if n % 2 == 0 && (min - odd).rem_euclid(2) == 1 { min < max } else { min <= max }
             });
             if passes {
                 next.set(end, window, (time, time));
@@ -235,21 +246,22 @@ impl Section {
 
     fn adds_of(&self, lasts: i64, n: i64) -> (i64, i64) {
         // Their mean is lasts/n, and the outer ones differ from it by half of n - 1 adds.
-        let room = (lasts - n * self.least).min(n * self.most - lasts);
-        let most = (2 * room).div_euclid(n * (n - 1));
-        ((-most).max(self.format.min_add()), most.min(self.format.max_add()))
+        let room = (lasts - n * self.min_interval).min(n * self.max_interval - lasts);
+        let max = (2 * room).div_euclid(n * (n - 1));
+        ((-max).max(self.format.min_add()), max.min(self.format.max_add()))
     }
 
-    fn longer(&self, begin: Begin<'_>, layer: &Layer, least: usize, next: &mut Layer) -> u64 {
+    /// Marks the times that entries of at least `min_count` steps reach; returns the number of combinations examined.
+    fn longer(&self, begin: StartTimes<'_>, layer: &Layer, min_count: usize, next: &mut Layer) -> u64 {
         let (step, mut spent) = (begin.step, 8);
-        let last = self.windows[step].end.min(step + self.format.max_count() as usize);
-        let Some(&target) = self.windows.get(step + least).filter(|_| step + least <= last) else {
+        let last = self.windows[step].last_in_direction.min(step + self.format.max_count() as usize);
+        let Some(&target) = self.windows.get(step + min_count).filter(|_| step + min_count <= last) else {
             return spent;
         };
         let mut exits = vec![0; self.stride];
-        for add in self.adds(begin, least, target) {
+        for add in self.adds(begin, min_count, target) {
             spent += 8;
-            for interval in self.intervals(begin, least, target, add) {
+            for interval in self.intervals(begin, min_count, target, add) {
                 spent += 1 + self.stride as u64 / 4;
                 let Some(exit) = self.exits(begin, layer, interval, &mut exits) else { continue };
                 let (mut range, mut time, mut now) = ((exit.first, exit.last), 0, interval);
@@ -258,7 +270,7 @@ impl Section {
                     time += now;
                     let Some(narrowed) = self.narrowed(range, step + count, time, now) else { break };
                     (range, now) = (narrowed, now + add);
-                    if count >= least && !next.reached(exit, &self.windows, step + count, range, time) {
+                    if count >= min_count && !next.reached(exit, &self.windows, step + count, range, time) {
                         break;
                     }
                 }
@@ -267,20 +279,22 @@ impl Section {
         spent
     }
 
+    /// The part of a range of start times from which a step, `time` later, is in its window; `None` if there is none, or if
+    /// the interval `now` is out of range.
     fn narrowed(&self, (first, last): (i64, i64), step: usize, time: i64, now: i64) -> Option<(i64, i64)> {
         let window = self.windows.get(step)?;
         let range = (first.max(window.low - time), last.min(window.high - time));
-        (range.0 <= range.1 && (self.least..=self.most).contains(&now)).then_some(range)
+        (range.0 <= range.1 && (self.min_interval..=self.max_interval).contains(&now)).then_some(range)
     }
 
-    /// Of the start times those from which the entry's first step leaves the layer.
+    /// The start times from which the entry's first step leaves the layer.
     fn exits<'a>(
         &self,
-        begin: Begin<'a>,
+        begin: StartTimes<'a>,
         layer: &Layer,
         interval: i64,
         exits: &'a mut [u64],
-    ) -> Option<Begin<'a>> {
+    ) -> Option<StartTimes<'a>> {
         let Some(after) = layer.bits(begin.step + 1) else { return Some(begin) };
         let (here, there) = (self.windows[begin.step].low, self.windows[begin.step + 1].low);
         let (mut first, mut last) = (None, 0);
@@ -292,65 +306,70 @@ impl Section {
                 last = index * 64 + 63 - i64::from(exit.leading_zeros());
             }
         }
-        Some(Begin { step: begin.step, bits: exits, first: here + first?, last: here + last })
+        Some(StartTimes { step: begin.step, bits: exits, first: here + first?, last: here + last })
     }
 
-    /// The adds of entries of `count` >= 2 steps that may end in `target`.
-    fn adds(&self, begin: Begin<'_>, count: usize, target: StepWindow) -> core::ops::RangeInclusive<i64> {
+    fn adds(
+        &self,
+        begin: StartTimes<'_>,
+        count: usize,
+        target: StepWindow,
+    ) -> core::ops::RangeInclusive<i64> {
         let half = count / 2;
         let (n, h) = (count as i128, half as i128);
-        // A parabola through three points.
+        // The add of a parabola through the start, `near` after `half` steps, and `far` after `count` steps, times `over`.
         let through = |far: i64, near: i64| 2 * (i128::from(far) * h - i128::from(near) * n);
         let middle = self.windows[begin.step + half];
         let over = n * h * (n - h);
-        let least = through(target.low - begin.last, middle.high - begin.first);
-        let most = through(target.high - begin.first, middle.low - begin.last);
-        let least = least.div_euclid(over) + i128::from(least.rem_euclid(over) > 0);
-        let least = least.max(self.format.min_add().into());
-        let most = most.div_euclid(over).min(self.format.max_add().into());
+        let min = through(target.low - begin.last, middle.high - begin.first);
+        let max = through(target.high - begin.first, middle.low - begin.last);
+        let min = min.div_euclid(over) + i128::from(min.rem_euclid(over) > 0);
+        let min = min.max(self.format.min_add().into());
+        let max = max.div_euclid(over).min(self.format.max_add().into());
         let narrow = |add: i128| i64::try_from(add).unwrap_or(if add < 0 { i64::MIN } else { i64::MAX });
-        narrow(least)..=narrow(most)
+        narrow(min)..=narrow(max)
     }
 
     fn intervals(
         &self,
-        begin: Begin<'_>,
+        begin: StartTimes<'_>,
         count: usize,
         target: StepWindow,
         add: i64,
     ) -> core::ops::RangeInclusive<i64> {
         let grows = add * (count as i64 - 1);
-        let mut least = self.least.max(self.least - grows);
-        let mut most = self.most.min(self.most - grows);
+        let mut min = self.min_interval.max(self.min_interval - grows);
+        let mut max = self.max_interval.min(self.max_interval - grows);
         let mut n = 1;
-        while n <= count && least <= most {
+        while n <= count && min <= max {
             let window = if n == count { target } else { self.windows[begin.step + n] };
             let (steps, bend) = (n as i64, add * triangle(n));
-            least = least.max(ceiling(window.low - begin.last - bend, steps));
-            most = most.min((window.high - begin.first - bend).div_euclid(steps));
+            min = min.max(ceiling(window.low - begin.last - bend, steps));
+            max = max.min((window.high - begin.first - bend).div_euclid(steps));
             n = if n < count { (n + 1 + count / 8).min(count) } else { n + 1 };
         }
-        least..=most
+        min..=max
     }
 
-    fn path_back(&self, layers: &[Layer]) -> Option<Vec<Piece>> {
+    /// The entries back from the end of the last layer; among its times that closest to the due cycle.
+    fn path_back(&self, layers: &[Layer]) -> Option<Vec<FoundEntry>> {
         let end = layers.last()?;
         let mut step = end.last();
         let window = self.windows[step];
         let all = times(end.bits(step)?).map(|bit| window.low + bit);
         let mut time = all.min_by_key(|time| time.abs_diff(window.due))?;
-        let mut pieces = Vec::with_capacity(layers.len());
+        let mut entries = Vec::with_capacity(layers.len());
         for layer in layers.iter().rev().skip(1) {
-            let (begins, from, piece) = self.piece(layer, step, time)?;
-            (step, time) = (begins, from);
-            pieces.push(piece);
+            let (start_step, start_time, entry) = self.entry_to(layer, step, time)?;
+            (step, time) = (start_step, start_time);
+            entries.push(entry);
         }
-        pieces.reverse();
-        Some(pieces)
+        entries.reverse();
+        Some(entries)
     }
 
-    /// An entry from the layer to a step's time, and its start.
-    fn piece(&self, layer: &Layer, step: usize, time: i64) -> Option<(usize, i64, Piece)> {
+    /// The start step and time of an entry from the layer to a step's time, and the entry.
+    fn entry_to(&self, layer: &Layer, step: usize, time: i64) -> Option<(usize, i64, FoundEntry)> {
         let target = StepWindow { low: time, high: time, ..self.windows[step] };
         let earliest = step.saturating_sub(self.format.max_count() as usize);
         for from in layer.first.max(earliest)..=layer.last().min(step.checked_sub(1)?) {
@@ -359,20 +378,20 @@ impl Section {
             if count == 1 {
                 let start = times(begin.bits)
                     .map(|bit| low + bit)
-                    .find(|start| (self.least..=self.most).contains(&(time - start)));
+                    .find(|start| (self.min_interval..=self.max_interval).contains(&(time - start)));
                 let Some(start) = start else { continue };
-                return Some((from, start, Piece { count, interval: time - start, add: 0 }));
+                return Some((from, start, FoundEntry { count, interval: time - start, add: 0 }));
             }
-            if step > self.windows[from].end {
+            if step > self.windows[from].last_in_direction {
                 continue;
             }
             for add in self.adds(begin, count, target) {
                 for interval in self.intervals(begin, count, target, add) {
                     let start = time - interval * count as i64 - add * triangle(count);
-                    let there =
+                    let is_start =
                         (begin.first..=begin.last).contains(&start) && is_set(begin.bits, start - low);
-                    if there && self.passes(from, start, Piece { count, interval, add }) {
-                        return Some((from, start, Piece { count, interval, add }));
+                    if is_start && self.passes(from, start, FoundEntry { count, interval, add }) {
+                        return Some((from, start, FoundEntry { count, interval, add }));
                     }
                 }
             }
@@ -380,12 +399,12 @@ impl Section {
         None
     }
 
-    fn passes(&self, from: usize, start: i64, piece: Piece) -> bool {
-        let (mut time, mut now) = (0, piece.interval);
-        (1..=piece.count).all(|n| {
+    fn passes(&self, from: usize, start: i64, entry: FoundEntry) -> bool {
+        let (mut time, mut now) = (0, entry.interval);
+        (1..=entry.count).all(|n| {
             time += now;
             let passes = self.narrowed((start, start), from + n, time, now).is_some();
-            now += piece.add;
+            now += entry.add;
             passes
         })
     }
@@ -418,9 +437,10 @@ impl Layer {
         }
     }
 
+    /// Marks the times that are `time` after start times of a range; returns whether there are any.
     fn reached(
         &mut self,
-        begin: Begin<'_>,
+        begin: StartTimes<'_>,
         windows: &[StepWindow],
         step: usize,
         (first, last): (i64, i64),
@@ -454,7 +474,7 @@ impl Layer {
         (0..).step_by(64).zip(bits).all(|(index, word)| *word == ones(-index, width as i64 - 1 - index))
     }
 
-    fn forget(&mut self, windows: &[StepWindow]) {
+    fn remove_before_last_full(&mut self, windows: &[StepWindow]) {
         let full = (self.first..=self.last()).rev().find(|step| self.is_full(*step, windows[*step].width()));
         if let Some(full) = full {
             self.words.drain(..(full - self.first) * self.stride);
@@ -478,7 +498,6 @@ const fn ones(first: i64, last: i64) -> u64 {
     (u64::MAX << from) & (u64::MAX >> (63 - to))
 }
 
-/// The 64 bits from `at` on.
 fn word_at(bits: &[u64], at: i64) -> u64 {
     let (index, shift) = (at.div_euclid(64), at.rem_euclid(64));
     let word =
@@ -506,19 +525,19 @@ fn times(bits: &[u64]) -> impl Iterator<Item = i64> + '_ {
 mod tests {
     use super::*;
 
-    /// Ten steps every 100 cycles, five every 300: two entries.
+    /// Ten steps every 100 cycles and five every 300 cycles: two entries.
     fn two_rates() -> Vec<(Window, bool)> {
         let times = (1..=10).map(|n| 100 * n).chain((1..=5).map(|n| 1000 + 300 * n));
         times.map(|due| (Window { due, low: due, high: due }, true)).collect()
     }
 
     #[test]
-    fn a_section_with_more_behind_it_leaves_its_last_entry_to_the_next_section() {
+    fn a_cut_section_leaves_its_last_entry_to_the_next_section() {
         let windows = two_rates();
         let section = Section::new(EntryFormat::TICKS, 1, 0, &windows);
-        let counts = |more| {
-            let pieces = section.pieces(more, &mut 1_000_000).unwrap();
-            pieces.iter().map(|piece| piece.count).collect::<Vec<_>>()
+        let counts = |is_cut| {
+            let entries = section.fewest_entries(is_cut, &mut 1_000_000).unwrap();
+            entries.iter().map(|entry| entry.count).collect::<Vec<_>>()
         };
         assert_eq!(counts(false).iter().sum::<usize>(), 15);
         assert_eq!(counts(false).len(), 2);
@@ -528,12 +547,12 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_that_alone_reaches_the_end_is_kept_whatever_is_behind_it() {
+    fn a_single_entry_to_the_end_remains_in_a_cut_section() {
         let windows = two_rates();
         let section = Section::new(EntryFormat::TICKS, 1, 0, &windows[..10]);
-        for more in [false, true] {
-            let pieces = section.pieces(more, &mut 1_000_000).unwrap();
-            assert_eq!(pieces.iter().map(|piece| piece.count).collect::<Vec<_>>(), [10], "{more}");
+        for is_cut in [false, true] {
+            let entries = section.fewest_entries(is_cut, &mut 1_000_000).unwrap();
+            assert_eq!(entries.iter().map(|entry| entry.count).collect::<Vec<_>>(), [10], "{is_cut}");
         }
     }
 }

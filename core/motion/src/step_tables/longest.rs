@@ -1,14 +1,14 @@
-//! The longest entry from a given time on (DESIGN B8): one parabola through as many windows as possible.
+//! Finds the longest entry from a given time on (DESIGN B8): one parabola through as many windows as possible.
 //!
-//! Whether an entry of n steps exists is tested with some of its steps first ([`super::feasible_window`]): every eighth, and
-//! those that an earlier try has missed. If these allow no interval and add, neither do all; if they do, the entry is
-//! replayed through all of them, and the steps that it misses most are added. So a length is refused only with proof and
-//! accepted only after a replay, and few lengths are replayed.
+//! Whether an entry of n steps exists is first tested with some of its steps ([`super::feasible_window`]): seven samples, the
+//! last step, and steps that an earlier entry has missed. If these allow no interval and add, all steps do not either.
+//! Otherwise the entry is replayed through all windows, and the steps that it misses most are added. So a length is refused
+//! only with proof and accepted only after a replay, and few lengths are replayed.
 
 use crate::problem::Cause;
 use crate::step_tables::{
     entry_format::EntryFormat,
-    feasible_window::{self, Fit, Gate},
+    feasible_window::{self, Fit, Gate, Goal},
 };
 use alloc::vec::Vec;
 
@@ -17,9 +17,10 @@ const MAX_AHEAD: usize = 1 << 20;
 const SAMPLES: usize = 8;
 /// Maximum time of an entry in units, so that all sums of [`feasible_window`] fit in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
-// Gates reach to twice of it, and the steepest add a unit farther.
+// Gates extend to twice the span, and the steepest add one unit farther.
 const _: () = assert!(2 * MAX_SPAN + MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
 
+/// The times that a step may have, and its due cycle. Times are in units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
     pub(super) due: u64,
@@ -33,66 +34,66 @@ impl Window {
         Self { due, low, high: last | ((1 << format.fraction_bits) - 1) }
     }
 
-    /// An entry with this step only from a time on, as near to the middle of its window as the minimum interval allows.
-    pub(super) fn first(&self, from: u64, min_interval: u64, format: EntryFormat) -> Longest {
+    /// An entry with only this step, as close to the middle of its window as the minimum interval after `from` allows.
+    pub(super) fn single_step(&self, from: u64, min_interval: u64, format: EntryFormat) -> LongestEntry {
         let middle = self.low + (self.high - self.low) / 2;
         let time = middle.max(from + min_interval);
         let interval = time - from;
         let max = format.max_interval();
-        // A wait that is too long for an entry comes before it.
+        // A time that is too long for an interval begins with a wait.
         let wait = if self.high - from > max { interval.saturating_sub(max / 2) } else { 0 };
-        Longest { wait, interval: interval - wait, add: 0, count: 1 }
+        LongestEntry { wait, interval: interval - wait, add: 0, count: 1 }
     }
 }
 
+/// An entry, and a wait before it. Times are in units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Longest {
+pub(super) struct LongestEntry {
     pub(super) wait: u64,
     pub(super) interval: u64,
     pub(super) add: i64,
     pub(super) count: usize,
 }
 
-pub(super) struct Ahead {
+/// Windows of the next steps in one direction.
+pub(super) struct LookAhead {
     format: EntryFormat,
-    /// Minimum interval of two steps in units.
-    least: u64,
+    min_interval: u64,
     windows: Vec<Window>,
-    /// Number of used windows.
     front: usize,
-    /// Whether the last window ends the run of steps.
-    ended: bool,
-    /// Steps, from 1, missed by earlier tries.
+    /// Whether the last window is that of the last step in this direction.
+    has_last: bool,
+    /// Steps (from 1) that earlier entries missed.
     missed: Vec<usize>,
     gates: Vec<Gate>,
     from: u64,
 }
 
-impl Ahead {
-    pub(super) fn new(format: EntryFormat, least_cycles: u64) -> Self {
+impl LookAhead {
+    pub(super) fn new(format: EntryFormat, min_cycles: u64) -> Self {
         Self {
             format,
-            least: least_cycles << format.fraction_bits,
+            min_interval: min_cycles << format.fraction_bits,
             windows: Vec::new(),
             front: 0,
-            ended: false,
+            has_last: false,
             missed: Vec::new(),
             gates: Vec::new(),
             from: 0,
         }
     }
 
-    pub(super) fn more(&mut self) -> &mut Vec<Window> {
-        self.ended = false;
+    pub(super) fn windows_mut(&mut self) -> &mut Vec<Window> {
+        self.has_last = false;
         &mut self.windows
     }
 
-    pub(super) fn taken(&self, count: usize) -> &[Window] {
+    pub(super) fn first_windows(&self, count: usize) -> &[Window] {
         let left = self.left();
         left.get(..count).unwrap_or(left)
     }
 
-    pub(super) fn take(&mut self, count: usize) {
+    pub(super) fn remove(&mut self, count: usize) {
         self.front += count;
         if self.front >= self.windows.len() / 2 {
             self.windows.drain(..self.front.min(self.windows.len()));
@@ -108,30 +109,30 @@ impl Ahead {
         self.windows.get(self.front + n - 1)
     }
 
-    /// The longest entry that begins at `from`; `None` if no step is left. `guess` is an estimate of its length; `fill`
-    /// reads more windows and returns whether there may be more.
+    /// The longest entry that begins at `from`; `None` without steps. `guess` is an estimate of its length; `fill` reads more
+    /// windows and returns whether there may be others.
     pub(super) fn longest(
         &mut self,
         from: u64,
         guess: usize,
         mut fill: impl FnMut(&mut Self) -> Result<bool, Cause>,
-    ) -> Result<Option<Longest>, Cause> {
+    ) -> Result<Option<LongestEntry>, Cause> {
         self.from = from;
         self.missed.clear();
-        let most = MAX_AHEAD.min(self.format.max_count() as usize);
+        let max_count = MAX_AHEAD.min(self.format.max_count() as usize);
         let mut read = |ahead: &mut Self, n: usize| -> Result<(), Cause> {
-            while ahead.left().len() < n && !ahead.ended {
-                ahead.ended = !fill(ahead)?;
+            while ahead.left().len() < n && !ahead.has_last {
+                ahead.has_last = !fill(ahead)?;
             }
             Ok(())
         };
         read(self, 2)?;
-        let Some(first) = self.first() else { return Ok(None) };
+        let Some(first) = self.single_step() else { return Ok(None) };
         if first.wait > 0 {
             return Ok(Some(first));
         }
-        // Accepted after replay, accepted by the samples, refused by the samples.
-        let (mut taken, mut sampled, mut refused) = (first, 1, most + 1);
+        // The longest entry after a replay, and the lengths that the samples accept and refuse.
+        let (mut accepted, mut sampled, mut refused) = (first, 1, max_count + 1);
         let mut add = None;
         let mut n = guess + guess / 8;
         loop {
@@ -139,20 +140,23 @@ impl Ahead {
             if sampled < top {
                 n = n.clamp(sampled + 1, top);
                 read(self, n)?;
-                let there = self.left().len();
-                if there < n {
-                    (refused, n) = (there + 1, there.max(1));
+                let available = self.left().len();
+                if available < n {
+                    (refused, n) = (available + 1, available.max(1));
                     continue;
                 }
-                match self.fit(n, add, false) {
+                match self.fit(n, add, Goal::Any) {
                     Some(fit) => {
                         (sampled, add) = (n, Some(fit.add));
-                        n = if refused > most { n + n / 4 + 1 } else { sampled + (refused - sampled) / 2 };
+                        n = if refused > max_count {
+                            n + n / 4 + 1
+                        } else {
+                            sampled + (refused - sampled) / 2
+                        };
                     }
                     None => {
                         refused = n;
-                        // Twice as far back as before, until a length passes.
-                        n = if sampled > taken.count {
+                        n = if sampled > accepted.count {
                             sampled + (refused - sampled) / 2
                         } else {
                             n - n / 8 - 1
@@ -161,47 +165,48 @@ impl Ahead {
                 }
                 continue;
             }
-            if sampled == taken.count {
-                // In whole cycles without a tolerance every entry begins in a due cycle.
-                let limited = sampled == most || self.ends_with(sampled) || self.format.fraction_bits == 0;
+            if sampled == accepted.count {
+                // With integer intervals and no tolerance, every entry begins in a due cycle.
+                let limited =
+                    sampled == max_count || self.ends_with(sampled) || self.format.fraction_bits == 0;
                 let count = if limited || !self.is_tight(sampled) { sampled } else { sampled - sampled / 8 };
-                return Ok(Some(Longest { count, ..taken }));
+                return Ok(Some(LongestEntry { count, ..accepted }));
             }
             match self.replay(sampled, add) {
-                Some(longest) => taken = longest,
+                Some(longest) => accepted = longest,
                 None => {
                     refused = sampled;
                     n = sampled - sampled / 16 - 1;
-                    sampled = taken.count;
+                    sampled = accepted.count;
                     add = None;
                 }
             }
         }
     }
 
-    fn first(&self) -> Option<Longest> {
-        Some(self.window(1)?.first(self.from, self.least, self.format))
+    fn single_step(&self) -> Option<LongestEntry> {
+        Some(self.window(1)?.single_step(self.from, self.min_interval, self.format))
     }
 
-    /// An entry of `n` steps that misses none; `None` with proof that there is none.
-    fn replay(&mut self, n: usize, mut add: Option<i64>) -> Option<Longest> {
+    /// An entry of `n` steps in their windows; `None` if none exists.
+    fn replay(&mut self, n: usize, mut add: Option<i64>) -> Option<LongestEntry> {
         loop {
-            let fit = self.fit(n, add, true)?;
-            let interval = fit.least + (fit.most - fit.least) / 2;
-            let missed = self.missed(n, interval, fit.add);
+            let fit = self.fit(n, add, Goal::Roomy)?;
+            let interval = fit.min + (fit.max - fit.min) / 2;
+            let missed = self.most_missed(n, interval, fit.add);
             if missed == [None, None] {
-                return Some(Longest { wait: 0, interval: interval as u64, add: fit.add, count: n });
+                return Some(LongestEntry { wait: 0, interval: interval as u64, add: fit.add, count: n });
             }
             self.missed.extend(missed.into_iter().flatten());
             add = Some(fit.add);
         }
     }
 
-    /// The steps, from 1, that miss their windows most, before and after.
-    fn missed(&self, n: usize, interval: i64, add: i64) -> [Option<usize>; 2] {
+    /// The steps (from 1) that are farthest before and after their windows.
+    fn most_missed(&self, n: usize, interval: i64, add: i64) -> [Option<usize>; 2] {
         let (mut early, mut late) = ((0, None), (0, None));
         let (mut time, mut next) = (self.from, interval);
-        for (step, window) in (1..).zip(self.taken(n)) {
+        for (step, window) in (1..).zip(self.first_windows(n)) {
             time = time.wrapping_add_signed(next);
             next += add;
             let before = window.low.wrapping_sub(time) as i64;
@@ -216,23 +221,24 @@ impl Ahead {
         [early.1, late.1]
     }
 
-    /// An interval and an add for `n` >= 2 steps that pass the samples and the missed steps.
-    fn fit(&mut self, n: usize, add: Option<i64>, centre: bool) -> Option<Fit> {
+    /// Intervals and an add for `n` >= 2 steps that pass the samples and the missed steps.
+    fn fit(&mut self, n: usize, add: Option<i64>, goal: Goal) -> Option<Fit> {
         let last = *self.window(n)?;
         let span = last.high.wrapping_sub(self.from);
         if span > MAX_SPAN {
             return None;
         }
-        self.gather(n, span as i64);
+        self.collect_gates(n, span as i64);
         let count = n as i64;
-        // Intervals are not negative, so add*n*(n - 1)/2 is at most the whole time.
+        // Intervals are not negative, so |add|*n*(n - 1)/2 is at most the duration.
         let steepest = span as i64 / (count * (count - 1) / 2) + 1;
         let adds = (self.format.min_add().max(-steepest), self.format.max_add().min(steepest));
-        let guess = add.unwrap_or_else(|| self.bend(n));
-        feasible_window::fit(&self.gates, adds, guess, centre)
+        let guess = add.unwrap_or_else(|| self.guess_add(n));
+        feasible_window::fit(&self.gates, adds, guess, goal)
     }
 
-    fn bend(&self, n: usize) -> i64 {
+    /// The add of a parabola through the middles of two windows.
+    fn guess_add(&self, n: usize) -> i64 {
         let middle = |n: usize| {
             let window = self.window(n)?;
             Some((window.low + (window.high - window.low) / 2).wrapping_sub(self.from) as i64)
@@ -244,53 +250,52 @@ impl Ahead {
         i64::try_from(add).unwrap_or(0)
     }
 
-    /// Collects the gates of an entry of `n` >= 2 steps with a maximum duration `span`: of samples, missed steps, and the
-    /// minimum and maximum interval.
-    fn gather(&mut self, n: usize, span: i64) {
+    /// Collects the gates of an entry of `n` >= 2 steps with a maximum duration of `span`: those of samples and missed steps,
+    /// and of the minimum and maximum interval.
+    fn collect_gates(&mut self, n: usize, span: i64) {
         self.gates.clear();
         let count = n as i64;
-        let (least, most) = (self.least as i64, self.format.max_interval().min(MAX_SPAN) as i64);
-        // Twice the interval that the last gate allows at the steepest add: a longer one needs no gate.
-        let most = most.min(4 * (span / count + 1) + 2 * count);
-        let most = |n: i64| most.saturating_mul(n).min(2 * MAX_SPAN as i64);
+        let (min, max) = (self.min_interval as i64, self.format.max_interval().min(MAX_SPAN) as i64);
+        // Twice the interval that the last gate allows at the steepest add: longer ones need no gate.
+        let max = max.min(4 * (span / count + 1) + 2 * count);
+        let max_time = |n: i64| max.saturating_mul(n).min(2 * MAX_SPAN as i64);
         // The last interval, interval + (n - 1)*add, is the line's value at step 2*n - 1.
         let end = 2 * count - 1;
-        self.gates.push(Gate { n: 1, low: least, high: most(1) });
-        self.gates.push(Gate { n: end, low: least * end, high: most(end) });
+        self.gates.push(Gate { n: 1, low: min, high: max_time(1) });
+        self.gates.push(Gate { n: end, low: min * end, high: max_time(end) });
         for part in 1..SAMPLES {
             let step = n * part / SAMPLES;
             if step > 0 && step < n {
-                self.gate(step);
+                self.add_gate(step);
             }
         }
         for index in 0..self.missed.len() {
             if let Some(&step) = self.missed.get(index).filter(|step| **step < n) {
-                self.gate(step);
+                self.add_gate(step);
             }
         }
-        self.gate(n);
-        let free = self.ends_with(n) || self.is_tight(n);
-        if let Some(gate) = self.gates.last_mut().filter(|_| !free) {
-            // Due cycles are rounded, so the curve may be anywhere within a cycle.
-            let wide = gate.high - gate.low;
-            let narrow = (wide / 8 + (1 << self.format.fraction_bits)).max(count).min(wide);
-            gate.low += (wide - narrow) / 2;
+        self.add_gate(n);
+        let may_end_anywhere = self.ends_with(n) || self.is_tight(n);
+        if let Some(gate) = self.gates.last_mut().filter(|_| !may_end_anywhere) {
+            // An eighth of the window, and a cycle, because due cycles are rounded.
+            let width = gate.high - gate.low;
+            let narrow = (width / 8 + (1 << self.format.fraction_bits)).max(count).min(width);
+            gate.low += (width - narrow) / 2;
             gate.high = gate.low + narrow;
         }
     }
 
-    /// Whether the run ends with step `n`, so that it may end anywhere in its last window.
+    /// Whether no step follows step `n` in this direction.
     fn ends_with(&self, n: usize) -> bool {
-        self.ended && n == self.left().len()
+        self.has_last && n == self.left().len()
     }
 
-    /// Whether the window of step `n` is a single cycle. Its middle is then off the curve by the rounding, and an entry that
-    /// goes beyond its end follows the curve better.
+    /// Whether the window of step `n` is a single cycle. The curve may be anywhere in it, so its middle is not the best end.
     fn is_tight(&self, n: usize) -> bool {
         self.window(n).is_some_and(|window| window.high - window.low < 1 << self.format.fraction_bits)
     }
 
-    fn gate(&mut self, step: usize) {
+    fn add_gate(&mut self, step: usize) {
         if let Some(window) = self.window(step) {
             let (low, high) = (window.low.wrapping_sub(self.from), window.high.wrapping_sub(self.from));
             self.gates.push(Gate { n: step as i64, low: low as i64, high: high as i64 });

@@ -8,7 +8,7 @@
 //! };
 //! use stepscope_peripheral::{segment::PulseTimes, units::Cycles};
 //!
-//! let plans = [plan_axis(&Axis::default(), "x").expect("it holds")];
+//! let plans = [plan_axis(&Axis::default(), "x").expect("a valid axis")];
 //! let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
 //! let segments = exact_segments(&plans, AxesPath::MOTION, 1, pulse, 16_000_000).expect("no step is too soon");
 //! assert_eq!(segments.steps(), 3200);
@@ -33,16 +33,17 @@ pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_steps};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
 
-/// The paths of the problems of a list of axes.
+/// Paths of problems of a list of axes.
 #[derive(Clone, Copy, Debug)]
 pub struct AxesPath<'a> {
     /// Path of the list; axis i is at `[i]`.
     pub axes: &'a str,
-    /// Path of problems of all axes together.
+    /// Path of problems that concern all axes together.
     pub whole: &'a str,
 }
 
 impl AxesPath<'static> {
+    /// The axes of a scenario's motion.
     pub const MOTION: Self = Self { axes: "source.motion.axes", whole: "source.motion" };
 }
 

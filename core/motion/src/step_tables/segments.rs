@@ -5,8 +5,8 @@
 //! interval            from step to step, the first from START
 //! ```
 //!
-//! Each step has its own cycle, so the channels stay synchronous. Steps whose intervals differ by a constant share a
-//! segment, and the engine reproduces exactly these cycles: only the times are rounded.
+//! Each step has its exact cycle, so the channels stay synchronous. Steps whose intervals differ by a constant share a
+//! segment, from which the engine reproduces exactly these cycles.
 
 use super::AxesPath;
 use crate::{
@@ -27,8 +27,8 @@ pub(super) const START: Instant = Instant(1);
 /// The exact segments of the plans, one per channel, for pulses of `pulse`.
 ///
 /// # Errors
-/// Too many steps; or the first step of each axis that is too soon for a pulse or too late for 48.16 fixed point. The first
-/// interval counts from the motion's start.
+/// Too many plans or steps; or the first step of each axis that is too soon for a pulse or too late for 48.16 fixed point. The
+/// first interval counts from the motion's start.
 pub fn exact_segments(
     plans: &[AxisPlan],
     at: AxesPath<'_>,
@@ -55,7 +55,7 @@ pub fn exact_segments(
         return Err(problems);
     }
     CheckedSegments::new(pulse, lists, 1).map_err(|refused| {
-        refused.iter().map(|one| Problem::new(at.axis(one.channel), Cause::NoSegmentSteps)).collect()
+        refused.iter().map(|list| Problem::new(at.axis(list.channel), Cause::NoSegmentSteps)).collect()
     })
 }
 
@@ -70,17 +70,17 @@ pub(super) fn exact(
     let min = pulse.min_interval().0;
     let last = LAST_CYCLE.0 - START.0;
     let mut merge = Merge::default();
-    let mut before = 0;
+    let mut previous_cycle = 0;
     for (step, due) in (1..).zip(steps) {
-        let interval = due.cycle.saturating_sub(before);
+        let interval = due.cycle.saturating_sub(previous_cycle);
         if interval < min {
             return Err(Cause::StepTooSoon { step, interval, pulse });
         }
         if due.cycle > last {
             return Err(ValueError::too_much(due.cycle, last, "cycles").into());
         }
-        merge.step(interval << FRACTION_BITS, due.right);
-        before = due.cycle;
+        merge.add_step(interval << FRACTION_BITS, due.right);
+        previous_cycle = due.cycle;
     }
     Ok(SegmentList { start: START, segments: merge.end() })
 }
@@ -92,6 +92,7 @@ struct Merge {
     open: Option<Open>,
 }
 
+/// The segment to which the next step may be added.
 #[derive(Clone, Copy)]
 struct Open {
     count: u32,
@@ -102,7 +103,7 @@ struct Open {
 }
 
 impl Open {
-    fn with(self, interval: u64, right: bool) -> Option<Self> {
+    fn with_step(self, interval: u64, right: bool) -> Option<Self> {
         let add = interval.checked_signed_diff(self.last)?;
         let belongs = right == self.right && (self.count == 1 || add == self.add);
         let count = self.count.checked_add(1).filter(|_| belongs)?;
@@ -111,8 +112,8 @@ impl Open {
 }
 
 impl Merge {
-    fn step(&mut self, interval: u64, right: bool) {
-        let grown = self.open.and_then(|open| open.with(interval, right));
+    fn add_step(&mut self, interval: u64, right: bool) {
+        let grown = self.open.and_then(|open| open.with_step(interval, right));
         if grown.is_none() {
             self.close();
         }
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn an_acceleration_table_comes_out_at_its_reloads() {
+    fn an_acceleration_table_has_its_reloads() {
         let table = Move::Trapezoid(Trapezoid {
             distance: Distance::Steps(300.0),
             start_speed: Speed::StepsPerSecond(250.0),
@@ -217,7 +218,7 @@ mod tests {
         let again = once.iter().map(|ticks| once[299] + 100_000 + ticks);
         let found = cycles(&segments(vec![table.clone(), Move::Dwell(Dwell { duration_s: 0.1 }), table]));
         assert!(found.iter().copied().eq(once.iter().copied().chain(again)), "{found:?}");
-        // Of a clock that is no multiple of the timer's, each is rounded half up.
+        // If the clock is not a multiple of the timer's, each time is rounded half up.
         for clock_hz in [16_000_000, 999_999, 1_500_000, 7] {
             let rounded =
                 |&ticks: &u64| (2 * u128::from(ticks) * u128::from(clock_hz) + 1_000_000) / 2_000_000;
@@ -227,21 +228,21 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_comes_too_soon_is_named_with_its_numbers() {
+    fn reports_a_step_that_is_too_soon_with_its_numbers() {
         let too_soon = |step, interval| Cause::StepTooSoon { step, interval, pulse: PULSE };
-        let quick = |least: &[Move]| exact(plan(least.to_vec()).due_steps(1_000_000), PULSE).err();
-        // 40 cycles a step; the first has half of it.
-        assert_eq!(quick(&[constant(5.0, 12_500.0)]), None);
-        assert_eq!(quick(&[constant(5.0, 12_700.0)]), Some(too_soon(1, 39)));
-        assert_eq!(quick(&[constant(5.0, 1000.0), constant(5.0, 25_000.0)]), None);
-        assert_eq!(quick(&[constant(5.0, 1000.0), constant(5.0, 25_700.0)]), Some(too_soon(7, 39)));
+        let refused = |moves: &[Move]| exact(plan(moves.to_vec()).due_steps(1_000_000), PULSE).err();
+        // 40 cycles per step, except for the first with half of it.
+        assert_eq!(refused(&[constant(5.0, 12_500.0)]), None);
+        assert_eq!(refused(&[constant(5.0, 12_700.0)]), Some(too_soon(1, 39)));
+        assert_eq!(refused(&[constant(5.0, 1000.0), constant(5.0, 25_000.0)]), None);
+        assert_eq!(refused(&[constant(5.0, 1000.0), constant(5.0, 25_700.0)]), Some(too_soon(7, 39)));
         let plans = [plan(vec![constant(5.0, 1000.0)]), plan(vec![constant(5.0, 25_700.0)])];
         let problem = exact_segments(&plans, AxesPath::MOTION, 2, PULSE, 1_000_000).unwrap_err();
         assert_eq!(problem, [Problem::new("source.motion.axes[1]", too_soon(1, 19))]);
     }
 
     #[test]
-    fn each_plan_needs_a_channel_and_a_channel_no_plan() {
+    fn each_plan_needs_a_channel_but_not_each_channel_a_plan() {
         let plans = [plan(vec![constant(5.0, 1000.0)]), plan(vec![constant(5.0, 500.0)])];
         let lists = |channels| {
             exact_segments(&plans, AxesPath::MOTION, channels, PULSE, 1_000_000)
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_much_is_refused_with_its_numbers() {
+    fn refuses_too_much_with_its_numbers() {
         let many = [plan(vec![constant(2_000_001.0, 1e4)]), plan(vec![constant(-2_000_000.0, 1e4)])];
         let cause = ValueError::TooMuch { given: 4_000_001.0, max: 4_000_000.0, of: "steps" };
         let found = exact_segments(&many, AxesPath::MOTION, 2, PULSE, 1_000_000);
@@ -267,7 +268,7 @@ mod tests {
             matches!(found[0].cause, Cause::Value(ValueError::TooMuch { of: "cycles", .. })),
             "{found:?}"
         );
-        // Half of that and more between two steps: too great a difference for one segment.
+        // A difference of intervals that is too large for one segment.
         let dwell = Move::Dwell(Dwell { duration_s: 86_400.0 });
         let wide = [plan(vec![constant(2.0, 1.0), dwell.clone(), dwell, constant(9.0, 1.0)])];
         let found = exact_segments(&wide, AxesPath::MOTION, 1, PULSE, 1_000_000_000).unwrap();

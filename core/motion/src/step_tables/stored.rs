@@ -1,7 +1,7 @@
 //! Forms in which a controller can store a motion's step times, and their size (DESIGN B8).
 //!
 //! ```text
-//! exact        every step in its cycle, in few entries
+//! exact        every step in its exact cycle, in few entries
 //! document     the table of the motion's paper
 //! compressed   the fewest entries with a given tolerance
 //! ```
@@ -30,7 +30,7 @@ pub const MAX_TABLE_STEPS: u64 = 100_000_000;
 /// Form of stored step times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Every step in its cycle.
+    /// Every step in its exact cycle.
     Exact,
     /// The table of the motion's paper.
     Document,
@@ -49,25 +49,28 @@ impl Form {
     }
 }
 
+/// Stored step times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
+    /// The entries as segments.
     pub list: SegmentList,
     pub format: EntryFormat,
     pub entries: Vec<Entry>,
-    /// Bytes of the tables as in their papers, which are run up and down again; `None` if a move has no table.
+    /// Bytes of the tables as in their papers, which store a ramp only once; `None` if a move has no table.
     pub document_bytes: Option<u64>,
     pub error: TimingError,
-    /// Of a compressed list: the maximum number of entries above the minimum.
+    /// For a compressed list: see [`Compressed::surplus`].
     pub surplus: Option<u64>,
 }
 
 impl Stored {
+    /// Bytes of all entries.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
     }
 
-    /// Entries without steps: turns and waits, which Klipper's count of `queue_step` does not include.
+    /// Number of entries without steps: changes of direction and waits, which are no `queue_step` of Klipper.
     #[must_use]
     pub fn turns(&self) -> usize {
         self.entries.iter().filter(|entry| entry.count == 0).count()
@@ -84,8 +87,8 @@ impl Stored {
 /// Stores the step times of `plan` in a form.
 ///
 /// # Errors
-/// As [`compressed`]; more than 4 000 000 steps for the exact list, or [`MAX_TABLE_STEPS`] for another; a move without a
-/// table in its paper, or a rate of it too high for `pulse`. The number of steps is checked first.
+/// As [`compressed`]; more than 4 000 000 steps for the exact form, or [`MAX_TABLE_STEPS`] for others; for the paper's table,
+/// a move without one, or a rate too high for `pulse`. The number of steps is checked first.
 pub fn stored(
     plan: &AxisPlan,
     form: Form,
@@ -101,7 +104,7 @@ pub fn stored(
     })
 }
 
-/// Stores step times of any origin in a form; they count from the start and do not fall.
+/// Stores step times of any origin in a form. They count from the start and must not decrease.
 ///
 /// ```
 /// use stepscope_motion::{ScheduledStep, step_tables::{EntryFormat, Form, stored_steps}};
@@ -110,12 +113,12 @@ pub fn stored(
 /// let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
 /// let steps: Vec<_> = (1..=10).map(|k| ScheduledStep { cycle: 1000 * k, right: true }).collect();
 /// let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).expect("there is time for each pulse");
-/// // The turn to the right, and all steps.
+/// // The direction to the right, and all steps.
 /// assert_eq!((table.entries.len(), table.error.max_cycles), (2, 0));
 /// ```
 ///
 /// # Errors
-/// As [`stored`]; [`Form::Document`], because a list has no paper.
+/// As [`stored`]; [`Form::Document`], because a list of steps has no paper.
 pub fn stored_steps(
     steps: &[ScheduledStep],
     form: Form,
@@ -145,12 +148,12 @@ fn table<I: Iterator<Item = ScheduledStep>>(
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<Stored, Cause> {
-    let found = |Compressed { list, error, surplus }| (list, Some(error), surplus);
+    let parts = |Compressed { list, error, surplus }| (list, Some(error), surplus);
     let (list, error, surplus) = match form {
         Form::Exact => (smallest_exact(&due, format, pulse)?, None, None),
         Form::Document => (own_table()?, None, None),
-        Form::Compressed(tolerance) => found(compressed(due(), tolerance, format, pulse)?),
-        Form::Quick(tolerance) => found(compressed_quickly(due(), tolerance, format, pulse)?),
+        Form::Compressed(tolerance) => parts(compressed(due(), tolerance, format, pulse)?),
+        Form::Quick(tolerance) => parts(compressed_quickly(due(), tolerance, format, pulse)?),
     };
     let list = checked(list, pulse)?;
     let error = match error {
@@ -161,25 +164,26 @@ fn table<I: Iterator<Item = ScheduledStep>>(
     Ok(Stored { list, format, entries, document_bytes: None, error, surplus })
 }
 
-/// Each step in its cycle, in the fewest entries with whole intervals or, if these are fewer, in those that a search finds
-/// with fractions of a cycle.
+/// Each step in its exact cycle, in the fewest entries with integer intervals, or with fractional intervals if a search finds
+/// fewer.
 ///
-/// With whole cycles no list is shorter: the length of an entry depends only on its first step, and the longest entry
-/// leaves the fewest steps. (That is so as long as each interval fits into an entry's field.)
+/// With integer intervals no list is shorter, because the length of an entry depends only on its first step, and the longest
+/// entry leaves the fewest steps. (This holds while each interval fits into an entry.)
 fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     due: impl Fn() -> I,
     format: EntryFormat,
     pulse: PulseTimes,
 ) -> Result<SegmentList, Cause> {
-    let whole = exact(due(), pulse)?;
+    let with_integers = exact(due(), pulse)?;
     if format.fraction_bits == 0 {
-        return Ok(whole);
+        return Ok(with_integers);
     }
-    let parts = compressed_quickly(due(), Tolerance::of(Cycles(0)), format, pulse).map(|made| made.list);
-    match parts {
-        Ok(parts) if format.entries(&parts)? < format.entries(&whole)? => Ok(parts),
-        // Also if there are too many of them.
-        _ => Ok(whole),
+    let quick = compressed_quickly(due(), Tolerance::of(Cycles(0)), format, pulse);
+    match quick.map(|quick| quick.list) {
+        Ok(with_fractions) if format.entries(&with_fractions)? < format.entries(&with_integers)? => {
+            Ok(with_fractions)
+        }
+        _ => Ok(with_integers),
     }
 }
 
@@ -199,12 +203,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn turns_are_entries_without_steps() {
+    fn turns_count_entries_without_steps() {
         let cycles = [1000, 2000, 3000, 3700, 4400, 5100];
         let steps = cycles.map(|cycle| ScheduledStep { cycle, right: true });
         let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
         let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).unwrap();
-        // Two intervals, before them the turn to the right.
+        // The direction to the right, and two intervals.
         assert_eq!((table.entries.len(), table.turns()), (3, 1));
     }
 }

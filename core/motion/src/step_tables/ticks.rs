@@ -5,8 +5,8 @@
 //! steps[j] = due[j + 1] - due[j]
 //! ```
 //!
-//! The steps up to the end of tick j are the rounded position there, so the error never adds up, is at most half a step, and
-//! the end is exact. The end of a tick is a whole cycle, for which the steps due are exact (`due_by`).
+//! The steps up to the end of tick j are the rounded position there, so errors do not accumulate, are at most half a step,
+//! and the end is exact. The end of a tick is an integer cycle, for which the number of steps due is exact (`due_by`).
 
 use super::AxesPath;
 use crate::{
@@ -43,6 +43,7 @@ impl Ticks {
         self.bytes.len() / usize::from(self.channels.max(1))
     }
 
+    /// The bytes of all ticks in the order of their times.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
@@ -56,11 +57,10 @@ impl Ticks {
 
 /// Divides the plans, one per channel, into ticks of `tick_cycles` with up to `slots` steps.
 ///
-/// There are at least one tick and enough to end every axis. A byte without steps repeats the direction before it,
-/// initially left.
+/// The ticks are enough to end every axis, at least one. A byte without steps repeats the previous direction, initially left.
 ///
 /// # Errors
-/// Too many ticks; or the first tick of each axis that needs more steps than it has slots.
+/// Too many plans or ticks; or the first tick of each axis that needs more steps than it has slots.
 pub fn ticks(
     plans: &[AxisPlan],
     at: AxesPath<'_>,
@@ -86,7 +86,7 @@ pub fn ticks(
     let mut problems = Vec::new();
     for (channel, plan) in plans.iter().enumerate() {
         let column = bytes.iter_mut().skip(channel).step_by(width);
-        if let Err(cause) = fill(plan, column, (tick_cycles, clock_hz), slots.min(MAX_STEPS)) {
+        if let Err(cause) = fill(plan, column, TickClock::new(tick_cycles, clock_hz), slots.min(MAX_STEPS)) {
             problems.push(Problem::new(at.axis(channel), cause));
         }
     }
@@ -97,19 +97,18 @@ pub fn ticks(
 fn fill<'b>(
     plan: &AxisPlan,
     column: impl Iterator<Item = &'b mut u8>,
-    (tick_cycles, clock_hz): (u64, u32),
+    clock: TickClock,
     slots: u8,
 ) -> Result<(), Cause> {
-    let mut due_by = plan.due_by(clock_hz);
-    let (mut due, mut direction, mut end) = (0, 0, 0_u64);
+    let mut due_by = plan.due_by(clock.clock_hz);
+    let (mut due, mut direction) = (0, 0);
     for (tick, byte) in (0..).zip(column) {
-        end = end.saturating_add(tick_cycles);
-        let next = due_by.steps(end);
+        let next = due_by.steps(clock.end(tick));
         let steps = next.abs_diff(due);
         let count = match u8::try_from(steps) {
             Ok(count) if count <= slots => count,
             _ => {
-                let tick_s = tick_cycles as f64 / f64::from(clock_hz.max(1));
+                let tick_s = clock.end_s(0);
                 let (rate, limit) = (steps as f64 / tick_s, f64::from(slots) / tick_s);
                 return Err(Cause::TooManySteps { tick, steps, slots, rate, limit });
             }
@@ -137,6 +136,7 @@ impl TickClock {
         Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
     }
 
+    /// Duration of a tick in cycles.
     #[must_use]
     pub fn tick_cycles(&self) -> u64 {
         self.tick_cycles
@@ -148,7 +148,6 @@ impl TickClock {
         cycle as f64 / f64::from(self.clock_hz)
     }
 
-    /// End of tick `tick` (from 0) in cycles.
     fn end(&self, tick: u64) -> u64 {
         tick.saturating_add(1).saturating_mul(self.tick_cycles)
     }
@@ -170,7 +169,7 @@ impl TickClock {
     pub fn ticks_until(&self, duration_s: f64) -> u64 {
         let tick_s = self.end_s(0);
         let mut ticks = libm::ceil(duration_s / tick_s) as u64;
-        // The division may be wrong by a rounding; the end of the tick decides.
+        // The division may be wrong by a rounding.
         if ticks > 0 && self.end_s(ticks - 1) < duration_s {
             ticks += 1;
         } else if ticks > 1 && self.end_s(ticks - 2) >= duration_s {
@@ -199,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tick_clock_tells_its_tick_and_where_each_ends() {
+    fn a_tick_clock_has_the_ends_of_ticks() {
         let clock = TickClock::new(32_000, 16_000_000);
         assert_eq!((clock.tick_cycles(), clock.end_s(0), clock.end_s(4)), (32_000, 0.002, 0.01));
         assert_eq!([0.0, 0.001, 0.002, 0.0021].map(|end_s| clock.ticks_until(end_s)), [1, 1, 1, 2]);
@@ -216,9 +215,9 @@ mod tests {
             (vec![constant(-4.0, 2000.0)], &[0x02, 0x02]),
             // Without steps the direction stays.
             (vec![constant(2.0, 2000.0), dwell(0.002), constant(-2.0, 2000.0)], &[0x82, 0x80, 0x80, 0x02]),
-            // A step each 2 ms, due at 1 ms and 3 ms: to the right each at the end of the tick before.
+            // A step every 2 ms, due at 1 ms and 3 ms: to the right it is in the tick that ends there.
             (vec![constant(2.0, 500.0)], &[0x81, 0x80, 0x81, 0x80]),
-            // To the left R(-1/2) is still 0 at the end of the tick: each is of the next.
+            // To the left it is in the next tick, because R(-1/2) is 0.
             (vec![constant(-2.0, 500.0)], &[0x00, 0x01, 0x00, 0x01]),
         ];
         for (moves, expected) in rows {
@@ -229,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_stand_side_by_side_until_the_last_has_ended() {
+    fn all_channels_have_ticks_until_the_last_axis_ends() {
         let plans = [plan(vec![constant(4.0, 2000.0)]), plan(vec![constant(-9.0, 3000.0)])];
         let found = ticks(&plans, AxesPath::MOTION, 3, 100, 1000, 1_000_000).unwrap();
         let expected: [&[u8]; 3] = [&[0x82, 0x03, 0], &[0x82, 0x03, 0], &[0x80, 0x03, 0]];
@@ -237,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused_with_its_numbers() {
+    fn refuses_too_many_steps_or_ticks_with_their_numbers() {
         let one = [plan(vec![constant(100.0, 10_000.0)]), plan(vec![constant(100.0, 12_000.0)])];
         assert!(ticks(&one, AxesPath::MOTION, 2, 12, 1000, 1_000_000).is_ok());
         let found = ticks(&one, AxesPath::MOTION, 2, 9, 1000, 1_000_000).unwrap_err();
@@ -250,7 +249,7 @@ mod tests {
         let found = ticks(&one, AxesPath::MOTION, 2, 12, 1, 1_000_000_000).unwrap_err();
         let cause = ValueError::TooMuch { given: 10_000_000.0, max: 2_000_000.0, of: "ticks" };
         assert_eq!(found, [Problem::new("source.motion", cause)]);
-        // 625 000 ticks, of which seven channels are the first too many.
+        // 625 000 ticks, too many for seven channels.
         let long = [plan(vec![Move::Dwell(Dwell { duration_s: 625.0 })])];
         assert_eq!(
             ticks(&long, AxesPath::MOTION, 6, 12, 1000, 1_000_000).map(|ticks| ticks.len()),
@@ -260,13 +259,13 @@ mod tests {
         let cause = ValueError::TooMuch { given: 4_375_000.0, max: 4_000_000.0, of: "ticks of all channels" };
         assert_eq!(found, [Problem::new("source.motion", cause)]);
         assert!(ticks(&one, AxesPath::MOTION, 1, 12, 1000, 1_000_000).is_err());
-        // Nothing of this is a scenario; nothing of it may panic.
+        // No scenario has these values, but they must not panic.
         assert_eq!(ticks(&one, AxesPath::MOTION, 2, 255, 0, 0).map(|ticks| ticks.len()), Ok(1));
         assert_eq!(ticks(&[], AxesPath::MOTION, 0, 0, 0, 0).map(|ticks| ticks.len()), Ok(1));
     }
 
     #[test]
-    fn the_error_never_adds_up() {
+    fn errors_do_not_accumulate() {
         let plan = plan(vec![Move::SineSegments(SineSegments::default()), constant(777.0, 1234.5)]);
         let found = ticks(core::slice::from_ref(&plan), AxesPath::MOTION, 1, 127, 5000, 1_000_000).unwrap();
         let mut made = 0;

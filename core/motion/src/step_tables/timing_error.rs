@@ -1,20 +1,21 @@
-//! Distances of the steps of a list from their due cycles (DESIGN B8).
+//! Timing errors of the steps of a list: their distances from the due cycles (DESIGN B8).
 
 use crate::ScheduledStep;
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 
-/// Distances of steps from their due cycles.
+/// Timing errors of steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimingError {
+    /// Number of steps.
     pub steps: u64,
-    /// Maximum in cycles, early or late.
+    /// Maximum error in cycles, early or late.
     pub max_cycles: u64,
     /// Sum of squares in cycles^2.
     squares: u128,
 }
 
 impl TimingError {
-    pub(super) fn step(&mut self, distance: u64) {
+    pub(super) fn add(&mut self, distance: u64) {
         self.steps += 1;
         self.max_cycles = self.max_cycles.max(distance);
         self.squares = self.squares.saturating_add(u128::from(distance) * u128::from(distance));
@@ -26,8 +27,8 @@ impl TimingError {
         if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
     }
 
-    /// Of a list whose steps are due at `due`, in cycles from the list's start; `None` if the number of steps or a direction
-    /// differs.
+    /// The timing errors of a list whose steps are due at `due`, in cycles from the list's start; `None` if the number of steps
+    /// or a direction differs.
     #[must_use]
     pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
         let (mut error, mut time, mut due) = (Self::default(), 0_u64, due.into_iter());
@@ -39,7 +40,7 @@ impl TimingError {
                         let step = due.next().filter(|step| step.right == right)?;
                         time = time.wrapping_add(interval);
                         interval = interval.wrapping_add_signed(add);
-                        error.step((time >> FRACTION_BITS).abs_diff(step.cycle));
+                        error.add((time >> FRACTION_BITS).abs_diff(step.cycle));
                     }
                 }
             }
@@ -54,8 +55,8 @@ mod tests {
     use alloc::{vec, vec::Vec};
     use stepscope_peripheral::{segment::SegmentList, units::Instant};
 
-    /// The steps of a list, each so many cycles away from where it stands.
-    fn away(list: &SegmentList, off: impl Fn(u64) -> u64) -> Vec<ScheduledStep> {
+    /// The steps of a list, step i (from 0) `error(i)` cycles late.
+    fn with_errors(list: &SegmentList, error: impl Fn(u64) -> u64) -> Vec<ScheduledStep> {
         let (mut time, mut due) = (0, Vec::new());
         for segment in &list.segments {
             match *segment {
@@ -65,7 +66,7 @@ mod tests {
                         time += interval;
                         interval = interval.wrapping_add_signed(add);
                         due.push(ScheduledStep {
-                            cycle: (time >> FRACTION_BITS) + off(due.len() as u64),
+                            cycle: (time >> FRACTION_BITS) + error(due.len() as u64),
                             right,
                         });
                     }
@@ -91,44 +92,43 @@ mod tests {
     #[test]
     fn sums_errors_of_every_size_exactly() {
         let list = list();
-        // Up to 16 cycles, up to about 2^28 within some steps and beyond in others, and so far that no 64 bits hold a square.
+        // Up to 16 cycles, about 2^28 cycles, and 2^40 cycles, whose squares exceed 64 bits.
         for bits in [4, 28, 29, 40] {
-            let off = |step: u64| step.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - bits);
-            let offs: Vec<u64> = (0..1001).map(off).collect();
+            let error = |step: u64| step.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - bits);
+            let errors: Vec<u64> = (0..1001).map(error).collect();
             let expected = TimingError {
                 steps: 1001,
-                max_cycles: *offs.iter().max().unwrap(),
-                squares: offs.iter().map(|off| u128::from(*off) * u128::from(*off)).sum(),
+                max_cycles: *errors.iter().max().unwrap(),
+                squares: errors.iter().map(|error| u128::from(*error).pow(2)).sum(),
             };
-            assert_eq!(TimingError::of(&list, away(&list, off)), Some(expected), "{bits} bits");
+            assert_eq!(TimingError::of(&list, with_errors(&list, error)), Some(expected), "{bits} bits");
         }
     }
 
     #[test]
-    fn a_step_that_is_due_in_the_last_cycles_of_all_is_as_far_off_as_it_is() {
+    fn handles_the_last_cycles_of_64_bits() {
         let steps = Segment::Steps { count: 1, interval: 1 << FRACTION_BITS, add: 0, right: true };
         let list = SegmentList { start: Instant(1), segments: vec![steps] };
         for cycle in [u64::MAX, u64::MAX - 4, (1 << 63) + 2, 1 << 63, (1 << 63) - 1] {
             let found = TimingError::of(&list, [ScheduledStep { cycle, right: true }]).unwrap();
-            let off = cycle - 1;
-            let expected =
-                TimingError { steps: 1, max_cycles: off, squares: u128::from(off) * u128::from(off) };
+            let error = cycle - 1;
+            let expected = TimingError { steps: 1, max_cycles: error, squares: u128::from(error).pow(2) };
             assert_eq!(found, expected, "{cycle}");
         }
     }
 
     #[test]
-    fn another_number_of_steps_or_another_way_has_no_error() {
+    fn another_number_of_steps_or_direction_gives_none() {
         let list = list();
-        let due = away(&list, |_| 0);
+        let due = with_errors(&list, |_| 0);
         assert_eq!(
             TimingError::of(&list, due.iter().copied()).map(|error| (error.steps, error.max_cycles)),
             Some((1001, 0))
         );
         for step in [0, 1, 255, 256, 257, 700, 701, 1000] {
-            let mut turned = due.clone();
-            turned[step].right = !turned[step].right;
-            assert_eq!(TimingError::of(&list, turned), None, "step {step} goes the other way");
+            let mut reversed = due.clone();
+            reversed[step].right = !reversed[step].right;
+            assert_eq!(TimingError::of(&list, reversed), None, "step {step} is reversed");
             assert_eq!(TimingError::of(&list, due.iter().copied().take(step)), None, "{step} steps");
         }
         assert_eq!(TimingError::of(&list, due.iter().copied().chain(due.last().copied())), None, "one more");

@@ -3,7 +3,7 @@
 //! ```text
 //! block      length, sequence, commands, checksum (2), end: at most 64 bytes
 //! command    its number, the number of the object (a byte each), then its arguments
-//! argument   seven bits per byte, the first with the sign: 1 byte for -32 to 95, 2 for -4096 to 12 287, ...
+//! argument   seven bits per byte: 1 byte for -32 to 95, 2 bytes for -4096 to 12 287, ...
 //! ```
 //!
 //! An entry with steps is a `queue_step` (interval, count, add), a turn a `set_next_step_dir` (dir), and a wait a
@@ -11,8 +11,10 @@
 
 use crate::step_tables::entry_format::{Entry, EntryFormat};
 
+/// Bytes of a block without commands.
 const FRAME: u64 = 5;
-const MAX_BLOCK: u64 = 64 - FRAME;
+/// Maximum bytes of a block's commands.
+const MAX_COMMANDS: u64 = 64 - FRAME;
 
 /// Bytes of the entries in blocks; `None` for a format whose numbers `queue_step` does not accept.
 pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> {
@@ -20,16 +22,16 @@ pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> 
     if (fraction_bits, interval_bits, count_bits, add_bits) != (0, 32, 16, 16) {
         return None;
     }
-    let (mut bytes, mut block) = (0, MAX_BLOCK);
+    let (mut bytes, mut block) = (0, MAX_COMMANDS);
     for entry in entries {
         let command = match entry {
             Entry { count: 0, interval: 0, .. } => 3,
             Entry { count: 0, .. } => 7,
             Entry { interval, count, add } => {
-                2 + argument(*interval as i64) + argument((*count).into()) + argument(*add)
+                2 + argument_bytes(*interval as i64) + argument_bytes((*count).into()) + argument_bytes(*add)
             }
         };
-        if block + command > MAX_BLOCK {
+        if block + command > MAX_COMMANDS {
             (bytes, block) = (bytes + FRAME, 0);
         }
         (bytes, block) = (bytes + command, block + command);
@@ -37,8 +39,8 @@ pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> 
     Some(bytes)
 }
 
-fn argument(value: i64) -> u64 {
-    // Each byte holds 128 times as many values, of which a quarter is negative.
+fn argument_bytes(value: i64) -> u64 {
+    // Each byte multiplies the number of values by 128; a quarter of them is negative.
     (1..5).find(|bytes| (-(1 << (7 * bytes - 2))..3 << (7 * bytes - 2)).contains(&value)).unwrap_or(5)
 }
 
@@ -48,7 +50,7 @@ mod tests {
     use alloc::vec;
 
     #[test]
-    fn an_argument_has_seven_bits_a_byte() {
+    fn an_argument_has_seven_bits_per_byte() {
         let rows = [
             (1, -32, 95),
             (2, -4096, 12_287),
@@ -57,20 +59,20 @@ mod tests {
             (5, i64::from(i32::MIN), i64::from(u32::MAX)),
         ];
         let mut beyond = None;
-        for (bytes, least, most) in rows {
-            assert_eq!([least, most].map(argument), [bytes; 2]);
-            if let Some((least, most)) = beyond {
-                assert_eq!([least, most].map(argument), [bytes; 2]);
+        for (bytes, min, max) in rows {
+            assert_eq!([min, max].map(argument_bytes), [bytes; 2]);
+            if let Some((min, max)) = beyond {
+                assert_eq!([min, max].map(argument_bytes), [bytes; 2]);
             }
-            beyond = Some((least - 1, most + 1));
+            beyond = Some((min - 1, max + 1));
         }
     }
 
     #[test]
-    fn no_command_is_parted_between_blocks() {
+    fn blocks_contain_complete_commands() {
         let step = Entry { interval: 20_000, count: 100, add: -40 };
         let (turn, wait) = (Entry { interval: 0, count: 0, add: 1 }, Entry { interval: 9, count: 0, add: 1 });
-        // Nine bytes a command: six of them in a block.
+        // Nine bytes per command, six commands per block.
         let rows = [
             (vec![], 0),
             (vec![step], 5 + 9),

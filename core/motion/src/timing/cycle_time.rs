@@ -1,5 +1,6 @@
-//! Times in cycles with enough digits for their rounding, however late they are (DESIGN B1): whole cycles, and the part of
-//! one in 106 bits. In an f64 the part has only 14 bits left at 10^12 cycles.
+//! Times in cycles with enough digits for their rounding, however late they are (DESIGN B1): whole cycles, and a fraction of
+//! a cycle in 106 bits. In an f64 the fraction would only have 14 bits at 10^12 cycles.
+
 use crate::{timing::decimal::Exact, timing::double::Double};
 
 /// Relative distance from a tie that 106 bits do not resolve: 2^-94.
@@ -20,7 +21,7 @@ pub(crate) struct CycleTime {
 impl CycleTime {
     /// A time >= 0.
     pub(crate) fn of(cycles: Double) -> Self {
-        // Both numbers of the sum have whole cycles; the second may be negative.
+        // The low number may be negative.
         let mut whole = cycles.high as u64;
         let mut part = Double::sum(cycles.high - whole as f64, cycles.low);
         if part.high < 0.0 && whole > 0 {
@@ -37,25 +38,25 @@ impl CycleTime {
 
     pub(crate) fn plus(self, other: Self) -> Self {
         let (whole, part) = (self.whole.saturating_add(other.whole), self.part + other.part);
-        let past = part - 1.0;
-        if past.high < 0.0 {
+        let part_beyond = part - 1.0;
+        if part_beyond.high < 0.0 {
             Self { whole, part }
         } else {
-            Self { whole: whole.saturating_add(1), part: past }
+            Self { whole: whole.saturating_add(1), part: part_beyond }
         }
     }
 
+    /// Whether the time is at or before the start of `cycle`, to within a tie.
     pub(crate) fn is_by(self, cycle: u64) -> bool {
         self.whole < cycle || (self.whole == cycle && self.part <= tie(cycle))
     }
 
     /// Whether the time is the start of `cycle`, to within a tie.
     pub(crate) fn is_at(self, cycle: u64) -> bool {
-        let short = Double::from(1.0) - self.part;
-        self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && short <= tie(cycle)))
+        let to_next = Double::from(1.0) - self.part;
+        self.is_by(cycle) && (self.whole == cycle || (self.whole + 1 == cycle && to_next <= tie(cycle)))
     }
 
-    /// The sum in 106 bits.
     pub(crate) fn double(self) -> Double {
         Double::from(self.whole) + self.part
     }
@@ -70,14 +71,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_add_up_to_whole_cycles() {
+    fn adds_parts_to_whole_cycles() {
         let half = Double::from(0.5);
         let time = CycleTime::of(3.75.into()).plus(CycleTime { whole: 1 << 60, part: half });
         assert_eq!(time, CycleTime { whole: (1 << 60) + 4, part: 0.25.into() });
-        // The nearest f64 is 4, and the sum below it.
+        // The nearest f64 is 4, but the sum is less.
         let below = CycleTime::of(Double { high: 4.0, low: -1e-20 });
         assert!(below.whole == 3 && below.part == Double { high: 1.0, low: -1e-20 }, "{below:?}");
-        // A hair before 0 by rounding is in no cycle before it.
+        // A time below 0 by a rounding is in cycle 0.
         assert_eq!(CycleTime::of(Double { high: 0.0, low: -1e-30 }).whole, 0);
         assert_eq!(CycleTime::exact(&Exact::of(7.0).divided_by(2.0)), CycleTime { whole: 3, part: half });
     }

@@ -1,5 +1,5 @@
-//! Decimal numbers (DESIGN B1): a number of a scenario means its shortest decimal, and conversions by mechanics are
-//! fractions of integers, without intermediate rounding.
+//! Decimal numbers (DESIGN B1): a number of a scenario means its shortest decimal. Conversions by mechanics are fractions of
+//! integers, without intermediate rounding.
 //!
 //! ```text
 //! 88.35 mm at 0.1 mm per step    8835/100 : 1/10 = 883.5, and 884 steps; in f64 the quotient is 883.4999…
@@ -10,16 +10,17 @@ use alloc::format;
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
 
-/// Bits of a quotient that is rounded to an f64: more than it has, so the rest only matters if it is 0.
+/// Bits of a quotient that is rounded to an f64. They are more than an f64 has, so it only matters whether the remainder is
+/// 0.
 const QUOTIENT_BITS: u32 = 64;
 const DOUBLE_BITS: u32 = 2 * HALF_BITS as u32;
 const HALF_BITS: i32 = 53;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Exact {
-    over: BigInt,
+    numerator: BigInt,
     /// Invariant: above 0.
-    under: BigUint,
+    denominator: BigUint,
 }
 
 impl Exact {
@@ -28,47 +29,48 @@ impl Exact {
         Self::difference(number, 0.0)
     }
 
+    /// The difference of the shortest decimals of two finite numbers.
     pub(crate) fn difference(number: f64, subtrahend: f64) -> Self {
         let decimals = [decimal(number), decimal(subtrahend)];
         let exponent = decimals[0].1.min(decimals[1].1);
         let [first, second] = decimals.map(|(digits, own)| digits * power_of_ten(own.abs_diff(exponent)));
-        Self { over: first - second, under: 1_u8.into() }.scaled(exponent)
+        Self { numerator: first - second, denominator: 1_u8.into() }.scaled(exponent)
     }
 
     pub(crate) fn times(mut self, number: f64) -> Self {
         let (digits, exponent) = decimal(number);
-        self.over *= digits;
+        self.numerator *= digits;
         self.scaled(exponent)
     }
 
     pub(crate) fn divided_by(mut self, number: f64) -> Self {
         let (digits, exponent) = decimal(number);
         debug_assert!(digits > 0, "divided by {number}");
-        self.under *= digits.unsigned_abs().max(1);
+        self.denominator *= digits.unsigned_abs().max(1);
         self.scaled(-exponent)
     }
 
     fn scaled(mut self, exponent: i32) -> Self {
         let power = power_of_ten(exponent.unsigned_abs());
         if exponent < 0 {
-            self.under *= power.magnitude();
+            self.denominator *= power.magnitude();
         } else {
-            self.over *= power;
+            self.numerator *= power;
         }
         self
     }
 
     /// floor(x + 1/2), saturating.
     pub(crate) fn rounded(&self) -> i64 {
-        let (two, under) = (BigInt::from(2), BigInt::from(self.under.clone()));
-        let floor = (&self.over * &two + &under).div_floor(&(under * &two));
+        let (two, denominator) = (BigInt::from(2), BigInt::from(self.denominator.clone()));
+        let floor = (&self.numerator * &two + &denominator).div_floor(&(denominator * &two));
         i64::try_from(&floor).unwrap_or(if floor < BigInt::ZERO { i64::MIN } else { i64::MAX })
     }
 
     pub(crate) fn nearest(&self) -> f64 {
-        let (quotient, scale, is_more) = self.digits(QUOTIENT_BITS);
-        // The rest counts as slightly more than the last bit.
-        self.signed(libm::scalbn((quotient as u64 | u64::from(is_more)) as f64, scale))
+        let (quotient, scale, has_remainder) = self.digits(QUOTIENT_BITS);
+        // A remainder sets the last bit, so that a quotient above a tie is rounded up.
+        self.signed(libm::scalbn((quotient as u64 | u64::from(has_remainder)) as f64, scale))
     }
 
     /// The fraction in 106 bits.
@@ -82,31 +84,32 @@ impl Exact {
     }
 
     fn signed(&self, magnitude: f64) -> f64 {
-        if self.over < BigInt::ZERO { -magnitude } else { magnitude }
+        if self.numerator < BigInt::ZERO { -magnitude } else { magnitude }
     }
 
-    /// The first `bits` bits of the magnitude, or one fewer, as an integer; its power of two; and whether there is a rest.
+    /// The first `bits` bits of the magnitude, or one fewer, as an integer; its power of two; and whether there is a
+    /// remainder.
     fn digits(&self, bits: u32) -> (u128, i32, bool) {
-        let over = self.over.magnitude();
-        let scale = over.bits() as i32 - self.under.bits() as i32 - (bits as i32 - 1);
+        let numerator = self.numerator.magnitude();
+        let scale = numerator.bits() as i32 - self.denominator.bits() as i32 - (bits as i32 - 1);
         let shift = scale.unsigned_abs();
-        let (quotient, rest) = if scale < 0 {
-            (over << shift).div_rem(&self.under)
+        let (quotient, remainder) = if scale < 0 {
+            (numerator << shift).div_rem(&self.denominator)
         } else {
-            over.div_rem(&(&self.under << shift))
+            numerator.div_rem(&(&self.denominator << shift))
         };
-        (u128::try_from(quotient).unwrap_or(u128::MAX), scale, rest != BigUint::ZERO)
+        (u128::try_from(quotient).unwrap_or(u128::MAX), scale, remainder != BigUint::ZERO)
     }
 
-    /// The whole part and the rest in 106 bits, of a fraction from 0 to below 2^64.
+    /// The integer part and the fraction in 106 bits, from 0 to below 2^64.
     pub(crate) fn whole_and_part(&self) -> (u64, Double) {
-        let (whole, rest) = self.over.magnitude().div_rem(&self.under);
-        let part = Self { over: rest.into(), under: self.under.clone() };
+        let (whole, remainder) = self.numerator.magnitude().div_rem(&self.denominator);
+        let part = Self { numerator: remainder.into(), denominator: self.denominator.clone() };
         (u64::try_from(whole).unwrap_or(u64::MAX), part.double())
     }
 
     pub(crate) fn magnitude(&self) -> (&BigUint, &BigUint) {
-        (self.over.magnitude(), &self.under)
+        (self.numerator.magnitude(), &self.denominator)
     }
 }
 
@@ -141,7 +144,7 @@ mod tests {
     };
 
     #[test]
-    fn a_number_is_its_printed_decimal() {
+    fn reads_the_shortest_decimal_of_a_number() {
         let rows = [
             (0.0, (0, 0)),
             (88.35, (8835, -2)),
@@ -159,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_are_rounded_up_as_they_are_printed() {
+    fn rounds_decimal_halves_up() {
         let rows =
             [(88.35, 0.1, 884), (-88.35, 0.1, -883), (0.145, 0.01, 15), (0.1449, 0.01, 14), (2.0, 0.01, 200)];
         for (number, unit, expected) in rows {
@@ -172,7 +175,7 @@ mod tests {
     }
 
     /// Digits, exponent and number of a random decimal.
-    fn drawn(noise: &mut Xoshiro256StarStar, signed: bool) -> (BigInt, i32, f64) {
+    fn random_decimal(noise: &mut Xoshiro256StarStar, signed: bool) -> (BigInt, i32, f64) {
         let bits = 1 + noise.next_u64() % 50;
         let digits = 1 + (noise.next_u64() >> (64 - bits)) as i64;
         let digits = if signed && noise.next_u64().is_multiple_of(2) { -digits } else { digits };
@@ -181,14 +184,14 @@ mod tests {
         (digits.into(), exponent, number)
     }
 
-    /// Held against a library's whole numbers of any length: (a - b)*c/d.
+    /// Compares (a - b)*c/d with the arithmetic of a library.
     #[test]
-    fn quotients_are_those_of_whole_numbers_of_any_length() {
+    fn quotients_agree_with_big_integers() {
         let mut noise = Xoshiro256StarStar::seed_from_u64(5);
         let ten = |exponent: i32| BigInt::from(10).pow(exponent.unsigned_abs());
         for round in 0..20_000 {
-            let (a, b) = (drawn(&mut noise, true), drawn(&mut noise, true));
-            let (c, d) = (drawn(&mut noise, false), drawn(&mut noise, false));
+            let (a, b) = (random_decimal(&mut noise, true), random_decimal(&mut noise, true));
+            let (c, d) = (random_decimal(&mut noise, false), random_decimal(&mut noise, false));
             // In parts of 10^-40.
             let parts = |(digits, exponent, _): &(BigInt, i32, f64)| digits * ten(exponent + 40);
             let other = if round % 3 == 0 { (BigInt::from(0), 0, 0.0) } else { b };
@@ -202,7 +205,7 @@ mod tests {
             if expected.unsigned_abs() < 1 << 52 {
                 assert_eq!(exact.rounded(), expected, "({} - {})*{}/{}", a.2, other.2, c.2, d.2);
             }
-            // No f64 beside it is nearer.
+            // No other f64 is closer.
             let found = exact.nearest();
             let distance = |number: f64| {
                 let (digits, exponent) = decimal_of_bits(number);
@@ -216,7 +219,7 @@ mod tests {
         }
     }
 
-    /// A number as a whole one times 2 to a power.
+    /// A number as an integer times a power of 2.
     fn decimal_of_bits(number: f64) -> (i64, i32) {
         let bits = number.to_bits();
         let (exponent, fraction) = ((bits >> 52 & 0x7ff) as i32, (bits & ((1 << 52) - 1)) as i64);
@@ -225,9 +228,9 @@ mod tests {
         (if number < 0.0 { -digits } else { digits }, exponent)
     }
 
-    /// Whole numbers below 2^53 are exact in f64, and IEEE 754 rounds one quotient of two to the nearest.
+    /// Integers below 2^53 are exact in f64, and IEEE 754 rounds their quotient to the nearest f64.
     #[test]
-    fn the_nearest_number_is_that_of_a_single_division() {
+    fn nearest_agrees_with_a_single_division() {
         let mut noise = Xoshiro256StarStar::seed_from_u64(6);
         for _ in 0..20_000 {
             let mut whole = || {

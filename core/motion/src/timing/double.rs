@@ -1,4 +1,4 @@
-//! Numbers of 106 bits as the sum of two f64 (Dekker 1971), for the few steps whose time in f64 is too near to the middle
+//! Numbers of 106 bits as the sum of two f64 (Dekker 1971), for the few steps whose time in f64 is too close to the middle
 //! between two cycles (DESIGN B1, `rounding`).
 //!
 //! ```text
@@ -23,8 +23,9 @@ pub(crate) struct Double {
 /// 2^27 + 1: a multiplication by it splits a number into two halves of 26 bits.
 const SPLITTER: f64 = 134_217_729.0;
 
+/// Terms of a series below this part of the sum are ignored.
 const MIN_TERM: f64 = 1e-33;
-/// e^41 has all its digits after 200 terms.
+/// The series of e^41 needs 200 terms.
 const MAX_TERMS: u32 = 400;
 
 impl From<f64> for Double {
@@ -41,14 +42,12 @@ impl From<u64> for Double {
 }
 
 impl Double {
-    /// Exactly a + b.
     pub(crate) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let from_b = high - a;
         Self { high, low: (a - (high - from_b)) + (b - from_b) }
     }
 
-    /// Exactly a*b.
     fn product(a: f64, b: f64) -> Self {
         let halves = |x: f64| {
             let scaled = SPLITTER * x;
@@ -65,15 +64,15 @@ impl Double {
         Self { high: -self.high, low: -self.low }
     }
 
-    /// The sum of `power`/from! and the following terms, each `ratio` times the one before, divided by the next `more`
-    /// factors of the factorial.
-    fn series(power: Self, from: u32, ratio: Self, more: u32) -> Self {
-        // 2! or 3!, as one factor is 1.
+    /// The sum of `power`/from! and the following terms, each `ratio` times the previous one, divided by the next
+    /// `factors_per_term` factors of the factorial.
+    fn series(power: Self, from: u32, ratio: Self, factors_per_term: u32) -> Self {
+        // `from` is 2 or 3, so two factors are the factorial.
         let mut term = power / f64::from(from * (from - 1));
         let (mut sum, mut factor) = (term, from);
         for _ in 0..MAX_TERMS {
-            let divisor: f64 = (factor + 1..=factor + more).map(f64::from).product();
-            factor += more;
+            let divisor: f64 = (factor + 1..=factor + factors_per_term).map(f64::from).product();
+            factor += factors_per_term;
             term = term / divisor * ratio;
             sum = sum + term;
             if libm::fabs(term.high) <= MIN_TERM * libm::fabs(sum.high) {
@@ -93,14 +92,14 @@ impl Number for Double {
             return Self::default();
         }
         // One step of Newton's method doubles the digits.
-        let rest = self - Self::product(root, root);
-        Self::sum(root, rest.high / (2.0 * root))
+        let residual = self - Self::product(root, root);
+        Self::sum(root, residual.high / (2.0 * root))
     }
 
     fn cube_root(self) -> Self {
         let root = libm::cbrt(self.high);
-        let rest = self - Self::product(root, root) * root;
-        Self::sum(root, rest.high / (3.0 * root * root))
+        let residual = self - Self::product(root, root) * root;
+        Self::sum(root, residual.high / (3.0 * root * root))
     }
 
     /// x^3/3! - x^5/5! + …, for x from 0 to slightly above pi: the magnitudes of its terms add up to at most three times
@@ -113,11 +112,11 @@ impl Number for Double {
 
 impl Double {
     /// e^x - 1 - x without cancellation, for x from -20 to slightly above 40.
-    pub(crate) fn exponential_rest(self) -> Self {
+    pub(crate) fn exponential_remainder(self) -> Self {
         if self.high < -1.0 {
-            // By e^-x, whose terms do not cancel.
+            // From e^-x, whose terms do not cancel.
             let opposite = self.negated();
-            return opposite - 1.0 + Self::from(1.0) / (opposite + opposite.exponential_rest() + 1.0);
+            return opposite - 1.0 + Self::from(1.0) / (opposite + opposite.exponential_remainder() + 1.0);
         }
         Self::series(self * self, 2, self, 1)
     }
@@ -155,12 +154,12 @@ impl Div for Double {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        // Three digits of 53 bits, as in long division.
+        // Long division with three digits of 53 bits.
         let first = self.high / other.high;
-        let rest = self - other * first;
-        let second = rest.high / other.high;
-        let rest = rest - other * second;
-        Self::sum(first, second) + rest.high / other.high
+        let remainder = self - other * first;
+        let second = remainder.high / other.high;
+        let remainder = remainder - other * second;
+        Self::sum(first, second) + remainder.high / other.high
     }
 }
 
@@ -182,7 +181,7 @@ with_f64! { Add add, Sub sub, Mul mul, Div div, }
 mod tests {
     use super::*;
 
-    /// Holds a number to another, in parts of it.
+    /// Compares two numbers with a relative tolerance.
     fn check(found: Double, expected: Double) {
         let off = libm::fabs((found - expected).high);
         assert!(off <= 1e-30 * libm::fabs(expected.high), "{found:?} {expected:?}: {off}");
@@ -193,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_decimal_is_more_than_its_number() {
+    fn a_decimal_is_not_its_nearest_f64() {
         let tenth = number(0.1);
         assert!(tenth.high == 0.1 && tenth.low != 0.0);
         check(tenth * 10.0, 1.0.into());
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn operations_undo_each_other() {
+    fn operations_are_inverses() {
         for i in 1..2000 {
             let (a, b) = (number(f64::from(i) / 7.0), number(1e9 / f64::from(i * i)));
             check(a * b / b, a);
@@ -215,9 +214,9 @@ mod tests {
         assert!(number(0.3) > number(0.1) + number(0.1) && number(0.1) <= number(0.1));
     }
 
-    /// sin(2x) = 2*sin(x)*sin(pi/2 - x), from an angle whose sine is known.
+    /// By sin(2x) = 2*sin(x)*sin(pi/2 - x), and sin(pi/6) = 1/2.
     #[test]
-    fn a_sine_has_its_digits() {
+    fn a_sine_has_106_bits() {
         let sine = |x: Double| x - x.minus_its_sine();
         check(sine(Double::PI / 6.0), 0.5.into());
         check(Double::PI.minus_its_sine(), Double::PI);
@@ -231,21 +230,21 @@ mod tests {
     }
 
     #[test]
-    fn an_exponential_has_its_digits() {
-        let exponential = |x: Double| x.exponential_rest() + x + 1.0;
-        // ln(2), whose power it is.
+    fn an_exponential_has_106_bits() {
+        let exponential = |x: Double| x.exponential_remainder() + x + 1.0;
+        // ln(2), so the results are powers of 2.
         let logarithm = Double { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
         for i in [-28.0, -3.0, 1.0, 2.0, 10.0, 59.0] {
             check(exponential(logarithm * i), libm::exp2(i).into());
         }
-        // e^x - 1 - x from both sides of 0, and where its formula changes.
+        // On both sides of 0, and where the formula changes.
         for x in [1e-9, 0.3, 0.999, 1.001] {
-            let (above, below) = (number(x).exponential_rest(), number(-x).exponential_rest());
+            let (above, below) = (number(x).exponential_remainder(), number(-x).exponential_remainder());
             let one = Double::from(1.0);
             check((one + number(x) + above) * (one - number(x) + below), one);
         }
         // x^2/2*(1 + x/3 + x^2/12 + x^3/60 + …).
         let terms = number(1e-9) / 3.0 + number(1e-18) / 12.0 + number(1e-27) / 60.0;
-        check(number(1e-9).exponential_rest(), number(5e-19) * (terms + 1.0));
+        check(number(1e-9).exponential_remainder(), number(5e-19) * (terms + 1.0));
     }
 }

@@ -1,37 +1,36 @@
 //! Times of steps on a curve whose equation is slow to solve (DESIGN B1): it is solved for a few steps of a block, and a
-//! polynomial through them gives the others.
+//! polynomial through them approximates the others.
 //!
 //! ```text
 //!  time |            .-'     x = (step - middle)/half, -1 to 1
 //!       |        .-'         t = c0 + c1*T1(x) + … + c7*T7(x)       T: Chebyshev's polynomials
 //!       |   o-'--o--o-o
-//!       +---------------     c: from the times at the roots of T8; for an analytic curve they fall geometrically,
+//!       +---------------     c: from the times at the roots of T8; for an analytic curve they decrease geometrically,
 //!           a block's steps     so a block is narrow enough if the last two are small
 //! ```
 //!
 //! Solving for every step would take 40 to 80 times as long as a square root; with blocks a step takes one to two times as
-//! long. A block ends where the curve's formula changes. Near a point of rest the time is a root of the distance, blocks
-//! would have few steps, and each step is solved.
+//! long. A block ends where the curve's formula changes. Near a point of rest, where the time is a root of the distance and
+//! blocks would be short, each step is solved.
 
 use crate::{
     curves::curve::greater,
-    timing::run::{Run, Runs, Schedule, Times, put},
+    timing::run::{Run, Runs, Schedule, Times, fill_times},
 };
 use alloc::{boxed::Box, vec::Vec};
 use core::f64::consts::PI;
 
-/// Number of steps of a block that are solved.
 const NODES: usize = 8;
-/// Minimum steps of a block; with fewer each is solved.
+/// Minimum steps of a block; in shorter ones each step is solved.
 const MIN_STEPS: f64 = 4.0 * NODES as f64;
 const MAX_STEPS: f64 = 4096.0;
 /// Maximum error in cycles of the polynomial itself.
-const MAX_REST: f64 = 1.0 / 131_072.0;
+const MAX_TRUNCATION: f64 = 1.0 / 131_072.0;
 /// The last two coefficients of a block are at most its error divided by this. The missing coefficients change a time by at
-/// most twice their sum, which is less than 16 times the last two if each pair is at most 8/9 of the pair before. On an
-/// analytic curve they fall geometrically, much faster in a block that passes.
+/// most twice their sum, which is less than 16 times the last two if each pair is at most 8/9 of the previous one. In
+/// accepted blocks of analytic curves they decrease much faster.
 const SAFETY: f64 = 16.0;
-/// Growth of the nodes' errors between the nodes: Lebesgue's constant is 2.3, the rest is for the sums.
+/// Growth of the nodes' errors between the nodes: Lebesgue's constant is 2.3, and sums have roundings.
 const GROWTH: f64 = 4.0;
 
 pub(crate) struct Interpolated<F> {
@@ -41,8 +40,7 @@ pub(crate) struct Interpolated<F> {
     /// Positions at which the formula changes, rising.
     changes: Vec<f64>,
     /// cos(pi*k*(2i + 1)/(2*NODES)): Chebyshev's polynomial k at node i.
-    at_nodes: [[f64; NODES]; NODES],
-    /// Width of the next block in steps.
+    chebyshev_at_nodes: [[f64; NODES]; NODES],
     width: f64,
     block: Option<Block>,
     /// First step after the block.
@@ -52,12 +50,12 @@ pub(crate) struct Interpolated<F> {
 impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
     pub(crate) fn new(count: u64, changes: Vec<f64>, time: F) -> Self {
         let cosine = |k: usize, i: usize| libm::cos(PI * (k * (2 * i + 1)) as f64 / (2 * NODES) as f64);
-        let at_nodes = core::array::from_fn(|k| core::array::from_fn(|i| cosine(k, i)));
-        Self { time, count, changes, at_nodes, width: MIN_STEPS, block: None, until: 0.0 }
+        let chebyshev_at_nodes = core::array::from_fn(|k| core::array::from_fn(|i| cosine(k, i)));
+        Self { time, count, changes, chebyshev_at_nodes, width: MIN_STEPS, block: None, until: 0.0 }
     }
 
     /// Begins a block at step `first`, as wide as its error allows.
-    fn begin(&mut self, first: f64) {
+    fn begin_block(&mut self, first: f64) {
         // Step `first` is at position `first` + 1/2.
         let ends = self.changes.iter().map(|change| change - 0.5);
         let end = ends.into_iter().find(|end| *end > first).unwrap_or(f64::INFINITY);
@@ -70,50 +68,57 @@ impl<F: Fn(f64) -> (f64, f64)> Interpolated<F> {
                 self.width = MIN_STEPS;
                 return;
             }
-            let (block, rest) = self.through(first, last);
-            let max = (MAX_REST + block.max_error) / SAFETY;
-            if rest <= max {
-                if rest < max / 1000.0 {
+            let (block, last_terms) = self.fit_block(first, last);
+            let max = (MAX_TRUNCATION + block.max_error) / SAFETY;
+            if last_terms <= max {
+                if last_terms < max / 1000.0 {
                     self.width = libm::fmin(2.0 * self.width, MAX_STEPS);
                 }
-                self.block = Some(Block { max_error: GROWTH * block.max_error + MAX_REST, ..block });
+                self.block = Some(Block { max_error: GROWTH * block.max_error + MAX_TRUNCATION, ..block });
                 return;
             }
             self.width = (last - first) / 1.5;
         }
     }
 
-    /// The polynomial through the steps from `first` to `last`, and the sum of its last two coefficients, of which one may
-    /// vanish by symmetry.
-    fn through(&self, first: f64, last: f64) -> (Block, f64) {
+    /// The polynomial through the steps from `first` to `last`, and the sum of its last two coefficients, because one may
+    /// be 0 by symmetry.
+    fn fit_block(&self, first: f64, last: f64) -> (Block, f64) {
         let (middle, half) = ((first + last) / 2.0, (last - first) / 2.0);
         let (at_middle, mut max_error) = (self.time)(middle);
-        let times = self.at_nodes[1].map(|x| {
+        let times = self.chebyshev_at_nodes[1].map(|x| {
             let (time, own_error) = (self.time)(middle + half * x);
             max_error = greater(max_error, own_error);
             time - at_middle
         });
-        let terms = self.at_nodes.map(|at_nodes| {
-            let products = at_nodes.iter().zip(&times).map(|(at_node, time)| at_node * time);
+        let terms = self.chebyshev_at_nodes.map(|chebyshev| {
+            let products = chebyshev.iter().zip(&times).map(|(at_node, time)| at_node * time);
             products.sum::<f64>() * 2.0 / NODES as f64
         });
-        // By T_(k + 1) = 2*x*T_k - T_(k - 1), T_0 = 1 and T_1 = x.
-        let (mut before, mut polynomial) = ([0.0; NODES], [0.0; NODES]);
-        polynomial[0] = 1.0;
-        let mut powers = [0.0; NODES];
-        for (k, term) in terms.into_iter().enumerate() {
-            let term = if k == 0 { term / 2.0 } else { term };
-            for (power, own) in powers.iter_mut().zip(polynomial) {
-                *power += term * own;
-            }
-            let twice = if k == 0 { 1.0 } else { 2.0 };
-            let next = core::array::from_fn(|n| if n == 0 { 0.0 } else { twice * polynomial[n - 1] } - if k == 0 { 0.0 } else { before[n] });
-            (before, polynomial) = (polynomial, next);
-        }
+        let mut powers = powers_of(terms);
         powers[0] += at_middle;
-        let rest = libm::fabs(terms[NODES - 2]) + libm::fabs(terms[NODES - 1]);
-        (Block { middle, per_step: 1.0 / half, powers, max_error }, rest)
+        let last_terms = libm::fabs(terms[NODES - 2]) + libm::fabs(terms[NODES - 1]);
+        (Block { middle, per_step: 1.0 / half, powers, max_error }, last_terms)
     }
+}
+
+/// Converts c0/2 + c1*T1(x) + … to coefficients of powers of x, by T_(k + 1) = 2*x*T_k - T_(k - 1), T_0 = 1 and T_1 = x.
+fn powers_of(terms: [f64; NODES]) -> [f64; NODES] {
+    let (mut previous, mut polynomial, mut powers) = ([0.0; NODES], [0.0; NODES], [0.0; NODES]);
+    polynomial[0] = 1.0;
+    for (k, term) in terms.into_iter().enumerate() {
+        let term = if k == 0 { term / 2.0 } else { term };
+        for (power, coefficient) in powers.iter_mut().zip(polynomial) {
+            *power += term * coefficient;
+        }
+        let factor = if k == 0 { 1.0 } else { 2.0 };
+        let next = core::array::from_fn(|n| {
+            let times_x = if n == 0 { 0.0 } else { factor * polynomial[n - 1] };
+            times_x - if k == 0 { 0.0 } else { previous[n] }
+        });
+        (previous, polynomial) = (polynomial, next);
+    }
+    powers
 }
 
 #[derive(Clone, Copy)]
@@ -122,7 +127,6 @@ struct Block {
     per_step: f64,
     /// Coefficients of the powers of x, in cycles.
     powers: [f64; NODES],
-    /// In cycles.
     max_error: f64,
 }
 
@@ -138,20 +142,21 @@ impl<F: Fn(f64) -> (f64, f64)> Times for Interpolated<F> {
         let (mut step, mut times, mut max_error) = (first, times, 0.0);
         while !times.is_empty() {
             if step >= self.until {
-                self.begin(step);
+                self.begin_block(step);
             }
-            let (here, rest) = times.split_at_mut(times.len().min((self.until - step) as usize));
-            let len = here.len();
+            let (block_times, later_times) =
+                times.split_at_mut(times.len().min((self.until - step) as usize));
+            let len = block_times.len();
             if let Some(block) = self.block {
-                put(step, here, |step| block.time(step));
+                fill_times(step, block_times, |step| block.time(step));
                 max_error = greater(max_error, block.max_error);
             } else {
-                for (index, put) in (0_i32..).zip(here) {
-                    let (time, own_error) = (self.time)(step + f64::from(index));
-                    (*put, max_error) = (time, greater(max_error, own_error));
+                for (index, time) in (0_i32..).zip(block_times) {
+                    let (solved, own_error) = (self.time)(step + f64::from(index));
+                    (*time, max_error) = (solved, greater(max_error, own_error));
                 }
             }
-            (step, times) = (step + len as f64, rest);
+            (step, times) = (step + len as f64, later_times);
         }
         max_error
     }
@@ -179,8 +184,8 @@ mod tests {
     };
     use core::cell::Cell;
 
-    /// Compares a curve's times with solved ones, and returns how many were solved for each step.
-    fn check(curve: &impl Schedule, changes: Vec<f64>, what: &str) -> f64 {
+    /// Compares a curve's times with solved ones; returns how many were solved per step.
+    fn check(curve: &impl Schedule, changes: Vec<f64>, name: &str) -> f64 {
         let (count, clock, solved) = (curve.steps().unsigned_abs(), 16e6, Cell::new(0));
         let time = |step: f64| {
             solved.set(solved.get() + 1);
@@ -193,14 +198,14 @@ mod tests {
             for (index, found) in found.iter().enumerate() {
                 let step = 177 * block + index;
                 let expected = curve.time_s(step as f64 + 0.5) * clock;
-                assert!((found - expected).abs() <= max_error, "step {step} of {what}: {found} {expected}");
+                assert!((found - expected).abs() <= max_error, "step {step} of {name}: {found} {expected}");
             }
         }
         f64::from(solved.get()) / count as f64
     }
 
     #[test]
-    fn times_in_a_block_are_those_that_are_solved_and_few_are_solved() {
+    fn interpolates_most_times_within_the_error() {
         for steps in [1, 2, 15, 39, 40, 41, 668, -100_000] {
             let mut solved = Vec::new();
             for part in [0.0, 0.002, 0.01, 0.25, 0.5] {

@@ -1,4 +1,4 @@
-//! The cycle of each step: numbers with enough digits, and the loop that all planners share (DESIGN B1).
+//! Computes the cycle of each step: numbers with enough digits, and the loop that all curves share (DESIGN B1).
 
 mod cycle_time;
 mod decimal;
@@ -15,7 +15,7 @@ pub(crate) use double::Double;
 pub(crate) use interpolated::{Interpolated, one_searched_run};
 pub(crate) use number::Number;
 #[cfg(test)]
-pub(crate) use rounding::decided;
+pub(crate) use rounding::decide_cycle;
 pub(crate) use rounding::{IsDueBefore, MAX_ERROR, ROUNDING, is_mirrored_due_before};
 pub(crate) use run::{Run, Runs, Schedule, Times, one_run};
 pub(crate) use step_loop::MoveSteps;

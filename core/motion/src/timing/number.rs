@@ -1,5 +1,5 @@
-//! The numbers of a curve's formula (DESIGN B1): in f64 it gives the curve and the times of its steps, in 106 bits
-//! (`double`) the same formula decides near ties.
+//! The number type of a curve's formula (DESIGN B1): in f64 the formula computes the curve and the times of its steps, in 106
+//! bits (`double`) it decides near ties.
 
 use crate::square_root;
 use core::ops::{Add, Div, Mul, Sub};
@@ -30,6 +30,7 @@ pub(crate) trait Number:
         if self < 0.0.into() { Self::from(0.0) - self } else { self }
     }
 
+    /// The number, or 0 if it is negative.
     fn or_zero(self) -> Self {
         if self > 0.0.into() { self } else { 0.0.into() }
     }
@@ -66,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_series_and_the_sine_agree_where_they_meet() {
+    fn series_and_sine_agree() {
         for x in [1e-9, 1e-3, 0.5, 0.999, 1.0] {
             let given = x.minus_its_sine();
             let expected = if x < 1e-2 { x * x * x / 6.0 * (1.0 - x * x / 20.0) } else { x - libm::sin(x) };

@@ -6,15 +6,15 @@
 //!                   [-x-]                             a time in f64 and its maximum error
 //! ```
 //!
-//! A time in f64 decides unless an edge is within its error. Else the curve itself decides in 106 bits ([`Double`]): the
-//! step is due before an edge E if the curve has passed the step's position at E. That needs the curve's formula but no
-//! root, and it is a proof whatever the first time was.
+//! A time in f64 decides unless an edge is within its error. Otherwise the curve decides in 106 bits ([`Double`]): the step
+//! is due before an edge E if the curve has passed the step's position at E. That needs the curve's formula but no root, and
+//! it is exact however wrong the f64 was.
 //!
 //! The error of a time in f64 is counted in roundings of its formula, u = 2^-53 each; `libm`'s functions count as two. A
-//! curve from rest has s <= v*t, so the relative error of a position or parameter is at least that of the time. Every
-//! planner stays below 64 u of its move's duration ([`MAX_ERROR`]) or gives its own bound.
+//! curve from rest has s <= v*t, so the relative error of a position or parameter is at least that of the time. The error of
+//! every curve is below 64 u of its move's duration ([`MAX_ERROR`]), or the curve has its own bound.
 //!
-//! 106 bits are limited, too. E counts as earlier by a [`tie`], 2^10 times their error, so a step due exactly at E is in
+//! 106 bits have an error, too. E counts as earlier by a [`tie`], 2^10 times this error, so that a step due exactly at E is in
 //! the next cycle. So is a step due less than a tie before E: one step in 2^62 of a motion of 2^32 cycles.
 
 use crate::{
@@ -31,8 +31,9 @@ pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0;
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
 pub(crate) type IsDueBefore<'p> = alloc::boxed::Box<dyn Fn(u64, Double) -> bool + 'p>;
 
-/// The cycle of a step of a move that begins at `start`; `guess` only affects the duration of the search.
-pub(crate) fn decided(start: CycleTime, guess: u64, is_due_before: impl Fn(Double) -> bool) -> u64 {
+/// The cycle of a step of a move that begins at `start`. `is_due_before` decides for a time since the start; `guess` only
+/// affects the duration of the search.
+pub(crate) fn decide_cycle(start: CycleTime, guess: u64, is_due_before: impl Fn(Double) -> bool) -> u64 {
     first_near(guess, u64::MAX, |cycle| {
         // The edge at the end of the cycle, half a cycle after it.
         let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5;
@@ -49,14 +50,13 @@ pub(crate) fn is_mirrored_due_before(
     is_past: impl Fn(Double, f64) -> bool,
 ) -> bool {
     let position = k as f64 - 0.5;
-    let left = count as f64 - position;
-    // The formula of either half ends with it.
+    let steps_left = count as f64 - position;
     let is_second_half = time > duration * 0.5;
-    if position <= left {
+    if position <= steps_left {
         is_second_half || (time > 0.0.into() && is_past(time, position))
     } else {
-        let still = duration - time;
-        is_second_half && !(still > 0.0.into() && is_past(still, left))
+        let time_left = duration - time;
+        is_second_half && !(time_left > 0.0.into() && is_past(time_left, steps_left))
     }
 }
 
@@ -69,8 +69,8 @@ mod tests {
     }
 
     #[test]
-    fn the_decided_cycle_is_the_same_wherever_the_search_begins() {
-        // When a step is due from cycle 1000 1/4 on, and its cycle.
+    fn the_guess_does_not_change_the_cycle() {
+        // Time of a step since cycle 1000 1/4, and its cycle.
         let rows = [
             (0.0, 1000),
             (0.2499, 1000),
@@ -85,11 +85,12 @@ mod tests {
         let start = at(1000, 0.25.into());
         for (due, cycle) in rows {
             for guess in [cycle, 0, 1, 999, 1000, 1001, 1007, 1008, 1009, 5000, 124_455, 124_457, 1 << 40] {
-                let found = decided(start, guess, |since| since > due.into());
+                let found = decide_cycle(start, guess, |since| since > due.into());
                 assert_eq!(found, cycle, "{due} from {guess} on");
             }
         }
-        let found = [0, 1, 1000].map(|guess| decided(at(0, 0.0.into()), guess, |since| since > 0.0.into()));
-        assert_eq!(found, [0; 3], "a step at the start is in its cycle");
+        let found =
+            [0, 1, 1000].map(|guess| decide_cycle(at(0, 0.0.into()), guess, |since| since > 0.0.into()));
+        assert_eq!(found, [0; 3], "a step at the start is in the cycle of the start");
     }
 }

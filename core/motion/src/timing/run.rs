@@ -7,8 +7,8 @@
 //!             run 1   run 2
 //! ```
 //!
-//! A planner gives the times of steps in f64 and their maximum error, and decides in 106 bits whether a step is due before
-//! an edge ([`Schedule`]). The rest is shared: `step_loop` rounds the times, and `rounding` decides near ties.
+//! A curve computes the times of its steps in f64 with their maximum error, and decides in 106 bits whether a step is due
+//! before an edge ([`Schedule`]). Shared code rounds the times (`step_loop`) and decides near ties (`rounding`).
 
 use crate::{
     Curve,
@@ -18,11 +18,12 @@ use crate::{
 use alloc::boxed::Box;
 
 pub(crate) trait Schedule: Curve {
-    /// Duration of the move in cycles.
     fn length(&self, clock_hz: u32) -> CycleTime;
 
+    /// Times of all steps at `clock_hz`, run by run.
     fn runs(&self, clock_hz: u32) -> Runs<'_>;
 
+    /// The exact decision of near ties at `clock_hz`.
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_>;
 
     /// Maximum error of a time in f64, in s.
@@ -39,15 +40,15 @@ pub(crate) struct Run<'p> {
     pub(crate) times: Box<dyn Times + 'p>,
 }
 
-/// Times of a run's steps in cycles from the start of the move. One dynamic call computes a block of steps; a call per step
-/// would take about three times as long as the square root of a ramp.
+/// Times of a run's steps in cycles from the start of the move. One dynamic call computes a block of steps, because a call
+/// per step would take about three times as long as the square root of a ramp.
 pub(crate) trait Times {
     /// Writes the times of the steps from `first` (from 0) on, and returns their maximum error.
     fn fill(&mut self, first: f64, times: &mut [f64]) -> f64;
 }
 
 impl<'p> Run<'p> {
-    /// Steps whose times a formula gives with an error of at most `max_error`.
+    /// Steps whose times follow from a formula, with an error of at most `max_error` cycles.
     pub(crate) fn new(count: u64, right: bool, max_error: f64, time: impl Fn(f64) -> f64 + 'p) -> Self {
         Self { count, right, times: Box::new(Formula { time, max_error }) }
     }
@@ -60,18 +61,18 @@ struct Formula<F> {
 
 impl<F: Fn(f64) -> f64> Times for Formula<F> {
     fn fill(&mut self, first: f64, times: &mut [f64]) -> f64 {
-        put(first, times, &self.time);
+        fill_times(first, times, &self.time);
         self.max_error
     }
 }
 
-pub(crate) fn put(first: f64, times: &mut [f64], time: impl Fn(f64) -> f64) {
-    for (index, put) in times.iter_mut().enumerate() {
-        *put = time(first + f64::from(index as i32));
+pub(crate) fn fill_times(first: f64, times: &mut [f64], time: impl Fn(f64) -> f64) {
+    for (index, slot) in times.iter_mut().enumerate() {
+        *slot = time(first + f64::from(index as i32));
     }
 }
 
-/// The single run of a curve without reversal; `time` gives the time of a step in cycles.
+/// The single run of a curve without reversals; `time` returns the time of a step in cycles.
 pub(crate) fn one_run<'p>(curve: &impl Schedule, clock_hz: u32, time: impl Fn(f64) -> f64 + 'p) -> Runs<'p> {
     let max_error = curve.max_error_s() * f64::from(clock_hz);
     Box::new(core::iter::once(Run::new(curve.steps().unsigned_abs(), curve.steps() >= 0, max_error, time)))

@@ -1,15 +1,15 @@
-//! The loop that all planners share (DESIGN B1): when the steps of an axis are due, one after another.
+//! The loop that all curves share (DESIGN B1): computes the cycle of one step after another.
 //!
 //! ```text
 //! cycle = floor(t*clock_hz + 1/2)     t where s(t) = k - 1/2, or a time from a table
 //! ```
 //!
-//! The times of a move count from its start, which is added with all its digits; the sum is rounded once. If an f64 does
-//! not decide the rounding, `rounding` does.
+//! The times of a move count from its start. Their sum with the start is rounded only once. If an f64 does not decide the
+//! rounding, `rounding` does.
 
 use crate::{
     timing::cycle_time::CycleTime,
-    timing::rounding::{IsDueBefore, decided},
+    timing::rounding::{IsDueBefore, decide_cycle},
     timing::run::{Run, Runs, Schedule},
 };
 
@@ -17,29 +17,30 @@ const BLOCK: usize = 256;
 /// Maximum error in cycles of the fractional start of a move.
 const MAX_START_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// A step and when it is due.
+/// A step and its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScheduledStep {
-    /// From the motion's start on.
+    /// From the start of the motion.
     pub cycle: u64,
+    /// Direction of the step.
     pub right: bool,
 }
 
+/// Iterates over the steps of a move, each with its unrounded time.
 pub(crate) struct MoveSteps<'p> {
     start: CycleTime,
     is_due_before: IsDueBefore<'p>,
     runs: Runs<'p>,
     run: Option<Run<'p>>,
-    /// Steps of the run whose times are computed.
     computed: u64,
     times: [f64; BLOCK],
     /// Index of the next of these times, and their number.
-    at: usize,
+    next: usize,
     len: usize,
     /// Steps of the move before the next one.
-    past: u64,
-    /// Maximum distance from the middle between two edges at which an f64 decides.
-    room: f64,
+    steps_before: u64,
+    /// An f64 decides up to this distance from the middle between two edges, in cycles.
+    certain_distance: f64,
     right: bool,
 }
 
@@ -52,23 +53,24 @@ impl<'p> MoveSteps<'p> {
             run: None,
             computed: 0,
             times: [0.0; BLOCK],
-            at: 0,
+            next: 0,
             len: 0,
-            past: 0,
-            room: 0.0,
+            steps_before: 0,
+            certain_distance: 0.0,
             right: false,
         }
     }
 
-    pub(crate) fn after(mut self, past: u64) -> Option<ScheduledStep> {
-        let mut left = past;
+    /// The step after `steps_before` steps, without computing these.
+    pub(crate) fn step_after(mut self, steps_before: u64) -> Option<ScheduledStep> {
+        let mut index_in_run = steps_before;
         loop {
             let run = self.next_run()?;
-            if left < run.count {
-                (self.computed, self.past) = (left, past);
+            if index_in_run < run.count {
+                (self.computed, self.steps_before) = (index_in_run, steps_before);
                 return self.next().map(|(_, step)| step);
             }
-            left -= run.count;
+            index_in_run -= run.count;
         }
     }
 
@@ -78,6 +80,7 @@ impl<'p> MoveSteps<'p> {
         Some(run)
     }
 
+    /// Computes the next block of times; `None` after the last step.
     fn fill(&mut self) -> Option<()> {
         while self.run.as_ref().is_none_or(|run| self.computed >= run.count) {
             self.next_run()?;
@@ -85,9 +88,9 @@ impl<'p> MoveSteps<'p> {
         let run = self.run.as_mut()?;
         self.len = usize::try_from(run.count - self.computed).map_or(BLOCK, |left| left.min(BLOCK));
         let max_error = run.times.fill(self.computed as f64, self.times.get_mut(..self.len)?);
-        self.room = 0.5 - MAX_START_ERROR - max_error;
+        self.certain_distance = 0.5 - MAX_START_ERROR - max_error;
         self.computed += self.len as u64;
-        self.at = 0;
+        self.next = 0;
         Some(())
     }
 }
@@ -97,20 +100,20 @@ impl Iterator for MoveSteps<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        if self.at >= self.len {
+        if self.next >= self.len {
             self.fill()?;
         }
-        let cycles = *self.times.get(self.at)?;
-        self.at += 1;
-        self.past += 1;
+        let cycles = *self.times.get(self.next)?;
+        self.next += 1;
+        self.steps_before += 1;
         let since_whole = self.start.part.high + cycles;
-        let near = (since_whole + 0.5) as i64;
-        let cycle = self.start.whole.wrapping_add_signed(near);
-        let is_certain = libm::fabs(since_whole - near as f64) < self.room;
+        let nearest = (since_whole + 0.5) as i64;
+        let cycle = self.start.whole.wrapping_add_signed(nearest);
+        let is_certain = libm::fabs(since_whole - nearest as f64) < self.certain_distance;
         let cycle = if is_certain {
             cycle
         } else {
-            decided(self.start, cycle, |since| (self.is_due_before)(self.past, since))
+            decide_cycle(self.start, cycle, |since| (self.is_due_before)(self.steps_before, since))
         };
         Some((self.start.cycles() + cycles, ScheduledStep { cycle, right: self.right }))
     }

@@ -28,7 +28,7 @@ use std::cmp::Ordering;
 use std::env;
 use stepscope_motion::{
     AxisPlan, Profile,
-    curves::StaircaseTable,
+    curves::{Slice, StaircaseTable},
     mechanics::{Acceleration, Distance, Jerk, Speed},
     moves::{
         Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
@@ -500,16 +500,17 @@ fn sliced_moves_have_every_step_in_its_cycle() {
 /// The slices of a plan, from their counts of steps alone; none where these do not define its duration.
 fn by_slices(given: &Cosine, profile: &Profile) -> Option<Ideal> {
     let Profile::Sliced(curve) = profile else { panic!("it is sliced") };
-    // Those that are shorter have some of the steps that the plateau's have, at its rate.
-    let slices: Vec<(f64, f64, u32)> = curve.slices().collect();
-    let is_whole = |&(from, to, _): &(f64, f64, u32)| ((to - from) / given.slice_s - 1.0).abs() < 1e-6;
-    let held = slices.iter().filter(|slice| is_whole(slice)).map(|(.., steps)| i64::from(*steps)).max()?;
+    // A shortened slice has fewer steps at the plateau's rate.
+    let slices: Vec<Slice> = curve.slices().collect();
+    let is_complete = |slice: &Slice| ((slice.to_s - slice.from_s) / given.slice_s - 1.0).abs() < 1e-6;
+    let plateau_steps =
+        slices.iter().filter(|slice| is_complete(slice)).map(|slice| i64::from(slice.steps)).max()?;
     let slice = decimal(given.slice_s);
     let (mut made, mut intervals) = (0, Vec::new());
     for each in &slices {
-        let parts = if is_whole(each) { held } else { i64::from(each.2) };
-        let at = |made: i64| slice.clone() * whole(made) / whole(held);
-        intervals.push((at(made), at(made + parts), each.2.into()));
+        let parts = if is_complete(each) { plateau_steps } else { i64::from(each.steps) };
+        let at = |made: i64| slice.clone() * whole(made) / whole(plateau_steps);
+        intervals.push((at(made), at(made + parts), each.steps.into()));
         made += parts;
     }
     let duration = intervals.last().expect("there are slices").1.clone();

@@ -1,4 +1,4 @@
-//! The shapes of a ramp in 106 bits (DESIGN B1, B4): whether their travel at a time exceeds a given one.
+//! The shapes of a ramp in 106 bits (DESIGN B1, B4): decide whether the travel at a time exceeds a given one.
 //!
 //! With R(z) = e^z - 1 - z without cancellation, z = k*x of an exponential and z = 2*r*x of a sigmoid:
 //!
@@ -26,16 +26,16 @@ impl Ramp {
         match self {
             Self::Sigmoid(curve) => {
                 let range = Double::decimal(curve.range);
-                let past_one = range + range.exponential_rest();
-                let (twice_range, under) = (range * 2.0, past_one + 2.0);
-                let low = Double::from(1.0) / under;
-                ExactRamp::Sigmoid { twice_range, low, scale: twice_range * past_one / under }
+                let past_one = range + range.exponential_remainder();
+                let (twice_range, denominator) = (range * 2.0, past_one + 2.0);
+                let low = Double::from(1.0) / denominator;
+                ExactRamp::Sigmoid { twice_range, low, scale: twice_range * past_one / denominator }
             }
             Self::Bezier => ExactRamp::Bezier,
             Self::Straight => ExactRamp::Straight,
             Self::Exponential(curve) => {
                 let constants = Double::decimal(curve.constants);
-                let part = constants - (Double::default() - constants).exponential_rest();
+                let part = constants - (Double::default() - constants).exponential_remainder();
                 ExactRamp::Exponential { constants, scale: constants * part }
             }
         }
@@ -46,7 +46,7 @@ impl ExactRamp {
     pub(crate) fn area(self) -> Double {
         match self {
             Self::Exponential { constants, scale } => {
-                (Double::default() - constants).exponential_rest() / scale
+                (Double::default() - constants).exponential_remainder() / scale
             }
             _ => 0.5.into(),
         }
@@ -56,13 +56,13 @@ impl ExactRamp {
         match self {
             Self::Sigmoid { twice_range, low, scale } => {
                 let (z, area) = (twice_range * x, scale * travel);
-                let rest = (low * z + area).exponential_rest();
-                low * z.exponential_rest() - rest > area
+                let remainder = (low * z + area).exponential_remainder();
+                low * z.exponential_remainder() - remainder > area
             }
             Self::Bezier => x * x * x * (Double::from(1.0) - x * 0.5) > travel,
             Self::Straight => x * x * 0.5 > travel,
             Self::Exponential { constants, scale } => {
-                (Double::default() - constants * x).exponential_rest() / scale > travel
+                (Double::default() - constants * x).exponential_remainder() / scale > travel
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Checks the numbers of an axis' motor, which `inspect` uses for torque computations.
+//! Checks the numbers of an axis' motor, which `inspect` uses to compute torques.
 
 use crate::{limits, motor::Motor, moves::Axis, planners::quantities::Quantities, problem::ValueError};
 

@@ -2,7 +2,7 @@
 
 use crate::{
     curves::constant_velocity::{Constant, Dwell},
-    moves,
+    limits, moves,
     planners::quantities::Quantities,
 };
 
@@ -10,9 +10,9 @@ pub(super) fn constant(quantities: &mut Quantities<'_>, given: &moves::Constant)
     let steps = quantities.distance("distance", &given.distance);
     let speed = quantities.speed("speed", &given.speed);
     let (steps, _) = (steps?, speed?);
-    Some(Constant::within(steps, given.speed.exact_in_steps(quantities.mechanics()).ok()?))
+    Some(Constant::from_exact(steps, given.speed.exact_in_steps(quantities.mechanics()).ok()?))
 }
 
 pub(super) fn dwell(quantities: &mut Quantities<'_>, given: &moves::Dwell) -> Option<Dwell> {
-    quantities.pause("duration_s", given.duration_s).map(Dwell::new)
+    quantities.range("duration_s", given.duration_s, limits::PAUSE_S, "s").map(Dwell::new)
 }

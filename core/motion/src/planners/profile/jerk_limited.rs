@@ -18,5 +18,5 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) 
         acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
         jerk: given.max_jerk.exact_in_steps(mechanics).ok()?,
     };
-    Some(JerkLimited::within(steps, limits))
+    Some(JerkLimited::from_exact(steps, limits))
 }

@@ -4,16 +4,16 @@ use crate::{
     Curve,
     curves::{sine::Sine, sine_segments::SineSegments},
     limits, moves,
-    planners::budget::{Budget, MAX_SEGMENTS, exceeded, hold_speed},
+    planners::budget::{Budget, MAX_SEGMENTS, check_speed, exceeded},
     planners::quantities::Quantities,
 };
 
 pub(super) fn sine(quantities: &mut Quantities<'_>, given: &moves::Sine) -> Option<Sine> {
     let amplitude = quantities.distance("amplitude", &given.amplitude);
-    let period_s = quantities.duration("period_s", given.period_s);
+    let period_s = quantities.range("period_s", given.period_s, limits::DURATION_S, "s");
     quantities.range("periods", given.periods.into(), limits::PERIODS, "")?;
     let curve = Sine::new(amplitude?, period_s?, given.periods);
-    hold_speed(quantities, "period_s", curve.peaks().speed)?;
+    check_speed(quantities, "period_s", curve.peaks().speed)?;
     Some(curve)
 }
 
@@ -23,7 +23,7 @@ pub(super) fn segments(
     budget: &mut Budget,
 ) -> Option<SineSegments> {
     let amplitude = quantities.distance("amplitude", &given.amplitude);
-    let period_s = quantities.duration("period_s", given.period_s);
+    let period_s = quantities.range("period_s", given.period_s, limits::DURATION_S, "s");
     let periods = quantities.range("periods", given.periods.into(), limits::PERIODS, "");
     let deviation = quantities.range("max_deviation", given.max_deviation, limits::MAX_DEVIATION, "");
     let (amplitude, period_s, deviation) = (amplitude?, period_s?, deviation?);
@@ -35,6 +35,6 @@ pub(super) fn segments(
         return None;
     };
     budget.segments = left;
-    hold_speed(quantities, "period_s", curve.peaks().speed)?;
+    check_speed(quantities, "period_s", curve.peaks().speed)?;
     Some(curve)
 }

@@ -1,19 +1,18 @@
 //! Plans a curve through points (DESIGN B6).
 
 use crate::{
-    curves::points::{Between, Point, Points},
-    limits,
-    moves::{self, Interpolation},
-    planners::budget::hold_speed,
+    curves::points::{Point, Points},
+    limits, moves,
+    planners::budget::check_speed,
     planners::quantities::Quantities,
     problem::Cause,
     timing::Exact,
 };
 use alloc::vec::Vec;
 
-/// Minimum time between points in s: a cycle of the fastest clock.
+/// Minimum time between points in s: one cycle of the fastest clock.
 const MIN_TIME_S: f64 = 1e-9;
-/// Maximum number of problems of single points: in a table of another kind every row has one.
+/// Maximum number of listed problems of single points, because in a file of another kind every row has one.
 const MAX_LISTED: usize = 16;
 
 pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Option<Points> {
@@ -22,52 +21,46 @@ pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::Points) -> Op
     if !limits::POINTS.contains(&count) {
         return None;
     }
-    let size = quantities.step_of("unit", &given.unit.of(0.0))?;
-    let points = quantities.at("points", |here| check(here, given, size))?;
-    // Before the curve is made, which needs times that f64 can tell apart.
-    quantities.duration("points", points.last().map_or(0.0, |(since_s, _)| since_s.high))?;
-    let between = match given.interpolation {
-        Interpolation::Straight => Between::Straight,
-        Interpolation::Smooth => Between::Smooth,
-    };
-    let curve = Points::through(points, between)?;
+    let step_size = quantities.step_size_of("unit", &given.unit.of(0.0))?;
+    let points = quantities.at("points", |here| check(here, given, step_size))?;
+    // Checked first, because the curve needs times that differ in f64.
+    let duration_s = points.last().map_or(0.0, |last| last.time_s.high);
+    quantities.range("points", duration_s, limits::DURATION_S, "s")?;
+    let curve = Points::from_exact(points, given.interpolation)?;
     if curve.step_count() == 0 {
-        quantities.refuse("points", Cause::NoSteps { steps: curve.reach() });
+        quantities.refuse("points", Cause::NoSteps { steps: curve.max_distance() });
         return None;
     }
-    // If the curve is too fast, the problem is at the point that it moves to.
-    let (piece, speed) = curve.quickest();
-    quantities.at("points", |here| here.at_entry(piece + 1, |here| hold_speed(here, "", speed)))?;
+    // The path of a speed that is too high is that of the point at the end of its piece.
+    let (piece, speed) = curve.fastest_piece();
+    quantities.at("points", |here| here.at_entry(piece + 1, |here| check_speed(here, "", speed)))?;
     Some(curve)
 }
 
-/// Times and positions in steps of valid points, relative to the first, in 106 bits.
-fn check(quantities: &mut Quantities<'_>, given: &moves::Points, size: f64) -> Option<Vec<Point>> {
-    let earlier = quantities.validator.count();
+fn check(quantities: &mut Quantities<'_>, given: &moves::Points, step_size: f64) -> Option<Vec<Point>> {
+    let earlier_problems = quantities.validator.count();
     let mut points = Vec::with_capacity(given.points.len());
-    let mut before = None;
-    let first =
-        given.points.first().map(|first| first.position).filter(|first| first.is_finite()).unwrap_or(0.0);
-    let first_s =
-        given.points.first().map(|first| first.time_s).filter(|first_s| first_s.is_finite()).unwrap_or(0.0);
-    let since = |time_s: f64| match time_s.is_finite() {
-        true => Exact::difference(time_s, first_s).double(),
-        false => time_s.into(),
+    let mut before_s = None;
+    let finite = |number: f64| if number.is_finite() { number } else { 0.0 };
+    let (first_s, first) =
+        given.points.first().map_or((0.0, 0.0), |first| (finite(first.time_s), finite(first.position)));
+    let since = |time_s: f64| {
+        if time_s.is_finite() { Exact::difference(time_s, first_s).double() } else { time_s.into() }
     };
     for (index, point) in given.points.iter().enumerate() {
         quantities.at_entry(index, |here| {
-            if let Some(before) = before.filter(|before| !is_after(point.time_s, *before)) {
+            if let Some(before) = before_s.filter(|before| !is_after(point.time_s, *before)) {
                 here.refuse("", Cause::NotRising { given: point.time_s, before, min: MIN_TIME_S });
             }
-            let travel = here.travel(first, &given.unit.of(point.position), size);
-            points.extend(travel.map(|travel| (since(point.time_s), travel)));
+            let travel = here.travel(first, &given.unit.of(point.position), step_size);
+            points.extend(travel.map(|position| Point { time_s: since(point.time_s), position }));
         });
-        before = Some(point.time_s);
-        if quantities.validator.count() >= earlier + MAX_LISTED {
+        before_s = Some(point.time_s);
+        if quantities.validator.count() >= earlier_problems + MAX_LISTED {
             break;
         }
     }
-    (quantities.validator.count() == earlier).then_some(points)
+    (quantities.validator.count() == earlier_problems).then_some(points)
 }
 
 fn is_after(given: f64, before: f64) -> bool {
@@ -82,11 +75,11 @@ mod tests {
     };
     use alloc::{string::ToString, vec, vec::Vec};
 
-    /// Unit, points, and the problems that they have.
+    /// Unit, points, and their problems.
     type Row<'a> = (PointUnit, Vec<(f64, f64)>, &'a [&'a str]);
 
     #[test]
-    fn every_problem_of_points_is_reported_with_its_place() {
+    fn reports_every_problem_of_points_with_its_path() {
         let straight = Interpolation::Straight;
         let rows: [Row; 10] = [
             (

@@ -58,7 +58,7 @@ mod tests {
     use alloc::{string::ToString, vec, vec::Vec};
 
     #[test]
-    fn every_problem_of_a_staircase_is_told_with_its_path() {
+    fn reports_every_problem_of_a_staircase_with_its_path() {
         let speed = Speed::StepsPerSecond;
         let rows: [(Staircase, &[&str]); 4] = [
             (Staircase::default(), &[]),

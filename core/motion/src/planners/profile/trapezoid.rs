@@ -13,6 +13,7 @@ use crate::{
     planners::quantities::Quantities,
     problem::Cause,
 };
+
 pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Trapezoid> {
     let steps = check(quantities, given)?;
     let mechanics = quantities.mechanics();
@@ -21,7 +22,7 @@ pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -
         top_speed: given.max_speed.exact_in_steps(mechanics).ok()?,
         acceleration: given.max_acceleration.exact_in_steps(mechanics).ok()?,
     };
-    Some(Trapezoid::within(steps, limits))
+    Some(Trapezoid::from_exact(steps, limits))
 }
 
 pub(super) fn table(
@@ -54,15 +55,15 @@ pub(super) fn table(
     }
 }
 
-/// Checks the numbers, those of the table only if it is requested. Returns the steps.
+/// Checks the numbers; those of the table only for that method. Returns the steps.
 fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<i64> {
     // The table's first rate must round to one pulse per second; the exact curve may start from rest.
-    let starts = match given.method {
+    let start_range = match given.method {
         TrapezoidMethod::Table => limits::TABLE_RATE_STEPS_S,
         TrapezoidMethod::Exact => 0.0..=MAX_SPEED,
     };
     let steps = quantities.distance("distance", &given.distance);
-    let start = quantities.speed_within("start_speed", &given.start_speed, starts);
+    let start = quantities.speed_within("start_speed", &given.start_speed, start_range);
     let top = quantities.speed("max_speed", &given.max_speed);
     let acceleration = quantities.acceleration("max_acceleration", &given.max_acceleration);
     let timer_hz = match given.method {

@@ -1,13 +1,13 @@
-//! The judge of a curve through points, times directly: a motion asks it for the few steps that f64 does not tell.
+//! Tests of the 106-bit decisions, which a motion needs only for the few steps that f64 does not decide.
 
 use super::*;
 use crate::{
     round_half_up,
-    timing::{Schedule, decided},
+    timing::{Schedule, decide_cycle},
 };
 
-/// Curves (s, steps) of every sort: rising and falling, from rest to rest, with a turn, with bends to either side, with a
-/// piece that stands, and far from the first point. No point but the first stands at a half step.
+/// Points (s, steps) of various curves: rising and falling, with a reversal, with bends to both sides, with a standstill, and
+/// far from the first point. Only first points are at a half step.
 const CURVES: &[&[(f64, f64)]] = &[
     &[(0.0, 0.0), (1.0, 40.0)],
     &[(0.25, 3.0), (2.0, -37.3)],
@@ -18,9 +18,9 @@ const CURVES: &[&[(f64, f64)]] = &[
 ];
 
 #[test]
-fn a_step_is_due_after_its_time_and_not_before() {
+fn a_step_is_due_only_after_its_time() {
     for points in CURVES {
-        for between in [Between::Straight, Between::Smooth] {
+        for between in [Interpolation::Straight, Interpolation::Smooth] {
             let curve = Points::new(points, between).unwrap();
             assert!(curve.step_count() > 15, "{points:?}");
             for (index, position, right) in curve.all_due() {
@@ -52,17 +52,17 @@ fn a_step_is_due_after_its_time_and_not_before() {
 fn a_curve_that_is_at_a_position_is_not_past_it() {
     let straight = [(0.0, 0.0), (1.0, 4.0), (3.0, -4.0)];
     let smooth = [(0.0, 0.0), (2.0, 2.0), (4.0, 0.0)];
-    // Points, the piece, the position and when it is there: in a piece's first half and in its second, up and down.
+    // Points, piece, position and its time: in the first and second half of a piece, up and down.
     let rows = [
-        (&straight, Between::Straight, 0, 0.5, 0.125),
-        (&straight, Between::Straight, 0, 3.5, 0.875),
-        (&straight, Between::Straight, 1, 2.5, 1.375),
-        (&straight, Between::Straight, 1, -3.5, 2.875),
+        (&straight, Interpolation::Straight, 0, 0.5, 0.125),
+        (&straight, Interpolation::Straight, 0, 3.5, 0.875),
+        (&straight, Interpolation::Straight, 1, 2.5, 1.375),
+        (&straight, Interpolation::Straight, 1, -3.5, 2.875),
         // Of 2*x^2*(3 - 2*x) at x = 1/4 and 3/4, of a length of 2 s.
-        (&smooth, Between::Smooth, 0, 0.3125, 0.5),
-        (&smooth, Between::Smooth, 0, 1.6875, 1.5),
-        (&smooth, Between::Smooth, 1, 1.6875, 2.5),
-        (&smooth, Between::Smooth, 1, 0.3125, 3.5),
+        (&smooth, Interpolation::Smooth, 0, 0.3125, 0.5),
+        (&smooth, Interpolation::Smooth, 0, 1.6875, 1.5),
+        (&smooth, Interpolation::Smooth, 1, 1.6875, 2.5),
+        (&smooth, Interpolation::Smooth, 1, 0.3125, 3.5),
     ];
     for (points, between, index, position, t) in rows {
         let curve = Points::new(points, between).unwrap();
@@ -72,47 +72,47 @@ fn a_curve_that_is_at_a_position_is_not_past_it() {
             assert_eq!(found, (is_past, is_at), "{position} at {t} + {later} of {between:?} {points:?}");
         }
     }
-    let curve = Points::new(&straight, Between::Straight).unwrap();
+    let curve = Points::new(&straight, Interpolation::Straight).unwrap();
     assert!(!curve.is_past(2, 0.0, 9.0.into()), "there is no third piece");
 }
 
-/// Of decimals that have no end in binary digits: 106 bits put the time a little near its edge.
+/// Decimals without an exact binary form: in 106 bits the time is slightly off its edge.
 #[test]
-fn a_half_of_a_cycle_far_from_the_first_point_is_the_next_ones() {
+fn a_step_at_the_middle_of_a_cycle_is_in_the_next_cycle() {
     let rows = [
         ([(0.0, 0.0), (47.0, 50_809.8), (21_914.202_325, 50_808.8)], 6_607_160_698),
         ([(0.0, 0.0), (43.0, 44_285.6), (61_527.296_755, 44_284.6)], 6_191_429_676),
     ];
     for (points, expected) in rows {
-        let curve = Points::new(&points, Between::Straight).unwrap();
+        let curve = Points::new(&points, Interpolation::Straight).unwrap();
         let (is_due_before, k) = (curve.is_due_before(1_000_000), curve.step_count());
-        let found = decided(Default::default(), expected, |since| is_due_before(k, since));
+        let found = decide_cycle(Default::default(), expected, |since| is_due_before(k, since));
         assert_eq!(found, expected, "{points:?}");
     }
 }
 
 #[test]
-fn what_is_due_by_a_time_is_decided_as_f64_rounds_it() {
+fn exact_decisions_agree_with_f64_away_from_halves() {
     for points in CURVES {
-        for between in [Between::Straight, Between::Smooth] {
+        for between in [Interpolation::Straight, Interpolation::Smooth] {
             let curve = Points::new(points, between).unwrap();
             let end_s = curve.pieces.last().unwrap().to_s;
             for part in 0..1000 {
                 let t = end_s * f64::from(part) / 1000.0;
-                let position = curve.piece(t).unwrap().position(t);
+                let position = curve.piece_at(t).unwrap().position(t);
                 let from_half = libm::fabs(position - libm::floor(position) - 0.5);
                 if from_half < 1e-9 {
                     continue;
                 }
-                // So far off may it be that it is always judged.
+                // A maximum error of 1 always requires an exact decision.
                 let found = curve.due_by(t, 1.0, |_| t.into());
                 assert_eq!(found, round_half_up(position), "{position} at {t}, {between:?} {points:?}");
-                // Nor does it matter from where on the steps are counted.
+                // The search may begin at another step.
                 for elsewhere in [0.93, 1.02] {
                     let found = curve.due_by(t * elsewhere, 1e9, |_| t.into());
                     assert_eq!(found, round_half_up(position), "{position} at {t}, {between:?} {points:?}");
                 }
-                // Where its digits are told to be enough, no one is times.
+                // Without an error in f64, no exact time is needed.
                 let found = curve.due_by(t, 0.0, |_| panic!("{position} is no half"));
                 assert_eq!(found, round_half_up(position));
             }
@@ -121,10 +121,10 @@ fn what_is_due_by_a_time_is_decided_as_f64_rounds_it() {
 }
 
 #[test]
-fn a_half_is_due_when_it_is_reached_from_below_and_not_yet_when_it_is_left_from_above() {
+fn a_half_counts_when_reached_from_below_but_not_when_left_from_above() {
     let points = [(0.0, 0.0), (4.0, 4.0), (8.0, -4.0)];
-    let curve = Points::new(&points, Between::Straight).unwrap();
-    // Time, what is due just before it, at it, and just after it.
+    let curve = Points::new(&points, Interpolation::Straight).unwrap();
+    // Time, and the steps due just before it, at it, and just after it.
     let rows = [
         (0.5, [0, 1, 1]),
         (1.5, [1, 2, 2]),
