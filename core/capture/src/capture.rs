@@ -9,7 +9,7 @@ use stepscope_peripheral::trace::Step;
 /// Maximum number of channels that are read: a [`Change`] has one bit per channel.
 pub const MAX_CHANNELS: usize = 64;
 
-/// The kinds of files that can be read.
+/// The file formats that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
@@ -25,8 +25,9 @@ pub enum Format {
     SaleaeCsv,
     /// Saleae Logic 2, decoded bytes.
     SaleaeBytes,
+    /// Stepscope's table of edges: cycle, time and levels.
     EdgesCsv,
-    /// Cycle and levels in hexadecimal.
+    /// Stepscope's trace: cycle and levels in hexadecimal.
     Trace,
     /// Bytes in hexadecimal, with or without times.
     HexBytes,
@@ -36,9 +37,11 @@ pub enum Format {
     SerialLog,
     /// Output of sigrok's UART decoder.
     Annotations,
+    /// Klipper's step commands.
     Klipper,
+    /// Table of times and positions.
     PositionsCsv,
-    /// Not a readable kind: the capture is empty, and the error lists the kinds that can be read.
+    /// No known format: the capture is empty, and the error names the nearest formats.
     Unknown,
 }
 
@@ -59,14 +62,15 @@ impl fmt::Display for Format {
             Self::Annotations => "annotations of sigrok's UART decoder",
             Self::Klipper => "Klipper step commands",
             Self::PositionsCsv => "table of times and positions",
-            Self::Unknown => "file of no known kind",
+            Self::Unknown => "unknown format",
         })
     }
 }
 
+/// A channel of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// The name in the file, after its scopes and points (`top.motor.STEP`).
+    /// The name in the file, with its scopes: `top.motor.STEP`.
     pub name: String,
 }
 
@@ -77,39 +81,46 @@ pub struct TimedByte {
     pub tick: u64,
     /// Index into [`Capture::channels`].
     pub channel: u8,
+    /// Its value.
     pub byte: u8,
     /// Whether the file reports a low stop bit.
     pub framing_error: bool,
 }
 
+/// A position that the firmware printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedPosition {
-    /// In ticks of the file.
+    /// Time in ticks of the file.
     pub tick: u64,
+    /// Position in steps.
     pub position: i64,
 }
 
 /// The contents of a file: levels, bytes or positions; the other two are empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capture {
+    /// Format of the file.
     pub format: Format,
     /// Length of a tick; `None` if the file does not give it.
     pub timebase: Option<Timebase>,
-    /// At most [`MAX_CHANNELS`].
+    /// Channels in the order of their bits, at most [`MAX_CHANNELS`].
     pub channels: Vec<Channel>,
-    /// Levels in order of time, each different from the one before. The first also holds before its time.
+    /// Levels in order of time, each different from the previous one. The first also applies before its time.
     pub changes: Changes,
+    /// Decoded bytes in order of time.
     pub bytes: Vec<TimedByte>,
+    /// Positions in order of time.
     pub positions: Vec<TimedPosition>,
     /// The last tick in the file.
     pub end: u64,
-    /// Channels beyond [`MAX_CHANNELS`], which are not read.
-    pub channels_left_out: u64,
-    /// What was not read, one sentence each.
-    pub left_out: Vec<String>,
+    /// Number of channels beyond [`MAX_CHANNELS`], which are not read.
+    pub omitted_channels: u64,
+    /// What was omitted or assumed, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Capture {
+    /// An empty capture.
     #[must_use]
     pub const fn new(format: Format) -> Self {
         Self {
@@ -120,8 +131,8 @@ impl Capture {
             bytes: Vec::new(),
             positions: Vec::new(),
             end: 0,
-            channels_left_out: 0,
-            left_out: Vec::new(),
+            omitted_channels: 0,
+            notes: Vec::new(),
         }
     }
 
@@ -130,31 +141,30 @@ impl Capture {
         self.changes.len() + self.bytes.len() + self.positions.len()
     }
 
-    /// Steps for the positions, in cycles: evenly spaced from row to row, relative to the first. `None` if there are more
-    /// than `most` steps or a position does not fit into 32 bits.
+    /// Converts positions to steps, evenly spaced between two rows and relative to the first position. `cycle` converts a
+    /// tick to a clock cycle. `None` if there are more than `max_steps`, or a position does not fit into 32 bits.
     pub fn steps(&self, cycle: impl Fn(u64) -> u64, max_steps: u64) -> Option<Vec<Step>> {
-        let pairs = || self.positions.iter().zip(self.positions.iter().skip(1));
-        let all = pairs()
-            .fold(0, |sum: u64, (before, row)| sum.saturating_add(row.position.abs_diff(before.position)));
-        if all > max_steps {
+        let rows = self.positions.iter().zip(self.positions.iter().skip(1));
+        let counts = rows.clone().map(|(row, next)| next.position.abs_diff(row.position));
+        if counts.fold(0, u64::saturating_add) > max_steps {
             return None;
         }
-        let start = i128::from(self.positions.first().map_or(0, |row| row.position));
+        let origin = i128::from(self.positions.first().map_or(0, |row| row.position));
         let mut steps = Vec::new();
-        for (before, row) in pairs() {
-            let (count, right) = (row.position.abs_diff(before.position), (row.position > before.position));
-            let (from, to) = (cycle(before.tick), cycle(row.tick));
+        for (row, next) in rows {
+            let count = next.position.abs_diff(row.position);
+            let direction = if next.position > row.position { 1 } else { -1 };
+            let (from, to) = (cycle(row.tick), cycle(next.tick));
             for k in 1..=count {
-                let at =
-                    from + (u128::from(to.saturating_sub(from)) * u128::from(k) / u128::from(count)) as u64;
-                let position = i128::from(before.position) - start
-                    + (if right { i128::from(k) } else { -i128::from(k) });
-                steps.push(Step { cycle: at, position: i32::try_from(position).ok()? });
+                let elapsed = u128::from(to.saturating_sub(from)) * u128::from(k) / u128::from(count);
+                let position = i128::from(row.position) - origin + direction * i128::from(k);
+                steps.push(Step { cycle: from + elapsed as u64, position: i32::try_from(position).ok()? });
             }
         }
         Some(steps)
     }
 
+    /// Whether nothing was read.
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -165,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_stand_for_steps_that_come_evenly() {
+    fn positions_become_evenly_spaced_steps() {
         let rows = |rows: &[(u64, i64)]| Capture {
             positions: rows.iter().map(|&(tick, position)| TimedPosition { tick, position }).collect(),
             ..Capture::new(Format::PositionsCsv)
@@ -182,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_becomes_changes() {
+    fn two_steps_in_a_row_are_half_a_row_apart() {
         use crate::capture::{Capture, Format, TimedPosition};
 
         // Two steps in 10 ticks: the second at the row's time, the first half way to it.

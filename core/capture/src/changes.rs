@@ -1,16 +1,16 @@
-//! Levels in order of time, packed: most changes take two or three bytes instead of 16.
+//! Changes of levels, compressed: most take two or three bytes instead of 16.
 //!
 //! ```text
-//! block   the first change, whole;  then of each:
-//!         | more | time, 6 bits | other |  ...  | channel, or 0x80 and the 64 bits that change |
-//!           time goes on in further bytes,        only if `other`: else what changed last
-//!           7 bits each, the lowest first         changes again, as STEP does
+//! block    first change, uncompressed (so that a time is found without decoding earlier blocks), then rows
+//! row      1 byte       more: 1 bit | time since the previous change, lowest bits: 6 | new mask: 1
+//!          0..9 bytes   more: 1 bit | next bits of the time: 7                  while `more` is set
+//!          1 or 9       number of the changed channel, or 0x80 and a mask of 64 bits   if `new mask` is set;
+//!                       otherwise the same channels change as before, as STEP does
 //! ```
-//!
-//! Blocks begin with a whole change, so a time is found without reading earlier blocks.
 
 use std::{collections::TryReserveError, slice, vec};
 
+/// Changes that are inspected to propose a channel map.
 pub(crate) const MAX_INSPECTED: usize = 1_000_000;
 
 /// The levels of all channels from a tick until the next change.
@@ -22,7 +22,7 @@ pub struct Change {
     pub levels: u64,
 }
 
-/// Large enough that the C library returns each block to the system.
+/// Bytes per block: large enough that the C library returns each block to the system.
 const BLOCK: usize = 1 << 17;
 /// Ten bytes of time, nine of changed bits.
 const MAX_ROW: usize = 19;
@@ -31,12 +31,12 @@ const FIRST_BITS: u32 = 6;
 const MORE_BITS: u32 = 7;
 /// Another byte of the time follows.
 const MORE: u8 = 0x80;
-/// Not the same bit as last time; it follows the time.
-const OTHER: u8 = 1;
-/// Several bits change; a mask of eight bytes follows.
+/// Other channels change than in the previous row; they follow the time.
+const NEW_MASK: u8 = 1;
+/// Several channels change; a mask of eight bytes follows.
 const SEVERAL: u8 = 0x80;
 
-/// Changes in order of time, each with different levels.
+/// Compressed changes in order of time, each with other levels than the previous one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
     blocks: Vec<Block>,
@@ -53,28 +53,33 @@ struct Block {
 }
 
 impl Changes {
+    /// No changes.
     #[must_use]
     pub const fn new() -> Self {
         Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
     }
 
+    /// Number of changes.
     pub const fn len(&self) -> usize {
         self.len
     }
 
+    /// Whether there are no changes.
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
+    /// The earliest change.
     pub fn first(&self) -> Option<Change> {
         self.blocks.first().map(|block| block.first)
     }
 
+    /// The latest change.
     pub const fn last(&self) -> Option<Change> {
         self.last
     }
 
-    /// Memory in bytes.
+    /// Used memory in bytes.
     pub fn bytes(&self) -> usize {
         self.blocks.iter().map(|block| size_of::<Block>() + block.rows.len()).sum()
     }
@@ -92,27 +97,27 @@ impl Changes {
         Ok(())
     }
 
-    /// Adds a change, whose tick is at least the last one's.
+    /// Adds a change. Its tick is at least that of the last change.
     pub fn push(&mut self, change: Change) {
         let last = self.last.replace(change);
         self.len += 1;
         let (Some(block), Some(last)) = (self.blocks.last_mut(), last) else {
-            return self.begin(change);
+            return self.begin_block(change);
         };
         if block.rows.len() + MAX_ROW > BLOCK {
-            return self.begin(change);
+            return self.begin_block(change);
         }
         let (mut time, changed) = (change.tick.saturating_sub(last.tick), change.levels ^ last.levels);
-        let other = if changed == self.mask { 0 } else { OTHER };
+        let new_mask = if changed == self.mask { 0 } else { NEW_MASK };
         let low = (time & ((1 << FIRST_BITS) - 1)) as u8;
         time >>= FIRST_BITS;
-        block.rows.push(low << 1 | other | if time > 0 { MORE } else { 0 });
+        block.rows.push(low << 1 | new_mask | if time > 0 { MORE } else { 0 });
         while time > 0 {
             let low = (time & ((1 << MORE_BITS) - 1)) as u8;
             time >>= MORE_BITS;
             block.rows.push(low | if time > 0 { MORE } else { 0 });
         }
-        if other != 0 {
+        if new_mask != 0 {
             if changed.is_power_of_two() {
                 block.rows.push(changed.trailing_zeros() as u8);
             } else {
@@ -123,15 +128,14 @@ impl Changes {
         }
     }
 
-    fn begin(&mut self, first: Change) {
+    fn begin_block(&mut self, first: Change) {
         self.mask = 0;
-        // The next block probably needs as many rows.
-        let rows = Vec::new();
-        self.blocks.push(Block { first, rows });
+        self.blocks.push(Block { first, rows: Vec::new() });
     }
 
+    /// Iterates over all changes.
     pub fn iter(&self) -> Iter<'_> {
-        Iter { blocks: self.blocks.iter(), row: Row::default(), rows: &[] }
+        Iter { blocks: self.blocks.iter(), decoder: Decoder::default(), rows: &[] }
     }
 
     /// Iterates from the last change at or before `tick`; from the first if there is none.
@@ -139,14 +143,14 @@ impl Changes {
         let block = self.blocks.partition_point(|block| block.first.tick <= tick).saturating_sub(1);
         let mut from = Iter {
             blocks: self.blocks.get(block..).unwrap_or_default().iter(),
-            row: Row::default(),
+            decoder: Decoder::default(),
             rows: &[],
         };
         loop {
             let mut next = from.clone();
-            // Skip changes while the one after the next is not later than `tick`.
-            let is_before = next.next().is_some() && next.next().is_some_and(|after| after.tick <= tick);
-            if !is_before {
+            let has_later_start =
+                next.next().is_some() && next.next().is_some_and(|after| after.tick <= tick);
+            if !has_later_start {
                 return from;
             }
             from.next();
@@ -154,15 +158,16 @@ impl Changes {
     }
 }
 
+/// State of decompression: the latest change, and the channels that changed in it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Row {
+struct Decoder {
     tick: u64,
     levels: u64,
     mask: u64,
 }
 
-impl Row {
-    const fn of(first: Change) -> Self {
+impl Decoder {
+    const fn new(first: Change) -> Self {
         Self { tick: first.tick, levels: first.levels, mask: 0 }
     }
 
@@ -170,9 +175,10 @@ impl Row {
         Change { tick: self.tick, levels: self.levels }
     }
 
-    fn read(&mut self, rows: &[u8]) -> Option<usize> {
+    /// Decodes the next row and returns its length; `None` at the end.
+    fn decode(&mut self, rows: &[u8]) -> Option<usize> {
         let mut byte = *rows.first()?;
-        let (mut at, is_other) = (1, byte & OTHER != 0);
+        let (mut at, has_new_mask) = (1, byte & NEW_MASK != 0);
         let mut time = u64::from(byte & !MORE) >> 1;
         let mut shift = FIRST_BITS;
         while byte & MORE != 0 {
@@ -181,15 +187,15 @@ impl Row {
             time |= u64::from(byte & !MORE).checked_shl(shift)?;
             shift += MORE_BITS;
         }
-        if is_other {
-            let which = *rows.get(at)?;
+        if has_new_mask {
+            let channel = *rows.get(at)?;
             at += 1;
-            if which == SEVERAL {
+            if channel == SEVERAL {
                 let bits = rows.get(at..at + 8)?;
                 self.mask = u64::from_le_bytes(bits.try_into().ok()?);
                 at += 8;
             } else {
-                self.mask = 1_u64.checked_shl(which.into())?;
+                self.mask = 1_u64.checked_shl(channel.into())?;
             }
         }
         self.tick = self.tick.wrapping_add(time);
@@ -198,10 +204,11 @@ impl Row {
     }
 }
 
+/// Iterator over changes.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
     blocks: slice::Iter<'a, Block>,
-    row: Row,
+    decoder: Decoder,
     rows: &'a [u8],
 }
 
@@ -210,12 +217,12 @@ impl Iterator for Iter<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Change> {
-        if let Some(read) = self.row.read(self.rows) {
-            self.rows = self.rows.get(read..).unwrap_or_default();
-            return Some(self.row.change());
+        if let Some(length) = self.decoder.decode(self.rows) {
+            self.rows = self.rows.get(length..).unwrap_or_default();
+            return Some(self.decoder.change());
         }
         let block = self.blocks.next()?;
-        (self.row, self.rows) = (Row::of(block.first), &block.rows);
+        (self.decoder, self.rows) = (Decoder::new(block.first), &block.rows);
         Some(block.first)
     }
 }
@@ -224,7 +231,7 @@ impl Iterator for Iter<'_> {
 #[derive(Debug)]
 pub struct IntoIter {
     blocks: vec::IntoIter<Block>,
-    row: Row,
+    decoder: Decoder,
     rows: Vec<u8>,
     at: usize,
 }
@@ -234,12 +241,12 @@ impl Iterator for IntoIter {
 
     #[inline]
     fn next(&mut self) -> Option<Change> {
-        if let Some(read) = self.row.read(self.rows.get(self.at..).unwrap_or_default()) {
-            self.at += read;
-            return Some(self.row.change());
+        if let Some(length) = self.decoder.decode(self.rows.get(self.at..).unwrap_or_default()) {
+            self.at += length;
+            return Some(self.decoder.change());
         }
         let Block { first, rows } = self.blocks.next()?;
-        (self.row, self.rows, self.at) = (Row::of(first), rows, 0);
+        (self.decoder, self.rows, self.at) = (Decoder::new(first), rows, 0);
         Some(first)
     }
 }
@@ -249,7 +256,7 @@ impl IntoIterator for Changes {
     type IntoIter = IntoIter;
 
     fn into_iter(self) -> IntoIter {
-        IntoIter { blocks: self.blocks.into_iter(), row: Row::default(), rows: Vec::new(), at: 0 }
+        IntoIter { blocks: self.blocks.into_iter(), decoder: Decoder::default(), rows: Vec::new(), at: 0 }
     }
 }
 
@@ -275,8 +282,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_packed_is_read_again_from_any_time_on() {
-        // Times of one to ten bytes; one channel, another, several, none.
+    fn compressed_changes_are_read_back_from_any_time() {
+        // Times of one to ten bytes; rows in which one channel changes, another one, several, or none.
         let mut all = Vec::new();
         let mut now = Change { tick: 0, levels: 5 };
         for k in 0..100_000_u64 {
@@ -308,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_steps_takes_two_bytes_a_change() {
+    fn step_pulses_take_two_bytes_per_change() {
         let packed: Changes =
             (0..1_000_000).map(|k| Change { tick: 400 * k + k % 5, levels: k & 1 }).collect();
         assert!(packed.bytes() <= 2 * packed.len() + packed.len() / 100, "{}", packed.bytes());

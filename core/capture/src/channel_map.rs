@@ -1,7 +1,7 @@
 //! Maps channels of a capture to signals (DESIGN A3).
 //!
 //! ```text
-//! STEP0=CH1,DIR0=CH2,EN=!nEN     a signal, a channel by its name or its number (#0, #1, …), ! where it is inverted
+//! STEP0=CH1,DIR0=#1,EN=!nEN      SIGNAL=CHANNEL; a channel has a name or a number (#0 is the first), ! inverts it
 //! STEP0=A,STEP1=B,DIR0=C,DIR1=C  one DIR channel for several motors
 //! DEDGE0=CH1,DIR0=CH2            a driver that steps on both edges
 //! CW0=CH1,CCW0=CH2               one pulse input per direction
@@ -12,10 +12,13 @@ use crate::capture::{Capture, Channel};
 use core::fmt;
 use stepscope_peripheral::signal::{self, Levels, MAX_CHANNELS};
 
+/// Number of signals of a bus; larger bits are the inputs from which STEP and DIR are generated.
 pub(crate) const BUS_SIGNALS: u32 = 36;
 const MOTORS: u32 = MAX_CHANNELS as u32;
+/// Channels named in an error.
 const MAX_LISTED: usize = 20;
 
+/// A signal that each motor has: STEP and DIR, or an input from which they are generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Input {
     Step,
@@ -30,8 +33,8 @@ pub(crate) enum Input {
 impl Input {
     const ALL: [Self; 7] = [Self::Step, Self::Dir, Self::BothEdges, Self::Cw, Self::Ccw, Self::A, Self::B];
 
-    /// The name, and the bit of motor 0.
-    const fn parts(self) -> (&'static str, u32) {
+    /// The name without the motor's number, and the bit of motor 0.
+    const fn name_and_bit(self) -> (&'static str, u32) {
         match self {
             Self::Step => ("STEP", 0),
             Self::Dir => ("DIR", Levels::DIR_SHIFT),
@@ -44,15 +47,16 @@ impl Input {
     }
 
     pub(crate) const fn bit(self, motor: u32) -> u32 {
-        self.parts().1 + motor
+        self.name_and_bit().1 + motor
     }
 
-    pub(crate) fn of(bit: u32) -> Option<(Self, u32)> {
+    /// The input and its motor.
+    pub(crate) fn from_bit(bit: u32) -> Option<(Self, u32)> {
         let motor = |input: Self| bit.checked_sub(input.bit(0)).filter(|motor| *motor < MOTORS);
         Self::ALL.into_iter().find_map(|input| Some((input, motor(input)?)))
     }
 
-    /// The signal that this one requires.
+    /// The other signal of a pair.
     const fn partner(self) -> Option<Self> {
         match self {
             Self::Cw => Some(Self::Ccw),
@@ -65,8 +69,8 @@ impl Input {
 }
 
 fn signal_name(bit: u32) -> String {
-    match Input::of(bit) {
-        Some((input, motor)) => format!("{}{motor}", input.parts().0),
+    match Input::from_bit(bit) {
+        Some((input, motor)) => format!("{}{motor}", input.name_and_bit().0),
         None => signal::name(bit).unwrap_or_default(),
     }
 }
@@ -74,7 +78,9 @@ fn signal_name(bit: u32) -> String {
 /// The source of a motor's STEP pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PulseSource {
+    /// A STEP channel.
     Step,
+    /// A STEP channel with a step at each edge (DEDGE).
     BothEdges,
     /// One pulse input per direction, which also gives DIR.
     CwCcw,
@@ -82,24 +88,28 @@ pub enum PulseSource {
     Quadrature,
 }
 
-/// A motor's edges of STEP.
+/// What the edges of a motor's STEP channel indicate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EdgeHint {
+    /// Number of the motor, from 0.
     pub motor: u8,
+    /// Index of the channel.
     pub channel: usize,
     /// Rising and falling edges are evenly spaced, as for a driver that steps on both edges.
     pub both_edges: bool,
-    /// It idles high and its pulses are low.
+    /// The channel idles high, with low pulses.
     pub idles_high: bool,
     /// Number of edges; `None` if there are more changes than were inspected.
     pub edges: Option<u64>,
 }
 
+/// A signal and its channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Bit of the signal: 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each: DEDGE, CW, CCW, A
     /// and B.
     pub bit: u32,
+    /// Index of the channel.
     pub channel: usize,
     /// Active low.
     pub inverted: bool,
@@ -111,7 +121,7 @@ impl Entry {
     }
 }
 
-/// Signals and their channels. Each is used once, except that motors may share a DIR channel.
+/// Signals and their channels. Each is used once, but several motors may share a DIR channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelMap {
     entries: Vec<Entry>,
@@ -122,18 +132,19 @@ pub struct ChannelMap {
 #[non_exhaustive]
 pub enum MapError {
     /// An entry without `=`.
-    NoPair(String),
-    Signal(String),
+    NotAPair(String),
+    /// Not a signal's name.
+    UnknownSignal(String),
     /// No such channel; the second text lists the channels.
-    Channel(String, String),
+    UnknownChannel(String, String),
     /// Several channels have this name.
-    Ambiguous(String),
-    /// The signal already has a channel.
-    Twice(String),
-    /// The channel already has a signal.
-    Taken(String, String),
-    /// The signal needs another one.
-    Partner(String, String),
+    AmbiguousChannel(String),
+    /// The signal has two channels.
+    DuplicateSignal(String),
+    /// The channel already has a signal, the second text.
+    ChannelInUse(String, String),
+    /// The first signal requires the second one.
+    MissingPartner(String, String),
     /// Two signals both give a motor's steps or direction.
     Conflict(String, String),
 }
@@ -141,35 +152,37 @@ pub enum MapError {
 impl fmt::Display for MapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoPair(given) => {
+            Self::NotAPair(given) => {
                 write!(
                     f,
-                    "\"{given}\" is not a pair; write SIGNAL=CHANNEL, separated by commas, such as STEP0=CH1,DIR0=CH2"
+                    "\"{given}\" is not a pair; use SIGNAL=CHANNEL, separated by commas, such as STEP0=CH1,DIR0=CH2"
                 )
             }
-            Self::Signal(given) => {
+            Self::UnknownSignal(given) => {
                 write!(
                     f,
-                    "{given} is not a signal; use STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX or DE, or in place of STEP0: \
-                     DEDGE0 (a step on both edges), CW0 and CCW0, or A0 and B0 (an encoder)"
+                    "{given} is not a signal; use STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX or DE, or instead of STEP0: \
+                     DEDGE0 (a step at both edges), CW0 and CCW0, or A0 and B0 (an encoder)"
                 )
             }
-            Self::Channel(given, there) => write!(f, "there is no channel {given}; the file has {there}"),
-            Self::Ambiguous(given) => {
-                write!(f, "more than one channel is called {given}; use its number, #0 for the first")
+            Self::UnknownChannel(given, channels) => {
+                write!(f, "there is no channel {given}; use one of {channels}")
             }
-            Self::Twice(signal) => write!(f, "{signal} has two channels; give it one"),
-            Self::Taken(channel, signal) => {
+            Self::AmbiguousChannel(given) => {
+                write!(f, "more than one channel is named {given}; use its number, #0 for the first")
+            }
+            Self::DuplicateSignal(signal) => write!(f, "{signal} has two channels; remove one of them"),
+            Self::ChannelInUse(channel, signal) => {
+                write!(f, "channel {channel} is already {signal}; only DIR signals can share a channel")
+            }
+            Self::MissingPartner(signal, partner) => {
                 write!(
                     f,
-                    "channel {channel} is {signal} already; only several DIR signals can share a channel"
+                    "{signal} requires {partner}; add {partner}=CHANNEL, or use STEP instead of {signal}"
                 )
             }
-            Self::Partner(signal, partner) => {
-                write!(f, "{signal} needs {partner}; add {partner}=CHANNEL, or use STEP in place of {signal}")
-            }
-            Self::Conflict(one, other) => {
-                write!(f, "{one} and {other} are both given for one motor; remove one of them")
+            Self::Conflict(signal, rival) => {
+                write!(f, "{signal} and {rival} exclude each other for one motor; remove one of them")
             }
         }
     }
@@ -178,9 +191,8 @@ impl fmt::Display for MapError {
 impl core::error::Error for MapError {}
 
 impl ChannelMap {
-    pub(crate) fn of(mut entries: Vec<Entry>) -> Self {
-        // Sources of steps, then DIR, then the other signals.
-        entries.sort_unstable_by_key(|entry| match Input::of(entry.bit) {
+    pub(crate) fn from_entries(mut entries: Vec<Entry>) -> Self {
+        entries.sort_unstable_by_key(|entry| match Input::from_bit(entry.bit) {
             Some((input, motor)) => (0, Some(input), motor),
             None => (1, None, entry.bit),
         });
@@ -188,27 +200,37 @@ impl ChannelMap {
     }
 
     /// Reads a map as [`Self::to_text`] writes it; ignores blanks and the case of signals.
-    /// Errors: [`MapError`] with what is wrong with the first pair that cannot be used.
+    /// Errors: [`MapError`] of the first invalid pair.
+    ///
+    /// ```
+    /// use stepscope_capture::{Capture, ChannelMap, capture::{Channel, Format}};
+    ///
+    /// let channels = ["CH1", "CH2"].map(|name| Channel { name: name.into() });
+    /// let capture = Capture { channels: channels.into(), ..Capture::new(Format::Vcd) };
+    /// let map = ChannelMap::parse("step0=CH1, DIR0=!#1", &capture).expect("both channels exist");
+    /// assert_eq!(map.to_text(&capture), "STEP0=CH1,DIR0=!CH2");
+    /// ```
     pub fn parse(text: &str, capture: &Capture) -> Result<Self, MapError> {
         let mut map = Self::default();
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {
-            let (signal, channel) = pair.split_once('=').ok_or_else(|| MapError::NoPair(pair.to_owned()))?;
+            let (signal, channel) =
+                pair.split_once('=').ok_or_else(|| MapError::NotAPair(pair.to_owned()))?;
             let signal = signal.trim().to_ascii_uppercase();
             let bit = (0..Input::B.bit(MOTORS))
                 .find(|bit| signal_name(*bit) == signal)
-                .ok_or_else(|| MapError::Signal(signal.clone()))?;
+                .ok_or_else(|| MapError::UnknownSignal(signal.clone()))?;
             let channel = channel.trim();
             let (inverted, name) = match channel.strip_prefix('!') {
                 Some(name) => (true, name.trim()),
                 None => (false, channel),
             };
-            map.add(Entry { bit, channel: place(name, &capture.channels)?, inverted }, capture)?;
+            map.add(Entry { bit, channel: find_channel(name, &capture.channels)?, inverted }, capture)?;
         }
         map.check_motors()?;
-        Ok(Self::of(map.entries))
+        Ok(Self::from_entries(map.entries))
     }
 
-    /// The channel names in a map's text, for files with too many channels.
+    /// The channel names in a map's text, for files with more channels than are read.
     #[must_use]
     pub fn channel_names(text: &str) -> Vec<String> {
         let name = |pair: &str| {
@@ -220,9 +242,12 @@ impl ChannelMap {
 
     fn check_motors(&self) -> Result<(), MapError> {
         for entry in &self.entries {
-            let Some((input, motor)) = Input::of(entry.bit) else { continue };
+            let Some((input, motor)) = Input::from_bit(entry.bit) else { continue };
             if let Some(partner) = input.partner().filter(|partner| !self.has(partner.bit(motor))) {
-                return Err(MapError::Partner(signal_name(entry.bit), signal_name(partner.bit(motor))));
+                return Err(MapError::MissingPartner(
+                    signal_name(entry.bit),
+                    signal_name(partner.bit(motor)),
+                ));
             }
             let rivals: &[Input] = match input {
                 Input::Step => &[Input::BothEdges, Input::Cw, Input::A],
@@ -241,14 +266,15 @@ impl ChannelMap {
     /// The same map with DEDGE instead of STEP.
     #[must_use]
     pub fn with_both_edges(self) -> Self {
-        let both = |entry: Entry| match Input::of(entry.bit) {
+        let both = |entry: Entry| match Input::from_bit(entry.bit) {
             Some((Input::Step, motor)) => Entry { bit: Input::BothEdges.bit(motor), ..entry },
             _ => entry,
         };
-        Self::of(self.entries.into_iter().map(both).collect())
+        Self::from_entries(self.entries.into_iter().map(both).collect())
     }
 
-    pub fn pulses(&self, motor: u8) -> PulseSource {
+    /// The source of a motor's STEP pulses.
+    pub fn pulse_source(&self, motor: u8) -> PulseSource {
         let has = |input: Input| self.has(input.bit(motor.into()));
         match () {
             () if has(Input::BothEdges) => PulseSource::BothEdges,
@@ -258,15 +284,16 @@ impl ChannelMap {
         }
     }
 
-    /// Whether pulses are made from edges: DEDGE or an encoder.
-    pub fn makes_pulses(&self) -> bool {
-        let is_made = |motor| matches!(self.pulses(motor), PulseSource::BothEdges | PulseSource::Quadrature);
-        (0..self.bus_channels()).any(is_made)
+    /// Whether pulses of a motor are generated from edges: DEDGE or an encoder.
+    pub fn generates_pulses(&self) -> bool {
+        let is_edge = |source| matches!(source, PulseSource::BothEdges | PulseSource::Quadrature);
+        (0..self.bus_channels()).any(|motor| is_edge(self.pulse_source(motor)))
     }
 
+    /// Whether a motor's direction is recorded.
     pub fn has_direction(&self, motor: u8) -> bool {
         self.has(Input::Dir.bit(motor.into()))
-            || matches!(self.pulses(motor), PulseSource::CwCcw | PulseSource::Quadrature)
+            || matches!(self.pulse_source(motor), PulseSource::CwCcw | PulseSource::Quadrature)
     }
 
     pub(crate) fn input(&self, input: Input, motor: u32) -> Option<Entry> {
@@ -274,15 +301,15 @@ impl ChannelMap {
     }
 
     fn add(&mut self, entry: Entry, capture: &Capture) -> Result<(), MapError> {
-        let is_dir = |entry: &Entry| matches!(Input::of(entry.bit), Some((Input::Dir, _)));
+        let is_dir = |entry: &Entry| matches!(Input::from_bit(entry.bit), Some((Input::Dir, _)));
         for other in &self.entries {
             let signal = signal_name(other.bit);
             if other.bit == entry.bit {
-                return Err(MapError::Twice(signal));
+                return Err(MapError::DuplicateSignal(signal));
             }
             if other.channel == entry.channel && !(is_dir(other) && is_dir(&entry)) {
                 let name = capture.channels.get(entry.channel).map(|channel| channel.name.clone());
-                return Err(MapError::Taken(name.unwrap_or_default(), signal));
+                return Err(MapError::ChannelInUse(name.unwrap_or_default(), signal));
             }
         }
         self.entries.push(entry);
@@ -294,13 +321,14 @@ impl ChannelMap {
         &self.entries
     }
 
+    /// Whether a signal, by its bit, has a channel.
     pub fn has(&self, bit: u32) -> bool {
         self.entries.iter().any(|entry| entry.bit == bit)
     }
 
     /// Channels of the bus up to the map's last motor; at least 1.
     pub fn bus_channels(&self) -> u8 {
-        let motors = self.entries.iter().filter_map(|entry| Input::of(entry.bit));
+        let motors = self.entries.iter().filter_map(|entry| Input::from_bit(entry.bit));
         motors.map(|(_, motor)| motor as u8 + 1).max().unwrap_or(1)
     }
 
@@ -309,7 +337,7 @@ impl ChannelMap {
         let pair = |entry: &Entry| {
             let signal = signal_name(entry.bit);
             let mark = if entry.inverted { "!" } else { "" };
-            format!("{signal}={mark}{}", written(entry.channel, &capture.channels))
+            format!("{signal}={mark}{}", channel_text(entry.channel, &capture.channels))
         };
         self.entries.iter().map(pair).collect::<Vec<_>>().join(",")
     }
@@ -317,17 +345,17 @@ impl ChannelMap {
 
 /// A channel's name, or `#` and its index if the name is ambiguous or could not be read back.
 #[must_use]
-pub fn written(index: usize, channels: &[Channel]) -> String {
+pub fn channel_text(index: usize, channels: &[Channel]) -> String {
     let name = channels.get(index).map_or("", |channel| channel.name.as_str());
-    if place(name, channels) == Ok(index) && !name.contains([',', '!']) && name.trim() == name {
+    if find_channel(name, channels) == Ok(index) && !name.contains([',', '!']) && name.trim() == name {
         name.to_owned()
     } else {
         format!("#{index}")
     }
 }
 
-/// Matches the whole name, its last part, or the index after `#`.
-fn place(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
+/// Finds a channel by its whole name, the last part of its name, or the index after `#`.
+fn find_channel(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
     let unknown = || {
         let names: Vec<&str> =
             channels.iter().take(MAX_LISTED).map(|channel| channel.name.as_str()).collect();
@@ -335,20 +363,20 @@ fn place(name: &str, channels: &[Channel]) -> Result<usize, MapError> {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        MapError::Channel(name.to_owned(), names.join(", ") + &more)
+        MapError::UnknownChannel(name.to_owned(), names.join(", ") + &more)
     };
     if let Some(index) = name.strip_prefix('#').and_then(|digits| digits.parse::<usize>().ok()) {
         return if index < channels.len() { Ok(index) } else { Err(unknown()) };
     }
-    let last = |channel: &Channel| channel.name.rsplit('.').next().map(str::to_owned).unwrap_or_default();
-    let whole = |channel: &Channel| channel.name == name;
-    let ends = |channel: &Channel| last(channel) == name;
-    let loose = |channel: &Channel| last(channel).eq_ignore_ascii_case(name);
-    for matches in [&whole as &dyn Fn(&Channel) -> bool, &ends, &loose] {
-        let mut found = channels.iter().enumerate().filter(|(_, channel)| matches(channel));
+    let last_part = |full: &str| full.rsplit('.').next().map(str::to_owned).unwrap_or_default();
+    let is_full_name = |full: &str| full == name;
+    let is_last_part = |full: &str| last_part(full) == name;
+    let is_last_part_in_any_case = |full: &str| last_part(full).eq_ignore_ascii_case(name);
+    for is_match in [&is_full_name as &dyn Fn(&str) -> bool, &is_last_part, &is_last_part_in_any_case] {
+        let mut found = channels.iter().enumerate().filter(|(_, channel)| is_match(&channel.name));
         match (found.next(), found.next()) {
             (Some((index, _)), None) => return Ok(index),
-            (Some(_), Some(_)) => return Err(MapError::Ambiguous(name.to_owned())),
+            (Some(_), Some(_)) => return Err(MapError::AmbiguousChannel(name.to_owned())),
             _ => {}
         }
     }
@@ -366,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_gives_each_signal_a_channel_or_says_what_is_wrong() {
+    fn maps_are_parsed_and_invalid_ones_have_a_message() {
         let capture = capture(&["top.A", "top.B", "B", "C", "C"]);
         for (text, expected) in [
             ("STEP0=A, dir0 = !B", "STEP0=top.A,DIR0=!B"),
@@ -383,20 +411,17 @@ mod tests {
         for (text, expected) in [
             ("STEP0", "\"STEP0\" is not a pair"),
             ("STEP16=A", "STEP16 is not a signal; use STEP0 to STEP15"),
-            ("STEP0=D", "there is no channel D; the file has top.A, top.B, B, C, C"),
+            ("STEP0=D", "there is no channel D; use one of top.A, top.B, B, C, C"),
             ("STEP0=#5", "there is no channel #5"),
-            ("STEP0=C", "more than one channel is called C; use its number"),
+            ("STEP0=C", "more than one channel is named C; use its number"),
             ("STEP0=A,STEP0=B", "STEP0 has two channels"),
-            (
-                "STEP0=A,DIR0=A",
-                "channel top.A is STEP0 already; only several DIR signals can share a channel",
-            ),
-            ("DIR0=A,STEP1=A", "channel top.A is DIR0 already"),
-            ("CW0=A", "CW0 needs CCW0; add CCW0=CHANNEL"),
-            ("B3=A", "B3 needs A3; add A3=CHANNEL"),
-            ("STEP0=A,DEDGE0=B", "STEP0 and DEDGE0 are both given for one motor; remove one of them"),
-            ("CW0=A,CCW0=B,DIR0=#3", "CW0 and DIR0 are both given for one motor"),
-            ("A1=A,B1=B,STEP1=#3", "STEP1 and A1 are both given for one motor"),
+            ("STEP0=A,DIR0=A", "channel top.A is already STEP0; only DIR signals can share a channel"),
+            ("DIR0=A,STEP1=A", "channel top.A is already DIR0"),
+            ("CW0=A", "CW0 requires CCW0; add CCW0=CHANNEL"),
+            ("B3=A", "B3 requires A3; add A3=CHANNEL"),
+            ("STEP0=A,DEDGE0=B", "STEP0 and DEDGE0 exclude each other for one motor; remove one of them"),
+            ("CW0=A,CCW0=B,DIR0=#3", "CW0 and DIR0 exclude each other for one motor"),
+            ("A1=A,B1=B,STEP1=#3", "STEP1 and A1 exclude each other for one motor"),
         ] {
             let error = ChannelMap::parse(text, &capture).expect_err("no map").to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -1,9 +1,9 @@
-//! Derives signal and motor from a channel's name.
+//! Derives a channel's signal and motor from its name.
 //!
 //! ```text
 //! signal   STEP STP PUL PULSE PLS PU, DIR DIRECTION DR SIGN, CW, CCW, EN ENA ENABLE, RX RXD, TX TXD, DE
-//! motor    what is left of the name: X_STEP, STEP (Y axis), stepper_z1.step_pin, motor1_step, stepgen.0.step, RA_STEP
-//! other    step_count, LED, BUSY: neither
+//! motor    the other words: X_STEP, STEP (Y axis), stepper_z1.step_pin, motor1_step, stepgen.0.step, RA_STEP
+//! neither  step_count, LED, BUSY
 //! ```
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub(crate) enum Kind {
     Dir,
     Cw,
     Ccw,
-    /// STEP only next to a DIR: many clocks have this name.
+    /// STEP only if there is a DIR: many clocks have this name.
     Clock,
     A,
     B,
@@ -22,16 +22,18 @@ pub(crate) enum Kind {
     De,
 }
 
+/// A signal in a channel's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Named {
     pub(crate) kind: Kind,
     pub(crate) inverted: bool,
     /// The negative line of a pair, as in `PUL-`.
-    pub(crate) negative: bool,
-    /// Also called a pulse, as in `PUL/CW`.
-    pub(crate) pulse: bool,
+    pub(crate) is_negative: bool,
+    /// The name also contains a word for pulses, as `PUL/CW` does.
+    pub(crate) is_pulse: bool,
     /// Identifies the motor: a number, a letter, a word, or nothing.
     pub(crate) axis: String,
+    /// The part of the name before its last point.
     pub(crate) scope: String,
 }
 
@@ -55,121 +57,152 @@ const WORDS: [(Kind, &str); 9] = [
     (Kind::De, "DE TXEN"),
 ];
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
-/// Pulses only if the opposite word is present, too.
+/// CW and CCW only if the name has no other words.
 const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
 const PHASES: [(Kind, &str); 2] = [(Kind::A, "ENCA PHA PHASEA QA"), (Kind::B, "ENCB PHB PHASEB QB")];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
-/// Do not identify a motor, except with a number: `MOTOR1`.
+/// Words that identify a motor only with a number: `MOTOR1`.
 const NOISE: [&str; 30] = [
     "AXIS", "MOTOR", "MOT", "STEPPER", "STEPGEN", "JOINT", "DRIVER", "DRV", "EXTRUDER", "M", "J", "T", "PIN",
     "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I", "ALL",
     "BOTH", "COMMON", "SHARED",
 ];
-/// The word and its kind.
-fn find(words: &[(Kind, &'static str)], wanted: &str) -> Option<(&'static str, Kind)> {
+/// Finds a word in a list.
+fn find(list: &[(Kind, &'static str)], wanted: &str) -> Option<(&'static str, Kind)> {
     let find =
         |(kind, words): &(Kind, &'static str)| Some((words.split(' ').find(|word| *word == wanted)?, *kind));
-    words.iter().find_map(find)
+    list.iter().find_map(find)
 }
 
-/// Names in one word: `FLSTEP`, `FLDIR`.
+/// Signals in names of one word: `FLSTEP`, `FLDIR`.
 const JOINED: [(&str, Kind); 3] = [("STEP", Kind::Step), ("DIRECTION", Kind::Dir), ("DIR", Kind::Dir)];
 /// Prefixes of pin or probe numbers.
 const PINS: [&str; 16] = [
     "D", "CH", "CHANNEL", "DIO", "GPIO", "IO", "PIN", "PROBE", "PA", "PB", "PC", "PD", "PE", "PF", "PG",
     "LOGIC",
 ];
-/// Never signals, whatever the other words are.
+/// Words of names that are not signals.
 const OTHERS: &str = "ACK ALARM ALM BUSY CHANGE CHANGED CNT COUNT COUNTER CS DELAY DIAG DONE END ENDSTOP ERR ERROR FAULT FLT \
     FREQ HOME IDX INDEX INT INTERVAL IRQ LAST LED LEN LENGTH LIMIT MICRO MICROSTEP MISO MODE MOSI NEXT NUM \
     PERIOD POS POSITION PREV RATE READY REQ RESET RST SCK SCL SCLK SDA SIZE SLEEP SPEED STALL STATE TOTAL \
     TRIG TRIGGER VALID WIDTH PWM";
+/// Letters of axes.
 pub(crate) const AXES: &str = "XYZABCUVWE";
 
+/// A word of a name that means a signal.
+struct SignalWord {
+    /// The word without the axis.
+    word: &'static str,
+    kind: Kind,
+    /// The axis in the same word, as in `XSTEP` and `STEP1`.
+    axis: Option<String>,
+}
+
+/// The words of a name: those that mean signals, and the others.
+#[derive(Default)]
+struct Words<'w> {
+    signals: Vec<(Kind, &'static str)>,
+    others: Vec<&'w str>,
+    axis: Option<String>,
+    /// A signal's word begins with an N, as in `nSTEP`.
+    has_n: bool,
+}
+
+impl<'w> Words<'w> {
+    fn new(words: &'w [String]) -> Self {
+        let is_encoder = words.iter().any(|word| ENCODER.contains(&letters(word)));
+        let phase = |word: &str| match word {
+            "A" if is_encoder => Some(Kind::A),
+            "B" if is_encoder => Some(Kind::B),
+            _ => find(&PHASES, word).map(|(_, kind)| kind),
+        };
+        let mut found = Self::default();
+        for word in words {
+            if let Some(kind) = phase(letters(word)) {
+                found.add(SignalWord { word: "PHASE", kind, axis: digits(word) });
+            } else if let Some(signal) = signal(word) {
+                found.add(signal);
+            } else if let Some(signal) = word.strip_prefix('N').and_then(signal) {
+                found.has_n = true;
+                found.add(signal);
+            } else {
+                found.others.push(word.as_str());
+            }
+        }
+        found
+    }
+
+    fn add(&mut self, SignalWord { word, kind, axis }: SignalWord) {
+        self.signals.push((kind, word));
+        self.axis = self.axis.take().or(axis);
+    }
+
+    fn has(&self, kind: Kind) -> bool {
+        self.signals.iter().any(|(other, _)| *other == kind)
+    }
+
+    fn kind(&self) -> Option<Kind> {
+        let is_bus = self.has(Kind::Dir) && self.others.iter().any(|word| ["RS485", "485"].contains(word));
+        if self.has(Kind::De) || self.has(Kind::En) && self.has(Kind::Tx) || is_bus {
+            return Some(Kind::De);
+        }
+        let is_one_way = self.has(Kind::Cw) != self.has(Kind::Ccw);
+        let by_rank = [Kind::En, Kind::Dir, Kind::Cw, Kind::Ccw, Kind::Step];
+        let is_kind = |kind: &Kind| self.has(*kind) && (is_one_way || !matches!(kind, Kind::Cw | Kind::Ccw));
+        by_rank.into_iter().find(is_kind).or_else(|| self.signals.first().map(|(kind, _)| *kind))
+    }
+
+    fn is_inverted(&self, kind: Kind, name: &str) -> bool {
+        let is_marked = self.has_n
+            || name.starts_with(['/', '~', '!'])
+            || name.to_ascii_uppercase().ends_with("_N")
+            || name.ends_with('#');
+        match kind {
+            Kind::En => is_marked || self.signals.iter().any(|(_, word)| ACTIVE_LOW.contains(word)),
+            Kind::Step | Kind::Cw | Kind::Ccw => is_marked,
+            _ => false,
+        }
+    }
+
+    /// UP and DOWN with other words than an axis are no pulses.
+    fn is_vague(&self) -> bool {
+        self.signals.iter().all(|(_, word)| UP_DOWN.contains(word))
+            && !self.others.iter().all(|word| is_noise(word) || is_axis(word))
+    }
+}
+
 impl Meaning {
-    /// `indexed`: the leading number only counts the file's channels.
+    /// The meaning of a name. `indexed`: a number at its beginning only counts the file's channels.
     pub(crate) fn of(name: &str, indexed: bool) -> Self {
         let name = without_index(name, indexed);
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
-        let words = words(last);
-        let has_word = |all: &[&str]| words.iter().any(|word| all.contains(&word.as_str()));
-        let is_rest = has_word(&["STEPS"]) && has_word(&["LEFT", "REMAINING", "TODO"]);
-        if is_rest || words.iter().any(|word| OTHERS.split(' ').any(|other| other == letters(word))) {
+        let all = words(last);
+        let has_word = |list: &[&str]| all.iter().any(|word| list.contains(&word.as_str()));
+        let is_count = has_word(&["STEPS"]) && has_word(&["LEFT", "REMAINING", "TODO"]);
+        if is_count || all.iter().any(|word| OTHERS.split(' ').any(|other| other == letters(word))) {
             return Self::Other;
         }
-        let mut kinds: Vec<(Kind, &str)> = Vec::new();
-        let (mut axis, mut rest) = (None::<String>, Vec::new());
-        let is_encoder = words.iter().any(|word| ENCODER.contains(&letters(word)));
-        let mut low = false;
-        for word in &words {
-            let phase = |word: &str| match word {
-                "A" if is_encoder => Some(Kind::A),
-                "B" if is_encoder => Some(Kind::B),
-                _ => find(&PHASES, word).map(|(_, kind)| kind),
-            };
-            if let Some(kind) = phase(letters(word)) {
-                kinds.push((kind, "PHASE"));
-                axis = axis.or_else(|| digits(word));
-            } else if let Some((known, kind, own)) = signal(word) {
-                kinds.push((kind, known));
-                axis = axis.or(own);
-            } else if let Some((known, kind, own)) = word.strip_prefix('N').and_then(signal) {
-                low = true;
-                kinds.push((kind, known));
-                axis = axis.or(own);
-            } else {
-                rest.push(word.as_str());
-            }
-        }
-        let has = |kind: Kind| kinds.iter().any(|(one, _)| *one == kind);
-        let is_bus = has(Kind::Dir) && words.iter().any(|word| word == "RS485" || word == "485");
-        let kind = match () {
-            () if has(Kind::De) || has(Kind::En) && has(Kind::Tx) || is_bus => Kind::De,
-            () if has(Kind::En) => Kind::En,
-            () if has(Kind::Dir) => Kind::Dir,
-            () if has(Kind::Cw) && !has(Kind::Ccw) => Kind::Cw,
-            () if has(Kind::Ccw) && !has(Kind::Cw) => Kind::Ccw,
-            () if has(Kind::Step) => Kind::Step,
-            () => match kinds.first() {
-                Some((kind, _)) => *kind,
-                None => return Self::Unknown,
-            },
-        };
-        let marked = low
-            || last.starts_with(['/', '~', '!'])
+        let words = Words::new(&all);
+        let Some(kind) = words.kind().filter(|_| !words.is_vague()) else { return Self::Unknown };
+        let is_negative = last.trim_end().trim_end_matches(')').ends_with('-')
             || last.to_ascii_uppercase().ends_with("_N")
-            || last.ends_with('#');
-        let inverted = match kind {
-            Kind::En => marked || kinds.iter().any(|(_, word)| ACTIVE_LOW.contains(word)),
-            Kind::Step | Kind::Cw | Kind::Ccw => marked,
-            _ => false,
-        };
-        let negative = last.trim_end().trim_end_matches(')').ends_with('-')
-            || last.to_ascii_uppercase().ends_with("_N")
-            || words.iter().any(|word| word == "MINUS");
-        let several = || (kind == Kind::Dir).then(|| axes_of(&rest)).flatten();
-        let axis = axis
-            .or_else(several)
-            .or_else(|| axis_of(&rest))
-            .or_else(|| axis_of_scope(scope))
-            .unwrap_or_default();
-        let weak = kinds.iter().all(|(_, word)| UP_DOWN.contains(word));
-        let pulse = has(Kind::Step) || has(Kind::Clock);
-        // UP and DOWN are pulses only if no other word is in the name.
-        if weak && !rest.iter().all(|word| is_noise(word) || is_axis(word)) {
-            return Self::Unknown;
-        }
-        Self::Signal(Named { kind, inverted, negative, pulse, axis, scope: scope.to_owned() })
+            || has_word(&["MINUS"]);
+        let inverted = words.is_inverted(kind, last);
+        let is_pulse = words.has(Kind::Step) || words.has(Kind::Clock);
+        let shared_axes = || (kind == Kind::Dir).then(|| axes_of(&words.others)).flatten();
+        let axis = words.axis.clone().or_else(shared_axes).or_else(|| axis_of(&words.others));
+        let axis = axis.or_else(|| axis_of_scope(scope)).unwrap_or_default();
+        Self::Signal(Named { kind, inverted, is_negative, is_pulse, axis, scope: scope.to_owned() })
     }
 
-    /// The signal in a name of one word, and the rest of the name.
+    /// The signal in a name of one word, with the rest of the name as axis.
     pub(crate) fn joined(name: &str) -> Option<Named> {
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
         let upper = last.to_ascii_uppercase();
         let (word, kind) = JOINED.into_iter().find(|(word, _)| upper.matches(word).count() == 1)?;
         let axis = upper.replacen(word, "", 1);
         let scope = scope.to_owned();
-        Some(Named { kind, inverted: false, negative: false, pulse: false, axis, scope })
+        Some(Named { kind, inverted: false, is_negative: false, is_pulse: false, axis, scope })
     }
 
     pub(crate) fn is_recognized(name: &str) -> bool {
@@ -177,6 +210,7 @@ impl Meaning {
     }
 }
 
+/// Whether each name begins with another number, which only counts the channels.
 pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     let (mut seen, mut count) = (std::collections::BTreeSet::new(), 0);
     for name in names {
@@ -205,8 +239,8 @@ fn without_index(name: &str, indexed: bool) -> &str {
     if indexed && rest.contains(|c: char| c.is_ascii_alphabetic()) { rest } else { name }
 }
 
-/// Splits a name at marks, before a capital after small letters, and before a letter after digits unless the word is
-/// known.
+/// Splits a name into words in capitals: at marks, and where upper and lower case or digits and letters change, unless
+/// the whole is a known word.
 fn words(name: &str) -> Vec<String> {
     let mut all = Vec::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {
@@ -236,6 +270,7 @@ fn words(name: &str) -> Vec<String> {
     all
 }
 
+/// A word without the number at its end.
 fn letters(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
@@ -248,53 +283,60 @@ pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
         && axes.contains(axis)
 }
 
-pub(crate) fn shared_words(one: &str, other: &str) -> usize {
+/// Number of words that two names have in common, without pin numbers.
+pub(crate) fn shared_words(name: &str, other: &str) -> usize {
     let others = words(other);
     let is_pin = |word: &str| PINS.contains(&letters(word)) && digits(word).is_some();
-    words(one).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
+    words(name).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
 }
 
+/// The number at the end of a word.
 fn digits(word: &str) -> Option<String> {
     let digits = word.get(letters(word).len()..)?;
     (!digits.is_empty()).then(|| digits.to_owned())
 }
 
-fn signal(given: &str) -> Option<(&'static str, Kind, Option<String>)> {
+/// The signal of a word such as `STEP`, `STEP1`, `STEPPIN`, `XYDIR` or `XSTEP`.
+fn signal(given: &str) -> Option<SignalWord> {
     let text = letters(given);
-    let known = |text: &str| find(&WORDS, text);
-    if let Some((known, kind)) = known(text) {
-        return Some((known, kind, digits(given)));
+    if let Some((word, kind)) = find(&WORDS, text) {
+        return Some(SignalWord { word, kind, axis: digits(given) });
     }
     if ENCODER.contains(&text) {
         return None;
     }
-    if let Some((word, kind, axis)) = text.strip_suffix("PIN").and_then(signal) {
-        return Some((word, kind, axis.or_else(|| digits(given))));
+    if let Some(signal) = text.strip_suffix("PIN").and_then(signal) {
+        let axis = signal.axis.or_else(|| digits(given));
+        return Some(SignalWord { axis, ..signal });
     }
-    let several = text
+    let shared_axes = text
         .strip_suffix("DIR")
         .or_else(|| text.strip_prefix("DIR"))
         .filter(|axes| axes.len() > 1 && axes.bytes().all(|letter| b"XYZ".contains(&letter)));
-    if let Some(axes) = several {
-        return Some(("DIR", Kind::Dir, Some(axes.to_owned())));
+    if let Some(axes) = shared_axes {
+        return Some(SignalWord { word: "DIR", kind: Kind::Dir, axis: Some(axes.to_owned()) });
     }
+    with_axis_letter(text, &digits(given).unwrap_or_default())
+}
+
+/// The signal of a word with an axis letter before or after it: `XSTEP`, `DIRX`.
+fn with_axis_letter(text: &str, number: &str) -> Option<SignalWord> {
     // L and R are axes only of signals that every motor has.
-    let axis = |letter: &str| {
+    let is_axis = |letter: &str| {
         letter.len() == 1
             && (AXES.contains(letter)
                 || "LR".contains(letter) && (text.contains("STEP") || text.contains("DIR")))
     };
+    let known = |letter, word| is_axis(letter).then(|| find(&WORDS, word)).flatten();
     let (first, rest) = text.split_at_checked(1)?;
-    let (start, end) = text.split_at_checked(text.len().checked_sub(1)?)?;
-    let (letter, found) =
-        match (axis(first).then(|| known(rest)).flatten(), axis(end).then(|| known(start)).flatten()) {
-            (Some(found), _) => (first, found),
-            (None, Some(found)) => (end, found),
-            (None, None) => return None,
-        };
-    let is_motor =
-        matches!(found.1, Kind::Step | Kind::Dir | Kind::En) && found.0.len() > 2 || found.0 == "EN";
-    is_motor.then(|| (found.0, found.1, Some(format!("{letter}{}", digits(given).unwrap_or_default()))))
+    let (start, last) = text.split_at_checked(text.len().checked_sub(1)?)?;
+    let (letter, (word, kind)) = match (known(first, rest), known(last, start)) {
+        (Some(found), _) => (first, found),
+        (None, Some(found)) => (last, found),
+        (None, None) => return None,
+    };
+    let is_of_motor = matches!(kind, Kind::Step | Kind::Dir | Kind::En) && word.len() > 2 || word == "EN";
+    is_of_motor.then(|| SignalWord { word, kind, axis: Some(format!("{letter}{number}")) })
 }
 
 fn is_axis(word: &str) -> bool {
@@ -306,6 +348,7 @@ fn is_noise(word: &str) -> bool {
     NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&letters(word))
 }
 
+/// Several letters of axes, as in `DIR X/Y`.
 fn axes_of(words: &[&str]) -> Option<String> {
     let is_letter = |word: &&&str| word.len() == 1 && AXES.contains(**word);
     let axes: Vec<&str> = words.iter().filter(is_letter).copied().collect();
@@ -321,8 +364,8 @@ fn axis_of(words: &[&str]) -> Option<String> {
     if let Some(number) = words.iter().filter(numbered).find_map(|word| digits(word)) {
         return Some(number);
     }
-    let left: Vec<&str> = words.iter().copied().filter(|word| !is_noise(word)).collect();
-    (!left.is_empty()).then(|| left.join("_"))
+    let names: Vec<&str> = words.iter().copied().filter(|word| !is_noise(word)).collect();
+    (!names.is_empty()).then(|| names.join("_"))
 }
 
 fn axis_of_scope(scope: &str) -> Option<String> {

@@ -1,11 +1,11 @@
 //! Proposes a channel map: first from names, then from the levels of channels whose names are unknown.
 //!
 //! ```text
-//! name       STEP and DIR of one motor belong together (names.rs); one DIR without an axis is that of all motors without
-//! behavior   A, B   edges of two channels alternate, evenly
-//!            RX     pulses are whole bits of words with a stop bit; inverted where the line is low when idle
-//!            STEP   the most pulses; more motors have pulses of about this width
-//!            DIR    changes seldom: at both levels there are steps, and not while STEP is high, where one does so
+//! name       STEP and DIR of one axis (names.rs); a DIR without an axis belongs to all motors without a DIR
+//! behavior   A, B   edges of two channels that alternate evenly
+//!            RX     words of whole bits with a stop bit; inverted if the line idles low
+//!            STEP   most pulses; additional motors have pulses of similar width
+//!            DIR    few changes, with steps at both levels; preferably not while STEP is high
 //! ```
 
 mod behavior;
@@ -23,11 +23,18 @@ use crate::{
 };
 use draft::Draft;
 use motor::{Motor, Source};
-use std::collections::BTreeSet;
 use stepscope_peripheral::signal::MAX_CHANNELS;
 
 impl ChannelMap {
-    /// The map that names and levels suggest; signals without evidence have no channel.
+    /// Proposes a map by names and levels. Signals that cannot be identified have no channel.
+    ///
+    /// ```
+    /// use stepscope_capture::{Capture, ChannelMap, capture::{Channel, Format}};
+    ///
+    /// let channels = ["X_STEP", "X_DIR", "nEN"].map(|name| Channel { name: name.into() });
+    /// let capture = Capture { channels: channels.into(), ..Capture::new(Format::Vcd) };
+    /// assert_eq!(ChannelMap::proposed(&capture).to_text(&capture), "STEP0=X_STEP,DIR0=X_DIR,EN=!nEN");
+    /// ```
     #[must_use]
     pub fn proposed(capture: &Capture) -> Self {
         propose(Draft::new(capture))
@@ -35,37 +42,43 @@ impl ChannelMap {
 }
 
 fn propose(mut draft: Draft<'_>) -> ChannelMap {
-    draft.others_by_name();
+    draft.bus_signals_by_name();
     draft.steps_by_name();
     draft.dirs_by_name();
     let named = draft.motors.len();
     draft.sort_motors();
-    // Encoders come first: a bit rate may fit one at constant speed.
+    // Encoders first: at constant speed, their edges may fit a bit rate.
     draft.encoders_by_behavior();
     draft.lines_by_behavior();
     draft.steps_by_behavior();
     draft.dirs_by_behavior();
     draft.polarity();
-    entries(&draft, named)
+    ChannelMap::from_entries(entries(&draft, named))
 }
 
-fn entries(draft: &Draft<'_>, named: usize) -> ChannelMap {
-    let number = |motor: &Motor| if motor.axis.is_empty() { Ok(0) } else { motor.axis.parse::<u32>() };
-    let numbers: Vec<u32> = draft.motors.iter().take(named).filter_map(|motor| number(motor).ok()).collect();
-    let is_distinct = numbers.windows(2).all(|pair| matches!(pair, [one, next] if one < next));
-    let keep =
-        numbers.len() == named && is_distinct && numbers.iter().all(|number| *number < MAX_CHANNELS as u32);
-    let mut taken = BTreeSet::new();
-    let mut entries = draft.others.clone();
-    for (at, motor) in draft.motors.iter().enumerate() {
-        let own = numbers.get(at).copied().filter(|_| keep && at < named);
-        let Some(place) = own.or_else(|| (0..MAX_CHANNELS as u32).find(|place| !taken.contains(place)))
-        else {
-            break;
-        };
-        taken.insert(place);
+/// Numbers of the motors: those in the names of the first `named` motors if all are valid and rise, otherwise
+/// consecutive ones. Motors beyond the maximum have none.
+fn numbers(motors: &[Motor], named: usize) -> Vec<u32> {
+    let number = |motor: &Motor| if motor.axis.is_empty() { Some(0) } else { motor.axis.parse::<u32>().ok() };
+    let mut numbers: Vec<u32> = motors.iter().take(named).map_while(number).collect();
+    let do_rise = numbers.windows(2).all(|pair| matches!(pair, [first, next] if first < next));
+    let are_valid = numbers.iter().all(|number| *number < MAX_CHANNELS as u32);
+    if numbers.len() < named || !do_rise || !are_valid {
+        numbers.clear();
+    }
+    while numbers.len() < motors.len()
+        && let Some(free) = (0..MAX_CHANNELS as u32).find(|number| !numbers.contains(number))
+    {
+        numbers.push(free);
+    }
+    numbers
+}
+
+fn entries(draft: &Draft<'_>, named: usize) -> Vec<Entry> {
+    let mut entries = draft.bus_signals.clone();
+    for (motor, number) in draft.motors.iter().zip(numbers(&draft.motors, named)) {
         let mut add = |input: Input, channel: usize, inverted: bool| {
-            entries.push(Entry { bit: input.bit(place), channel, inverted });
+            entries.push(Entry { bit: input.bit(number), channel, inverted });
         };
         let is_low = |channel: usize| {
             draft.behavior(channel).idles_high()
@@ -74,20 +87,20 @@ fn entries(draft: &Draft<'_>, named: usize) -> ChannelMap {
         match motor.source {
             Source::None => {}
             Source::Step(channel) => add(Input::Step, channel, motor.inverted),
-            Source::CwCcw(one, other) => {
-                add(Input::Cw, one, is_low(one));
-                add(Input::Ccw, other, is_low(other));
+            Source::CwCcw(cw, ccw) => {
+                add(Input::Cw, cw, is_low(cw));
+                add(Input::Ccw, ccw, is_low(ccw));
             }
-            Source::Encoder(one, other) => {
-                add(Input::A, one, false);
-                add(Input::B, other, false);
+            Source::Encoder(a, b) => {
+                add(Input::A, a, false);
+                add(Input::B, b, false);
             }
         }
         if let Some(channel) = motor.dir {
             add(Input::Dir, channel, false);
         }
     }
-    ChannelMap::of(entries)
+    entries
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Converts a capture to records of the 36 signals, in clock cycles (DESIGN A9, B1).
 //!
-//! Times are rounded to the nearest cycle, halves up. With a slow clock, edges may share a cycle and pulses may be
+//! Times are rounded to the nearest cycle, halves up. With a slow clock, changes may share a cycle and pulses may be
 //! lost; both are counted.
 
 use crate::{
@@ -16,17 +16,22 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// Generated pulses last at most 1/400000 s: 2.5 us.
-const WIDEST: u64 = 400_000;
+/// Maximum width of generated pulses, as a frequency: 2.5 µs.
+const MAX_WIDTH_HZ: u64 = 400_000;
+/// The last valid cycle of a trace.
 const LAST_CYCLE: u64 = 9_000_000_000_000_000;
 
+/// Records of the signals of a capture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Recorded {
+pub struct RecordedSignals {
+    /// Frequency of the clock.
     pub clock_hz: u32,
+    /// Number of motors.
     pub channels: u8,
-    /// Records from cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels, DIR
-    /// right.
+    /// Records from cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels, and DIR
+    /// is right.
     pub records: Vec<Record>,
+    /// End of the recording.
     pub end: Instant,
     /// Effects of rounding.
     pub rounding: Rounding,
@@ -37,8 +42,8 @@ pub struct Recorded {
 pub struct Rounding {
     /// Changes whose time is not a whole cycle.
     pub rounded: u64,
-    /// Records that share a cycle with the one before.
-    pub met: u64,
+    /// Changes in the cycle of the previous change.
+    pub merged: u64,
     /// Signals that changed twice within a cycle, and steps without room for a pulse.
     pub lost: u64,
     /// Simultaneous changes of both encoder inputs, or CW and CCW high together: no step is counted.
@@ -48,21 +53,24 @@ pub struct Rounding {
 impl fmt::Display for Rounding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.rounded {
-            0 => f.write_str("every time of the file is a whole cycle: nothing is rounded")?,
+            0 => f.write_str("all times are whole cycles; nothing is rounded")?,
             1 => f.write_str("1 time is rounded to the nearest cycle, by half a cycle at most")?,
-            more => write!(f, "{more} times are rounded to the nearest cycle, by half a cycle at most")?,
+            count => write!(f, "{count} times are rounded to the nearest cycle, by half a cycle at most")?,
         }
-        if self.met > 0 {
-            write!(f, "; {} times two changes meet in a cycle", self.met)?;
+        match self.merged {
+            0 => {}
+            1 => f.write_str("; 1 change is in the cycle of another one")?,
+            count => write!(f, "; {count} changes are in the cycle of another one")?,
         }
-        if self.lost > 0 {
-            write!(f, ", and {} pulses within one are lost: use a faster clock", self.lost)?;
+        match self.lost {
+            0 => Ok(()),
+            1 => f.write_str("; 1 pulse within a cycle is lost: use a faster clock"),
+            count => write!(f, "; {count} pulses within a cycle are lost: use a faster clock"),
         }
-        Ok(())
     }
 }
 
-/// A time after the last possible cycle.
+/// A time after the last valid cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLate {
     /// In ticks of the file.
@@ -73,7 +81,7 @@ impl fmt::Display for TooLate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "tick {} of the file is after cycle {LAST_CYCLE}, the last that there can be: use a slower clock",
+            "tick {} of the file is after the last valid cycle, {LAST_CYCLE}; use a slower clock",
             self.tick
         )
     }
@@ -85,9 +93,9 @@ fn cycle(timebase: Timebase, tick: u64, clock_hz: u32) -> Result<u64, TooLate> {
     timebase.cycle(tick, clock_hz).filter(|cycle| *cycle <= LAST_CYCLE).ok_or(TooLate { tick })
 }
 
-impl Recorded {
-    /// Converts a capture to cycles of `clock_hz`, with ticks of `timebase`; frees the capture's memory meanwhile.
-    /// Errors: [`TooLate`] if a time has no cycle.
+impl RecordedSignals {
+    /// Converts a capture, with ticks of `timebase`, to cycles of `clock_hz`; frees the capture's memory meanwhile.
+    /// Errors: [`TooLate`].
     pub fn new(
         capture: Capture,
         map: &ChannelMap,
@@ -98,10 +106,10 @@ impl Recorded {
         if let Some(last) = capture.changes.last() {
             cycle(timebase, last.tick, clock_hz)?;
         }
-        let signals = Signals::new(map);
         // A generated pulse has an additional fall.
-        let count = capture.changes.len() * if map.makes_pulses() { 2 } else { 1 };
-        let mut records = Records::new(capture.changes.into_iter(), signals, timebase, clock_hz);
+        let count = capture.changes.len() * if map.generates_pulses() { 2 } else { 1 };
+        let mut records =
+            Records::with_signals(capture.changes.into_iter(), Signals::new(map), timebase, clock_hz);
         // Allocated once: a doubled vector may not fit next to the old one.
         let mut all: Vec<Record> = Vec::with_capacity(count);
         all.extend(records.by_ref());
@@ -121,30 +129,34 @@ pub struct Records<'m, I> {
     timebase: Timebase,
     clock_hz: u32,
     /// Cycles per tick if that is a whole number, which avoids a division.
-    cycles: Option<u64>,
-    before: Option<Record>,
+    cycles_per_tick: Option<u64>,
+    /// The latest record. It is not returned yet, since later changes may be in its cycle.
+    pending: Option<Record>,
+    /// Levels of the last returned record.
     last: Option<Levels>,
-    /// STEP signals whose generated pulses are high in `before`.
+    /// STEP signals whose generated pulses are high in `pending`.
     high: u64,
+    /// The end of generated pulses, returned next.
     fall: Option<Record>,
+    /// Effects of rounding up to now.
     pub rounding: Rounding,
 }
 
 impl<'m> Records<'m, changes::Iter<'m>> {
-    /// Records of a capture, as in [`Recorded::new`].
-    /// Errors: [`TooLate`] if a time has no cycle.
-    pub fn of(
+    /// Records of a capture, as in [`RecordedSignals::new`].
+    /// Errors: [`TooLate`].
+    pub fn new(
         capture: &'m Capture,
         map: &'m ChannelMap,
         timebase: Timebase,
         clock_hz: u32,
     ) -> Result<Self, TooLate> {
-        Self::from(capture, map, timebase, clock_hz, 0)
+        Self::starting_at(capture, map, timebase, clock_hz, 0)
     }
 
     /// Records from a tick on; the first, at cycle 0, has the levels at that time.
-    /// Errors: [`TooLate`] if a time has no cycle.
-    pub fn from(
+    /// Errors: [`TooLate`].
+    pub fn starting_at(
         capture: &'m Capture,
         map: &'m ChannelMap,
         timebase: Timebase,
@@ -153,74 +165,80 @@ impl<'m> Records<'m, changes::Iter<'m>> {
     ) -> Result<Self, TooLate> {
         let last = capture.changes.last().map_or(0, |change| change.tick);
         cycle(timebase, last, clock_hz)?;
-        Ok(Self::new(capture.changes.iter_from(tick), Signals::new(map), timebase, clock_hz))
+        Ok(Self::with_signals(capture.changes.iter_from(tick), Signals::new(map), timebase, clock_hz))
     }
-}
 
-impl<'m> Records<'m, changes::Iter<'m>> {
     /// Records with ticks as cycles, without rounding.
     #[must_use]
     pub fn in_ticks(capture: &'m Capture, map: &'m ChannelMap) -> Self {
-        Self::new(capture.changes.iter_from(0), Signals::new(map), Timebase::SECOND, 1)
+        Self::with_signals(capture.changes.iter(), Signals::new(map), Timebase::SECOND, 1)
     }
 }
 
 impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
-    fn new(changes: I, signals: Signals<'m>, timebase: Timebase, clock_hz: u32) -> Self {
-        let cycles = timebase.cycles(clock_hz);
-        let (before, last, high, fall, rounding) = (None, None, 0, None, Rounding::default());
-        Self { changes, signals, timebase, clock_hz, cycles, before, last, high, fall, rounding }
+    fn with_signals(changes: I, signals: Signals<'m>, timebase: Timebase, clock_hz: u32) -> Self {
+        let cycles_per_tick = timebase.cycles_per_tick(clock_hz);
+        let (pending, last, high, fall, rounding) = (None, None, 0, None, Rounding::default());
+        Self { changes, signals, timebase, clock_hz, cycles_per_tick, pending, last, high, fall, rounding }
     }
 
-    fn take(&mut self, Change { tick, levels }: Change) -> Option<Record> {
-        // The first levels become cycle 0.
-        let at = match self.before {
-            Some(_) => match self.cycles {
-                Some(cycles) => tick.checked_mul(cycles),
-                None => {
-                    self.rounding.rounded += u64::from(!self.timebase.is_whole(tick, self.clock_hz));
-                    self.timebase.cycle(tick, self.clock_hz)
-                }
-            }
-            .unwrap_or(LAST_CYCLE),
-            None => 0,
-        };
-        let mut now = Record { cycle: Instant(at), levels: self.signals.levels(levels) };
-        let mut high = 0;
-        if let Some(generated) = &mut self.signals.generated {
-            let Steps { pulses, levels, ambiguous } = generated.take(levels);
-            self.rounding.ambiguous += u64::from(ambiguous);
-            let since = self.before.map_or(u64::MAX, |before| at - before.cycle.0);
-            // A pulse lasts at least one cycle, so an earlier step waits for it.
-            let held = if since < 2 { self.high & pulses } else { 0 };
-            self.rounding.lost += u64::from(held.count_ones());
-            high = pulses & !held | if since == 0 { self.high } else { 0 };
-            now.levels.0 |= high | levels;
-        }
-        let (shown, falling) = (self.before.replace(now)?, core::mem::replace(&mut self.high, high));
-        if shown.cycle == now.cycle {
-            let since = self.last.unwrap_or(Levels::RESET).0;
-            let recorded = !self.signals.generated.as_ref().map_or(0, GeneratedPulses::signals);
-            self.rounding.met += u64::from(shown.levels != now.levels);
-            self.rounding.lost +=
-                u64::from(((since ^ shown.levels.0) & !(since ^ now.levels.0) & recorded).count_ones());
+    /// Adds a change and returns the pending record if no later change can be in its cycle.
+    fn add(&mut self, Change { tick, levels }: Change) -> Option<Record> {
+        // The first levels are those of cycle 0.
+        let cycle = if self.pending.is_some() { self.cycle(tick) } else { 0 };
+        let (levels, high) = self.levels(cycle, levels);
+        let now = Record { cycle: Instant(cycle), levels };
+        let (ended, falling) = (self.pending.replace(now)?, core::mem::replace(&mut self.high, high));
+        if ended.cycle == now.cycle {
+            self.count_merged(ended.levels, now.levels);
             return None;
         }
-        self.show(shown, falling, at - shown.cycle.0)
+        self.end(ended, falling, cycle - ended.cycle.0)
     }
 
-    /// Returns a record if its levels are new, then the end of generated pulses: halfway to the next record, at most
-    /// [`WIDEST`].
-    fn show(&mut self, shown: Record, falling: u64, room: u64) -> Option<Record> {
-        let is_new = self.last.replace(shown.levels) != Some(shown.levels);
-        if falling != 0 && room > 1 {
-            let width = (room / 2).min(u64::from(self.clock_hz) / WIDEST).max(1);
-            let fall =
-                Record { cycle: Instant(shown.cycle.0 + width), levels: Levels(shown.levels.0 & !falling) };
-            self.last = Some(fall.levels);
-            self.fall = Some(fall);
+    fn cycle(&mut self, tick: u64) -> u64 {
+        let cycle = if let Some(cycles) = self.cycles_per_tick {
+            tick.checked_mul(cycles)
+        } else {
+            self.rounding.rounded += u64::from(!self.timebase.is_on_cycle(tick, self.clock_hz));
+            self.timebase.cycle(tick, self.clock_hz)
+        };
+        cycle.unwrap_or(LAST_CYCLE)
+    }
+
+    /// Levels of the signals, and the STEP signals whose generated pulses are high.
+    fn levels(&mut self, cycle: u64, channels: u64) -> (Levels, u64) {
+        let levels = self.signals.levels(channels);
+        let Some(generated) = &mut self.signals.generated else { return (levels, 0) };
+        let Steps { pulses, levels: more, ambiguous } = generated.update(channels);
+        self.rounding.ambiguous += u64::from(ambiguous);
+        let since = self.pending.map_or(u64::MAX, |pending| cycle - pending.cycle.0);
+        // A pulse and the pause after it last at least one cycle each.
+        let lost = if since < 2 { self.high & pulses } else { 0 };
+        self.rounding.lost += u64::from(lost.count_ones());
+        let high = pulses & !lost | if since == 0 { self.high } else { 0 };
+        (Levels(levels.0 | high | more), high)
+    }
+
+    /// Counts a change in the cycle of the previous one, and recorded signals that change back in it.
+    fn count_merged(&mut self, before: Levels, now: Levels) {
+        let last = self.last.unwrap_or(Levels::RESET).0;
+        let recorded = !self.signals.generated.as_ref().map_or(0, GeneratedPulses::signals);
+        self.rounding.merged += u64::from(before != now);
+        self.rounding.lost += u64::from(((last ^ before.0) & !(last ^ now.0) & recorded).count_ones());
+    }
+
+    /// Returns a record if its levels are new, and sets the end of its generated pulses: halfway to the next record, or
+    /// after the maximum width.
+    fn end(&mut self, record: Record, falling: u64, cycles_to_next: u64) -> Option<Record> {
+        let is_new = self.last.replace(record.levels) != Some(record.levels);
+        if falling != 0 && cycles_to_next > 1 {
+            let width = (cycles_to_next / 2).min(u64::from(self.clock_hz) / MAX_WIDTH_HZ).max(1);
+            let levels = Levels(record.levels.0 & !falling);
+            self.last = Some(levels);
+            self.fall = Some(Record { cycle: Instant(record.cycle.0 + width), levels });
         }
-        is_new.then_some(shown)
+        is_new.then_some(record)
     }
 }
 
@@ -233,20 +251,22 @@ impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
             return Some(fall);
         }
         while let Some(change) = self.changes.next() {
-            if let Some(record) = self.take(change) {
+            if let Some(record) = self.add(change) {
                 return Some(record);
             }
         }
-        let last = self.before.take()?;
+        let last = self.pending.take()?;
         let falling = core::mem::take(&mut self.high);
-        self.show(last, falling, u64::MAX)
+        self.end(last, falling, u64::MAX)
     }
 }
 
+/// Converts levels of channels to levels of signals.
 #[derive(Clone, Debug)]
 struct Signals<'m> {
     entries: &'m [Entry],
-    rest: u64,
+    /// Levels of signals without a channel.
+    unmapped: u64,
     generated: Option<GeneratedPulses>,
 }
 
@@ -260,13 +280,15 @@ impl<'m> Signals<'m> {
         });
         // DIR of unused channels is low.
         let used = (1_u64 << map.bus_channels()) - 1;
-        let rest = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
-        Self { entries: map.entries(), rest, generated }
+        let unmapped = (Levels::RESET.0 | right & used << Levels::DIR_SHIFT) & !mapped;
+        Self { entries: map.entries(), unmapped, generated }
     }
 
     fn levels(&self, channels: u64) -> Levels {
         let bus = self.entries.iter().filter(|entry| entry.bit < BUS_SIGNALS);
-        Levels(bus.fold(self.rest, |levels, entry| levels | u64::from(entry.level(channels)) << entry.bit))
+        Levels(
+            bus.fold(self.unmapped, |levels, entry| levels | u64::from(entry.level(channels)) << entry.bit),
+        )
     }
 }
 
@@ -286,8 +308,8 @@ mod tests {
     fn recorded(changes: &[(u64, u64)], clock_hz: u32) -> (Vec<(u64, u64)>, Rounding, u64) {
         let capture = capture(changes);
         let map = ChannelMap::proposed(&capture);
-        let base = Timebase::new(1, 1_000_000).expect("it has a length");
-        let found = Recorded::new(capture, &map, base, clock_hz).expect("it fits");
+        let base = Timebase::new(1, 1_000_000).expect("a time base");
+        let found = RecordedSignals::new(capture, &map, base, clock_hz).expect("it fits");
         let records = found.records.iter().map(|record| (record.cycle.0, record.levels.0)).collect();
         (records, found.rounding, found.end.0)
     }
@@ -296,7 +318,7 @@ mod tests {
     const RIGHT: u64 = 1 << Levels::DIR_SHIFT;
 
     #[test]
-    fn changes_become_records_and_what_is_on_no_signal_is_left_out() {
+    fn changes_become_records_without_channels_that_have_no_signal() {
         let (records, rounding, end) =
             recorded(&[(5, 0b110), (20, 0b1110), (30, 0b1010), (40, 0b1011), (42, 0b1010)], 2_000_000);
         let en = Levels::EN;
@@ -314,36 +336,36 @@ mod tests {
 
     #[test]
     fn simultaneous_and_lost_changes_are_counted() {
-        // At 100 kHz a cycle is 10 us: the pulse from 21 to 23 is within one, DIR and STEP meet at 50.
+        // At 100 kHz a cycle is 10 us: the pulse from 21 to 23 is within one, DIR and STEP change together at 50.
         let (records, rounding, _) =
             recorded(&[(0, 0), (21, 1), (23, 0), (51, 2), (53, 3), (70, 2)], 100_000);
         let cycles: Vec<u64> = records.iter().map(|(cycle, _)| *cycle).collect();
         assert_eq!(cycles, [0, 5, 7]);
-        assert_eq!(rounding, Rounding { rounded: 4, met: 2, lost: 1, ambiguous: 0 });
-        assert!(rounding.to_string().contains("1 pulses within one are lost"), "{rounding}");
+        assert_eq!(rounding, Rounding { rounded: 4, merged: 2, lost: 1, ambiguous: 0 });
+        assert!(rounding.to_string().contains("1 pulse within a cycle is lost"), "{rounding}");
         // A channel that is no signal changes first, in the same cycle.
         let (records, rounding, _) = recorded(&[(0, 0), (20, 1), (21, 0b1001), (22, 0b1000)], 100_000);
         assert_eq!(records.iter().map(|(cycle, _)| *cycle).collect::<Vec<_>>(), [0]);
-        assert_eq!((rounding.met, rounding.lost), (1, 1));
+        assert_eq!((rounding.merged, rounding.lost), (1, 1));
     }
 
     #[test]
-    fn a_time_beyond_the_last_cycle_is_refused_and_nothing_gives_one_record() {
-        let base = Timebase::new(1, 1).expect("it has a length");
+    fn a_time_after_the_last_cycle_is_an_error_and_an_empty_capture_has_one_record() {
+        let base = Timebase::new(1, 1).expect("a time base");
         let late = capture(&[(0, 0), (u64::MAX / 2, 1)]);
         let map = ChannelMap::proposed(&late);
-        assert!(Recorded::new(late, &map, base, 1_000_000_000).is_err());
-        let none =
-            Recorded::new(Capture::new(Format::Vcd), &ChannelMap::default(), base, 1).expect("it fits");
+        assert!(RecordedSignals::new(late, &map, base, 1_000_000_000).is_err());
+        let none = RecordedSignals::new(Capture::new(Format::Vcd), &ChannelMap::default(), base, 1)
+            .expect("it fits");
         assert_eq!(none.records.len(), 1);
     }
 
     fn generated(map: &str, changes: &[(u64, u64)]) -> (Vec<(u64, u64, u64)>, Rounding) {
         let capture = capture(changes);
         let map = ChannelMap::parse(map, &capture).expect("a map");
-        let base = Timebase::new(1, 1_000_000).expect("it has a length");
-        let found = Recorded::new(capture.clone(), &map, base, 1_000_000).expect("it fits");
-        let streamed = Records::of(&capture, &map, base, 1_000_000).expect("it fits");
+        let base = Timebase::new(1, 1_000_000).expect("a time base");
+        let found = RecordedSignals::new(capture.clone(), &map, base, 1_000_000).expect("it fits");
+        let streamed = Records::new(&capture, &map, base, 1_000_000).expect("it fits");
         assert!(streamed.eq(found.records.iter().copied()));
         let levels =
             |record: &Record| (record.cycle.0, record.levels.0 & 1, u64::from(record.levels.0 & RIGHT != 0));
@@ -351,8 +373,8 @@ mod tests {
     }
 
     #[test]
-    fn both_edges_make_a_pulse_each() {
-        // The edge at 31 comes a cycle after the one at 30, whose pulse cannot end before; so does the second one at 60.
+    fn each_edge_of_dedge_becomes_a_pulse() {
+        // The edge at 31 is one cycle after that at 30, whose pulse ends only then.
         let edges = [(0, 0b10), (20, 0b11), (23, 0b01), (30, 0b00), (31, 0b01), (50, 0b00), (60, 0b01)];
         let (records, rounding) = generated("DEDGE0=STEP,DIR0=DIR", &edges);
         let expected = [
@@ -369,10 +391,10 @@ mod tests {
         ];
         assert_eq!((records, rounding.lost), (expected.to_vec(), 1));
         // In one cycle two edges are one step, and one is lost.
-        let slow = Timebase::new(1, 10_000_000).expect("it has a length");
+        let slow = Timebase::new(1, 10_000_000).expect("a time base");
         let twice = capture(&[(0, 0), (100, 1), (104, 0), (300, 1)]);
         let map = ChannelMap::parse("DEDGE0=STEP", &twice).expect("a map");
-        let found = Recorded::new(twice, &map, slow, 1_000_000).expect("it fits");
+        let found = RecordedSignals::new(twice, &map, slow, 1_000_000).expect("it fits");
         assert_eq!((found.records.len(), found.rounding.lost), (5, 1));
     }
 
@@ -393,7 +415,7 @@ mod tests {
         let (records, rounding) = generated("A0=STEP,B0=DIR", &phases);
         let rises: Vec<(u64, u64)> =
             records.iter().filter(|record| record.1 == 1).map(|record| (record.0, record.2)).collect();
-        // Four steps ahead, two back, and then both lines at once.
+        // Four steps right, two left, then a change of both lines at once.
         assert_eq!(rises, [(10, 1), (20, 1), (30, 1), (40, 1), (50, 0), (60, 0)]);
         assert_eq!((rounding.ambiguous, rounding.lost), (1, 0));
         assert_eq!(generated("A0=!STEP,B0=DIR", &phases).0[1], (10, 1, 0));
@@ -402,14 +424,14 @@ mod tests {
     #[test]
     fn a_table_becomes_records() {
         use crate::{
-            ChannelMap, Recorded,
+            ChannelMap, RecordedSignals,
             read::{Limits, read},
         };
 
         let table = "Time [s],STEP,DIR\n0,0,1\n0.00001,1,1\n0.0000125,0,1\n";
         let capture = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true).capture;
         let (map, base) = (ChannelMap::proposed(&capture), capture.timebase.expect("times in s"));
-        let recorded = Recorded::new(capture, &map, base, 16_000_000).expect("it is short");
+        let recorded = RecordedSignals::new(capture, &map, base, 16_000_000).expect("it is short");
         assert_eq!(recorded.records.iter().map(|record| record.cycle.0).collect::<Vec<_>>(), [0, 160, 200]);
         assert!(recorded.records[1].levels.step() & 1 == 1 && recorded.rounding.lost == 0);
     }

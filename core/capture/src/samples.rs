@@ -9,17 +9,20 @@
 //! }
 //! ```
 
+/// A sample recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Name on the command line and in the page.
     pub id: &'static str,
+    /// Name of its file.
     pub file: &'static str,
+    /// Contents of its file.
     pub bytes: &'static [u8],
-    /// The scenario, as JSON.
+    /// The planned scenario, as JSON.
     pub scenario: &'static str,
 }
 
-/// A firmware with a step table and a timer interrupt; a host that sends a packet too late.
+/// A firmware with a step table and a timer interrupt, and a host that sends a packet too late.
 pub const SAMPLES: [Sample; 2] = [
     Sample {
         id: "recorded-step-table",
@@ -35,6 +38,7 @@ pub const SAMPLES: [Sample; 2] = [
     },
 ];
 
+/// Finds a sample by its `id`.
 #[must_use]
 pub fn sample(id: &str) -> Option<&'static Sample> {
     SAMPLES.iter().find(|sample| sample.id == id)

@@ -1,4 +1,4 @@
-//! Analyzes the edges of STEP: whether the driver may step on both edges, and whether pulses are low.
+//! Analyzes the edges of STEP: whether the driver may step at both edges, and whether pulses are low.
 
 use crate::{
     capture::Capture,
@@ -6,33 +6,37 @@ use crate::{
     channel_map::{ChannelMap, EdgeHint, Entry, Input},
 };
 
+/// Intervals that are needed to call edges evenly spaced.
 const MIN_INTERVALS: u64 = 14;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Edges {
     last: Option<u64>,
-    before: [u64; 2],
+    /// The two latest intervals, the later one first.
+    latest: [u64; 2],
     intervals: u64,
+    /// Intervals whose neighbors' mean is about equal to them.
     even: u64,
+    /// Total times at each level.
     high: u64,
     low: u64,
 }
 
 impl Edges {
-    fn take(&mut self, tick: u64, was_high: bool) {
+    fn add(&mut self, tick: u64, was_high: bool) {
         let Some(last) = self.last.replace(tick) else { return };
         let interval = tick - last;
         let total = if was_high { &mut self.high } else { &mut self.low };
         *total = total.saturating_add(interval);
         self.intervals += 1;
-        let [middle, first] = self.before;
+        let [middle, first] = self.latest;
         if self.intervals > 2 {
             let sum = first.saturating_add(interval);
-            let off = sum.abs_diff(middle.saturating_mul(2));
-            // Within an eighth of the interval, or within a sample if the interval has many.
-            self.even += u64::from(off.saturating_mul(8) <= sum || off <= 2 && sum >= 16);
+            let deviation = sum.abs_diff(middle.saturating_mul(2));
+            // Within an eighth of the interval, or within one sample of at least eight.
+            self.even += u64::from(deviation.saturating_mul(8) <= sum || deviation <= 2 && sum >= 16);
         }
-        self.before = [interval, middle];
+        self.latest = [interval, middle];
     }
 
     const fn is_even(&self) -> bool {
@@ -43,7 +47,7 @@ impl Edges {
 impl ChannelMap {
     /// Hints for the motors whose edges are conclusive.
     pub fn edge_hints(&self, capture: &Capture) -> Vec<EdgeHint> {
-        let step = |entry: &Entry| match Input::of(entry.bit) {
+        let step = |entry: &Entry| match Input::from_bit(entry.bit) {
             Some((Input::Step, motor)) => Some((motor as u8, *entry, Edges::default())),
             _ => None,
         };
@@ -54,7 +58,7 @@ impl ChannelMap {
             let changed = core::mem::replace(&mut before, change.levels) ^ change.levels;
             for (_, entry, edges) in &mut motors {
                 if changed >> entry.channel & 1 == 1 {
-                    edges.take(change.tick, !entry.level(change.levels));
+                    edges.add(change.tick, !entry.level(change.levels));
                 }
             }
         }

@@ -8,6 +8,7 @@ pub struct Timebase {
 }
 
 impl Timebase {
+    /// Ticks of 1 s.
     pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
 
     /// Ticks of `numerator / denominator` seconds; `None` if one is 0.
@@ -23,17 +24,19 @@ impl Timebase {
         Some(Self { numerator: numerator / a, denominator: denominator / a })
     }
 
+    /// Length of a tick in seconds.
     #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
+    /// Numerator and denominator of the length in seconds.
     #[must_use]
     pub const fn parts(self) -> (u64, u64) {
         (self.numerator, self.denominator)
     }
 
-    /// The clock in Hz with one cycle per tick; `None` if it is not whole.
+    /// The clock in Hz with one cycle per tick; `None` if it is not a whole number.
     #[must_use]
     pub fn clock_hz(self) -> Option<u32> {
         if self.numerator == 1 { u32::try_from(self.denominator).ok() } else { None }
@@ -43,27 +46,27 @@ impl Timebase {
     #[must_use]
     pub fn cycle(self, tick: u64, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
-        let (whole, denominator) = (u128::from(tick).checked_mul(scaled)?, u128::from(self.denominator));
-        u64::try_from((whole.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
+        let (product, denominator) = (u128::from(tick).checked_mul(scaled)?, u128::from(self.denominator));
+        u64::try_from((product.checked_mul(2)?.checked_add(denominator)?) / (2 * denominator)).ok()
     }
 
-    /// Whether this tick falls on a cycle.
+    /// Whether this tick is a whole number of cycles.
     #[must_use]
-    pub fn is_whole(self, tick: u64, clock_hz: u32) -> bool {
+    pub fn is_on_cycle(self, tick: u64, clock_hz: u32) -> bool {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
-        let whole = u128::from(tick).checked_mul(scaled);
-        whole.is_some_and(|whole| whole.is_multiple_of(u128::from(self.denominator)))
+        let product = u128::from(tick).checked_mul(scaled);
+        product.is_some_and(|product| product.is_multiple_of(u128::from(self.denominator)))
     }
 
-    /// Cycles per tick if that is whole.
+    /// Cycles per tick; `None` if that is not a whole number.
     #[must_use]
-    pub fn cycles(self, clock_hz: u32) -> Option<u64> {
+    pub fn cycles_per_tick(self, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
         let exact = self.is_exact(clock_hz).then(|| scaled / u128::from(self.denominator))?;
         u64::try_from(exact).ok()
     }
 
-    /// Whether every tick falls on a cycle.
+    /// Whether every tick is a whole number of cycles.
     #[must_use]
     pub fn is_exact(self, clock_hz: u32) -> bool {
         (u128::from(self.numerator) * u128::from(clock_hz)).is_multiple_of(u128::from(self.denominator))
@@ -75,8 +78,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tick_falls_in_the_nearest_cycle_and_halves_go_up() {
-        // (ticks of, clock, tick) -> cycle
+    fn ticks_are_rounded_to_the_nearest_cycle_halves_up() {
+        // Length of a tick in s, clock in Hz, tick, cycle.
         for ((numerator, denominator), clock_hz, tick, cycle) in [
             ((1, 1_000_000_000), 16_000_000, 31, Some(0)),
             ((1, 1_000_000_000), 16_000_000, 32, Some(1)),
@@ -85,9 +88,9 @@ mod tests {
             ((10, 1), 1_000_000_000, u64::MAX, None),
             ((1, 1_000_000_000_000_000), 1_000_000_000, u64::MAX, Some(18_446_744_073_710)),
         ] {
-            let base = Timebase::new(numerator, denominator).expect("it has a length");
+            let base = Timebase::new(numerator, denominator).expect("a time base");
             assert_eq!(base.cycle(tick, clock_hz), cycle, "{base:?} {clock_hz} {tick}");
-            let cycles = base.cycles(clock_hz);
+            let cycles = base.cycles_per_tick(clock_hz);
             assert_eq!(cycles.is_some(), base.is_exact(clock_hz));
             assert!(
                 cycles.is_none_or(|cycles| tick.checked_mul(cycles) == cycle),
@@ -100,11 +103,11 @@ mod tests {
     }
 
     #[test]
-    fn samples_become_cycles() {
+    fn samples_at_24_mhz_become_cycles_of_16_mhz() {
         use crate::timebase::Timebase;
 
-        // Samples at 24 MHz, seen by a clock of 16 MHz: the third comes at 2 cycles, the second is rounded.
-        let base = Timebase::new(1, 24_000_000).expect("it has a length");
+        // Sample 1 is at 0.67 cycles, sample 3 exactly at 2.
+        let base = Timebase::new(1, 24_000_000).expect("a time base");
         assert_eq!(
             [0, 1, 2, 3].map(|tick| base.cycle(tick, 16_000_000)),
             [Some(0), Some(1), Some(1), Some(2)]

@@ -1,34 +1,49 @@
-//! Decodes a recorded serial line: bit rate from its edges, then its bytes.
+//! Decodes a recorded serial line: estimates the bit rate from its edges, then decodes the bytes.
 //!
-//! Bits are sampled at fractional bit times from each start edge, so four samples per bit are enough. Below
-//! [`COARSE_BIT`] samples per bit the position of the start edge itself is fitted to all edges of the word.
+//! Bits are counted at fractional bit times from each start edge, so four samples per bit are enough. Below
+//! [`COARSE_BIT`] samples per bit the time of the start edge itself is fitted to all edges of the word.
 //!
 //! ```text
-//! idle ¯¯¯\___/¯¯¯\_______/¯¯¯ …      edge n bits after the start edge: round((edge - start) / bit) = n
-//!         start  1   0   0   1        words with edges that are no whole bits, or a low stop bit, do not fit
+//! idle ¯¯¯\___/¯¯¯\_______/¯¯¯ …      bits before an edge: n = round((edge - start) / bit)
+//!         start  1   0   0   1        a bit time fits if all edges are at whole bits and stop bits are high
+//! ```
+//!
+//! ```
+//! use stepscope_capture::uart::{Edge, Format, decode, estimate};
+//!
+//! // The letter U, 100 samples per bit, sampled at 960 kHz.
+//! let edges: Vec<Edge> = (0..10).map(|bit| Edge { at: 100 * bit, high: bit % 2 == 1 }).collect();
+//! let rate = estimate(&edges, Format::default(), Some(960_000.0)).expect("a rate fits");
+//! assert_eq!(rate.usual, Some(9600));
+//! decode(edges, rate.bit, Format::default(), |word| assert_eq!(word.byte, b'U'));
 //! ```
 
 mod rate;
 
-pub use rate::{Estimate, NoRate, estimate, looks_like_a_line};
+pub use rate::{Estimate, NoRate, estimate};
+pub(crate) use rate::{IdleLevel, detect_line};
 
 use core::{fmt, str::FromStr};
 use std::collections::VecDeque;
 
-/// Below this number of samples per bit the start edge's rounding matters.
+/// Below this number of samples per bit, the rounding of the start edge matters.
 pub const COARSE_BIT: f64 = 16.0;
-/// More edges per word are noise.
+/// Maximum number of edges per word; more are noise.
 const MAX_EDGES: usize = 64;
-/// In samples: rounding, plus one sample of jitter.
-const START_OFF: f64 = 1.5;
-const START_STEP: f64 = 0.25;
+/// Maximum deviation of a start edge, in samples: rounding plus one sample of jitter.
+const MAX_START_DEVIATION: f64 = 1.5;
+/// Increment of the deviations that are tried.
+const DEVIATION_STEP: f64 = 0.25;
 
+/// Parity of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Parity {
+    /// No parity bit.
     #[default]
     None,
     /// Even number of ones, parity bit included.
     Even,
+    /// Odd number of ones, parity bit included.
     Odd,
 }
 
@@ -63,7 +78,7 @@ impl Format {
         1 + self.data + u8::from(self.parity != Parity::None)
     }
 
-    /// Bit 0 of `levels` is the start bit.
+    /// Byte and fault of a word; bit 0 of `levels` is the start bit.
     fn word(self, levels: u16) -> (u8, Option<Fault>) {
         let byte = (levels >> 1 & ((1 << self.data) - 1)) as u8;
         let stops = (1_u16 << self.stop) - 1;
@@ -71,12 +86,12 @@ impl Format {
             return (byte, Some(Fault::Framing));
         }
         let ones = byte.count_ones() + u32::from(levels >> (1 + self.data) & 1);
-        let right = match self.parity {
+        let is_parity_correct = match self.parity {
             Parity::None => true,
             Parity::Even => ones.is_multiple_of(2),
             Parity::Odd => !ones.is_multiple_of(2),
         };
-        (byte, if right { None } else { Some(Fault::Parity) })
+        (byte, if is_parity_correct { None } else { Some(Fault::Parity) })
     }
 }
 
@@ -111,13 +126,16 @@ impl FromStr for Format {
     }
 }
 
+/// An edge of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// In any unit: samples, ticks or cycles.
+    /// Time in any unit: samples, ticks or cycles.
     pub at: u64,
+    /// Level after the edge.
     pub high: bool,
 }
 
+/// A fault of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A low stop bit.
@@ -126,49 +144,59 @@ pub enum Fault {
     Parity,
 }
 
+/// A decoded word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
-    /// Its start edge.
+    /// Time of its start edge.
     pub start: u64,
+    /// Its data bits.
     pub byte: u8,
+    /// Its fault, if any.
     pub fault: Option<Fault>,
 }
 
+/// A word, and how well its edges fit whole bits.
 #[derive(Clone, Copy, Debug, Default)]
-struct Fitted {
+struct FittedWord {
+    /// Time of the start edge.
+    start: u64,
+    /// Level of each bit, from the start bit. A high start bit is a pulse too short for a word.
     levels: u16,
+    /// Number of edges, including the start edge.
     edges: usize,
-    /// In bits.
+    /// Sum of the squared distances of edges from whole bits, in bits.
     squares: f64,
-    met: usize,
+    /// Edges at the bit of the previous edge.
+    coincident: usize,
     /// Sums of the least squares line; see [`rate`].
     sxx: f64,
     sxy: f64,
+    /// More edges follow.
+    has_next: bool,
 }
 
-/// Decodes a line that is high when idle, with alternating edges in order of time; a bit lasts `bit`. A word that
-/// ends with the recording and a low line has a framing error.
+/// Decodes a line that idles high, with alternating edges in order of time. `bit` is the length of a bit in the unit of
+/// the edges. A word that ends with the recording and a low line has a framing error.
 pub fn decode(edges: impl IntoIterator<Item = Edge>, bit: f64, format: Format, mut take: impl FnMut(Word)) {
-    each_word(edges, bit, format, &mut |start, fitted: &Fitted, _| {
-        let (byte, fault) = format.word(fitted.levels);
-        if fitted.levels & 1 == 0 {
-            take(Word { start, byte, fault });
+    fit_words(edges, bit, format, &mut |word: &FittedWord| {
+        let (byte, fault) = format.word(word.levels);
+        if word.levels & 1 == 0 {
+            take(Word { start: word.start, byte, fault });
         }
     });
 }
 
-/// Also calls for pulses too short for a start bit, whose bit 0 is then high. Passes the start edge, the fit, and
-/// whether more edges follow.
-fn each_word(
+/// Fits each word to whole bits, and each pulse that is too short for a start bit.
+fn fit_words(
     edges: impl IntoIterator<Item = Edge>,
     bit: f64,
     format: Format,
-    take: &mut dyn FnMut(u64, &Fitted, bool),
+    take: &mut dyn FnMut(&FittedWord),
 ) {
     let mut edges = edges.into_iter();
     let mut pending: VecDeque<Edge> = VecDeque::with_capacity(MAX_EDGES);
     let mut times = Vec::with_capacity(MAX_EDGES);
-    let reach = (f64::from(format.bits()) - 0.5) * bit + START_OFF;
+    let length = (f64::from(format.bits()) - 0.5) * bit + MAX_START_DEVIATION;
     loop {
         let Some(start) = pending.pop_front().or_else(|| edges.next()) else { return };
         if start.high {
@@ -176,17 +204,17 @@ fn each_word(
         }
         // One edge after the word is enough.
         while pending.len() < MAX_EDGES
-            && pending.back().is_none_or(|last| ((last.at - start.at) as f64) < reach)
+            && pending.back().is_none_or(|last| ((last.at - start.at) as f64) < length)
             && let Some(edge) = edges.next()
         {
             pending.push_back(edge);
         }
         times.clear();
         times.push(0.0);
-        times.extend(pending.iter().map(|edge| (edge.at - start.at) as f64).take_while(|at| *at < reach));
+        times.extend(pending.iter().map(|edge| (edge.at - start.at) as f64).take_while(|at| *at < length));
         let fitted = fit(&times, bit, format);
         pending.drain(..(fitted.edges - 1).min(pending.len()));
-        take(start.at, &fitted, !pending.is_empty());
+        take(&FittedWord { start: start.at, has_next: !pending.is_empty(), ..fitted });
     }
 }
 
@@ -194,40 +222,42 @@ fn rounded(number: f64) -> i64 {
     (number + 0.5).max(0.0) as i64
 }
 
-fn fit(times: &[f64], bit: f64, format: Format) -> Fitted {
-    let mut best = fit_from(times, bit, format, 0.0);
+/// Fits the edges of a word, and with few samples per bit its start edge.
+fn fit(times: &[f64], bit: f64, format: Format) -> FittedWord {
+    let (mut best, mut min_cost) = fit_from(times, bit, format, 0.0);
     if bit >= COARSE_BIT {
-        return best.0;
+        return best;
     }
-    let max_off = START_OFF.min(0.4 * bit);
-    let mut off = START_STEP;
-    while off <= max_off {
-        for off in [off, -off] {
-            let other = fit_from(times, bit, format, off);
-            if other.1 < best.1 {
-                best = other;
+    let max_deviation = MAX_START_DEVIATION.min(0.4 * bit);
+    let mut deviation = DEVIATION_STEP;
+    while deviation <= max_deviation {
+        for start in [deviation, -deviation] {
+            let (fitted, cost) = fit_from(times, bit, format, start);
+            if cost < min_cost {
+                (best, min_cost) = (fitted, cost);
             }
         }
-        off += START_STEP;
+        deviation += DEVIATION_STEP;
     }
-    best.0
+    best
 }
 
-fn fit_from(times: &[f64], bit: f64, format: Format, off: f64) -> (Fitted, f64) {
+/// Fits the edges to whole bits from `start`; returns the fit and its cost.
+fn fit_from(times: &[f64], bit: f64, format: Format, start: f64) -> (FittedWord, f64) {
     let bits = i64::from(format.bits());
-    let mut fitted = Fitted { edges: 1, ..Fitted::default() };
+    let mut fitted = FittedWord { edges: 1, ..FittedWord::default() };
     let (mut levels, mut last) = (0_u16, 0_i64);
-    let mut cost = (off / bit) * (off / bit);
+    let mut cost = (start / bit) * (start / bit);
     let (mut n, mut sum_x, mut sum_y, mut sum_xx, mut sum_xy) = (1.0, 0.0, 0.0, 0.0, 0.0);
     for at in times.iter().skip(1) {
-        let whole = rounded((at - off) / bit);
+        let whole = rounded((at - start) / bit);
         if whole >= bits {
             break;
         }
-        let far = (at - off) / bit - whole as f64;
-        (cost, fitted.squares) = (cost + far * far, fitted.squares + far * far);
+        let distance = (at - start) / bit - whole as f64;
+        (cost, fitted.squares) = (cost + distance * distance, fitted.squares + distance * distance);
         if whole == last {
-            fitted.met += 1;
+            fitted.coincident += 1;
             cost += 1.0;
         }
         fitted.edges += 1;
@@ -240,9 +270,9 @@ fn fit_from(times: &[f64], bit: f64, format: Format, off: f64) -> (Fitted, f64) 
     fitted.levels = levels;
     fitted.sxx = sum_xx - sum_x * sum_x / n;
     fitted.sxy = sum_xy - sum_x * sum_y / n;
-    // Of two similar fits, prefer the one with a stop bit.
-    let framing = format.word(levels).1 == Some(Fault::Framing);
-    (fitted, cost + if framing { 0.1 } else { 0.0 })
+    // Of two similar fits, the one with a stop bit is better.
+    let has_framing_error = format.word(levels).1 == Some(Fault::Framing);
+    (fitted, cost + if has_framing_error { 0.1 } else { 0.0 })
 }
 
 #[cfg(test)]

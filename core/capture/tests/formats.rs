@@ -841,7 +841,7 @@ fn too_many_rows_end_the_reading() {
 
 #[test]
 fn pulses_within_one_time_of_the_file_are_counted() {
-    let lost = |text: &str| read_bytes(text).capture.left_out;
+    let lost = |text: &str| read_bytes(text).capture.notes;
     let table = "millis,STEP,DIR\n0,0,1\n1,1,1\n1,0,1\n2,1,1\n2,0,1\n3,1,0\n4,1,1\n4,1,0\n5,0,0\n";
     assert_eq!(
         lost(table),
@@ -862,7 +862,7 @@ fn pulses_within_one_time_of_the_file_are_counted() {
         let expected = format!(
             "1 pulse starts and ends at one time of the file, lost ({channel}); record times more finely"
         );
-        assert_eq!(capture.left_out, [expected], "{channel}");
+        assert_eq!(capture.notes, [expected], "{channel}");
     }
 }
 
@@ -893,10 +893,10 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.channels.len(), 64);
     assert_eq!(reading.capture.channels[63].name, "W3");
-    assert_eq!(reading.capture.channels_left_out, 100_006);
+    assert_eq!(reading.capture.omitted_channels, 100_006);
     assert_eq!(reading.capture.changes.first().expect("a row").levels, 1 << 63);
     assert_eq!(
-        reading.capture.left_out,
+        reading.capture.notes,
         [
             "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, first those \
              that the channel map names, then those with a recognized name"
@@ -906,9 +906,9 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     let reading = read_bytes(table);
     assert_eq!(reading.error, None);
     assert_eq!(reading.capture.changes.first().expect("a row").levels, u64::MAX);
-    assert_eq!(reading.capture.left_out.len(), 1);
+    assert_eq!(reading.capture.notes.len(), 1);
     assert!(
-        reading.capture.left_out[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read")
+        reading.capture.notes[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read")
     );
 }
 
@@ -925,10 +925,9 @@ fn wanted_and_recognized_channels_come_first() {
     assert_eq!((found.len(), &found[62], &found[63]), (64, &"tb.STEP".to_owned(), &"tb.DIR".to_owned()));
     assert_eq!(reading.capture.changes.last().expect("a row").levels, 1 << 62);
     assert!(
-        reading.capture.left_out[0]
-            .starts_with("4 000 000 011 of 4 000 000 075 channels left out (tb.instr["),
+        reading.capture.notes[0].starts_with("4 000 000 011 of 4 000 000 075 channels left out (tb.instr["),
         "{:?}",
-        reading.capture.left_out
+        reading.capture.notes
     );
     let wanted =
         ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);

@@ -75,7 +75,7 @@ fn in_order(capture: &Capture) {
         .chain(capture.bytes.last().map(|byte| byte.tick))
         .chain(capture.positions.last().map(|row| row.tick));
     assert!(last.max().unwrap_or(0) <= capture.end);
-    assert!(capture.left_out.len() <= 20);
+    assert!(capture.notes.len() <= 20);
 }
 
 fn survives(bytes: &[u8]) {

@@ -97,7 +97,7 @@ fn same(capture: &Capture, format: Format) {
     let found: Vec<Change> =
         capture.changes.iter().map(|change| Change { tick: micros(change.tick), ..change }).collect();
     assert_eq!(found, recording());
-    assert!(capture.left_out.is_empty(), "{:?}", capture.left_out);
+    assert!(capture.notes.is_empty(), "{:?}", capture.notes);
 }
 
 fn text(path: &Path) -> &str {
@@ -157,7 +157,7 @@ fn a_recording_of_sigroks_demo_device_is_the_same_in_all_of_its_formats() {
     for rate in ["24m", "2m", "1500", "999999"] {
         let session = demo(rate, &["-C", "D0,D1,D2,D3,D4,D5,D6,D7"]);
         let whole = open(&session);
-        assert_eq!((whole.channels.len(), whole.end, whole.left_out.len()), (8, 8999, 0));
+        assert_eq!((whole.channels.len(), whole.end, whole.notes.len()), (8, 8999, 0));
         assert!(whole.changes.len() > 100 && whole.timebase.is_some());
         let written = session.with_extension("written");
         for output in ["csv", "csv:time=true", "csv:time=true:dedup=true"] {
@@ -177,7 +177,7 @@ fn a_recording_of_sigroks_demo_device_is_the_same_in_all_of_its_formats() {
 fn analog_channels_of_a_session_are_left_out() {
     let capture = open(&demo("20k", &[]));
     assert_eq!((capture.channels.len(), capture.end), (8, 8999));
-    assert_eq!(capture.left_out, ["analog channels: A0, A1, A2, A3, A4"]);
+    assert_eq!(capture.notes, ["analog channels: A0, A1, A2, A3, A4"]);
 }
 
 /// 9000 samples of the demo device, as a session.

@@ -48,7 +48,7 @@ fn equal(file: &[u8], format: Format, base: Option<Timebase>, written: &Levels) 
         "{}",
         String::from_utf8_lossy(file)
     );
-    assert_eq!((capture.end, capture.left_out), (written.end, Vec::new()));
+    assert_eq!((capture.end, capture.notes), (written.end, Vec::new()));
 }
 
 proptest! {

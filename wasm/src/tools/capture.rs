@@ -265,12 +265,12 @@ impl CaptureFile {
             count: capture.len(),
             map,
             map_error,
-            left_out: capture.channels_left_out,
+            left_out: capture.omitted_channels,
             has_levels: !capture.changes.is_empty(),
             has_bytes: !capture.bytes.is_empty(),
             has_times: capture.timebase.is_some(),
             has_base: matches!(capture.format, Format::Annotations | Format::HexBytes | Format::SerialLog),
-            notes: &capture.left_out,
+            notes: &capture.notes,
             error: self.error.as_deref(),
         })
     }
@@ -480,7 +480,7 @@ mod tests {
         let typed = "STEP0=W98,DIR0=!top.W99";
         let wanted = Wanted { channels: ChannelMap::channel_names(typed), ..Wanted::default() };
         let capture = read_wanted(io::Cursor::new(table), &Limits::default(), &wanted, &mut |_| true).capture;
-        assert_eq!((capture.channels.len(), capture.channels_left_out), (64, 36));
+        assert_eq!((capture.channels.len(), capture.omitted_channels), (64, 36));
         assert_eq!(map_of(&capture, Some(typed)), ("STEP0=top.W98,DIR0=!top.W99".into(), None));
         let (map, error) = map_of(&capture, Some("STEP0=W97"));
         assert!(

@@ -1,8 +1,8 @@
-//! Measures each channel: number of changes, pulse widths, and whether it is a serial line.
+//! Measures each channel: number of edges, pulse widths, and whether it is a serial line.
 
 use crate::{
     capture::Change,
-    uart::{self, Edge},
+    uart::{self, Edge, IdleLevel},
 };
 
 /// Edges that are inspected to detect a serial line.
@@ -10,34 +10,37 @@ const LINE_EDGES: usize = 600;
 /// Minimum number of pulses of STEP.
 pub(super) const MIN_STEPS: u64 = 4;
 
+/// Measurements of a channel. Times are in ticks, between its first and last edge.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Behavior {
-    pub(super) first: bool,
-    pub(super) last: bool,
-    pub(super) rises: u64,
-    pub(super) falls: u64,
-    pub(super) high: u64,
-    pub(super) low: u64,
-    pub(super) longest_high: u64,
-    pub(super) longest_low: u64,
-    pub(super) shortest_high: u64,
-    pub(super) shortest_low: u64,
-    pub(super) since: Option<u64>,
-    /// Whether it is a serial line; if so, whether it is inverted.
-    pub(super) line: Option<bool>,
+    starts_high: bool,
+    ends_high: bool,
+    rises: u64,
+    falls: u64,
+    high: u64,
+    low: u64,
+    longest_high: u64,
+    longest_low: u64,
+    shortest_high: u64,
+    last_edge: Option<u64>,
+    /// The idle level if it is a serial line.
+    pub(super) line: Option<IdleLevel>,
 }
 
 impl Behavior {
     fn edge(&mut self, tick: u64, was_high: bool) {
-        let (edges, sum, longest, shortest) = if was_high {
-            (&mut self.falls, &mut self.high, &mut self.longest_high, &mut self.shortest_high)
+        let (edges, total, longest) = if was_high {
+            (&mut self.falls, &mut self.high, &mut self.longest_high)
         } else {
-            (&mut self.rises, &mut self.low, &mut self.longest_low, &mut self.shortest_low)
+            (&mut self.rises, &mut self.low, &mut self.longest_low)
         };
         *edges += 1;
-        if let Some(since) = self.since.replace(tick) {
-            let length = tick - since;
-            (*sum, *longest, *shortest) = (*sum + length, length.max(*longest), length.min(*shortest));
+        if let Some(last) = self.last_edge.replace(tick) {
+            let length = tick - last;
+            (*total, *longest) = (*total + length, length.max(*longest));
+            if was_high {
+                self.shortest_high = length.min(self.shortest_high);
+            }
         }
     }
 
@@ -46,29 +49,29 @@ impl Behavior {
     }
 
     pub(super) const fn idles_high(&self) -> bool {
-        self.first && self.high > self.low
+        self.starts_high && self.high > self.low
     }
 
     pub(super) const fn longest_pulse(&self) -> u64 {
         if self.idles_high() { self.longest_low } else { self.longest_high }
     }
 
-    /// Equal pulses, low when idle, which no serial line has.
-    pub(super) const fn is_pulses(&self) -> bool {
-        !self.first
-            && !self.last
+    /// Whether it has pulses of similar width and idles low. No serial line does.
+    pub(super) const fn has_equal_pulses(&self) -> bool {
+        !self.starts_high
+            && !self.ends_high
             && self.rises >= 2 * MIN_STEPS
             && self.longest_high <= self.shortest_high.saturating_mul(2)
     }
 }
 
 pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
-    let never = u64::MAX;
-    let none = Behavior { shortest_high: never, shortest_low: never, ..Behavior::default() };
+    let none = Behavior { shortest_high: u64::MAX, ..Behavior::default() };
     let mut all = vec![none; channels];
     let (Some(first), Some(last)) = (changes.first(), changes.last()) else { return all };
     for (channel, each) in all.iter_mut().enumerate() {
-        (each.first, each.last) = (first.levels >> channel & 1 == 1, last.levels >> channel & 1 == 1);
+        each.starts_high = first.levels >> channel & 1 == 1;
+        each.ends_high = last.levels >> channel & 1 == 1;
     }
     let mut edges: Vec<Vec<Edge>> = vec![Vec::new(); channels];
     for pair in changes.windows(2) {
@@ -86,7 +89,7 @@ pub(super) fn behaviors(changes: &[Change], channels: usize) -> Vec<Behavior> {
         }
     }
     for (each, edges) in all.iter_mut().zip(&edges) {
-        each.line = uart::looks_like_a_line(edges);
+        each.line = uart::detect_line(edges);
     }
     all
 }

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     channel_map::Entry,
     names::{Kind, Meaning},
+    uart::IdleLevel,
 };
 use stepscope_peripheral::signal::Levels;
 
@@ -16,39 +17,41 @@ const MIN_ENCODER_EDGES: usize = 16;
 const MAX_ENCODER_EDGES: usize = 4096;
 /// Maximum ratio of the pulse widths of two motors.
 const MAX_WIDTH_RATIO: u64 = 4;
+/// Minimum share, in percent, of two successive pulses of a further motor with a pulse of the first motor between them,
+/// from which the channel is too slow for a STEP.
+const SLOW_PERCENT: usize = 80;
 
 const LINES: [u32; 2] = [Levels::RX.trailing_zeros(), Levels::TX.trailing_zeros()];
 
 impl Draft<'_> {
     pub(super) fn lines_by_behavior(&mut self) {
-        let lines = self.free().into_iter().filter(|channel| self.is_line(*channel));
+        let lines = self.unassigned().into_iter().filter(|channel| self.is_line(*channel));
         for (bit, channel) in LINES.into_iter().zip(lines.collect::<Vec<_>>()) {
-            if self.others.iter().all(|entry| entry.bit != bit) {
-                let inverted = self.behavior(channel).line == Some(true);
-                self.others.push(Entry { bit, channel, inverted });
+            if self.bus_signals.iter().all(|entry| entry.bit != bit) {
+                let inverted = self.behavior(channel).line == Some(IdleLevel::Low);
+                self.bus_signals.push(Entry { bit, channel, inverted });
             }
         }
     }
 
     pub(super) fn encoders_by_behavior(&mut self) {
         let busy = |channel: &usize| self.behavior(*channel).changes() >= MIN_ENCODER_EDGES as u64 / 2;
-        let free: Vec<usize> = self.free().into_iter().filter(busy).collect();
-        let edges: Vec<Vec<u64>> = free
-            .iter()
-            .map(|channel| {
-                let mut edges = self.edges(*channel);
-                edges.truncate(MAX_ENCODER_EDGES);
-                edges
-            })
-            .collect();
+        let edges = |channel: usize| {
+            let mut edges = self.edges(channel);
+            edges.truncate(MAX_ENCODER_EDGES);
+            (channel, edges)
+        };
+        let channels: Vec<(usize, Vec<u64>)> =
+            self.unassigned().into_iter().filter(busy).map(edges).collect();
         let mut used: Vec<usize> = Vec::new();
-        for (at, (one, one_edges)) in free.iter().zip(&edges).enumerate() {
-            for (other, other_edges) in free.iter().zip(&edges).skip(at + 1) {
-                let (a, b) = (self.behavior(*one).changes(), self.behavior(*other).changes());
-                let is_free = !used.contains(one) && !used.contains(other);
-                if is_free && a.abs_diff(b) * 20 <= a + b && alternate(one_edges, other_edges) {
-                    used.extend([*one, *other]);
-                    self.motors.push(Motor::new("", "", Source::Encoder(*one, *other)));
+        for (at, (a, edges_a)) in channels.iter().enumerate() {
+            for (b, edges_b) in channels.iter().skip(at + 1) {
+                let (count_a, count_b) = (self.behavior(*a).changes(), self.behavior(*b).changes());
+                let is_similar = count_a.abs_diff(count_b) * 20 <= count_a + count_b;
+                let is_free = !used.contains(a) && !used.contains(b);
+                if is_free && is_similar && alternate(edges_a, edges_b) {
+                    used.extend([*a, *b]);
+                    self.motors.push(Motor::new("", "", Source::Encoder(*a, *b)));
                 }
             }
         }
@@ -59,22 +62,22 @@ impl Draft<'_> {
             return;
         }
         let busy = |channel: &usize| self.behavior(*channel).changes() >= 2 * MIN_STEPS;
-        let free: Vec<usize> = self.free_of_lines().into_iter().filter(busy).collect();
-        let busiest = free
+        let channels: Vec<usize> = self.unassigned_without_lines().into_iter().filter(busy).collect();
+        let busiest = channels
             .iter()
             .copied()
             .max_by_key(|channel| (self.behavior(*channel).changes(), usize::MAX - channel));
-        let Some(first) = busiest else { return };
-        let first_edges = self.edges(first);
-        let widest = self.behavior(first).longest_pulse().saturating_mul(MAX_WIDTH_RATIO);
-        for channel in free {
-            let own = self.behavior(channel);
-            let is_slow = || has_steps_between(&self.edges(channel), &first_edges, 80);
-            if channel != first && (own.longest_pulse() > widest || is_slow()) {
+        let Some(busiest) = busiest else { return };
+        let edges = self.edges(busiest);
+        let max_width = self.behavior(busiest).longest_pulse().saturating_mul(MAX_WIDTH_RATIO);
+        for channel in channels {
+            let is_wide = self.behavior(channel).longest_pulse() > max_width;
+            let is_slow = || has_steps_between(&self.edges(channel), &edges, SLOW_PERCENT);
+            if channel != busiest && (is_wide || is_slow()) {
                 continue;
             }
             let source = Source::Step(channel);
-            // A named DIR may belong to the only motor.
+            // The STEP of a motor of which only DIR has a name.
             match self.motors.iter_mut().find(|motor| motor.source == Source::None) {
                 Some(motor) => motor.source = source,
                 None => self.motors.push(Motor::new("", "", source)),
@@ -82,12 +85,12 @@ impl Draft<'_> {
         }
     }
 
-    /// STEP is active low if its name says so, or if it idles high and the name says nothing.
+    /// Inverts a STEP that idles high, unless its name determines the polarity.
     pub(super) fn polarity(&mut self) {
         let low = |motor: &Motor| {
             let channel = motor.step()?;
             let is_stated = match self.meanings.get(channel) {
-                Some(Meaning::Signal(named)) if named.kind == Kind::Step => !named.negative,
+                Some(Meaning::Signal(named)) if named.kind == Kind::Step => !named.is_negative,
                 _ => false,
             };
             (!is_stated).then(|| self.behavior(channel).idles_high())
@@ -100,22 +103,22 @@ impl Draft<'_> {
 }
 
 /// Whether the edges of two channels alternate evenly, as an encoder's do.
-fn alternate(one: &[u64], other: &[u64]) -> bool {
-    // Only the time for which both are known.
-    let end = one.last().min(other.last()).copied().unwrap_or(0);
-    let until = |edges: &&u64| **edges <= end;
-    let first = one.iter().take_while(until).map(|at| (*at, false));
-    let mut all: Vec<(u64, bool)> =
-        first.chain(other.iter().take_while(until).map(|at| (*at, true))).collect();
+fn alternate(a: &[u64], b: &[u64]) -> bool {
+    // Only the time up to which the edges of both are known.
+    let end = a.last().min(b.last()).copied().unwrap_or(0);
+    let edges = |ticks: &[u64], is_b: bool| -> Vec<(u64, bool)> {
+        ticks.iter().take_while(|tick| **tick <= end).map(|tick| (*tick, is_b)).collect()
+    };
+    let mut all = [edges(a, false), edges(b, true)].concat();
     all.sort_unstable();
     let pairs = || all.iter().zip(all.iter().skip(1));
-    let (count, same) = (all.len(), pairs().filter(|(edge, next)| edge.1 == next.1).count());
-    let at_once = pairs().filter(|(edge, next)| edge.0 == next.0).count();
+    let same_channel = pairs().filter(|(edge, next)| edge.1 == next.1).count();
+    let simultaneous = pairs().filter(|(edge, next)| edge.0 == next.0).count();
     let intervals: Vec<u64> = pairs().map(|(edge, next)| next.0 - edge.0).collect();
-    let is_even = |pair: &&[u64]| matches!(pair, [one, next] if one.saturating_mul(4) >= *next && next.saturating_mul(4) >= *one);
+    let is_even = |pair: &&[u64]| matches!(pair, [first, next] if first.saturating_mul(4) >= *next && next.saturating_mul(4) >= *first);
     let even = intervals.windows(2).filter(is_even).count();
-    count >= MIN_ENCODER_EDGES
-        && same * 20 <= count
-        && at_once * 50 <= count
+    all.len() >= MIN_ENCODER_EDGES
+        && same_channel * 20 <= all.len()
+        && simultaneous * 50 <= all.len()
         && even * 10 >= intervals.len().saturating_sub(1) * 7
 }

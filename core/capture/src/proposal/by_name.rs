@@ -7,6 +7,7 @@ use super::{
 use crate::{
     channel_map::Entry,
     names::{AXES, Kind, Named, is_of_several},
+    uart::IdleLevel,
 };
 use stepscope_peripheral::signal::Levels;
 
@@ -16,63 +17,65 @@ const TX: u32 = Levels::TX.trailing_zeros();
 const DE: u32 = Levels::DE.trailing_zeros();
 
 impl Draft<'_> {
-    pub(super) fn others_by_name(&mut self) {
+    /// Assigns EN, RX, TX and DE.
+    pub(super) fn bus_signals_by_name(&mut self) {
         for (kind, bit) in [(Kind::En, EN), (Kind::Rx, RX), (Kind::Tx, TX), (Kind::De, DE)] {
             let named = self.named(kind);
             let is_line = matches!(kind, Kind::Rx | Kind::Tx);
-            if let Some((channel, named)) =
-                named.into_iter().find(|(channel, _)| !is_line || !self.behavior(*channel).is_pulses())
-            {
-                let inverts = is_line && self.behavior(channel).line == Some(true);
-                self.others.push(Entry { bit, channel, inverted: named.inverted || inverts });
+            let may_be = |channel: usize| !is_line || !self.behavior(channel).has_equal_pulses();
+            if let Some((channel, named)) = named.into_iter().find(|(channel, _)| may_be(*channel)) {
+                let idles_low = is_line && self.behavior(channel).line == Some(IdleLevel::Low);
+                self.bus_signals.push(Entry { bit, channel, inverted: named.inverted || idles_low });
             }
         }
     }
 
     pub(super) fn steps_by_name(&mut self) {
-        let (steps, dirs) = (self.named(Kind::Step), self.named(Kind::Dir));
-        let (cw, ccw) = (self.named(Kind::Cw), self.named(Kind::Ccw));
+        let steps = self.named(Kind::Step);
         for (channel, named) in &steps {
             self.add_step(*channel, named);
         }
-        let mut used = Vec::new();
-        for (one, named) in &cw {
-            let partner = ccw.iter().filter(|(other, of)| of.axis == named.axis && !used.contains(other));
-            let partner = partner.max_by_key(|(other, of)| (of.scope == named.scope, usize::MAX - other));
-            let has_step = self.motors.iter().any(|motor| motor.axis == named.axis);
-            match partner {
-                Some((other, _)) if !has_step => {
-                    used.push(*other);
-                    let source = Source::CwCcw(*one, *other);
-                    self.motors.push(Motor::new(&named.axis, &named.scope, source));
-                }
-                None if named.pulse => self.add_step(*one, named),
-                _ => {}
-            }
-        }
-        let phases = (self.named(Kind::A), self.named(Kind::B));
-        for (one, named) in &phases.0 {
-            let partner = phases.1.iter().filter(|(_, of)| of.axis == named.axis);
-            let partner = partner.max_by_key(|(other, of)| (of.scope == named.scope, usize::MAX - other));
-            let is_free = self
-                .motors
-                .iter()
-                .all(|motor| !matches!(motor.source, Source::Encoder(..)) || motor.axis != named.axis);
-            if let Some((other, _)) = partner.filter(|_| is_free) {
-                self.motors.push(Motor::new(&named.axis, &named.scope, Source::Encoder(*one, *other)));
-            }
-        }
+        self.cw_ccw_by_name();
+        self.encoders_by_name();
         if steps.is_empty() && self.motors.is_empty() {
-            let has_dir = |named: &Named| {
-                dirs.iter().chain(&cw).any(|(_, dir)| dir.axis == named.axis || dir.axis.is_empty())
-            };
+            let dirs = [self.named(Kind::Dir), self.named(Kind::Cw)].concat();
+            let has_dir =
+                |named: &Named| dirs.iter().any(|(_, dir)| dir.axis == named.axis || dir.axis.is_empty());
             for (channel, named) in self.named(Kind::Clock).iter().filter(|(_, named)| has_dir(named)) {
                 self.add_step(*channel, named);
             }
         }
     }
 
-    /// Skips a STEP of a known motor: in another scope, or the other line of a pair.
+    fn cw_ccw_by_name(&mut self) {
+        let mut ccw = self.named(Kind::Ccw);
+        for (channel, named) in &self.named(Kind::Cw) {
+            let has_step = self.motors.iter().any(|motor| motor.axis == named.axis);
+            match partner(named, &ccw) {
+                Some(other) if !has_step => {
+                    ccw.retain(|(channel, _)| *channel != other);
+                    self.motors.push(Motor::new(&named.axis, &named.scope, Source::CwCcw(*channel, other)));
+                }
+                None if named.is_pulse => self.add_step(*channel, named),
+                _ => {}
+            }
+        }
+    }
+
+    fn encoders_by_name(&mut self) {
+        let b = self.named(Kind::B);
+        for (channel, named) in &self.named(Kind::A) {
+            let is_of_axis =
+                |motor: &Motor| matches!(motor.source, Source::Encoder(..)) && motor.axis == named.axis;
+            if let Some(other) = partner(named, &b)
+                && !self.motors.iter().any(is_of_axis)
+            {
+                self.motors.push(Motor::new(&named.axis, &named.scope, Source::Encoder(*channel, other)));
+            }
+        }
+    }
+
+    /// Adds a motor, unless the channel is a copy of a known STEP: in another scope, or the other line of a pair.
     fn add_step(&mut self, channel: usize, named: &Named) {
         let is_same = |motor: &Motor| {
             motor.axis == named.axis && motor.step().is_some_and(|step| self.is_copy(step, channel))
@@ -84,74 +87,81 @@ impl Draft<'_> {
         }
     }
 
-    /// A DIR without an axis goes to all motors without one.
+    /// Pairs motors with the DIR of their axis, then shares the others.
     pub(super) fn dirs_by_name(&mut self) {
-        let mut dirs = self.named(Kind::Dir);
-        dirs.extend(
-            self.named(Kind::Cw).into_iter().filter(|(channel, named)| {
-                !named.pulse && self.motors.iter().all(|motor| !motor.has(*channel))
-            }),
-        );
-        let mut pairs: Vec<(bool, usize, usize, usize)> = Vec::new();
-        let lacking: Vec<(usize, &Motor)> =
-            self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()).collect();
-        for (at, motor) in lacking.iter().copied() {
-            // Equal numbers of STEP and DIR with one name are paired in order.
-            let is_like = |axis: &str| axis == motor.axis;
-            let steps: Vec<usize> =
-                lacking.iter().filter(|(_, other)| is_like(&other.axis)).map(|(at, _)| *at).collect();
-            let like: Vec<usize> = (0..dirs.len())
-                .filter(|place| dirs.get(*place).is_some_and(|(_, dir)| is_like(&dir.axis)))
-                .collect();
-            for (place, (channel, named)) in dirs.iter().enumerate() {
-                if named.axis == motor.axis {
-                    let order = |all: &[usize], one: usize| all.iter().position(|other| *other == one);
-                    let distance = match (order(&steps, at), order(&like, place)) {
-                        (Some(step), Some(dir)) if steps.len() == like.len() => step.abs_diff(dir),
-                        _ => motor.step().map_or(0, |step| step.abs_diff(*channel)),
-                    };
-                    pairs.push((named.scope != motor.scope, distance, at, place));
-                }
-            }
-        }
-        pairs.sort_unstable();
+        let dirs = self.named_dirs();
         let mut used = vec![false; dirs.len()];
-        for (_, _, at, place) in pairs {
-            let Some((motor, used)) = self.motors.get_mut(at).zip(used.get_mut(place)) else { continue };
+        for Pair { motor, dir, .. } in self.pairs_of_one_axis(&dirs) {
+            let Some((motor, used)) = self.motors.get_mut(motor).zip(used.get_mut(dir)) else { continue };
             if motor.lacks_dir() && !*used {
-                motor.dir = dirs.get(place).map(|(channel, _)| *channel);
+                motor.dir = dirs.get(dir).map(|(channel, _)| *channel);
                 *used = true;
             }
         }
-        let free = |used: &[bool]| {
-            let free = dirs.iter().zip(used).filter(|(_, used)| !**used);
-            free.map(|((channel, named), _)| (*channel, named.clone())).collect::<Vec<_>>()
+        let unused = dirs.iter().zip(used).filter(|(_, used)| !used).map(|(dir, _)| dir.clone()).collect();
+        self.share_dirs(&dirs, unused);
+    }
+
+    /// Channels named DIR, and those named CW that are not the pulses of a motor.
+    fn named_dirs(&self) -> Vec<(usize, Named)> {
+        let is_dir = |(channel, named): &(usize, Named)| {
+            !named.is_pulse && self.motors.iter().all(|motor| !motor.has(*channel))
         };
-        let left = free(&used);
-        let mut nobodys = dirs.iter().filter(|(_, named)| named.axis.is_empty());
-        let sole_common = nobodys.next().filter(|_| nobodys.next().is_none());
-        let common = left.iter().find(|(_, named)| named.axis.is_empty()).or(sole_common);
+        let mut dirs = self.named(Kind::Dir);
+        dirs.extend(self.named(Kind::Cw).into_iter().filter(is_dir));
+        dirs
+    }
+
+    /// Motors without a DIR, and DIR channels of the same axis, best first.
+    fn pairs_of_one_axis(&self, dirs: &[(usize, Named)]) -> Vec<Pair> {
+        let mut pairs: Vec<Pair> = Vec::new();
+        for (at, motor) in self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()) {
+            let is_like = |other: &Motor| other.lacks_dir() && other.axis == motor.axis;
+            let motors = self.motors.iter().filter(|other| is_like(other)).count();
+            let order = self.motors.iter().take(at).filter(|other| is_like(other)).count();
+            let of_axis: Vec<(usize, &(usize, Named))> =
+                dirs.iter().enumerate().filter(|(_, (_, named))| named.axis == motor.axis).collect();
+            for (dir_order, (dir, (channel, named))) in of_axis.iter().enumerate() {
+                // Equal numbers of STEP and DIR are paired in order.
+                let distance = if of_axis.len() == motors {
+                    order.abs_diff(dir_order)
+                } else {
+                    motor.step().map_or(0, |step| step.abs_diff(*channel))
+                };
+                let is_other_scope = named.scope != motor.scope;
+                pairs.push(Pair { is_other_scope, distance, motor: at, dir: *dir });
+            }
+        }
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// Assigns a DIR of several axes to all of them, and a DIR without an axis to all motors without a DIR. The others
+    /// belong to motors whose STEP is unknown.
+    fn share_dirs(&mut self, dirs: &[(usize, Named)], unused: Vec<(usize, Named)>) {
+        let mut without_axis = dirs.iter().filter(|(_, named)| named.axis.is_empty());
+        let only_without_axis = without_axis.next().filter(|_| without_axis.next().is_none());
+        let common = unused.iter().find(|(_, named)| named.axis.is_empty()).or(only_without_axis);
         let common = common.map(|(channel, _)| *channel);
         // A single motor and a single DIR are paired, unless their axes differ.
-        let sole = match (self.motors.as_slice(), left.as_slice()) {
+        let single = match (self.motors.as_slice(), unused.as_slice()) {
             ([motor], [(channel, _)]) if motor.axis.is_empty() => Some(*channel),
             _ => None,
         };
         // X1 and X2 share the DIR of X; X and Y that of XY.
-        let of_stem = |axis: &str| {
-            let found = left.iter().find(|(_, named)| {
+        let of_group = |axis: &str| {
+            let found = unused.iter().find(|(_, named)| {
                 !named.axis.is_empty() && stem(axis) == named.axis || is_of_several(&named.axis, axis)
             });
             found.map(|(channel, _)| *channel)
         };
-        let mut taken = Vec::new();
+        let mut shared = Vec::new();
         for motor in self.motors.iter_mut().filter(|motor| motor.lacks_dir()) {
-            motor.dir = of_stem(&motor.axis).or(common).or(sole);
-            taken.extend(motor.dir);
+            motor.dir = of_group(&motor.axis).or(common).or(single);
+            shared.extend(motor.dir);
         }
-        // The rest are motors whose STEP is unknown.
-        for (channel, named) in left {
-            if !taken.contains(&channel) && self.motors.iter().all(|motor| motor.axis != named.axis) {
+        for (channel, named) in unused {
+            if !shared.contains(&channel) && self.motors.iter().all(|motor| motor.axis != named.axis) {
                 let mut motor = Motor::new(&named.axis, &named.scope, Source::None);
                 motor.dir = Some(channel);
                 self.motors.push(motor);
@@ -159,30 +169,41 @@ impl Draft<'_> {
         }
     }
 
-    /// Numbers first, then letters, then words in the order of the file.
+    /// Sorts motors: first by number, then by axis letter, then words in the order of their channels.
     pub(super) fn sort_motors(&mut self) {
-        let mut stems: Vec<String> = Vec::new();
-        let mut channels: Vec<(usize, usize)> = self
-            .motors
-            .iter()
-            .enumerate()
-            .filter_map(|(at, motor)| {
-                Some(((0..self.meanings.len()).find(|channel| motor.has(*channel))?, at))
-            })
-            .collect();
-        channels.sort_unstable();
-        for (_, at) in &channels {
-            stems.extend(self.motors.get(*at).map(|motor| stem(&motor.axis).to_owned()));
-        }
-        let key = |motor: &Motor| {
+        let channels = 0..self.meanings.len();
+        let first_channel = |motor: &Motor| channels.clone().find(|channel| motor.has(*channel));
+        let stems = self.motors.iter().enumerate();
+        let stems =
+            stems.filter_map(|(at, motor)| Some((first_channel(motor)?, at, stem(&motor.axis).to_owned())));
+        let mut stems: Vec<(usize, usize, String)> = stems.collect();
+        stems.sort_unstable();
+        self.motors.sort_by_cached_key(|motor| {
             let stem = stem(&motor.axis);
             let number: u64 =
                 motor.axis.get(stem.len()..).and_then(|digits| digits.parse().ok()).unwrap_or(0);
-            let letter = AXES.find(stem).filter(|_| stem.len() == 1);
-            let place = stems.iter().position(|other| *other == stem);
-            let class = if stem.is_empty() { 0 } else { letter.map_or(2, |_| 1) };
-            (class, if class == 2 { place } else { letter }, number)
-        };
-        self.motors.sort_by_cached_key(key);
+            let (class, order) = match AXES.find(stem) {
+                _ if stem.is_empty() => (0, None),
+                letter @ Some(_) if stem.len() == 1 => (1, letter),
+                _ => (2, stems.iter().position(|(.., other)| other == stem)),
+            };
+            (class, order, number)
+        });
     }
+}
+
+/// The channel of the same axis, preferably in the same scope.
+fn partner(named: &Named, others: &[(usize, Named)]) -> Option<usize> {
+    let of_axis = others.iter().filter(|(_, other)| other.axis == named.axis);
+    let best = of_axis.max_by_key(|(channel, other)| (other.scope == named.scope, usize::MAX - channel));
+    best.map(|(channel, _)| *channel)
+}
+
+/// A motor and a DIR of its axis, by their indices; the best pair is the least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Pair {
+    is_other_scope: bool,
+    distance: usize,
+    motor: usize,
+    dir: usize,
 }

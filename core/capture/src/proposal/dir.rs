@@ -8,96 +8,114 @@ use super::{
 use crate::names::shared_words;
 use std::collections::BTreeSet;
 
-/// How well a channel fits as a motor's DIR, best first.
+/// Minimum share of a candidate's changes that have steps between them, in percent, if it changes during pulses.
+const STEPS_BETWEEN_PERCENT: usize = 50;
+
+/// A motor without a DIR.
+struct MotorEdges {
+    /// Index of the motor.
+    motor: usize,
+    /// Its STEP channel.
+    channel: usize,
+    /// Times of the edges of STEP.
+    edges: Vec<u64>,
+}
+
+/// How well a channel fits as a motor's DIR; the best is the least.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Fit {
-    is_others: bool,
-    one_level: bool,
-    while_high: bool,
+    fits_another_motor: bool,
+    /// All steps are at one level.
+    has_one_level: bool,
+    changes_during_pulses: bool,
     /// Its order among DIR candidates differs from the order of the motors' STEP.
     is_out_of_order: bool,
     distance: usize,
+    /// It is about as close to the pulses of another motor.
     is_shared: bool,
+}
+
+/// A possible DIR of a motor; the best is the least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Candidate {
+    fit: Fit,
+    channel: usize,
+    motor: usize,
 }
 
 impl Draft<'_> {
     pub(super) fn dirs_by_behavior(&mut self) {
-        let steps: Vec<(usize, usize, Vec<u64>)> = self
-            .motors
-            .iter()
-            .enumerate()
-            .filter(|(_, motor)| motor.lacks_dir())
-            .filter_map(|(at, motor)| Some((at, motor.step()?, self.edges(motor.step()?))))
-            .filter(|(.., edges)| edges.len() as u64 >= MIN_STEPS)
-            .collect();
-        if steps.is_empty() {
+        let motors = self.motors_without_dir();
+        if motors.is_empty() {
             return;
         }
-        let free = self.free_of_lines();
-        let name =
-            |channel: usize| self.capture.channels.get(channel).map_or("", |channel| channel.name.as_str());
-        let mut pairs: Vec<(Fit, usize, usize)> = Vec::new();
-        for channel in &free {
-            let changes = self.edges(*channel);
-            let near: Vec<u64> = steps.iter().map(|(.., edges)| nearness(&changes, edges)).collect();
-            for (place, (at, step, edges)) in steps.iter().enumerate() {
-                if changes.len() * 2 > edges.len() {
-                    continue;
-                }
-                let own = near.get(place).copied().unwrap_or(u64::MAX);
-                let others = || near.iter().zip(&steps).enumerate().filter(|(other, _)| *other != place);
-                // Names count before levels: X-Foo and X-Bar belong to one motor.
-                let shared = |step: usize| shared_words(name(step), name(*channel));
-                let by_name = steps.iter().map(|(_, step, _)| shared(*step));
-                let (max, min) = (by_name.clone().max(), by_name.min());
-                let is_others = if max > min {
-                    Some(shared(*step)) < max
-                } else {
-                    others().any(|(_, (near, (.., edges)))| {
-                        near.saturating_mul(2) < own && is_next_to(*near, changes.len(), edges)
-                    })
-                };
-                let others = others().map(|(_, (near, _))| *near).min().unwrap_or(u64::MAX);
-                let fit = Fit {
-                    is_others,
-                    is_shared: steps.len() > 1 && own.saturating_mul(2) >= others,
-                    one_level: !self.steps_at_both_levels(*channel, *step),
-                    while_high: !self.changes_between_pulses(*channel, *step),
-                    is_out_of_order: false,
-                    distance: step.abs_diff(*channel),
-                };
-                if !fit.while_high || has_steps_between(&changes, edges, 50) {
-                    pairs.push((fit, *channel, *at));
-                }
-            }
-        }
-        // With one candidate per motor, both are paired in order.
-        let fitting = pairs.iter().filter(|(fit, ..)| !fit.one_level).map(|(_, channel, _)| *channel);
-        let fitting: BTreeSet<usize> = fitting.collect();
-        let is_one_each = fitting.len() == steps.len();
-        if is_one_each {
-            let mut by_channel: Vec<usize> = steps.iter().map(|(_, step, _)| *step).collect();
-            by_channel.sort_unstable();
-            for (fit, channel, at) in &mut pairs {
-                let step = steps.iter().find(|(motor, ..)| motor == at).map(|(_, step, _)| *step);
-                let own = by_channel.iter().position(|other| Some(*other) == step);
-                fit.is_out_of_order = fitting.iter().position(|other| other == channel) != own;
-            }
-        }
-        pairs.sort_unstable();
-        let dirs: Vec<usize> = pairs.iter().map(|(_, channel, _)| *channel).collect();
-        let is_sole = dirs.iter().all(|channel| dirs.first() == Some(channel));
+        let channels = self.unassigned_without_lines();
+        let mut candidates: Vec<Candidate> =
+            channels.into_iter().flat_map(|channel| self.candidates(channel, &motors)).collect();
+        let has_one_each = order(&mut candidates, &motors);
+        candidates.sort_unstable();
+        let first = candidates.first().map(|candidate| candidate.channel);
+        let is_single = candidates.iter().all(|candidate| Some(candidate.channel) == first);
         let mut used = Vec::new();
-        for (fit, channel, at) in pairs {
-            let is_common = is_sole && fit.is_shared && !fit.is_others;
-            if fit.is_others && !is_one_each || used.contains(&channel) && !is_common {
+        for Candidate { fit, channel, motor } in candidates {
+            let is_common = is_single && fit.is_shared && !fit.fits_another_motor;
+            if fit.fits_another_motor && !has_one_each || used.contains(&channel) && !is_common {
                 continue;
             }
-            if let Some(motor) = self.motors.get_mut(at).filter(|motor| motor.lacks_dir()) {
+            if let Some(motor) = self.motors.get_mut(motor).filter(|motor| motor.lacks_dir()) {
                 motor.dir = Some(channel);
                 used.push(channel);
             }
         }
+    }
+
+    fn motors_without_dir(&self) -> Vec<MotorEdges> {
+        let edges = |(motor, channel)| MotorEdges { motor, channel, edges: self.edges(channel) };
+        let motors = self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir());
+        let motors = motors.filter_map(|(at, motor)| Some((at, motor.step()?))).map(edges);
+        motors.filter(|motor| motor.edges.len() as u64 >= MIN_STEPS).collect()
+    }
+
+    /// The motors of which a channel may be the DIR.
+    fn candidates(&self, channel: usize, motors: &[MotorEdges]) -> Vec<Candidate> {
+        let name = |channel: usize| self.capture.channels.get(channel).map_or("", |channel| &channel.name);
+        let changes = self.edges(channel);
+        let near: Vec<u64> = motors.iter().map(|motor| nearness(&changes, &motor.edges)).collect();
+        let words: Vec<usize> =
+            motors.iter().map(|motor| shared_words(name(motor.channel), name(channel))).collect();
+        let mut candidates = Vec::new();
+        for (at, motor) in motors.iter().enumerate() {
+            if changes.len() * 2 > motor.edges.len() {
+                continue;
+            }
+            let own = near.get(at).copied().unwrap_or(u64::MAX);
+            let others = || {
+                near.iter().zip(motors).enumerate().filter(|(other, _)| *other != at).map(|(_, pair)| pair)
+            };
+            let is_nearer = |near: u64, other: &MotorEdges| {
+                near.saturating_mul(2) < own && is_next_to(near, changes.len(), &other.edges)
+            };
+            // Names count before levels: X-Foo and X-Bar belong to one motor.
+            let fits_another_motor = if words.iter().max() > words.iter().min() {
+                words.get(at) < words.iter().max()
+            } else {
+                others().any(|(near, other)| is_nearer(*near, other))
+            };
+            let nearest = others().map(|(near, _)| *near).min().unwrap_or(u64::MAX);
+            let fit = Fit {
+                fits_another_motor,
+                has_one_level: !self.steps_at_both_levels(channel, motor.channel),
+                changes_during_pulses: !self.changes_between_pulses(channel, motor.channel),
+                is_out_of_order: false,
+                distance: motor.channel.abs_diff(channel),
+                is_shared: motors.len() > 1 && own.saturating_mul(2) >= nearest,
+            };
+            if !fit.changes_during_pulses || has_steps_between(&changes, &motor.edges, STEPS_BETWEEN_PERCENT)
+            {
+                candidates.push(Candidate { fit, channel, motor: motor.motor });
+            }
+        }
+        candidates
     }
 
     fn steps_at_both_levels(&self, channel: usize, step: usize) -> bool {
@@ -119,4 +137,21 @@ impl Draft<'_> {
             (before.levels ^ now.levels) >> channel & 1 == 0 || before.levels >> step & 1 == idle
         })
     }
+}
+
+/// With one candidate per motor, marks those that are not in the order of the motors, and returns true.
+fn order(candidates: &mut [Candidate], motors: &[MotorEdges]) -> bool {
+    let fitting = candidates.iter().filter(|candidate| !candidate.fit.has_one_level);
+    let fitting: BTreeSet<usize> = fitting.map(|candidate| candidate.channel).collect();
+    if fitting.len() != motors.len() {
+        return false;
+    }
+    let mut steps: Vec<usize> = motors.iter().map(|motor| motor.channel).collect();
+    steps.sort_unstable();
+    for Candidate { fit, channel, motor } in candidates {
+        let step = motors.iter().find(|other| other.motor == *motor).map(|motor| motor.channel);
+        let own = steps.iter().position(|other| Some(*other) == step);
+        fit.is_out_of_order = fitting.iter().position(|other| other == channel) != own;
+    }
+    true
 }

@@ -1,4 +1,4 @@
-//! A map under construction, with the names and measurements of its channels.
+//! A map in progress, with the names and measurements of its channels.
 
 use super::{
     behavior::{Behavior, behaviors},
@@ -17,7 +17,8 @@ pub(super) struct Draft<'a> {
     pub(super) changes: Vec<Change>,
     pub(super) behavior: Vec<Behavior>,
     pub(super) motors: Vec<Motor>,
-    pub(super) others: Vec<Entry>,
+    /// EN, RX, TX and DE.
+    pub(super) bus_signals: Vec<Entry>,
 }
 
 impl<'a> Draft<'a> {
@@ -27,16 +28,16 @@ impl<'a> Draft<'a> {
         let changes: Vec<Change> = capture.changes.iter().take(MAX_INSPECTED).collect();
         let behavior = behaviors(&changes, capture.channels.len());
         let mut meanings: Vec<Meaning> = names().map(|name| Meaning::of(name, indexed)).collect();
-        join(&mut meanings, names());
-        number_pins(&mut meanings);
-        Self { capture, meanings, changes, behavior, motors: Vec::new(), others: Vec::new() }
+        recognize_joined(&mut meanings, names());
+        renumber_pins(&mut meanings);
+        Self { capture, meanings, changes, behavior, motors: Vec::new(), bus_signals: Vec::new() }
     }
 
     pub(super) fn behavior(&self, channel: usize) -> Behavior {
         self.behavior.get(channel).copied().unwrap_or_default()
     }
 
-    /// The positive line of a pair comes first.
+    /// Channels whose name means this kind; the positive line of a pair comes first.
     pub(super) fn named(&self, kind: Kind) -> Vec<(usize, Named)> {
         let mut found: Vec<(usize, Named)> = Vec::new();
         for (channel, meaning) in self.meanings.iter().enumerate() {
@@ -46,44 +47,46 @@ impl<'a> Draft<'a> {
                 found.push((channel, named.clone()));
             }
         }
-        found.sort_by_key(|(channel, named)| (named.negative, *channel));
+        found.sort_by_key(|(channel, named)| (named.is_negative, *channel));
         found
     }
 
     /// Whether two channels always have equal or always opposite levels.
-    pub(super) fn is_copy(&self, one: usize, other: usize) -> bool {
-        let differ = |change: &Change| (change.levels >> one ^ change.levels >> other) & 1 == 1;
+    pub(super) fn is_copy(&self, channel: usize, other: usize) -> bool {
+        let differ = |change: &Change| (change.levels >> channel ^ change.levels >> other) & 1 == 1;
         let first = self.changes.first().is_some_and(differ);
         self.changes.iter().all(|change| differ(change) == first)
     }
 
-    pub(super) fn free(&self) -> Vec<usize> {
-        let is_free = |channel: &usize| {
+    /// Channels that change and have no signal yet.
+    pub(super) fn unassigned(&self) -> Vec<usize> {
+        let is_unassigned = |channel: &usize| {
             self.behavior(*channel).changes() > 0
                 && self.motors.iter().all(|motor| !motor.has(*channel))
-                && self.others.iter().all(|entry| entry.channel != *channel)
+                && self.bus_signals.iter().all(|entry| entry.channel != *channel)
                 && !matches!(self.meanings.get(*channel), Some(Meaning::Other))
         };
-        // A duplicate of a named signal, such as a second EN, is not free either.
-        let is_unnamed = |channel: &usize| match self.meanings.get(*channel) {
+        // A duplicate of a named signal, such as a second EN, is not another signal.
+        let may_be_any = |channel: &usize| match self.meanings.get(*channel) {
             Some(Meaning::Signal(named)) => match named.kind {
-                Kind::Rx | Kind::Tx => self.behavior(*channel).is_pulses(),
+                Kind::Rx | Kind::Tx => self.behavior(*channel).has_equal_pulses(),
                 Kind::Clock | Kind::Cw | Kind::Ccw | Kind::A | Kind::B => true,
                 Kind::Step | Kind::Dir | Kind::En | Kind::De => false,
             },
             _ => true,
         };
-        (0..self.capture.channels.len()).filter(is_free).filter(is_unnamed).collect()
+        (0..self.capture.channels.len()).filter(is_unassigned).filter(may_be_any).collect()
     }
 
     pub(super) fn is_line(&self, channel: usize) -> bool {
         self.behavior(channel).line.is_some()
     }
 
-    pub(super) fn free_of_lines(&self) -> Vec<usize> {
-        self.free().into_iter().filter(|channel| !self.is_line(*channel)).collect()
+    pub(super) fn unassigned_without_lines(&self) -> Vec<usize> {
+        self.unassigned().into_iter().filter(|channel| !self.is_line(*channel)).collect()
     }
 
+    /// Times of a channel's edges.
     pub(super) fn edges(&self, channel: usize) -> Vec<u64> {
         let pairs = self.changes.iter().zip(self.changes.iter().skip(1));
         let changed = pairs.filter(|(before, now)| (before.levels ^ now.levels) >> channel & 1 == 1);
@@ -91,8 +94,8 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// `FLSTEP` and `FLDIR` are a motor's signals if the rest of both names is equal.
-fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
+/// Recognizes names of one word: `FLSTEP` and `FLDIR` are the signals of a motor, since their other letters are equal.
+fn recognize_joined<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
     let joined: Vec<Option<Named>> = names
         .zip(meanings.iter())
         .map(|(name, meaning)| if *meaning == Meaning::Unknown { Meaning::joined(name) } else { None })
@@ -106,8 +109,8 @@ fn join<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
     }
 }
 
-/// Pin numbers do not identify motors. With one DIR per STEP and no repeated number, both are paired in order.
-fn number_pins(meanings: &mut [Meaning]) {
+/// Numbers STEP and DIR in order if their numbers are those of pins: one DIR per STEP, and no number twice.
+fn renumber_pins(meanings: &mut [Meaning]) {
     let numbers = |kind: Kind| -> Vec<&str> {
         let signals = meanings.iter().filter_map(|meaning| match meaning {
             Meaning::Signal(named) if named.kind == kind => Some(named.axis.as_str()),

@@ -1,14 +1,18 @@
-//! A motor under construction.
+//! A motor of a map in progress.
 
+/// The channels of a motor's pulses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
+    /// Unknown: only DIR is.
     None,
     Step(usize),
     CwCcw(usize, usize),
     Encoder(usize, usize),
 }
+
 #[derive(Clone, Debug)]
 pub(super) struct Motor {
+    /// Identifies the motor in the names of its channels.
     pub(super) axis: String,
     pub(super) scope: String,
     pub(super) source: Source,
@@ -33,7 +37,9 @@ impl Motor {
             || match self.source {
                 Source::None => false,
                 Source::Step(step) => step == channel,
-                Source::CwCcw(one, other) | Source::Encoder(one, other) => one == channel || other == channel,
+                Source::CwCcw(first, second) | Source::Encoder(first, second) => {
+                    first == channel || second == channel
+                }
             }
     }
 
@@ -42,6 +48,7 @@ impl Motor {
     }
 }
 
+/// The axis without its number.
 pub(super) fn stem(axis: &str) -> &str {
     axis.trim_end_matches(|c: char| c.is_ascii_digit())
 }

@@ -11,7 +11,7 @@ fn proposed(names: &[&str], changes: &[(u64, u64)]) -> String {
 }
 
 #[test]
-fn names_give_signals() {
+fn signals_are_proposed_by_name() {
     for (names, expected) in [
         (&["STEP", "DIR", "EN"][..], "STEP0=STEP,DIR0=DIR,EN=EN"),
         (&["x_step", "x_dir", "y_step", "y_dir"], "STEP0=x_step,STEP1=y_step,DIR0=x_dir,DIR1=y_dir"),
@@ -63,7 +63,7 @@ fn names_give_signals() {
         (&["Step Pulse", "Direction"], "STEP0=Step Pulse,DIR0=Direction"),
         (&["PUL/CW", "DIR/CCW"], "STEP0=PUL/CW,DIR0=DIR/CCW"),
         (&["nSTEP", "DIR"], "STEP0=!nSTEP,DIR0=DIR"),
-        // A motor without DIR gets no other motor's DIR, but one without an axis.
+        // A motor without a DIR shares only a DIR without an axis.
         (&["X_STEP", "Y_STEP", "Y_DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR1=Y_DIR"),
         (&["X_STEP", "Y_DIR"], "STEP0=X_STEP,DIR1=Y_DIR"),
         (&["X_STEP", "Y_STEP", "DIR"], "STEP0=X_STEP,STEP1=Y_STEP,DIR0=DIR,DIR1=DIR"),
@@ -142,7 +142,7 @@ fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
 }
 
 #[test]
-fn a_dir_is_found_by_when_it_changes() {
+fn dir_is_detected_by_the_times_of_its_changes() {
     let step = pulses(100, 40, 100, 10);
     // A lamp that blinks independently is further away; BUSY is not a DIR by its name.
     let late = [2101, 3101];
@@ -163,7 +163,7 @@ fn a_dir_is_found_by_when_it_changes() {
 }
 
 #[test]
-fn each_motor_gets_the_dir_that_changes_next_to_its_pulses() {
+fn dir_belongs_to_the_motor_whose_pulses_it_changes_next_to() {
     let (x, y, z) = (pulses(100, 60, 100, 10), pulses(137, 50, 117, 10), pulses(151, 40, 131, 12));
     let (dx, dy, dz) = ([2095, 4095], [137 + 117 * 20 - 5], [151 + 131 * 11 - 5, 151 + 131 * 31 - 5]);
     let found = proposed(&["D0", "D1", "D2", "D3", "D4", "D5"], &levels(0, &[&x, &dx, &y, &dy, &z, &dz]));
@@ -189,7 +189,7 @@ fn each_motor_gets_the_dir_that_changes_next_to_its_pulses() {
 }
 
 #[test]
-fn a_high_idle_level_inverts_unless_named() {
+fn step_that_idles_high_is_inverted_unless_its_name_is_plain() {
     let step = pulses(100, 40, 100, 10);
     for (name, expected) in
         [("D0", "STEP0=!D0"), ("PUL-", "STEP0=!PUL-"), ("STEP", "STEP0=STEP"), ("STEP_N", "STEP0=!STEP_N")]
@@ -201,7 +201,7 @@ fn a_high_idle_level_inverts_unless_named() {
 }
 
 #[test]
-fn edges_that_alternate_are_an_encoder() {
+fn alternating_edges_are_an_encoder() {
     let a: Vec<u64> = (0..40).map(|k| 100 + 40 * k + k % 3).collect();
     let b: Vec<u64> = (0..40).map(|k| 120 + 40 * k + k % 5).collect();
     assert_eq!(proposed(&["D0", "D1"], &levels(0, &[&a, &b])), "A0=D0,B0=D1");
@@ -225,7 +225,7 @@ fn edges_that_alternate_are_an_encoder() {
 }
 
 #[test]
-fn without_known_names_behavior_decides() {
+fn signals_are_proposed_by_behavior_if_names_are_unknown() {
     // D0 is DIR, D1 STEP, D2 a line of 104 ticks per bit.
     let mut edges = vec![(0, 0b100)];
     for step in 0..40_u64 {

@@ -1,12 +1,17 @@
-//! Bases of written bytes, and how to find a file's base.
+//! Numeral bases of bytes in text, and the detection of a file's base.
 
 use core::str::FromStr;
 
+/// Numeral base of bytes in text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
+    /// Base 2, `bin`.
     Binary,
+    /// Base 8, `oct`.
     Octal,
+    /// Base 10, `dec`.
     Decimal,
+    /// Base 16, `hex`.
     Hexadecimal,
 }
 

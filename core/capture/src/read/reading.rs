@@ -27,16 +27,17 @@ pub struct Wanted {
     pub base: Option<Base>,
 }
 
+/// Why reading stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Line of the text, from 1; 0 if the file has no lines.
     pub line: u64,
-    /// What was found, what is allowed, what to change.
+    /// The problem and its fix.
     pub what: String,
 }
 
 impl ReadError {
-    /// The text of `what` if `watch` has stopped the reading.
+    /// The text of `what` after `watch` has canceled reading.
     pub const CANCELLED: &str = "cancelled";
 
     pub(super) const fn whole(what: String) -> Self {
@@ -58,7 +59,9 @@ impl core::error::Error for ReadError {}
 /// The contents up to the end or the first error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading {
+    /// What was read before the error.
     pub capture: Capture,
+    /// Why reading stopped before the end of the file.
     pub error: Option<ReadError>,
 }
 

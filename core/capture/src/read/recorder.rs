@@ -211,8 +211,8 @@ impl Recorder {
     }
 
     pub(super) fn leave_out(&mut self, sentence: impl Into<String>) {
-        if self.capture.left_out.len() < MAX_LEFT_OUT {
-            self.capture.left_out.push(sentence.into());
+        if self.capture.notes.len() < MAX_LEFT_OUT {
+            self.capture.notes.push(sentence.into());
         }
     }
 
@@ -229,7 +229,7 @@ impl Recorder {
     pub(super) fn finish(mut self) -> Capture {
         self.settle();
         self.leave_out_lost();
-        self.capture.channels_left_out = self.beyond.count;
+        self.capture.omitted_channels = self.beyond.count;
         if !self.beyond.is_empty() {
             let sentence = format!(
                 "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",

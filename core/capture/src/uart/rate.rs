@@ -1,14 +1,15 @@
 //! Estimates a line's bit rate: the bit time that fits most words and edges.
 
-use super::{Edge, Fault, Format, each_word};
+use super::{Edge, Fault, FittedWord, Format, fit_words};
 use std::collections::BTreeSet;
 
+/// Usual bit rates.
 const USUAL: [u32; 27] = [
     300, 1200, 2400, 4800, 9600, 14_400, 19_200, 28_800, 31_250, 38_400, 57_600, 74_880, 76_800, 115_200,
     125_000, 128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000,
     2_000_000, 3_000_000,
 ];
-/// Five times a far more usual rate, so it is used only if no other fits.
+/// Five times the far more usual 115200, so it is used only if no other rate fits.
 const RARE: u32 = 576_000;
 /// Rare rates come last in an ambiguous result.
 const SELDOM: [u32; 9] = [14_400, 28_800, 31_250, 74_880, 76_800, 125_000, 128_000, 256_000, RARE];
@@ -21,85 +22,99 @@ const TRIED_EDGES: usize = 300;
 const MEASURED_EDGES: usize = 4000;
 /// Ratio of consecutive trial bit times.
 const STEP: f64 = 1.0 + 1.0 / 128.0;
+/// Maximum number of bit times that are measured on more edges.
 const MAX_MEASURED: usize = 16;
 /// Maximum share of faulty words.
 const MAX_FAULTS: f64 = 0.2;
 /// Minimum number of different bytes to accept an unusual rate.
 const MIN_VALUES: usize = 3;
-/// An event with a probability of one in this number is no coincidence.
-const NO_CHANCE: u64 = 64;
+/// An event with a probability of less than one in this number is no coincidence.
+const MIN_IMPROBABILITY: u64 = 64;
 /// Minimum pulses and words, and maximum share of faults, of a channel detected as a line.
 const LINE_PULSES: usize = 12;
 const LINE_WORDS: u32 = 3;
 const LINE_FAULTS: f64 = 0.05;
 
+/// The bit rate of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Length of a bit, in the unit of the edges.
     pub bit: f64,
-    /// Measured length of a bit, before it was rounded to a usual rate.
+    /// Measured length of a bit, without rounding to a usual rate.
     pub measured: f64,
     /// Usual rate in bit/s.
     pub usual: Option<u32>,
 }
 
+/// Why no bit rate was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoRate {
+    /// The line has fewer than two edges.
     NoEdges,
     /// Several usual rates fit with different bytes; the nearest and most usual is first.
     Ambiguous(Vec<u32>),
     /// The best fit has too few samples per bit.
     TooCoarse,
-    None,
+    /// No rate fits.
+    NoFit,
+    /// A rate fits only with this format.
     Format(Format),
+    /// A rate fits only if the line is inverted.
     Inverted,
 }
 
+/// Idle level of a line; a line that idles low is inverted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum IdleLevel {
+    High,
+    Low,
+}
+
+/// How well a bit time fits a line.
 #[derive(Clone, Copy, Debug, Default)]
 struct Quality {
     bit: f64,
     words: u32,
-    faults: u32,
-    /// Faults and too short pulses, per word.
-    share: f64,
+    /// Faulty words and too short pulses, per word.
+    fault_share: f64,
     /// Mean square distance of edges from whole bits, in bits.
-    squares: f64,
+    mean_square: f64,
     /// The bit time of the least squares line.
-    fitted: Option<f64>,
-    /// One bit per length of low pulses, in bits.
-    lows: u32,
+    refined_bit: Option<f64>,
+    /// Lengths of low pulses: bit n is set for n bits.
+    low_lengths: u32,
 }
 
 impl Quality {
     fn of(edges: &[Edge], bit: f64, format: Format) -> Self {
         let mut found = Self { bit, ..Self::default() };
-        let (mut odd, mut counted) = (0_u32, 0_usize);
+        let (mut faults, mut edge_count, mut squares) = (0_u32, 0_usize, 0.0);
         let (mut sxx, mut sxy) = (0.0, 0.0);
-        each_word(edges.iter().copied(), bit, format, &mut |_, word, more| {
+        fit_words(edges.iter().copied(), bit, format, &mut |word: &FittedWord| {
             let fault = format.word(word.levels).1;
-            // The recording may cut off the last word.
-            if word.levels & 1 != 0 || fault == Some(Fault::Framing) && !more {
-                odd += u32::from(more);
+            // The end of the recording may truncate the last word.
+            if word.levels & 1 != 0 || fault == Some(Fault::Framing) && !word.has_next {
+                faults += u32::from(word.has_next);
                 return;
             }
             found.words += 1;
-            odd += u32::from(fault.is_some() || word.met > 0);
-            found.faults += u32::from(fault.is_some());
-            found.squares += word.squares;
-            counted += word.edges - 1;
+            faults += u32::from(fault.is_some() || word.coincident > 0);
+            squares += word.squares;
+            edge_count += word.edges - 1;
             (sxx, sxy) = (sxx + word.sxx, sxy + word.sxy);
-            found.lows |= low_lengths(word.levels, format);
+            found.low_lengths |= low_lengths(word.levels, format);
         });
-        found.share = if found.words == 0 { 1.0 } else { f64::from(odd) / f64::from(found.words) };
-        found.squares = if counted == 0 { 1.0 } else { found.squares / counted as f64 };
-        found.fitted = (sxx > 0.0).then(|| sxy / sxx);
+        found.fault_share = if found.words == 0 { 1.0 } else { f64::from(faults) / f64::from(found.words) };
+        found.mean_square = if edge_count == 0 { 1.0 } else { squares / edge_count as f64 };
+        found.refined_bit = (sxx > 0.0).then(|| sxy / sxx);
         found
     }
 
+    /// Follows the least squares bit time while it fits better.
     fn refined(self, edges: &[Edge], format: Format) -> Self {
         let mut best = self;
         for _ in 0..4 {
-            let Some(bit) = best.fitted.filter(|bit| *bit >= MIN_BIT && *bit != best.bit) else { break };
+            let Some(bit) = best.refined_bit.filter(|bit| *bit >= MIN_BIT && *bit != best.bit) else { break };
             let next = Self::of(edges, bit, format);
             if next.cost() > best.cost() {
                 break;
@@ -110,18 +125,19 @@ impl Quality {
     }
 
     fn cost(&self) -> f64 {
-        self.share + 4.0 * self.squares
+        self.fault_share + 4.0 * self.mean_square
     }
 
     fn fits(&self) -> bool {
-        // The error of sampling and slow edges.
-        let max_squares = 0.02 + 0.25 / (self.bit * self.bit);
-        self.words > 0 && self.share <= MAX_FAULTS && self.squares <= max_squares
+        // The errors of slow edges and of sampling.
+        let max_mean_square = 0.02 + 0.25 / (self.bit * self.bit);
+        self.words > 0 && self.fault_share <= MAX_FAULTS && self.mean_square <= max_mean_square
     }
 
-    /// No more faults than `best`, and edges off by no more than sampling explains.
+    /// Whether it has no more faults than `best`, and sampling explains the larger distances of its edges.
     fn fits_as_well_as(&self, best: &Self) -> bool {
-        self.share <= best.share + 0.001 && self.squares <= 2.0 * best.squares + 0.2 / (self.bit * self.bit)
+        self.fault_share <= best.fault_share + 0.001
+            && self.mean_square <= 2.0 * best.mean_square + 0.2 / (self.bit * self.bit)
     }
 }
 
@@ -138,27 +154,25 @@ fn low_lengths(levels: u16, format: Format) -> u32 {
     mask
 }
 
-/// Estimates the rate of a line that is high when idle. `hz` converts the unit of edges to seconds, if known.
-/// Errors: [`NoRate`], with what would help where something does.
+/// Estimates the rate of a line that idles high. `hz` is the number of units of the edges per second, if known.
+/// Errors: [`NoRate`], with the format or polarity that would fit.
 pub fn estimate(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoRate> {
     match best(edges, format, hz) {
-        Err(NoRate::None) => {}
+        Err(NoRate::NoFit) => {}
         Ok(found) if is_inverted(edges, format, found.measured) => return Err(NoRate::Inverted),
         found => return found,
     }
-    let found = |edges: &[Edge], format| best_quality(edges, format).filter(|best| best.share <= LINE_FAULTS);
+    let is_line = |edges: &[Edge], format| {
+        best_quality(edges, format).is_some_and(|best| best.fault_share <= LINE_FAULTS)
+    };
     let others = ["8E1", "8O1", "7N1", "8N1"].into_iter().filter_map(|text| text.parse().ok());
-    if let Some(other) = others.filter(|other| *other != format).find(|other| found(edges, *other).is_some())
-    {
+    if let Some(other) = others.filter(|other| *other != format).find(|other| is_line(edges, *other)) {
         return Err(NoRate::Format(other));
     }
-    if found(&inverted(edges), format).is_some() {
-        return Err(NoRate::Inverted);
-    }
-    Err(NoRate::None)
+    Err(if is_line(&inverted(edges), format) { NoRate::Inverted } else { NoRate::NoFit })
 }
 
-/// Back-to-back text fits nearly as well with inverted polarity.
+/// Whether the inverted line fits better. Back-to-back text fits nearly as well with either polarity.
 fn is_inverted(edges: &[Edge], format: Format, bit: f64) -> bool {
     if !edges.first().is_some_and(|first| first.high) {
         return false;
@@ -166,8 +180,9 @@ fn is_inverted(edges: &[Edge], format: Format, bit: f64) -> bool {
     let edges = edges.get(..MEASURED_EDGES).unwrap_or(edges);
     let own = Quality::of(edges, bit, format);
     let ends_low = edges.last().is_some_and(|last| !last.high);
-    best_quality(&inverted(edges), format)
-        .is_some_and(|other| other.share < own.share || ends_low && other.share <= own.share)
+    best_quality(&inverted(edges), format).is_some_and(|other| {
+        other.fault_share < own.fault_share || ends_low && other.fault_share <= own.fault_share
+    })
 }
 
 fn inverted(edges: &[Edge]) -> Vec<Edge> {
@@ -183,12 +198,12 @@ fn best(edges: &[Edge], format: Format, hz: Option<f64>) -> Result<Estimate, NoR
     if is_too_coarse(edges, format, best) {
         return Err(NoRate::TooCoarse);
     }
-    let mut best = best.ok_or(NoRate::None)?;
+    let mut best = best.ok_or(NoRate::NoFit)?;
     if let Some(hz) = hz {
         let fitting = fitting_usual(edges, format, hz, &best);
         match fitting.as_slice() {
             [(only, _)] => best = *only,
-            [] if words(edges, best.bit, format).values() < MIN_VALUES => return Err(NoRate::None),
+            [] if words(edges, best.bit, format).values() < MIN_VALUES => return Err(NoRate::NoFit),
             [] => {}
             several => return Err(NoRate::Ambiguous(by_distance(several, hz))),
         }
@@ -208,17 +223,19 @@ fn is_too_coarse(edges: &[Edge], format: Format, best: Option<Quality>) -> bool 
     if shortest_pulse(tried).is_none_or(|shortest| shortest > MIN_BIT) {
         return false;
     }
-    let max_share = best.map_or(LINE_FAULTS, |best| best.share.min(LINE_FAULTS));
+    let max_share = best.map_or(LINE_FAULTS, |best| best.fault_share.min(LINE_FAULTS));
     core::iter::successors(Some(1.0), |bit| Some(bit * STEP)).take_while(|bit| *bit < MIN_BIT).any(|bit| {
         let found = Quality::of(tried, bit, format);
-        found.fits() && found.share <= max_share
+        found.fits() && found.fault_share <= max_share
     })
 }
 
+/// Decoded bytes and their faults.
 #[derive(PartialEq)]
 struct Words(Vec<(u8, Option<Fault>)>);
 
 impl Words {
+    /// Number of different bytes.
     fn values(&self) -> usize {
         self.0.iter().map(|(byte, _)| *byte).collect::<BTreeSet<u8>>().len()
     }
@@ -237,8 +254,8 @@ fn words(edges: &[Edge], bit: f64, format: Format) -> Words {
     Words(words)
 }
 
-/// Usual rates that fit about as well as the best bit time, with different bytes. Few different bytes may fit
-/// several, so all usual rates are tried.
+/// Usual rates that fit about as well as the best bit time, with different bytes. A few different bytes may fit
+/// several rates, so all usual rates are tried.
 fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec<(Quality, u32)> {
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let fit = |rate: &u32| {
@@ -249,17 +266,17 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
         if bit < MIN_BIT {
             return None;
         }
-        let first = Quality::of(tried, bit, format).refined(tried, format);
-        if !first.fits() {
+        let trial = Quality::of(tried, bit, format).refined(tried, format);
+        if !trial.fits() {
             return None;
         }
-        let own = Quality::of(edges, first.bit, format).refined(edges, format);
+        let own = Quality::of(edges, trial.bit, format).refined(edges, format);
         let fits = own.fits() && own.fits_as_well_as(best) && usual(hz, &own) == Some(*rate);
         fits.then_some((own, *rate))
     };
     let mut found: Vec<(Quality, u32)> = USUAL.iter().filter_map(fit).collect();
     found.dedup_by(|next, before| words(edges, next.0.bit, format) == words(edges, before.0.bit, format));
-    // The lowest may be right despite pauses.
+    // Pauses do not exclude the lowest rate.
     if let Some((lowest, rate)) = found.first().copied() {
         let is_likely = |(own, other): &(Quality, u32)| {
             *other == rate || *other != RARE && !is_too_fast(tried, own.bit, lowest.bit / own.bit, format)
@@ -274,44 +291,49 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
     found
 }
 
-/// Whether the rate is a multiple of the right one: edges fall only on every second or third bit more often than by
-/// chance, or most words are followed by a short pause.
-fn is_too_fast(edges: &[Edge], bit: f64, times: f64, format: Format) -> bool {
+/// Whether the rate is `multiple` times the correct one: edges fall only on every second, third or fourth bit more often
+/// than by chance, or most words are followed by a short pause.
+fn is_too_fast(edges: &[Edge], bit: f64, multiple: f64, format: Format) -> bool {
     let mut different = BTreeSet::new();
-    // From six times on nearly each low bit of the lower rate is a word.
-    let short = if times > 5.5 { 9.0 * times } else { 10.0 };
-    let (mut before, mut pauses, mut others) = (None, 0, 0);
-    each_word(edges.iter().copied(), bit, format, &mut |start, word, _| {
-        // Words that are repeated count once.
+    // From six times on, nearly each low bit of the lower rate is a word.
+    let max_pause = if multiple > 5.5 { 9.0 * multiple } else { 10.0 };
+    let (mut last, mut pauses, mut others) = (None, 0, 0);
+    fit_words(edges.iter().copied(), bit, format, &mut |word: &FittedWord| {
+        // Repeated words count once.
         different.insert(word.levels);
-        if let Some(before) = before.replace(start) {
-            let pause = (start - before) as f64 / bit - f64::from(format.bits());
-            *(if (1.3..short).contains(&pause) { &mut pauses } else { &mut others }) += 1;
+        if let Some(last) = last.replace(word.start) {
+            let pause = (word.start - last) as f64 / bit - f64::from(format.bits());
+            *(if (1.3..max_pause).contains(&pause) { &mut pauses } else { &mut others }) += 1;
         }
     });
-    let places = || {
+    let edge_bits = || {
         different.iter().flat_map(|levels| {
             (1..format.bits()).filter(move |at| (levels >> at ^ levels >> (at - 1)) & 1 == 1)
         })
     };
     let is_multiple = |divisor: u8| {
-        let on = places().filter(|at| at % divisor == 0).count();
-        let off = places().count() - on;
-        // The start of the next word may lie anywhere. One edge of `divisor` is at such a bit by chance.
-        let more = on.saturating_sub(4 * off) as u32;
-        u64::from(divisor).saturating_pow(more) >= NO_CHANCE
+        let on = edge_bits().filter(|at| at % divisor == 0).count();
+        let off = edge_bits().count() - on;
+        // Some edges may be starts of next words. By chance, one edge in `divisor` is at such a bit.
+        let excess = on.saturating_sub(4 * off) as u32;
+        u64::from(divisor).saturating_pow(excess) >= MIN_IMPROBABILITY
     };
     pauses > others || (2..=4).any(is_multiple)
 }
 
+/// The nearest usual rate within the tolerance of oscillators, or of the measurement.
 fn usual(hz: f64, found: &Quality) -> Option<u32> {
-    let off = |usual: &u32| distance(hz, found.bit, *usual);
-    // A word measures its bit time to a sample in nine bits; many words do so better by the root of their number.
-    let by_samples = |off: f64| off * 9.0 * found.bit;
-    let is_near = |off: f64| off <= NEAR || by_samples(off) * by_samples(off) * f64::from(found.words) <= 1.0;
-    USUAL.into_iter().filter(|usual| is_near(off(usual))).min_by(|a, b| off(a).total_cmp(&off(b)))
+    let deviation = |usual: &u32| distance(hz, found.bit, *usual);
+    let is_near = |deviation: f64| {
+        // A word measures nine bits to one sample; the error falls with the root of the number of words.
+        let samples = deviation * 9.0 * found.bit;
+        deviation <= NEAR || samples * samples * f64::from(found.words) <= 1.0
+    };
+    let near = USUAL.into_iter().filter(|usual| is_near(deviation(usual)));
+    near.min_by(|a, b| deviation(a).total_cmp(&deviation(b)))
 }
 
+/// Relative deviation of a rate.
 fn distance(hz: f64, bit: f64, rate: u32) -> f64 {
     (hz / bit / f64::from(rate) - 1.0).abs()
 }
@@ -335,6 +357,7 @@ fn shortest_pulse(edges: &[Edge]) -> Option<f64> {
     lengths.get(lengths.len() / 20).map(|length| *length as f64)
 }
 
+/// The best of all bit times that the shortest pulse allows.
 fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let shortest = shortest_pulse(tried)?;
@@ -361,40 +384,37 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     };
     let all: Vec<Quality> = lowest.into_iter().take(MAX_MEASURED).map(refined).collect();
     let best = *all.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
-    // Of those that fit as well the longest bit: shorter ones split each bit in several.
+    // Of similar fits the longest bit is correct: fractions of it split each bit.
     let best =
         *all.iter().filter(|each| each.fits_as_well_as(&best)).max_by(|a, b| a.bit.total_cmp(&b.bit))?;
     best.fits().then_some(best)
 }
 
-/// Detects a serial line by its edges; returns whether it is inverted (low when idle). A channel whose active pulses
-/// all have one length carries steps.
-#[must_use]
-pub fn looks_like_a_line(edges: &[Edge]) -> Option<bool> {
+/// Detects a serial line by its edges. Pulses of about one length are those of STEP or an encoder.
+pub(crate) fn detect_line(edges: &[Edge]) -> Option<IdleLevel> {
     if edges.len() <= LINE_PULSES {
         return None;
     }
     let edges = edges.get(..TRIED_EDGES).unwrap_or(edges);
-    let (first, last) = (!edges.first()?.high, edges.last()?.high);
-    let quality = |inverts: bool| {
-        let turned = if inverts { inverted(edges) } else { edges.to_vec() };
-        let best = best_quality(&turned, Format::default()).filter(|best| best.lows > 0)?;
-        // Pulses of about one length are those of STEP or an encoder.
-        let varies = best.lows.ilog2() * 2 >= best.lows.trailing_zeros() * 3;
-        let is_line = best.share <= LINE_FAULTS && best.words >= LINE_WORDS && varies;
-        is_line.then_some(best.cost())
+    let (starts_high, ends_high) = (!edges.first()?.high, edges.last()?.high);
+    let cost = |idle: IdleLevel| {
+        let normal = if idle == IdleLevel::Low { inverted(edges) } else { edges.to_vec() };
+        let best = best_quality(&normal, Format::default()).filter(|best| best.low_lengths > 0)?;
+        let (max_length, min_length) = (best.low_lengths.ilog2(), best.low_lengths.trailing_zeros());
+        let is_line = best.fault_share <= LINE_FAULTS && best.words >= LINE_WORDS;
+        (is_line && max_length * 2 >= min_length * 3).then_some(best.cost())
     };
-    // A channel that begins and ends at one level is idle at it.
-    let mut found: Option<(f64, bool)> = None;
-    for inverts in [false, true] {
-        if first == last && first == inverts {
+    let mut found: Option<(f64, IdleLevel)> = None;
+    for idle in [IdleLevel::High, IdleLevel::Low] {
+        // A channel that starts and ends at one level idles at it.
+        if starts_high == ends_high && starts_high != (idle == IdleLevel::High) {
             continue;
         }
-        if let Some(cost) = quality(inverts)
-            && found.is_none_or(|(least, _)| cost < least)
+        if let Some(cost) = cost(idle)
+            && found.is_none_or(|(min_cost, _)| cost < min_cost)
         {
-            found = Some((cost, inverts));
+            found = Some((cost, idle));
         }
     }
-    found.map(|(_, inverts)| inverts)
+    found.map(|(_, idle)| idle)
 }

@@ -1,6 +1,6 @@
 use super::*;
 
-/// A generator that gives the same numbers on every machine.
+/// A random generator with the same numbers on every machine.
 struct Seeded(u64);
 
 impl Seeded {
@@ -18,7 +18,7 @@ impl Seeded {
     }
 }
 
-/// A line of bytes, `bit` samples per bit, each after a gap of so many bits; edges are moved by `jitter`.
+/// The edges of bytes at `bit` samples per bit; `gap` is the pause before each byte in bits, `jitter` moves edges.
 fn line(
     bytes: &[u8],
     bit: f64,
@@ -40,7 +40,7 @@ fn line(
         let levels = core::iter::once(false).chain(data).chain(parity);
         for level in levels.chain([true, true].into_iter().take(format.stop.into())) {
             if level != high {
-                // A sample shows the level since the one before.
+                // The first sample after the edge shows the new level.
                 let edge = ((at as u64 + 1) as i64 + jitter()) as u64;
                 edges.push(Edge { at: edge, high: level });
                 high = level;
@@ -61,7 +61,7 @@ fn decoded(edges: &[Edge], bit: f64, format: Format) -> (Vec<u8>, usize) {
 }
 
 #[test]
-fn every_ratio_from_4_samples_per_bit_on_gives_every_byte() {
+fn all_bytes_are_decoded_from_4_samples_per_bit_on() {
     let mut seeded = Seeded(7);
     let mut wrong = Vec::new();
     for step in 0..=120 {
@@ -82,11 +82,10 @@ fn every_ratio_from_4_samples_per_bit_on_gives_every_byte() {
 }
 
 #[test]
-fn edges_may_be_a_sample_off() {
+fn edges_with_a_jitter_of_one_sample_are_decoded() {
     let mut seeded = Seeded(11);
     let mut wrong = Vec::new();
-    // Below six samples per bit two edges that are off by a sample each leave some words undecided, so there one of the two
-    // samples next to each edge is taken.
+    // Below six samples per bit, two edges with this jitter make some words ambiguous: there it is half a sample.
     for step in 0..=120 {
         let bit = 4.0 + f64::from(step) / 20.0;
         let range = if bit < 6.0 { 2 } else { 3 };
@@ -107,9 +106,9 @@ fn edges_may_be_a_sample_off() {
     assert!(wrong.is_empty(), "{} {wrong:#?}", wrong.len());
 }
 
-/// At 4 samples per bit a single word may be 2.8 % off, but not fifty of them: half of 250000 baud is not 128000.
+/// At 4 samples per bit the rate of one word may be 2.8 % off, but not that of fifty: half of 250000 baud is not 128000.
 #[test]
-fn rates_are_only_listed_where_they_fit() {
+fn ambiguous_rates_are_only_those_that_fit() {
     for byte in 0..=255_u8 {
         let edges = line(&[byte; 50], 4.0, Format::default(), || 0.37, || 0);
         if let Err(NoRate::Ambiguous(rates)) = measured(&edges, 1e6) {
@@ -125,14 +124,14 @@ fn measured(edges: &[Edge], hz: f64) -> Result<(Option<u32>, Vec<u8>), NoRate> {
 }
 
 #[test]
-fn few_bytes_are_enough_where_one_usual_rate_fits() {
+fn a_few_bytes_are_decoded_if_one_usual_rate_fits() {
     for (bytes, baud, expected) in [
         (&b"U"[..], 9600_u32, Ok(())),
         (b"U", 115_200, Ok(())),
         (b"A", 115_200, Ok(())),
         (b"ok", 250_000, Ok(())),
         (b"\x00", 9600, Ok(())),
-        // It is FE 80 at 19200 baud.
+        // At 19200 baud this is FE 80.
         (b"\x0f", 9600, Err(NoRate::Ambiguous(vec![9600, 19_200]))),
         (b"\x00\x00\x00", 9600, Ok(())),
         (b"UUUUUUUU", 19_200, Ok(())),
@@ -151,11 +150,11 @@ fn few_bytes_are_enough_where_one_usual_rate_fits() {
     assert_eq!(measured(&[], 1e6), Err(NoRate::NoEdges));
 }
 
-/// A usual rate that fits is taken before one that is not usual; several that fit are asked for.
+/// Usual rates come before others; if several fit, the result is ambiguous.
 #[test]
-fn repeated_bytes_are_right_or_several_rates_fit() {
+fn repeated_bytes_are_decoded_or_ambiguous() {
     let mut wrong = Vec::new();
-    let (mut right, mut asked) = (0, 0);
+    let (mut decoded, mut ambiguous) = (0, 0);
     for (baud, ratio) in
         [(250_000, 4.0), (115_200, 500.0 / 115.2), (9600, 50.0 / 9.6), (115_200, 8.68), (19_200, 16.0)]
     {
@@ -169,8 +168,8 @@ fn repeated_bytes_are_right_or_several_rates_fit() {
                 };
                 let edges = line(&bytes, ratio, Format::default(), gap, || 0);
                 match measured(&edges, f64::from(baud) * ratio) {
-                    Ok((Some(usual), found)) if usual == baud && found == bytes => right += 1,
-                    Err(NoRate::Ambiguous(rates)) if rates.contains(&baud) => asked += 1,
+                    Ok((Some(usual), found)) if usual == baud && found == bytes => decoded += 1,
+                    Err(NoRate::Ambiguous(rates)) if rates.contains(&baud) => ambiguous += 1,
                     other => wrong.push(format!(
                         "{baud} {ratio} {count} {together} {byte:02x} {:?}",
                         other.map(|(rate, bytes)| (rate, bytes.len(), bytes.first().copied()))
@@ -179,12 +178,12 @@ fn repeated_bytes_are_right_or_several_rates_fit() {
             }
         }
     }
-    assert!(wrong.is_empty(), "{} of {right} and {asked} {wrong:#?}", wrong.len());
-    assert!(right > 3 * asked, "{right} {asked}");
+    assert!(wrong.is_empty(), "{} of {decoded} and {ambiguous} {wrong:#?}", wrong.len());
+    assert!(decoded > 3 * ambiguous, "{decoded} {ambiguous}");
 }
 
 #[test]
-fn text_and_random_bytes_need_no_baud() {
+fn random_bytes_at_any_ratio_are_decoded_without_a_baud_rate() {
     let mut seeded = Seeded(5);
     for step in 0..240 {
         let ratio = 4.0 + f64::from(step) / 20.0;
@@ -209,7 +208,7 @@ fn an_unusual_rate_is_accepted() {
 }
 
 #[test]
-fn each_format_is_decoded_and_another_one_is_proposed() {
+fn all_formats_are_decoded_and_a_wrong_format_is_corrected() {
     let text: Vec<u8> = b"Hello, World! M114 X:12.50 Y:0.00\r\n".iter().copied().cycle().take(120).collect();
     for (format, gap, proposed) in [
         ("8N1", 0.0, None),
@@ -240,13 +239,13 @@ fn each_format_is_decoded_and_another_one_is_proposed() {
 }
 
 #[test]
-fn an_inverted_line_and_noise_are_no_line() {
+fn an_inverted_line_is_detected_and_noise_is_not_a_line() {
     let mut seeded = Seeded(3);
     let bytes: Vec<u8> = (0..80).map(|_| seeded.next() as u8).collect();
     let edges = line(&bytes, 20.0, Format::default(), || 1.7, || 0);
     let turned: Vec<Edge> = edges.iter().map(|edge| Edge { high: !edge.high, ..*edge }).collect();
     assert_eq!(estimate(&turned, Format::default(), None), Err(NoRate::Inverted));
-    assert_eq!((looks_like_a_line(&edges), looks_like_a_line(&turned)), (Some(false), Some(true)));
+    assert_eq!((detect_line(&edges), detect_line(&turned)), (Some(IdleLevel::High), Some(IdleLevel::Low)));
     for seed in 0..20 {
         let (mut seeded, mut at) = (Seeded(seed), 0);
         let noise: Vec<Edge> = (0..400)
@@ -255,13 +254,13 @@ fn an_inverted_line_and_noise_are_no_line() {
                 Edge { at, high: k % 2 == 1 }
             })
             .collect();
-        assert_eq!(estimate(&noise, Format::default(), Some(1e6)), Err(NoRate::None), "{seed}");
+        assert_eq!(estimate(&noise, Format::default(), Some(1e6)), Err(NoRate::NoFit), "{seed}");
     }
 }
 
 #[test]
-fn steps_are_no_line() {
-    // Pulses of one width at a constant rate, at half and half, and in a ramp, whatever the polarity.
+fn step_pulses_are_not_a_line() {
+    // Pulses of one width at a constant rate, square waves and a ramp, with both polarities.
     for (width, interval) in [(10.0, 40.0), (50.0, 100.0), (2.0, 9.0), (20.0, 220.0)] {
         for accelerates in [0.0, 0.01, 0.3] {
             let mut at = 100.0;
@@ -275,14 +274,14 @@ fn steps_are_no_line() {
                 at += now;
             }
             let turned: Vec<Edge> = edges.iter().map(|edge| Edge { high: !edge.high, ..*edge }).collect();
-            let found = (looks_like_a_line(&edges), looks_like_a_line(&turned));
+            let found = (detect_line(&edges), detect_line(&turned));
             assert_eq!(found, (None, None), "{width} {interval} {accelerates}");
         }
     }
 }
 
 #[test]
-fn a_line_at_125000_baud_is_not_one_at_128000() {
+fn rates_of_125000_and_128000_baud_are_distinguished() {
     let bytes: Vec<u8> = (0..60_u8).map(|k| k.wrapping_mul(73) ^ 0x55).collect();
     for hz in [1e6, 4e6, 24e6, 1e9] {
         for (baud, gap) in [(125_000_u32, 0.3), (125_000, 2.0), (128_000, 0.3), (250_000, 0.3)] {
@@ -297,7 +296,7 @@ fn a_line_at_125000_baud_is_not_one_at_128000() {
 
 /// Times in whole microseconds give two ticks per bit at 500000 baud and less at higher rates.
 #[test]
-fn too_few_ticks_per_bit_are_no_rate() {
+fn too_few_ticks_per_bit_are_an_error() {
     let text = b"G1 X10.25 Y-3.5 F1200\r\nok\r\nG28\r\n";
     let mixed: Vec<u8> = (0..60_u8).map(|k| k.wrapping_mul(73) ^ 0x55).collect();
     for bytes in [&text[..], &mixed, b"UUUUUUUU", &[0x33; 20], &[0x0f, 0xc3, 0x3c, 0xff, 0x03]] {

@@ -31,7 +31,7 @@ pub(crate) fn told(reading: &Reading) -> String {
         let _ = write!(text, " {}@{}", position.tick, position.position);
     }
     let _ = write!(text, " end {}", capture.end);
-    for sentence in &capture.left_out {
+    for sentence in &capture.notes {
         let _ = write!(text, "\n- {sentence}");
     }
     if let Some(error) = &reading.error {

@@ -28,8 +28,8 @@ use alloc::{
 };
 use serde::Serialize;
 use stepscope_capture::{
-    Capture, ChannelMap, Recorded,
-    channel_map::{PulseSource, written},
+    Capture, ChannelMap, RecordedSignals,
+    channel_map::{PulseSource, channel_text},
     recorded::Records,
     timebase::Timebase,
 };
@@ -96,7 +96,8 @@ impl LoadedCapture {
         let (exact, lines) = (loaded.exact_channels(&capture, &map, base, options), options.lines()?);
         let others = others_rounded(&capture, base, loaded.clock_hz);
         loaded.note_exact_steps(&capture, &map, base);
-        let recorded = Recorded::new(capture, &map, base, loaded.clock_hz).map_err(OpenError::TooLate)?;
+        let recorded =
+            RecordedSignals::new(capture, &map, base, loaded.clock_hz).map_err(OpenError::TooLate)?;
         loaded.note_rounding(recorded.rounding, others);
         loaded.records = recorded.records;
         let (clock_hz, channels) = (loaded.clock_hz, loaded.channels);
@@ -121,7 +122,7 @@ impl LoadedCapture {
         // Without levels there is only the record of reset.
         if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
-            let recorded = Recorded::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+            let recorded = RecordedSignals::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
             loaded.note_rounding(recorded.rounding, others_rounded(capture, base, clock_hz));
             loaded.records = recorded.records;
             loaded.set_report(
@@ -130,7 +131,7 @@ impl LoadedCapture {
             )?;
             return Ok(loaded);
         }
-        let all = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let all = Records::new(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
         let mut passed = all.clone();
         let survey = Survey::of(passed.by_ref());
         loaded.note_rounding(passed.rounding, 0);
@@ -171,11 +172,12 @@ impl LoadedCapture {
     ) -> Result<(), OpenError> {
         if count <= part.max_records && part.from_s.is_none() && part.to_s.is_none() {
             self.records.reserve_exact(count);
-            self.records.extend(Records::of(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
+            self.records.extend(Records::new(capture, map, base, self.clock_hz).map_err(OpenError::TooLate)?);
             self.note_exact_steps(capture, map, base);
         } else {
             let from_s = part.from_s.unwrap_or(0.0).clamp(0.0, self.end_s);
-            let rest = Records::from(capture, map, base, self.clock_hz, (from_s / base.seconds()) as u64);
+            let rest =
+                Records::starting_at(capture, map, base, self.clock_hz, (from_s / base.seconds()) as u64);
             self.exact_steps.clear();
             self.load_part(rest.map_err(OpenError::TooLate)?, count, from_s, part);
         }
@@ -206,7 +208,7 @@ impl LoadedCapture {
     ) -> Result<Option<Actual>, OpenError> {
         let (Self { end_s, clock_hz, .. }, map, base) = Self::prepare(capture, options)?;
         let Some(base) = base.filter(|_| !capture.changes.is_empty() && columns > 0) else { return Ok(None) };
-        let records = Records::of(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
+        let records = Records::new(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
         let window = Window { start_s: 0.0, end_s, columns };
         Ok(Some(Overview::of(steps(records, channel), f64::from(clock_hz), window)))
     }
@@ -257,7 +259,7 @@ impl LoadedCapture {
             what,
             count: capture.len(),
             names,
-            notes: capture.left_out.iter().cloned().map(Note::from).collect(),
+            notes: capture.notes.iter().cloned().map(Note::from).collect(),
             map: map.to_text(capture),
             clock_hz: USUAL_CLOCK_HZ,
             rounding: String::new(),
@@ -281,7 +283,7 @@ impl LoadedCapture {
         // Positions among bytes are no samples.
         let base = capture.timebase.or(requested.filter(|_| !Self::has_untimed_bytes(capture)));
         if let Some(base) = base {
-            loaded.clock_hz = options.clock(base, !capture.positions.is_empty(), map.makes_pulses())?;
+            loaded.clock_hz = options.clock(base, !capture.positions.is_empty(), map.generates_pulses())?;
             let (numerator, denominator) = base.parts();
             loaded.end_s = capture.end as f64 * numerator as f64 / denominator as f64;
         }
@@ -314,12 +316,12 @@ impl LoadedCapture {
 
 fn example(capture: &Capture) -> String {
     let pairs = ["STEP0", "DIR0"].into_iter().zip(0..capture.channels.len());
-    let pairs = pairs.map(|(signal, index)| format!("{signal}={}", written(index, &capture.channels)));
+    let pairs = pairs.map(|(signal, index)| format!("{signal}={}", channel_text(index, &capture.channels)));
     pairs.collect::<Vec<_>>().join(",")
 }
 
 fn others_rounded(capture: &Capture, base: Timebase, clock_hz: u32) -> u64 {
     let bytes = capture.bytes.iter().map(|byte| byte.tick);
     let ticks = bytes.chain(capture.positions.iter().map(|row| row.tick));
-    ticks.filter(|tick| !base.is_whole(*tick, clock_hz)).count() as u64
+    ticks.filter(|tick| !base.is_on_cycle(*tick, clock_hz)).count() as u64
 }

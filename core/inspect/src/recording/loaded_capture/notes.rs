@@ -8,7 +8,7 @@ use crate::{
 use alloc::{borrow::ToOwned, format, string::ToString};
 use stepscope_capture::{
     Capture, ChannelMap,
-    channel_map::{PulseSource, written},
+    channel_map::{PulseSource, channel_text},
     recorded::Rounding,
 };
 
@@ -26,7 +26,7 @@ impl LoadedCapture {
     }
 
     pub(super) fn note_edges(&mut self, capture: &Capture, map: &ChannelMap) {
-        let sources = (0..self.channels).map(|motor| (motor, map.pulses(motor)));
+        let sources = (0..self.channels).map(|motor| (motor, map.pulse_source(motor)));
         self.generated_pulses = sources.filter(|(_, source)| *source != PulseSource::Step).collect();
         for (motor, source) in &self.generated_pulses {
             let note = match source {
@@ -45,7 +45,7 @@ impl LoadedCapture {
         }
         for hint in map.edge_hints(capture) {
             let motor = hint.motor;
-            let channel = written(hint.channel, &capture.channels);
+            let channel = channel_text(hint.channel, &capture.channels);
             if hint.both_edges {
                 let steps = hint.edges.map_or("twice as many".to_owned(), |edges| edges.to_string());
                 self.notes.push(Note {
