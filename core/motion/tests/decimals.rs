@@ -1,5 +1,5 @@
-//! Distances and points are what their decimals make of them (DESIGN B1): held against whole numbers of 128 bits, written
-//! without the planner's arithmetic.
+//! Distances and points mean their decimals (DESIGN B1): compared with 128-bit integers, independently of the planner's
+//! arithmetic.
 
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
@@ -26,7 +26,7 @@ fn points(unit: PointUnit, points: &[(f64, f64)]) -> Move {
 }
 
 #[test]
-fn half_steps_are_rounded_as_they_are_printed() {
+fn rounds_decimal_half_steps_up() {
     let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
     assert_eq!(steps_of(direct(0.1), constant(Distance::Millimeters(88.35))), 884);
     assert_eq!(steps_of(direct(0.1), constant(Distance::Millimeters(-88.35))), -883);
@@ -37,7 +37,7 @@ fn half_steps_are_rounded_as_they_are_printed() {
 }
 
 #[test]
-fn what_is_no_quantity_gives_what_the_quotient_gives() {
+fn invalid_quantities_give_the_quotient_in_f64() {
     let direct = |step_mm| Mechanics::Direct(Direct { step_mm });
     let steps =
         |mm: f64, step_mm: f64| Distance::Millimeters(mm).in_steps(&direct(step_mm)).expect("they have mm");
@@ -49,9 +49,9 @@ fn what_is_no_quantity_gives_what_the_quotient_gives() {
     assert_eq!(Distance::Millimeters(f64::NAN).whole_steps(&direct(0.1)), Ok(0));
 }
 
-/// Decimals n/10^places, so that the quotient is one of whole numbers: floor(a/b + 1/2) = floor((2a + b)/(2b)).
+/// Decimals n/10^places have a quotient of integers: floor(a/b + 1/2) = floor((2a + b)/(2b)).
 #[test]
-fn distances_are_the_quotients_of_their_decimals() {
+fn distances_are_quotients_of_decimals() {
     let mut noise = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut draw = |from: i128, to: i128| from + i128::from(noise.next_u64()).rem_euclid(to - from + 1);
     let mut halves = 0;
@@ -63,7 +63,7 @@ fn distances_are_the_quotients_of_their_decimals() {
         // As JSON reads them: the number nearest to the decimal.
         let number = |digits: i128, ten: i128| digits as f64 / ten as f64;
         let (given, size) = (number(whole, ten), number(unit, unit_ten));
-        let (mechanics, distance, over, under) = match draw(0, 2) {
+        let (mechanics, distance, numerator, denominator) = match draw(0, 2) {
             0 => (
                 Mechanics::Direct(Direct { step_mm: size }),
                 Distance::Millimeters(given),
@@ -73,9 +73,9 @@ fn distances_are_the_quotients_of_their_decimals() {
             1 => {
                 let microsteps = [1, 8, 10, 256][draw(0, 3) as usize];
                 let screw = Screw { full_step_deg: 1.8, microsteps, lead_mm: size };
-                // lead*1.8/microsteps/360 mm a step.
-                let over = whole * 3600 * i128::from(microsteps) * unit_ten;
-                (Mechanics::Screw(screw), Distance::Millimeters(given), over, unit * 18 * ten)
+                // lead*1.8/microsteps/360 mm per step.
+                let numerator = whole * 3600 * i128::from(microsteps) * unit_ten;
+                (Mechanics::Screw(screw), Distance::Millimeters(given), numerator, unit * 18 * ten)
             }
             _ => {
                 let microsteps = [1, 16, 5, 128][draw(0, 3) as usize];
@@ -88,9 +88,11 @@ fn distances_are_the_quotients_of_their_decimals() {
                 )
             }
         };
-        let expected = (2 * over + under).div_euclid(2 * under);
-        halves +=
-            usize::from((2 * over).rem_euclid(under) == 0 && (2 * over).div_euclid(under).rem_euclid(2) == 1);
+        let expected = (2 * numerator + denominator).div_euclid(2 * denominator);
+        let twice = 2 * numerator;
+        halves += usize::from(
+            twice.rem_euclid(denominator) == 0 && twice.div_euclid(denominator).rem_euclid(2) == 1,
+        );
         if expected == 0 || expected.abs() > 1_000_000 {
             continue;
         }
@@ -102,7 +104,7 @@ fn distances_are_the_quotients_of_their_decimals() {
 }
 
 #[test]
-fn an_offset_of_the_points_changes_no_step() {
+fn an_offset_of_all_points_changes_no_step() {
     let steps = |list: &[(f64, f64)]| steps_of(Mechanics::default(), points(PointUnit::Steps, list));
     assert_eq!(
         steps(&[(0.0, 20.45), (1.0, 46.95), (2.0, 39.95)]),
@@ -114,20 +116,22 @@ fn an_offset_of_the_points_changes_no_step() {
     let mut draw = |from: i64, to: i64| from + (noise.next_u64() % (to - from + 1) as u64) as i64;
     for _ in 0..2000 {
         let offset = draw(-100_000, 100_000);
-        let ways: Vec<i64> = (0..6).map(|_| 50 * draw(-20, 20)).collect();
+        let positions: Vec<i64> = (0..6).map(|_| 50 * draw(-20, 20)).collect();
         let tenths: i64 = draw(1, 9);
-        // Times and positions both begin elsewhere.
+        // Shifts times and positions.
         let at = |offset: i64| {
-            let positions = core::iter::once(0).chain(ways.iter().copied());
+            let all = core::iter::once(0).chain(positions.iter().copied());
             let time_s = |index: i64| (offset.abs() + tenths * index) as f64 / 10.0;
             let list: Vec<(f64, f64)> =
-                (0..7).map(time_s).zip(positions.map(|way| (offset + way) as f64 / 100.0)).collect();
+                (0..7).map(time_s).zip(all.map(|position| (offset + position) as f64 / 100.0)).collect();
             let axis = Axis { moves: vec![points(PointUnit::Steps, &list)], ..Axis::default() };
             plan_axis(&axis, "x").map(|plan| plan.due_steps(16_000_000).collect::<Vec<_>>())
         };
         match (at(0), at(offset)) {
-            (Ok(own), Ok(moved)) => assert_eq!(own, moved, "{offset} {ways:?}"),
-            (own, moved) => assert!(own.is_err() && moved.is_err(), "{offset} {ways:?}: {own:?} {moved:?}"),
+            (Ok(own), Ok(moved)) => assert_eq!(own, moved, "{offset} {positions:?}"),
+            (own, moved) => {
+                assert!(own.is_err() && moved.is_err(), "{offset} {positions:?}: {own:?} {moved:?}")
+            }
         }
     }
 }

@@ -1,5 +1,4 @@
-//! A compressed table has the fewest entries that the widths of its entries allow (DESIGN B8): as few as trying every entry
-//! from every time gives.
+//! A compressed table has the fewest entries that its format allows (DESIGN B8): as few as an exhaustive search finds.
 
 use proptest::prelude::*;
 use std::{collections::BTreeSet, num::NonZeroU32};
@@ -13,7 +12,7 @@ use stepscope_peripheral::{
 };
 
 const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
-/// Narrow entries, so that each of their limits is met.
+/// Narrow numbers, so that each limit matters.
 const NARROW: EntryFormat =
     EntryFormat { name: "narrow", fraction_bits: 0, interval_bits: 8, count_bits: 8, add_bits: 8 };
 const HALVES: EntryFormat = EntryFormat { name: "halves", fraction_bits: 1, ..NARROW };
@@ -37,9 +36,9 @@ fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -
         .collect()
 }
 
-/// The fewest entries, turns and waits apart: every interval and add tried from every time that a step can have.
+/// The fewest entries with steps: tries every interval and add from every time that a step can have.
 fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
-    let (least, most) = (2 << format.fraction_bits, format.max_interval() as i64);
+    let (min, max) = (2 << format.fraction_bits, format.max_interval() as i64);
     let mut reached: Vec<BTreeSet<i64>> = vec![BTreeSet::new(); windows.len() + 1];
     reached[0].insert(0);
     for entries in 0.. {
@@ -47,21 +46,21 @@ fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
             return entries;
         }
         for (step, times) in reached.clone().iter().enumerate() {
-            let Some(&(low, high, way)) = windows.get(step) else { continue };
+            let Some(&(low, high, direction)) = windows.get(step) else { continue };
             for &from in times {
-                // Intervals that lead through the first window, adds that may lead through the second.
-                for interval in least.max(low - from)..=most.min(high - from) {
+                // Intervals to the first window, and adds to the second.
+                for interval in min.max(low - from)..=max.min(high - from) {
                     let adds = windows.get(step + 1).map_or(0..=0, |&(low, high, _)| {
                         (low - from - 2 * interval).max(format.min_add())
                             ..=(high - from - 2 * interval).min(format.max_add())
                     });
-                    // Where there is none the entry has one step.
+                    // Without a second window the entry has one step.
                     for add in adds.chain([0]) {
                         let (mut time, mut next) = (from, interval);
                         for (n, &(low, high, right)) in (step + 1..).zip(&windows[step..]) {
                             time += next;
-                            let passes = (least..=most).contains(&next) && (low..=high).contains(&time);
-                            if !passes || right != way {
+                            let passes = (min..=max).contains(&next) && (low..=high).contains(&time);
+                            if !passes || right != direction {
                                 break;
                             }
                             reached[n].insert(time);
@@ -72,7 +71,7 @@ fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
             }
         }
     }
-    unreachable!("each step can have an entry of its own")
+    unreachable!("each step can be an entry")
 }
 
 fn tolerance() -> impl Strategy<Value = Tolerance> {
@@ -85,7 +84,7 @@ fn tolerance() -> impl Strategy<Value = Tolerance> {
     })
 }
 
-/// Steps with intervals that change little, and now and then much.
+/// Steps with small changes of intervals, and sometimes large ones.
 fn steps() -> impl Strategy<Value = Vec<ScheduledStep>> {
     let gap = prop_oneof![12 => -2..3_i64, 1 => -20..21_i64];
     (2..40_i64, prop::collection::vec((gap, prop::bool::weighted(0.05)), 1..13)).prop_map(
@@ -93,10 +92,10 @@ fn steps() -> impl Strategy<Value = Vec<ScheduledStep>> {
             let (mut interval, mut cycle, mut right) = (first, 0, true);
             changes
                 .into_iter()
-                .map(|(change, turns)| {
+                .map(|(change, reverses)| {
                     interval = (interval + change).clamp(2, 110);
                     cycle += interval as u64;
-                    right ^= turns;
+                    right ^= reverses;
                     ScheduledStep { cycle, right }
                 })
                 .collect()
@@ -119,9 +118,9 @@ proptest! {
         let made = compressed(steps.iter().copied(), tolerance, format, PULSE).expect("there is time for each pulse");
         prop_assert_eq!(made.error.steps, steps.len() as u64);
         let found = entries_of_steps(&made.list.segments);
-        let least = fewest(&windows(&steps, tolerance, format), format);
+        let min = fewest(&windows(&steps, tolerance, format), format);
         let surplus = made.surplus.expect("the windows are narrow");
-        prop_assert!(found >= least && found <= least + surplus, "{} {} {}", found, least, surplus);
+        prop_assert!(found >= min && found <= min + surplus, "{} {} {}", found, min, surplus);
         prop_assert!(surplus == 0 || format != EntryFormat::TICKS);
         let quick = compressed_quickly(steps.iter().copied(), tolerance, format, PULSE);
         let quick = quick.expect("there is time for each pulse");
@@ -130,8 +129,8 @@ proptest! {
 }
 
 #[test]
-fn a_list_that_asks_for_too_much_work_is_left_to_the_quick_search() {
-    // Wide windows, and a turn after every third step: many short entries, each with thousands of times to begin at.
+fn a_list_with_too_much_work_is_compressed_quickly() {
+    // Wide windows and a reversal after every third step: many short entries, each with thousands of start times.
     let steps: Vec<ScheduledStep> = (0..30_000_u64)
         .map(|index| ScheduledStep { cycle: 1000 + 300 * index, right: index / 3 % 2 == 0 })
         .collect();

@@ -1,9 +1,9 @@
-//! Compressed tables beside those that Klipper's way of compression would make (DESIGN B8): its window, its widths, and one
-//! entry after another, each as long as there is one, and of those the one that ends last.
+//! Compares compressed tables with Klipper's step compression (DESIGN B8), which appends one longest entry after another, and
+//! of equally long ones the one that ends last.
 //!
-//! The way is written here from its description alone: a step comes up to 25 us early, though not by more than half the interval
-//! before it, and never late; an entry is interval (32 bits), count (16) and add (16, signed) in whole cycles. Its own
-//! program examines only some of the adds; its known counts are listed.
+//! It is implemented here from its description: a step is up to 25 us early, but not by more than half the interval before it,
+//! and never late; an entry has interval (32 bits), count (16) and add (16, signed) in whole cycles. Klipper's program tries
+//! only some of the adds; its known counts are listed.
 
 use std::num::NonZeroU32;
 use stepscope_motion::{
@@ -25,37 +25,37 @@ const KLIPPERS: Tolerance =
     Tolerance { cycles: Cycles(EARLY), interval_part: NonZeroU32::new(2), side: Side::Early };
 const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
 
-/// Entries of the greedy way.
+/// Number of entries of greedy compression.
 fn greedy(steps: &[ScheduledStep]) -> u64 {
     let cycle = |index: usize| steps[index].cycle as i64;
     let (mut entries, mut start, mut last) = (0, 0, 0);
     while start < steps.len() {
-        let way = steps[start].right;
-        // Each add that is left with its least and greatest interval, of entries of `count` steps.
-        let mut left: Vec<(i64, i64, i64)> = vec![];
+        let right = steps[start].right;
+        // Possible adds of entries of `count` steps, each with its minimum and maximum interval.
+        let mut candidates: Vec<(i64, i64, i64)> = vec![];
         let (mut count, mut end) = (0_i64, (0, i64::MIN));
-        for index in (start..steps.len()).take(65_535).take_while(|index| steps[*index].right == way) {
+        for index in (start..steps.len()).take(65_535).take_while(|index| steps[*index].right == right) {
             let before = if index == start { last } else { cycle(index - 1) };
             let early = (EARLY as i64).min((cycle(index) - before) / 2);
             let (low, high) = (cycle(index) - early - last, cycle(index) - last);
             count += 1;
             let bend = count * (count - 1) / 2;
             if count == 1 {
-                left.push((0, low, high));
+                candidates.push((0, low, high));
             } else {
-                if let [(_, first, most)] = left[..]
+                if let [(_, min, max)] = candidates[..]
                     && count == 2
                 {
-                    let adds = (low - 2 * most).max(-32_768)..=(high - 2 * first).min(32_767);
-                    left = adds.map(|add| (add, first, most)).collect();
+                    let adds = (low - 2 * max).max(-32_768)..=(high - 2 * min).min(32_767);
+                    candidates = adds.map(|add| (add, min, max)).collect();
                 }
-                for (add, least, most) in &mut left {
-                    *least = (*least).max(-(bend * *add - low).div_euclid(count));
-                    *most = (*most).min((high - bend * *add).div_euclid(count));
+                for (add, min, max) in &mut candidates {
+                    *min = (*min).max(-(bend * *add - low).div_euclid(count));
+                    *max = (*max).min((high - bend * *add).div_euclid(count));
                 }
-                left.retain(|(add, least, most)| least <= most && least + (count - 1) * add > 0);
+                candidates.retain(|(add, min, max)| min <= max && min + (count - 1) * add > 0);
             }
-            let ends = left.iter().map(|(add, _, most)| count * most + bend * add).max();
+            let ends = candidates.iter().map(|(add, _, max)| count * max + bend * add).max();
             let Some(latest) = ends else { break };
             end = (count as usize, latest);
         }
@@ -68,7 +68,7 @@ fn greedy(steps: &[ScheduledStep]) -> u64 {
 
 fn due(given: Move) -> Vec<ScheduledStep> {
     let axis = Axis { moves: vec![given], ..Axis::default() };
-    plan_axis(&axis, "x").expect("it can be planned").due_steps(CLOCK_HZ).collect()
+    plan_axis(&axis, "x").expect("a valid axis").due_steps(CLOCK_HZ).collect()
 }
 
 fn trapezoid(steps: f64) -> Move {
@@ -89,7 +89,8 @@ fn steps_of(segments: &[Segment]) -> u64 {
     segments.iter().filter(|segment| matches!(segment, Segment::Steps { .. })).count() as u64
 }
 
-/// Entries of steps: ours in its window, ours in one of the same width around the due time, and those of the greedy way.
+/// Entries of our compression in Klipper's window and in one of the same width around the due time, and of greedy
+/// compression.
 fn counts(given: Move) -> [u64; 3] {
     let steps = due(given);
     let ours = |tolerance| {
@@ -102,10 +103,10 @@ fn counts(given: Move) -> [u64; 3] {
 }
 
 #[test]
-fn no_move_takes_more_entries_than_klippers_way() {
+fn no_move_needs_more_entries_than_with_klipper() {
     let jerk = JerkLimited { distance: Distance::Steps(3200.0), ..JerkLimited::default() };
     let segments = SineSegments { amplitude: Distance::Steps(1000.0), periods: 2, ..SineSegments::default() };
-    // Steps, move, counts, and what Klipper's program makes of it.
+    // Steps, move, counts, and the count of Klipper's program.
     let rows = [
         (3200, Move::default(), [48, 48, 52], Some(52)),
         (2000, trapezoid(2000.0), [40, 40, 45], None),
@@ -119,15 +120,15 @@ fn no_move_takes_more_entries_than_klippers_way() {
         let found = counts(given.clone());
         assert_eq!(found, expected, "{given:?}");
         let [early, both, greedy] = found;
-        let most = klippers.unwrap_or(greedy).min(greedy);
-        assert!(early <= most && both <= most, "{given:?}: {found:?}");
+        let max = klippers.unwrap_or(greedy).min(greedy);
+        assert!(early <= max && both <= max, "{given:?}: {found:?}");
     }
 }
 
-/// 312 turns: the list is cut into sections, each cut of which may cost an entry.
+/// 312 changes of direction: the list is cut into sections, and each cut may cost an entry.
 #[test]
 #[ignore = "it takes half a minute"]
-fn two_million_steps_take_no_more_either() {
+fn two_million_steps_need_no_more_entries_either() {
     let steps = due(sine(156));
     assert_eq!(steps.len(), 1_996_800);
     let made = compressed(steps.iter().copied(), KLIPPERS, EntryFormat::TICKS, PULSE);

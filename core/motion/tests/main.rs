@@ -1,5 +1,5 @@
-//! The planners and their tables from outside: one program of all these tests, so that it is linked once. `exact_curves` is
-//! one of its own, which walks for hours on request.
+//! Tests of planners and step tables through the public API, in one program to link them once. `exact_curves` is separate,
+//! because it can run for hours.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

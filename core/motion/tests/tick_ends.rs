@@ -1,5 +1,5 @@
-//! Steps that are due in the very instant in which a tick ends (DESIGN B7): one to the right belongs to that tick, one to
-//! the left to the next, for every kind of motion.
+//! Steps that are due exactly at the end of a tick (DESIGN B7): a step to the right belongs to that tick, a step to the left to
+//! the next one, for every kind of motion.
 
 use stepscope_motion::{
     Profile,
@@ -12,15 +12,15 @@ use stepscope_motion::{
     step_tables::{AxesPath, ticks},
 };
 
-/// Steps of each tick of 1 ms, left negative.
+/// Steps of each tick of 1 ms, negative to the left.
 fn steps_of_ticks(moves: Vec<Move>) -> Vec<i64> {
-    let plan = plan_axis(&Axis { moves, ..Axis::default() }, "x").expect("it can be planned");
+    let plan = plan_axis(&Axis { moves, ..Axis::default() }, "x").expect("a valid axis");
     let commands = ticks(&[plan], AxesPath::MOTION, 1, 100, 16_000, 16_000_000).expect("no tick is too full");
-    let steps = |order: &u8| if order & 0x80 == 0 { -i64::from(*order) } else { i64::from(order & 0x7f) };
+    let steps = |byte: &u8| if byte & 0x80 == 0 { -i64::from(*byte) } else { i64::from(byte & 0x7f) };
     commands.bytes().iter().map(steps).collect()
 }
 
-/// Three steps a millisecond apart, the first at 1 ms.
+/// Moves with one step per millisecond, the first at 1 ms.
 fn by_table(steps: f64) -> [Move; 2] {
     let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(1000.0));
     [
@@ -37,7 +37,7 @@ fn by_table(steps: f64) -> [Move; 2] {
 }
 
 #[test]
-fn of_a_table_too_one_to_the_right_is_made_in_the_tick_and_one_to_the_left_in_the_next() {
+fn table_steps_to_the_right_are_in_the_tick_and_to_the_left_in_the_next() {
     for made in by_table(3.0) {
         assert_eq!(steps_of_ticks(vec![made.clone()]), [1, 1, 1], "{made:?}");
     }
@@ -47,7 +47,7 @@ fn of_a_table_too_one_to_the_right_is_made_in_the_tick_and_one_to_the_left_in_th
 }
 
 #[test]
-fn the_last_step_of_a_table_to_the_left_waits_for_the_move_after_it() {
+fn the_last_table_step_to_the_left_is_in_the_first_tick_of_the_next_move() {
     let dwell = Move::Dwell(Dwell { duration_s: 0.002 });
     for (there, back) in by_table(-3.0).into_iter().zip(by_table(3.0)) {
         let moves = vec![there.clone(), dwell.clone(), back.clone()];
@@ -55,13 +55,13 @@ fn the_last_step_of_a_table_to_the_left_waits_for_the_move_after_it() {
         assert_eq!(
             steps_of_ticks(vec![there.clone(), there]),
             [0, -1, -1, -1, -1, -1, -1],
-            "one after another"
+            "two moves to the left"
         );
     }
 }
 
 #[test]
-fn curves_do_the_same() {
+fn steps_of_curves_follow_the_same_rule() {
     let constant = |steps| {
         Move::Constant(Constant { distance: Distance::Steps(steps), speed: Speed::StepsPerSecond(500.0) })
     };
@@ -76,24 +76,23 @@ fn curves_do_the_same() {
     assert_eq!(steps_of_ticks(vec![points(-3.0)]), [0, -1, 0, -1, 0, -1]);
 }
 
-/// Draws whole numbers, the same each time.
-fn drawn(state: &mut u64, from: u64, to: u64) -> u64 {
+/// A pseudo-random integer from `from` to below `to`.
+fn random(state: &mut u64, from: u64, to: u64) -> u64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     from + (*state >> 33) % (to - from)
 }
 
-/// Steps of whole rates and of timers' tables, after a dwell of whole microseconds: step k is due after over/under of a
-/// cycle, in whole numbers.
+/// Integer rates and timer tables, after a dwell of whole microseconds: step k is due after numerator/denominator cycles.
 #[test]
-fn by_every_cycle_as_many_are_due_as_whole_numbers_say() {
+fn steps_due_agree_with_integer_arithmetic() {
     const CLOCK_HZ: u32 = 1_000_003;
     let mut state = 1;
     for round in 0..400 {
-        let dwell_us = drawn(&mut state, 0, 1000);
-        let (count, rate) = (drawn(&mut state, 1, 60), drawn(&mut state, 1000, 400_000));
+        let dwell_us = random(&mut state, 0, 1000);
+        let (count, rate) = (random(&mut state, 1, 60), random(&mut state, 1000, 400_000));
         let steps = if round % 2 == 0 { count as f64 } else { -(count as f64) };
         let (distance, speed) = (Distance::Steps(steps), Speed::StepsPerSecond(rate as f64));
-        let timer_hz = drawn(&mut state, 400_000, 4_000_000) as u32;
+        let timer_hz = random(&mut state, 400_000, 4_000_000) as u32;
         let (moved, by_table) = match round % 4 {
             0 | 1 => (Move::Constant(Constant { distance, speed }), false),
             _ => {
@@ -110,17 +109,18 @@ fn by_every_cycle_as_many_are_due_as_whole_numbers_say() {
         };
         let dwell = Move::Dwell(Dwell { duration_s: dwell_us as f64 / 1e6 });
         let axis = Axis { moves: vec![dwell, moved], ..Axis::default() };
-        let plan = plan_axis(&axis, "x").expect("it can be planned");
-        // In parts of a cycle: dwell_us*clock/10^6 and the step's own.
+        let plan = plan_axis(&axis, "x").expect("a valid axis");
+        // The dwell takes dwell_us*clock/10^6 cycles.
         let (dwell, clock) = (u128::from(dwell_us) * u128::from(CLOCK_HZ), u128::from(CLOCK_HZ));
-        let own = |k: u64| match &plan.moves()[1].profile {
+        let time_in_move = |k: u64| match &plan.moves()[1].profile {
             Profile::TrapezoidTable(table) => (u128::from(table.step_ticks(k)) * clock, u128::from(timer_hz)),
             _ => (u128::from(2 * k - 1) * clock, u128::from(2 * rate)),
         };
         let is_due = |k: u64, cycle: u64| {
-            let (over, under) = own(k);
-            let (since, at) = (dwell * under + over * 1_000_000, u128::from(cycle) * under * 1_000_000);
-            if steps > 0.0 { since <= at } else { since < at }
+            let (numerator, denominator) = time_in_move(k);
+            let time = dwell * denominator + numerator * 1_000_000;
+            let cycle_time = u128::from(cycle) * denominator * 1_000_000;
+            if steps > 0.0 { time <= cycle_time } else { time < cycle_time }
         };
         let mut due_by = plan.due_by(CLOCK_HZ);
         for cycle in 0..4000 {
@@ -131,14 +131,14 @@ fn by_every_cycle_as_many_are_due_as_whole_numbers_say() {
     }
 }
 
-/// A step due in the instant in which a tick ends and a move with it, after moves whose lengths f64 does not add exactly.
+/// A step due at the end of a tick and of a move, after moves whose durations f64 does not add exactly.
 #[test]
-fn of_moves_in_a_row_too_the_tick_is_that_of_the_exact_time() {
+fn the_tick_follows_from_exact_times_of_consecutive_moves() {
     let dwell = |duration_s| Move::Dwell(Dwell { duration_s });
     let constant = |steps| {
         Move::Constant(Constant { distance: Distance::Steps(steps), speed: Speed::StepsPerSecond(500.0) })
     };
-    // 0.1 + 0.2 + 0.7 = 1 s, in f64 a little more or less in between; steps at 1.001, 1.003 s.
+    // 0.1 + 0.2 + 0.7 = 1 s with rounding errors in f64; steps at 1.001 and 1.003 s.
     for (there, expected) in [(2.0, [1, 0, 1, 0]), (-2.0, [0, -1, 0, -1])] {
         let moves = [0.1, 0.2, 0.7].map(dwell).into_iter().chain([constant(there)]).collect();
         let ticks = steps_of_ticks(moves);

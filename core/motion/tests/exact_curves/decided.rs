@@ -1,5 +1,5 @@
-//! Moves of which every step is decided in 106 bits. On a clock of 4 GHz a time of hours has no digit left to distinguish one
-//! cycle from the next, so none is decided in f64: the formulas that decide are checked against the ideals over their whole length.
+//! Moves of which every step is decided in 106 bits: at 4 GHz, f64 does not distinguish cycles after hours. So this tests the
+//! deciding formulas over the whole move.
 
 use crate::{
     by_rows, by_segments, by_slices,
@@ -19,10 +19,10 @@ use stepscope_motion::{
 
 const CLOCK_HZ: u32 = 4_000_000_000;
 const DAY_S: f64 = 86_400.0;
-/// Of a move with more steps so many are held at its beginning and its end, and so many between.
+/// Number of compared steps at the start, in the middle and at the end of a longer move.
 const MAX_PER_PART: u64 = 100;
 
-/// Holds the steps of a move to an ideal that may be made of its plan; times may be off by so many roundings.
+/// Compares the steps of a move with an ideal, which may use its plan; times have up to `roundings` rounding errors.
 fn check_planned(given: &Move, roundings: f64, ideal: impl FnOnce(&Profile) -> Ideal) {
     let plan = plan_of(vec![given.clone()]).unwrap_or_else(|| panic!("{given:?} cannot be planned"));
     let profile = &plan.moves()[0].profile;
@@ -61,7 +61,7 @@ fn every_step_of_a_sine_is_in_its_exact_cycle() {
     }
 }
 
-/// Ramps in parts of the time: none, half, and short ones.
+/// Ramps relative to the duration: none, half, and short ones.
 const MOVES: [(i64, f64, f64); 6] = [
     (1, DAY_S, 43_200.0),
     (-2, 80_000.1, 20_000.3),
@@ -87,7 +87,7 @@ fn every_step_of_ramps_is_in_its_exact_cycle() {
         .chain(with(RampShape::Exponential, &[0.1, 1.3, 4.0, 20.0]))
         .chain(with(RampShape::Sigmoid, &[0.1, 1.3, 6.0, 20.0]));
     for (shape, parameter) in shapes {
-        // Logarithms of so many digits take their time.
+        // Logarithms of 320 bits are slow.
         let slow = shape == RampShape::Sigmoid;
         let moves = MOVES.into_iter().filter(|(count, ..)| count.abs() < if slow { 100 } else { 1000 });
         for (count, duration_s, ramp_s) in moves {
@@ -109,7 +109,7 @@ fn every_step_of_ramps_is_in_its_exact_cycle() {
 #[test]
 fn every_step_of_a_trapezoid_is_in_its_exact_cycle() {
     let rows = [
-        // A plateau, from a start speed and from rest; one speed; and triangles.
+        // With a plateau, from a start speed and from rest; a single speed; triangles.
         (200, 0.000_7, 0.003_3, 1e-6),
         (-201, 0.0, 0.003, 1e-6),
         (-60, 0.001, 0.001, 1e-3),
@@ -133,7 +133,7 @@ fn every_step_of_a_trapezoid_is_in_its_exact_cycle() {
 #[test]
 fn every_step_of_a_jerk_limited_move_is_in_its_exact_cycle() {
     let rows = [
-        // The four rows of the planner's table, and two with next to nothing of the jerk.
+        // The four rows of the planner's table, and two with almost no jerk phases.
         (500_000, 32.0, 0.004, 1e-6),
         (-200_001, 16.0, 0.1, 1e-6),
         (300_000, 32.0, 0.004, 1e-6),
@@ -186,7 +186,7 @@ fn every_step_of_a_curve_through_points_is_in_its_exact_cycle() {
 
 #[test]
 fn every_step_of_a_staircase_is_in_its_exact_cycle() {
-    // All at one rate, one row up and down, and several.
+    // A single rate, one row per ramp, and several.
     let rows = [
         (20_000, 1.0, 1.0, ShortMove::Document),
         (-40_000, 1.0, 2.0, ShortMove::Document),
@@ -218,7 +218,7 @@ fn every_step_of_a_sine_by_segments_is_in_its_exact_cycle() {
 
 #[test]
 fn every_step_of_a_sliced_move_is_in_its_exact_cycle() {
-    // Slices that are shortened add their roundings: of 2000 they are enough.
+    // Shortened slices accumulate roundings: 2000 slices are enough.
     for (count, ramp_s) in [(5000, 40.0), (-7001, 60.0), (4400, 10.0)] {
         let given = Cosine {
             distance: steps(count),

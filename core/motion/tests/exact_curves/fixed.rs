@@ -1,5 +1,5 @@
-//! Numbers of 320 bits after the point, from whole numbers of any length: what the planners' cycles are held against.
-//! Decimals are taken as they are printed; nothing here is the planners' own, neither numbers nor formulas.
+//! Fixed-point numbers with a fraction of 320 bits, to which the planners' cycles are compared. They share no code with the
+//! planners. A number means its shortest decimal.
 
 use num_bigint::{BigInt, BigUint};
 use std::cmp::Ordering;
@@ -7,7 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::LazyLock;
 
 const BITS: u64 = 320;
-/// Bits after the point up to which two numbers are equal: formulas here lose fewer than the rest.
+/// Bits of the fraction that are compared; formulas here lose fewer than the others.
 const EQUAL_BITS: u64 = 200;
 
 #[derive(Clone, Debug, PartialEq, PartialOrd)]
@@ -32,7 +32,7 @@ pub(crate) fn whole(number: i64) -> Fixed {
     Fixed(BigInt::from(number) << BITS)
 }
 
-/// The decimal that is printed for a number.
+/// The shortest decimal of a number.
 pub(crate) fn decimal(number: f64) -> Fixed {
     let text = format!("{number:e}");
     let (digits, exponent) = text.split_once('e').expect("it is printed with an exponent");
@@ -44,7 +44,7 @@ pub(crate) fn decimal(number: f64) -> Fixed {
 }
 
 impl Fixed {
-    /// As numbers of so many digits compare.
+    /// Compares only the exact bits.
     pub(crate) fn order(&self, other: &Self) -> Ordering {
         let off = &self.0 - &other.0;
         if off.bits() < BITS - EQUAL_BITS { Ordering::Equal } else { off.cmp(&BigInt::ZERO) }
@@ -54,7 +54,7 @@ impl Fixed {
         self.0 > BigInt::ZERO
     }
 
-    /// Whether it is half way between two whole numbers.
+    /// Whether it is in the middle between two integers.
     pub(crate) fn is_half(&self) -> bool {
         (self.clone() * whole(2)).order(&whole(2 * self.rounded() - 1)) == Ordering::Equal
     }
@@ -81,7 +81,7 @@ impl Fixed {
         libm::scalbn(if sign { -upper } else { upper }, (shift as i64 - BITS as i64) as i32)
     }
 
-    /// Sum of x^k/k! over all k of which `sign` gives one that is not 0.
+    /// Sum of sign(k)*x^k/k! over all k.
     fn series(&self, sign: impl Fn(u32) -> i32) -> Self {
         let (mut term, mut sum, mut k) = (whole(1), whole(0), 0);
         while term.0 != BigInt::ZERO && term.0 != BigInt::from(-1) {
@@ -105,7 +105,7 @@ impl Fixed {
     }
 
     pub(crate) fn exponential(&self) -> Self {
-        // By halves, so that few terms do: (e^(x/64))^64.
+        // (e^(x/64))^64 needs fewer terms.
         let mut power = (self.clone() / whole(64)).series(|_| 1);
         for _ in 0..6 {
             power = power.clone() * power;
@@ -113,11 +113,11 @@ impl Fixed {
         power
     }
 
-    /// By Newton's steps from that of `libm`.
+    /// By Newton's method from the root of `libm`.
     pub(crate) fn logarithm(&self) -> Self {
         let mut x = decimal(libm::log(self.to_f64()));
         for _ in 0..4 {
-            // Each has three times the digits of the one before.
+            // Each step triples the digits.
             let power = x.exponential();
             x = x + whole(2) * (self.clone() - power.clone()) / (self.clone() + power);
         }
@@ -154,7 +154,7 @@ impl Neg for Fixed {
 }
 
 #[test]
-fn the_numbers_have_their_digits() {
+fn functions_have_320_bits() {
     let digits = |x: &Fixed| {
         let ten = BigInt::from(10).pow(60);
         ((&x.0 * ten) >> BITS).to_string()

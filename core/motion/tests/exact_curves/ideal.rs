@@ -1,11 +1,11 @@
-//! Where a motion ideally is, from the design's own formulas (DESIGN B2, B4, B6) in [`Fixed`] numbers, and nothing of the
-//! planners' ways to get there.
+//! The ideal position of a motion, from the formulas of DESIGN B2, B4 and B6 in [`Fixed`] numbers, independently of the
+//! planners.
 
 use crate::fixed::{Fixed, PI, decimal, whole};
 use std::cmp::Ordering;
 use stepscope_motion::moves::{Interpolation, RampShape};
 
-/// Whether a move has less than the position of step k behind it at a time in s, just that, or more; both from its start.
+/// Compares the position at a time in s with that of step k; both from the move's start.
 type Compare = Box<dyn Fn(u64, &Fixed) -> Ordering>;
 
 pub(crate) struct Ideal {
@@ -38,7 +38,7 @@ pub(crate) fn sine(amplitude: i64, period_s: f64, periods: u32) -> Ideal {
     Ideal { duration, compare: Box::new(compare) }
 }
 
-/// A move whose second half mirrors its first, of the way of that at a time.
+/// A move whose second half mirrors its first; `first` is the travel in the first half.
 fn mirrored(steps: i64, duration: Fixed, first: impl Fn(Fixed) -> Fixed + 'static) -> Ideal {
     let (steps, own) = (whole(steps.abs()), duration.clone());
     let compare = move |k: u64, t: &Fixed| {
@@ -86,10 +86,10 @@ pub(crate) fn trapezoid(steps: i64, start: f64, top: f64, acceleration: f64) -> 
     })
 }
 
-/// Speed and way of a shape in parts of the whole ramp's at top speed, of its logarithms and exponentials as they stand.
+/// Relative speed and travel of a shape, directly from its logarithms and exponentials.
 pub(crate) fn shape(shape: RampShape, parameter: f64) -> impl Fn(Fixed) -> Fixed {
     let (one, parameter) = (whole(1), decimal(parameter));
-    // Of a sigmoid: S(u) = 1/(1 + e^-u), whose integral is ln(1 + e^u), from -r to u = r*(2x - 1).
+    // Sigmoid: S(u) = 1/(1 + e^-u), whose integral is ln(1 + e^u), from -r to u = r*(2x - 1).
     let logistic = |u: Fixed| whole(1) / (whole(1) + (-u).exponential());
     let (low, high) = (logistic(-parameter.clone()), logistic(parameter.clone()));
     let integral = |u: Fixed| (whole(1) + u.exponential()).logarithm();
@@ -117,7 +117,7 @@ pub(crate) fn ramps(
     way: impl Fn(Fixed) -> Fixed + 'static,
 ) -> Ideal {
     let (duration, ramp) = (decimal(duration_s), decimal(ramp_s));
-    // Of a ramp's time this is lost against a start at top speed.
+    // The time that a ramp takes longer than its travel at top speed.
     let lost = ramp.clone() * (whole(1) - way(whole(1)));
     let top = whole(steps.abs()) / (duration.clone() - whole(2) * lost.clone());
     mirrored(steps, duration, move |t| {
@@ -129,14 +129,14 @@ pub(crate) fn ramps(
     })
 }
 
-/// The seven phases, from the limits alone.
+/// The seven phases, from the limits.
 pub(crate) fn jerk_limited(steps: i64, speed: f64, acceleration: f64, jerk: f64) -> Ideal {
     let [n, v, a, j] = [whole(steps.abs()), decimal(speed), decimal(acceleration), decimal(jerk)];
     let least = |a: Fixed, b: Fixed| if b < a { b } else { a };
-    // Time of a jerk phase that each limit allows; the least of them is the one that holds.
+    // The duration of a jerk phase is the minimum that one of the limits allows.
     let by_speed = least(a / j.clone(), (v.clone() / j.clone()).square_root());
     let jerk_s = least(by_speed, (n.clone() / (whole(2) * j.clone())).cube_root());
-    // Of the acceleration: to the top speed, or until the way is used up.
+    // The constant acceleration ends at the top speed, or at half of the distance.
     let acceleration = j.clone() * jerk_s.clone();
     let to_speed = v / acceleration.clone() - jerk_s.clone();
     let square = jerk_s.clone() * jerk_s.clone() + whole(4) * n.clone() / acceleration.clone();
@@ -165,7 +165,7 @@ pub(crate) fn jerk_limited(steps: i64, speed: f64, acceleration: f64, jerk: f64)
     })
 }
 
-/// Straight or by Steffen's cubics in Hermite's form; no point stands at a half step, but for the first of all.
+/// Straight or by Steffen's cubics in Hermite's form; only the first point may be at a half step.
 pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ideal {
     let zero = whole(0);
     let at: Vec<(Fixed, Fixed)> = points
@@ -181,11 +181,11 @@ pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ide
         let (d0, d1, h0, h1) = (mean(index - 1), mean(index), length(index - 1), length(index));
         let parabola = (d0.clone() * h1.clone() + d1.clone() * h0.clone()) / (h0 + h1);
         let least = |a: Fixed, b: Fixed| if b < a { b } else { a };
-        let greatest = |a: Fixed, b: Fixed| if b > a { b } else { a };
+        let max = |a: Fixed, b: Fixed| if b > a { b } else { a };
         let two = whole(2);
         match (d0.is_positive(), d1.is_positive()) {
             (true, true) => least(least(two.clone() * d0, two * d1), parabola),
-            (false, false) => greatest(greatest(two.clone() * d0, two * d1), parabola),
+            (false, false) => max(max(two.clone() * d0, two * d1), parabola),
             _ => whole(0),
         }
     };
@@ -230,13 +230,13 @@ pub(crate) fn points(points: &[(f64, f64)], interpolation: Interpolation) -> Ide
     Ideal { duration, compare: Box::new(compare) }
 }
 
-/// Steps whose times a table gives, each in s; of a move that lasts so long.
+/// Steps with the times of a table in s, of a move of `duration`.
 pub(crate) fn of_times(times: Vec<Fixed>, duration: Fixed) -> Ideal {
     let compare = move |k: u64, t: &Fixed| t.order(&times[k as usize - 1]);
     Ideal { duration, compare: Box::new(compare) }
 }
 
-/// The rows of a staircase, up and down again: so many steps at a rate each.
+/// The rows of a staircase, up and down: number of steps and rate.
 pub(crate) fn staircase(rows: &[(u64, u64)]) -> Ideal {
     let (mut start, mut before, mut after) = (whole(0), 0, Vec::new());
     for &(steps, rate) in rows {

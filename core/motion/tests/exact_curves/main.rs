@@ -1,17 +1,17 @@
-//! Every step has the cycle that B1 gives it: floor(t*clock_hz + 1/2), t being where the curve crosses its position, and every
-//! number the decimal that is printed for it. Held against numbers of 320 bits.
+//! Every step is in the cycle of B1: floor(t*clock_hz + 1/2), where the curve crosses the step's position at t. Every number
+//! means its shortest decimal. Compared with numbers of 320 bits.
 //!
 //! ```text
 //! cycle c of step k    s((c - 1/2)/clock) <= k - 1/2 < s((c + 1/2)/clock)      s: `ideal`, in `fixed` numbers
 //! ```
 //!
-//! Of each motion all steps are checked whose time in f64 is next to the middle of two cycles, and some others.
-//! `PROPTEST_CASES` sets how many motions of each kind are drawn:
+//! The steps whose time in f64 is next to the middle between two cycles are checked, and some others. `PROPTEST_CASES` sets
+//! the number of random motions of each kind:
 //!
 //! ```text
 //! PROPTEST_CASES=20000 cargo test --release -p stepscope-motion --test exact_curves -- --nocapture
 //! ```
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod decided;
 mod fixed;
@@ -38,22 +38,22 @@ use stepscope_motion::{
 };
 
 const CLOCKS: [u32; 6] = [1000, 999_983, 16_000_000, 16_000_000, 72_000_000, 1_000_000_000];
-/// Motions of each kind, unless `PROPTEST_CASES` says otherwise.
+/// Motions of each kind, unless `PROPTEST_CASES` is set.
 const MOTIONS: u64 = 60;
-/// Steps of a motion at most.
+/// Maximum steps of a motion.
 const MAX_STEPS: f64 = 60_000.0;
-/// How near an edge a step's time is checked, in cycles and in parts of the time.
+/// Steps closer than this to an edge are checked: in cycles, and relative to the time.
 const NEAR: (f64, f64) = (1e-6, 1e-14);
-/// Greatest error of a time that blocks of steps give: four times 64 roundings of the longest, and 2^-17 cycles.
+/// Maximum error of an interpolated time: four times 64 roundings of the duration, and 2^-17 cycles.
 const BY_BLOCKS: (f64, f64) = (4.0 * 64.0, 1.0 / 131_072.0);
-/// Of a motion whose times in f64 are all near an edge no more are checked.
+/// Maximum number of checked steps near an edge per motion.
 const MAX_NEAR: u64 = 300;
 
 fn motions() -> u64 {
     env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(MOTIONS)
 }
 
-/// Draws numbers, the same each time.
+/// Reproducible random numbers.
 struct Draw(Xoshiro256PlusPlus);
 
 impl Draw {
@@ -65,22 +65,22 @@ impl Draw {
         choices[self.below(choices.len() as u64) as usize]
     }
 
-    /// Each power of ten is as likely; with few digits, as people give it, or with all.
+    /// Each power of ten is equally likely; with few digits, as people write them, or with all.
     fn magnitude(&mut self, from: f64, to: f64) -> f64 {
         let part = self.below(1 << 53) as f64 / (1_u64 << 53) as f64;
         let number = libm::exp(libm::log(from) + (libm::log(to) - libm::log(from)) * part);
         let digits = self.of(&[1, 2, 4, 16]);
-        let number: f64 = format!("{number:.*e}", digits).parse().expect("it is a number");
+        let number: f64 = format!("{number:.*e}", digits).parse().expect("a number");
         number.clamp(from, to)
     }
 
-    fn steps(&mut self, most: f64) -> i64 {
-        let steps = self.magnitude(1.0, most).round() as i64;
+    fn steps(&mut self, max: f64) -> i64 {
+        let steps = self.magnitude(1.0, max).round() as i64;
         if self.below(2) == 0 { -steps } else { steps }
     }
 }
 
-fn way(right: bool) -> i64 {
+fn direction(right: bool) -> i64 {
     if right { 1 } else { -1 }
 }
 
@@ -91,16 +91,16 @@ struct Tally {
     near: u64,
     others: u64,
     ties: u64,
-    /// Cycles by which the steps that are due were counted.
+    /// Number of cycles at which the steps due were compared.
     due: u64,
-    /// How far times in f64 may be off, in parts of the motion's, and in cycles; not checked where it is 0.
-    most_off: f64,
-    most_rest: f64,
+    /// Maximum errors of times in f64: relative to the motion's duration, and in cycles; not checked if 0.
+    max_relative_error: f64,
+    max_cycle_error: f64,
 }
 
 impl Tally {
-    /// Holds the steps of an axis to the ideals of its moves; those that make none have none.
-    fn hold(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, what: &str) {
+    /// Compares the steps of an axis with the ideals of its moves.
+    fn compare(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, name: &str) {
         let clock = whole(clock_hz.into());
         let mut due = plan.due_instants(clock_hz);
         let (mut start, mut near) = (whole(0), 0);
@@ -123,28 +123,29 @@ impl Tally {
                 };
                 let (before, after) = (at(-1), at(1));
                 self.ties += u64::from(before == Ordering::Equal);
-                if ideals.len() == 1 && self.most_off > 0.0 {
-                    // The time in f64 is no farther from the exact one than the planners assume.
-                    let off = self.most_off * plan.duration_s() * f64::from(clock_hz) + self.most_rest;
+                if ideals.len() == 1 && self.max_relative_error > 0.0 {
+                    // The error of the time in f64 is within the planners' bound.
+                    let off = self.max_relative_error * plan.duration_s() * f64::from(clock_hz)
+                        + self.max_cycle_error;
                     let off = decimal(off);
                     let at = |cycles| (ideal.compare)(k, &(cycles / clock.clone()));
                     let around = [decimal(instant) - off.clone(), decimal(instant) + off].map(at);
                     let is_around = around[0] != Ordering::Greater && around[1] != Ordering::Less;
-                    assert!(is_around, "step {k} is not at {instant} at {clock_hz} Hz: {around:?} of {what}");
+                    assert!(is_around, "step {k} is not at {instant} at {clock_hz} Hz: {around:?} of {name}");
                 }
                 assert!(
                     before != Ordering::Greater && after == Ordering::Greater,
-                    "step {k} at {instant} is not in {step:?} at {clock_hz} Hz: {before:?} {after:?} of {what}"
+                    "step {k} at {instant} is not in {step:?} at {clock_hz} Hz: {before:?} {after:?} of {name}"
                 );
             }
             start = start + ideal.duration.clone();
         }
         assert!(due.next().is_none(), "more steps than expected");
-        self.hold_due(draw, plan, ideals, clock_hz, what);
+        self.compare_due(draw, plan, ideals, clock_hz, name);
     }
 
-    /// Holds how many steps are due by a cycle (B7) to the ideals, where the cycle is one in which steps are due.
-    fn hold_due(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, what: &str) {
+    /// Compares the number of steps due (B7) with the ideals, at cycles in which steps are due.
+    fn compare_due(&mut self, draw: &mut Draw, plan: &AxisPlan, ideals: &[Ideal], clock_hz: u32, name: &str) {
         let clock = whole(clock_hz.into());
         let mut starts = vec![whole(0)];
         for ideal in ideals {
@@ -174,18 +175,18 @@ impl Tally {
                     Ordering::Equal => right,
                     Ordering::Greater => true,
                 };
-                let now: i64 = together.iter().filter(is_due).map(|(_, right)| way(*right)).sum();
-                assert_eq!(due_by.steps(cycle), due + now, "by cycle {cycle} at {clock_hz} Hz of {what}");
+                let now: i64 = together.iter().filter(is_due).map(|(_, right)| direction(*right)).sum();
+                assert_eq!(due_by.steps(cycle), due + now, "by cycle {cycle} at {clock_hz} Hz of {name}");
                 self.due += 1;
             }
-            due += together.iter().map(|(_, right)| way(*right)).sum::<i64>();
+            due += together.iter().map(|(_, right)| direction(*right)).sum::<i64>();
         }
     }
 
-    fn print(&self, what: &str) {
+    fn print(&self, name: &str) {
         let Self { steps, near, others, ties, due, .. } = self;
         println!(
-            "{what}: {steps} steps, {near} near an edge and {others} others held, {ties} ties, counted by {due} cycles"
+            "{name}: {steps} steps, {near} near an edge and {others} others compared, {ties} ties, steps due compared at {due} cycles"
         );
     }
 }
@@ -194,15 +195,16 @@ fn plan_of(moves: Vec<Move>) -> Option<AxisPlan> {
     plan_axis(&Axis { moves, ..Axis::default() }, "x").ok()
 }
 
-/// Holds motions of one kind, of which some wait before they move a second time.
-fn hold(
+/// Compares motions of one kind; some have a dwell or a second move.
+fn compare(
     seed: u64,
-    what: &str,
-    (roundings, most_rest): (f64, f64),
+    name: &str,
+    (roundings, max_cycle_error): (f64, f64),
     each: impl Fn(&mut Draw) -> (Move, Ideal),
 ) {
     let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(seed));
-    let mut tally = Tally { most_off: roundings * f64::EPSILON / 2.0, most_rest, ..Tally::default() };
+    let mut tally =
+        Tally { max_relative_error: roundings * f64::EPSILON / 2.0, max_cycle_error, ..Tally::default() };
     let mut planned = 0;
     for _ in 0..motions() {
         let clock_hz = draw.of(&CLOCKS);
@@ -222,10 +224,10 @@ fn hold(
         let description = format!("{moves:?}");
         let Some(plan) = plan_of(moves) else { continue };
         planned += 1;
-        tally.hold(&mut draw, &plan, &ideals, clock_hz, &description);
+        tally.compare(&mut draw, &plan, &ideals, clock_hz, &description);
     }
-    assert!(planned > motions() / 4, "only {planned} could be planned");
-    tally.print(what);
+    assert!(planned > motions() / 4, "only {planned} valid motions");
+    tally.print(name);
 }
 
 fn sine(draw: &mut Draw) -> (Move, Ideal) {
@@ -237,11 +239,11 @@ fn sine(draw: &mut Draw) -> (Move, Ideal) {
 }
 
 #[test]
-fn sines_have_every_step_in_its_cycle() {
-    hold(1, "sine", (12.0, 0.0), sine);
+fn every_step_of_sines_is_in_its_cycle() {
+    compare(1, "sine", (12.0, 0.0), sine);
 }
 
-/// A duration, and a ramp that is up to half of it.
+/// A duration, and a ramp of up to half of it.
 fn times_s(draw: &mut Draw) -> (f64, f64) {
     let duration_s = draw.magnitude(1e-3, 86_400.0);
     let ramp_s = match draw.below(5) {
@@ -256,20 +258,20 @@ fn times_s(draw: &mut Draw) -> (f64, f64) {
 fn cosine(draw: &mut Draw) -> (Move, Ideal) {
     let (steps, (duration_s, ramp_s)) = (draw.steps(MAX_STEPS), times_s(draw));
     let given = Cosine { distance: Distance::Steps(steps as f64), duration_s, ramp_s, ..Cosine::default() };
-    // Ramps under the shortest cycle of a clock are none.
+    // Ramps shorter than a cycle of the fastest clock count as none.
     (Move::Cosine(given), ideal::cosine(steps, duration_s, if ramp_s < 1e-9 { 0.0 } else { ramp_s }))
 }
 
 #[test]
-fn cosines_have_every_step_in_its_cycle() {
-    hold(3, "cosine", BY_BLOCKS, cosine);
+fn coevery_step_of_sines_is_in_its_cycle() {
+    compare(3, "cosine", BY_BLOCKS, cosine);
 }
 
-/// Of an odd count the middle step is due after half of the time; in the plateau every step is a quotient.
+/// With an odd count, the middle step is due after half of the time.
 #[test]
-fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
+fn a_cosines_step_between_two_cycles_is_in_the_second() {
     for halves in (0..300).map(|index: u64| 2 * (7919 * index + 5000) + 1) {
-        let seconds = |halves: u64| format!("{halves}e-6").parse().expect("it is a number");
+        let seconds = |halves: u64| format!("{halves}e-6").parse().expect("a number");
         for (count, ramp) in [(1, halves / 3), (3, halves), (1001, 5), (41, 0)] {
             let given = Cosine {
                 distance: Distance::Steps(count as f64),
@@ -277,7 +279,7 @@ fn a_cosines_step_in_the_middle_of_two_cycles_goes_up() {
                 ramp_s: seconds(ramp) / 2.0,
                 ..Cosine::default()
             };
-            let plan = plan_of(vec![Move::Cosine(given)]).expect("it can be planned");
+            let plan = plan_of(vec![Move::Cosine(given)]).expect("a valid axis");
             let found = plan.moves()[0].profile.step_cycle(count / 2 + 1, 1_000_000);
             assert_eq!(found, Some(halves.div_ceil(2)), "{count} steps in {halves} us");
         }
@@ -303,7 +305,7 @@ fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
 fn ramps_of_every_shape_have_every_step_in_its_cycle() {
     let shapes = [RampShape::Bezier, RampShape::Straight, RampShape::Exponential, RampShape::Sigmoid];
     for (seed, shape) in (5..).zip(shapes) {
-        hold(seed, &format!("{shape:?}"), BY_BLOCKS, |draw| ramps(shape, draw));
+        compare(seed, &format!("{shape:?}"), BY_BLOCKS, |draw| ramps(shape, draw));
     }
 }
 
@@ -315,7 +317,7 @@ fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
         1 => top,
         _ => draw.magnitude(1e-3 * top, top),
     };
-    // From ramps of a step to ones that are never at their end.
+    // Ramps from one step to more than the move has.
     let acceleration = draw.magnitude(top * top / 1e6, top * top * 10.0);
     let given = Trapezoid {
         distance: Distance::Steps(steps as f64),
@@ -330,15 +332,15 @@ fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
 
 #[test]
 fn trapezoids_have_every_step_in_its_cycle() {
-    hold(4, "trapezoid", (0.0, 0.0), trapezoid);
+    compare(4, "trapezoid", (0.0, 0.0), trapezoid);
 }
 
 fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
     let (steps, speed) = (draw.steps(MAX_STEPS), draw.magnitude(1.0, 1e6));
-    // Ramps from a step to far more than there are; of jerk alone, and next to none of it.
+    // Ramps from one step to more than the move has, with and without constant acceleration.
     let acceleration = draw.magnitude(speed * speed / 1e5, speed * speed * 10.0);
     let jerk = match draw.below(4) {
-        // The border between two rows of the planner's table.
+        // The limit between two rows of the planner's table.
         0 => acceleration * acceleration / speed,
         _ => draw.magnitude(
             acceleration * acceleration / speed / 100.0,
@@ -356,7 +358,7 @@ fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
 
 #[test]
 fn jerk_limited_moves_have_every_step_in_its_cycle() {
-    hold(9, "jerk-limited", BY_BLOCKS, jerk_limited);
+    compare(9, "jerk-limited", BY_BLOCKS, jerk_limited);
 }
 
 fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
@@ -364,19 +366,19 @@ fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
     let (mut time_s, mut position) = (draw.of(&[0.0, 0.0, 1.5, 40_000.1]), far);
     let mut points = vec![(time_s, position)];
     for _ in 0..=draw.below(6) {
-        let (later_s, way) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MAX_STEPS / 6.0));
+        let (later_s, distance) = (draw.magnitude(1e-3, 3000.0), draw.magnitude(0.1, MAX_STEPS / 6.0));
         time_s += later_s;
         position = match draw.below(6) {
             0 => position,
-            1 => position - way,
-            _ => position + way,
+            1 => position - distance,
+            _ => position + distance,
         };
-        // A few digits, as people give them, or all.
+        // With few digits, as people write them, or with all.
         if draw.below(2) == 0 {
             (time_s, position) =
                 (libm::round(time_s * 1e3).max(1.0) / 1e3, libm::round(position * 10.0) / 10.0);
         }
-        // No point at a half step, which a turn may touch.
+        // No point at a half step, which a reversal may only touch.
         if (decimal(position) - decimal(far)).is_half() {
             position += 0.2;
         }
@@ -389,15 +391,14 @@ fn points(interpolation: Interpolation, draw: &mut Draw) -> (Move, Ideal) {
 
 #[test]
 fn curves_through_points_have_every_step_in_its_cycle() {
-    hold(10, "smooth points", (0.0, 0.0), |draw| points(Interpolation::Smooth, draw));
-    hold(11, "straight points", (0.0, 0.0), |draw| points(Interpolation::Straight, draw));
+    compare(10, "smooth points", (0.0, 0.0), |draw| points(Interpolation::Smooth, draw));
+    compare(11, "straight points", (0.0, 0.0), |draw| points(Interpolation::Straight, draw));
 }
 
-/// Plans a move of its own, and holds its steps to what is made of its plan: the rows or slices are the planner's, their
-/// times are not.
-fn hold_planned(
+/// Compares the steps of moves with ideals that use the plan's rows or slices, but not their times.
+fn compare_planned(
     seed: u64,
-    what: &str,
+    name: &str,
     mut each: impl FnMut(&mut Draw) -> Move,
     ideal: impl Fn(&Move, &Profile) -> Option<Ideal>,
 ) {
@@ -405,16 +406,16 @@ fn hold_planned(
     let mut planned = 0;
     for _ in 0..motions() {
         let (clock_hz, given) = (draw.of(&CLOCKS), each(&mut draw));
-        // Twice, so that the second begins where the first ends.
+        // Two moves, so that the second begins at a fraction of a cycle.
         let Some(plan) = plan_of(vec![given.clone(), given.clone()]) else { continue };
         let ideals: Option<Vec<Ideal>> =
             plan.moves().iter().map(|planned| ideal(&given, &planned.profile)).collect();
         let Some(ideals) = ideals else { continue };
         planned += 1;
-        tally.hold(&mut draw, &plan, &ideals, clock_hz, &format!("{given:?}"));
+        tally.compare(&mut draw, &plan, &ideals, clock_hz, &format!("{given:?}"));
     }
-    assert!(planned > motions() / 4, "only {planned} could be planned");
-    tally.print(what);
+    assert!(planned > motions() / 4, "only {planned} valid motions");
+    tally.print(name);
 }
 
 #[test]
@@ -428,12 +429,12 @@ fn staircases_have_every_step_in_its_cycle() {
             ..Staircase::default()
         })
     };
-    hold_planned(12, "staircase", given, |_, profile| Some(by_rows(profile)));
+    compare_planned(12, "staircase", given, |_, profile| Some(by_rows(profile)));
 }
 
 /// The rows of a staircase's plan, up and down.
 fn by_rows(profile: &Profile) -> Ideal {
-    let Profile::Staircase(curve) = profile else { panic!("it is a staircase") };
+    let Profile::Staircase(curve) = profile else { panic!("not a staircase") };
     let row = |n| (StaircaseTable::steps_in(n), curve.table().rate(n));
     let up: Vec<(u64, u64)> = (1..=curve.ramp_rows()).map(row).collect();
     let plateau = curve.plateau_rate().map(|rate| (curve.plateau_steps(), rate));
@@ -447,7 +448,7 @@ fn sines_by_segments_have_every_step_in_its_cycle() {
         let periods = draw.of(&[1, 2]);
         Move::SineSegments(SineSegments {
             amplitude: Distance::Steps(draw.steps(MAX_STEPS / 24.0) as f64),
-            // Of round numbers many steps stand in the middle of two cycles.
+            // With round numbers many steps are in the middle between two cycles.
             period_s: if draw.below(2) == 0 {
                 draw.of(&[0.5, 1.0, 0.128])
             } else {
@@ -457,15 +458,15 @@ fn sines_by_segments_have_every_step_in_its_cycle() {
             max_deviation: draw.of(&[0.006, 0.0, 0.05, 0.001]),
         })
     };
-    hold_planned(13, "sine by segments", given, |given, profile| {
-        let Move::SineSegments(given) = given else { panic!("it is a sine by segments") };
+    compare_planned(13, "sine by segments", given, |given, profile| {
+        let Move::SineSegments(given) = given else { panic!("not a sine by segments") };
         Some(by_segments(given, profile))
     });
 }
 
-/// The segments of a plan's quarter, of all quarters.
+/// The segments of all quarters, from those of a plan's first quarter.
 fn by_segments(given: &SineSegments, profile: &Profile) -> Ideal {
-    let Profile::SineSegments(curve) = profile else { panic!("it is a sine by segments") };
+    let Profile::SineSegments(curve) = profile else { panic!("not a sine by segments") };
     let quarter: Vec<(i64, i64, u64)> =
         curve.segments().iter().map(|each| (each.from.into(), each.to.into(), each.steps)).collect();
     let mirrored: Vec<(i64, i64, u64)> =
@@ -491,15 +492,15 @@ fn sliced_moves_have_every_step_in_its_cycle() {
             slice_s,
         })
     };
-    hold_planned(14, "sliced", given, |given, profile| {
-        let Move::Cosine(given) = given else { panic!("it is sliced") };
+    compare_planned(14, "sliced", given, |given, profile| {
+        let Move::Cosine(given) = given else { panic!("not sliced") };
         by_slices(given, profile)
     });
 }
 
-/// The slices of a plan, from their counts of steps alone; none where these do not define its duration.
+/// The slices of a plan, from their numbers of steps; `None` if these do not determine the duration.
 fn by_slices(given: &Cosine, profile: &Profile) -> Option<Ideal> {
-    let Profile::Sliced(curve) = profile else { panic!("it is sliced") };
+    let Profile::Sliced(curve) = profile else { panic!("not sliced") };
     // A shortened slice has fewer steps at the plateau's rate.
     let slices: Vec<Slice> = curve.slices().collect();
     let is_complete = |slice: &Slice| ((slice.to_s - slice.from_s) / given.slice_s - 1.0).abs() < 1e-6;
@@ -514,14 +515,13 @@ fn by_slices(given: &Cosine, profile: &Profile) -> Option<Ideal> {
         made += parts;
     }
     let duration = intervals.last().expect("there are slices").1.clone();
-    // What is not reconstructed is left out.
     ((duration.to_f64() / profile.duration_s() - 1.0).abs() < 1e-9)
         .then(|| ideal::intervals(intervals.into_iter(), duration))
 }
 
-/// The same steps as a list of cycles alone, and of a slow acceleration to a high speed, whose digits are few.
+/// Also for a slow acceleration to a high speed, which loses digits.
 #[test]
-fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
+fn step_times_of_a_trapezoid_agree_with_its_plan() {
     for (start, top, acceleration) in [(250.0, 4000.0, 9000.0), (0.1, 1e7, 0.3), (1e6, 1.1e6, 7e4)] {
         let given = Trapezoid {
             distance: Distance::Steps(20_001.0),
@@ -531,11 +531,11 @@ fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
         };
-        let plan = plan_of(vec![Move::Trapezoid(given)]).expect("it can be planned");
+        let plan = plan_of(vec![Move::Trapezoid(given)]).expect("a valid axis");
         let ideals = [ideal::trapezoid(20_001, start, top, acceleration)];
         let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(0));
         for clock_hz in [16_000_000, 1_000_000_000] {
-            Tally::default().hold(&mut draw, &plan, &ideals, clock_hz, "a trapezoid");
+            Tally::default().compare(&mut draw, &plan, &ideals, clock_hz, "a trapezoid");
             let curve = stepscope_motion::curves::Trapezoid::new(20_001, start, top, acceleration);
             assert!(curve.step_times(clock_hz).eq(plan.due_steps(clock_hz).map(|due| due.cycle)));
             let profile = &plan.moves()[0].profile;
@@ -547,23 +547,23 @@ fn the_list_of_a_trapezoids_cycles_is_that_of_its_steps() {
 }
 
 #[test]
-fn a_step_next_to_an_edge_is_on_its_side_of_it() {
+fn a_step_next_to_an_edge_is_on_the_correct_side() {
     let given = Sine { amplitude: Distance::Steps(-745.0), period_s: 76.239_882_183_001_03, periods: 5 };
-    let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+    let plan = plan_of(vec![Move::Sine(given)]).expect("a valid axis");
     let due: Vec<u64> = plan.due_steps(16_000_000).map(|due| due.cycle).collect();
     // 4559393802.49999989 cycles, in f64 4559393802.5.
     assert_eq!(due[11_117], 4_559_393_802);
     assert_eq!(plan.moves()[0].profile.step_cycle(11_118, 16_000_000), Some(due[11_117]));
 }
 
-/// cos = 1/2 after a sixth of a period: of an odd amplitude A = 2*k - 1 that is the position of step k.
+/// cos = 1/2 after a sixth of a period: with an odd amplitude A = 2*k - 1 this is the position of step k.
 #[test]
-fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
+fn a_sines_step_between_two_cycles_is_in_the_second() {
     let mut draw = Draw(Xoshiro256PlusPlus::seed_from_u64(2));
     for _ in 0..500 {
-        // T/6 = 2*m + 1 half cycles, and an odd number of half periods later the same.
+        // T/6 is an odd number of half cycles.
         let halves = 2 * draw.below(50_000_000) + 1;
-        let (clock_hz, period_s) = (1_000_000, format!("{}e-6", 3 * halves).parse().expect("it is a number"));
+        let (clock_hz, period_s) = (1_000_000, format!("{}e-6", 3 * halves).parse().expect("a number"));
         let k = draw.below(400) + 1;
         let amplitude = 2 * k - 1;
         let given = Sine { amplitude: Distance::Steps(amplitude as f64), period_s, periods: 3 };
@@ -577,14 +577,13 @@ fn a_sines_step_in_the_middle_of_two_cycles_goes_up() {
     }
 }
 
-/// Of a sine whose half periods are far shorter than a cycle a step just before an edge has the cycle before it, though
-/// thousands of half periods lie between that edge and the next.
+/// A step just before an edge is in the cycle before it, even if there are thousands of half periods per cycle.
 #[test]
-fn a_step_of_a_sine_of_many_half_periods_a_cycle_is_on_its_side_of_an_edge() {
-    // Step 2 of an amplitude of 1 is due after a third of a period: 2500 us are 1666 half periods of 1.5 us and that.
+fn a_step_is_on_the_correct_side_with_many_half_periods_per_cycle() {
+    // With an amplitude of 1, step 2 is due after a third of a period: 2500 us are 1666 half periods of 1.5 us and 1 us.
     for (period_s, cycle) in [(2.999_999_999_999_999e-6, 2), (3e-6, 3), (3.000_000_000_000_001e-6, 3)] {
         let given = Sine { amplitude: Distance::Steps(1.0), period_s, periods: 1000 };
-        let plan = plan_of(vec![Move::Sine(given)]).expect("it can be planned");
+        let plan = plan_of(vec![Move::Sine(given)]).expect("a valid axis");
         assert_eq!(plan.moves()[0].profile.step_cycle(1666 * 2 + 2, 1000), Some(cycle), "{period_s}");
     }
 }
@@ -593,31 +592,34 @@ fn a_step_of_a_sine_of_many_half_periods_a_cycle_is_on_its_side_of_an_edge() {
 fn cycles_through(points: &[(f64, f64)], interpolation: Interpolation, clock_hz: u32) -> Vec<u64> {
     let points = points.iter().map(|&(time_s, position)| Point { time_s, position }).collect();
     let curve = Move::Points(Points { unit: PointUnit::Steps, interpolation, points });
-    let plan = plan_of(vec![curve]).expect("it holds");
+    let plan = plan_of(vec![curve]).expect("a valid axis");
     plan.due_steps(clock_hz).map(|due| due.cycle).collect()
 }
 
 #[test]
-fn a_slow_creep_after_a_long_way_has_the_cycle_that_f64_cannot_tell() {
+fn a_slow_step_after_a_long_travel_has_its_exact_cycle() {
     const GHZ: u32 = 1_000_000_000;
-    for (way, last) in [
+    for (travel, last) in [
         (20_000.3, 17_360_000_000_000),
         (40_000.3, 17_360_000_000_000),
         (99_999.7, 69_140_000_000_000),
         (300_000.3, 17_360_000_000_000),
     ] {
-        let found =
-            cycles_through(&[(0.0, 0.0), (100.0, way), (86_400.0, way + 1.0)], Interpolation::Straight, GHZ);
-        assert_eq!(found.last(), Some(&last), "after {way} steps");
+        let found = cycles_through(
+            &[(0.0, 0.0), (100.0, travel), (86_400.0, travel + 1.0)],
+            Interpolation::Straight,
+            GHZ,
+        );
+        assert_eq!(found.last(), Some(&last), "after {travel} steps");
     }
-    // A short piece between long ones: its slope is that of two late times.
+    // A short piece between long ones, whose slope is that of two late times.
     let short = [(0.0, 0.0), (43_200.0, 1000.0), (43_200.001, 1000.00002), (86_400.0, 2000.0)];
     let found = cycles_through(&short, Interpolation::Smooth, GHZ);
     assert_eq!((found.len(), found[0]), (2000, 663_666_033_433));
 }
 
 #[test]
-fn a_tie_goes_up_far_from_the_first_point_also_where_the_curve_falls() {
+fn a_tie_is_rounded_up_far_from_the_first_point() {
     for (points, tie) in [
         ([(0.0, 0.0), (47.0, 50_809.8), (21_914.202_325, 50_808.8)], 6_607_160_698),
         ([(0.0, 0.0), (43.0, 44_285.6), (61_527.296_755, 44_284.6)], 6_191_429_676),
@@ -628,7 +630,7 @@ fn a_tie_goes_up_far_from_the_first_point_also_where_the_curve_falls() {
 }
 
 #[test]
-fn a_step_less_than_a_half_is_none_however_little_less() {
+fn a_position_slightly_below_a_half_has_no_step() {
     let found = cycles_through(&[(0.0, 1e-17), (1.0, 10.5)], Interpolation::Straight, 16_000_000);
     assert_eq!(found.len(), 10);
 }
@@ -643,7 +645,7 @@ fn a_move_after_points_begins_when_their_decimals_end() {
         Move::Points(Points { unit: PointUnit::Steps, interpolation: Interpolation::Straight, points });
     let rate =
         Move::Constant(Constant { distance: Distance::Steps(3000.0), speed: Speed::StepsPerSecond(977.3) });
-    let plan = plan_of(vec![curve, rate]).expect("it holds");
+    let plan = plan_of(vec![curve, rate]).expect("a valid axis");
     let found: Vec<u64> = plan.due_steps(1_000_000_000).map(|due| due.cycle).collect();
     assert_eq!((found.len(), found[16]), (3001, 86_399_992_403_233));
 }

@@ -1,5 +1,5 @@
-//! Steps that whole numbers define have the cycle that these give (DESIGN B1): of a timer's table, of one rate, and of moves
-//! in a row; held against whole numbers of 128 bits.
+//! Steps whose cycles follow from integers (DESIGN B1): of a timer's table, a constant rate and consecutive moves; compared with
+//! 128-bit integers.
 
 use rand_xoshiro::{
     Xoshiro256PlusPlus,
@@ -19,7 +19,7 @@ fn plan(moves: Vec<Move>) -> AxisPlan {
 }
 
 #[test]
-fn a_late_step_of_a_table_has_the_cycle_of_its_whole_numbers() {
+fn a_late_step_of_a_table_is_in_its_exact_cycle() {
     let table = plan(vec![Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(20_000.0),
         start_speed: Speed::StepsPerSecond(1.0),
@@ -35,7 +35,7 @@ fn a_late_step_of_a_table_has_the_cycle_of_its_whole_numbers() {
     assert_eq!(profile.step_cycle(7427, 1_000_000_000), step(7427));
 }
 
-/// Straight pieces between decimals: t_0 + (k - 1/2 - y_0)*(t_1 - t_0)/(y_1 - y_0) in whole numbers.
+/// Straight pieces between decimals: t_0 + (k - 1/2 - y_0)*(t_1 - t_0)/(y_1 - y_0) in integers.
 #[test]
 fn points_on_straight_pieces_are_quotients_of_decimals() {
     let mut noise = Xoshiro256PlusPlus::seed_from_u64(8);
@@ -43,7 +43,7 @@ fn points_on_straight_pieces_are_quotients_of_decimals() {
     let mut ties = 0;
     for _ in 0..2000 {
         let clock = [16_000_000, 1_000_000_000, 1000][draw(0, 2) as usize];
-        // In ms and tenths of steps; the axis goes on to the right.
+        // In ms and tenths of steps, always to the right.
         let (mut t, mut y) = (0, 0);
         let mut list = vec![(t, y)];
         for _ in 0..3 {
@@ -75,13 +75,13 @@ fn rounded(a: i128, b: i128) -> i128 {
 }
 
 #[test]
-fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
+fn constant_rates_after_dwells_are_quotients_of_decimals() {
     let mut noise = Xoshiro256PlusPlus::seed_from_u64(4);
     let mut draw = |from: i128, to: i128| from + i128::from(noise.next_u64()).rem_euclid(to - from + 1);
     let mut ties = 0;
     for _ in 0..400 {
         let clock = [16_000_000, 1_000_000_000, 72_000_000, 1000][draw(0, 3) as usize];
-        // Half of them of twos and fives, whose steps often stand at a half.
+        // Half of the rates are products of 2 and 5, whose steps are often at half cycles.
         let digits = match draw(0, 1) {
             0 => draw(1, 99_999),
             _ => (1 << draw(0, 12)) * 5_i128.pow(draw(0, 3) as u32),
@@ -90,7 +90,6 @@ fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
         let wait_ms = [0, 1, 125, 333, 86_400_000][draw(0, 4) as usize];
         let speed = digits as f64 / ten as f64;
         let count = draw(1, 2000);
-        // At most ten days of either.
         if count * ten > digits * 86_400 {
             continue;
         }
@@ -112,14 +111,14 @@ fn constant_rates_and_what_waits_before_them_are_quotients_of_decimals() {
     assert!(ties > 1000, "only {ties} steps stood at a half");
 }
 
-/// Of a screw of 3 mm a turn and such a shaft a step is 0.03 mm: 10 mm/s are 1000/3 steps/s, which no f64 is.
+/// With a screw of 3 mm per turn and 100 steps per turn, a step is 0.03 mm: 10 mm/s are 1000/3 steps/s, which is no f64.
 #[test]
 fn a_rate_in_millimeters_is_the_quotient_of_its_decimals() {
     let screw = || Screw { full_step_deg: 3.6, microsteps: 1, lead_mm: 3.0 };
     for (digits, clock) in [(10, 1000), (7, 1000), (1, 999_983), (70, 16_000_000)] {
         let given =
             Constant { distance: Distance::Steps(5000.0), speed: Speed::MillimetersPerSecond(digits as f64) };
-        // Twice, so that the second begins with a part of a cycle.
+        // Two moves, so that the second begins at a fraction of a cycle.
         let moves = vec![Move::Constant(given.clone()), Move::Constant(given)];
         let axis = Axis { mechanics: Mechanics::Screw(screw()), moves, ..Axis::default() };
         let plan = plan_axis(&axis, "x").unwrap_or_else(|problems| panic!("{problems:?}"));

@@ -1,9 +1,9 @@
-//! The shapes, held against sixty digits and against each other.
+//! Compares the shapes with values of 60 digits and with each other.
 
 use super::*;
 use alloc::vec::Vec;
 
-/// Ramp, x, g, G, g', from 60 digits.
+/// Ramp, x, g, G, g', computed with 60 digits.
 type Row = (fn() -> Ramp, f64, f64, f64, f64);
 const ROWS: &[Row] = &[
     (
@@ -137,7 +137,7 @@ fn ramps() -> Vec<Ramp> {
 }
 
 #[test]
-fn each_goes_from_exactly_nothing_to_all_and_is_its_slopes_integral() {
+fn each_shape_goes_from_0_to_1_and_integrates_its_slope() {
     for ramp in ramps() {
         assert_eq!((ramp.speed(0.0), ramp.travel(0.0)), (0.0, 0.0), "{ramp:?}");
         assert!((ramp.speed(1.0) - 1.0).abs() < 1e-15, "{ramp:?}");
@@ -164,7 +164,7 @@ fn each_goes_from_exactly_nothing_to_all_and_is_its_slopes_integral() {
 }
 
 #[test]
-fn the_numbers_that_a_calculator_gives_come_out() {
+fn values_agree_with_a_calculator() {
     for (ramp, x, speed, travel, slope) in ROWS {
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 4e-15;
         assert!(near(ramp().speed(*x), *speed), "{:?} at {x}: {}", ramp(), ramp().speed(*x));
@@ -175,7 +175,7 @@ fn the_numbers_that_a_calculator_gives_come_out() {
 }
 
 #[test]
-fn a_travels_position_is_found_to_the_last_digits() {
+fn at_travel_is_the_inverse_of_travel() {
     for ramp in ramps() {
         let area = ramp.area();
         let powers = (-40..0).map(|power| area * libm::exp2(f64::from(power)));
@@ -190,12 +190,12 @@ fn a_travels_position_is_found_to_the_last_digits() {
 }
 
 #[test]
-fn a_rate_limits_the_ramp() {
+fn longest_ramp_follows_from_the_rate() {
     let longest = longest_ramp_s(3200, 0.4, 19_200.0, 0.5).unwrap();
     assert!((longest - 0.4 + 1.0 / 6.0).abs() < 1e-15, "{longest}");
     assert_eq!(longest_ramp_s(3200, 0.4, 8000.0, 0.5), Some(0.0));
     assert_eq!(longest_ramp_s(3200, 0.4, 7999.0, 0.5), None);
-    // With more area in the ramp it may be longer; so that the area is that of the rate, not half of it.
+    // Ramps with a larger area can be longer.
     let area = Ramp::exponential(4.0).area();
     let ramp_s = longest_ramp_s(3200, 0.4, 10_000.0, area).unwrap();
     assert!((3200.0 / (0.4 - 2.0 * ramp_s * (1.0 - area)) - 10_000.0).abs() < 1e-8, "{ramp_s}");

@@ -1,4 +1,4 @@
-//! The move with ramps of a shape, held against differences, whole numbers and sixty digits.
+//! Compares moves with shaped ramps with differences, integers and values of 60 digits.
 
 use crate::{
     Curve,
@@ -11,7 +11,7 @@ fn shapes() -> [Ramp; 7] {
     [Ramp::Straight, Ramp::Bezier, a, b, c, Ramp::exponential(0.1), Ramp::exponential(4.0)]
 }
 
-/// Moves of every sort: (steps, duration, ramp).
+/// Various moves: (steps, duration, ramp).
 const MOVES: &[(i64, f64, f64)] = &[
     (3200, 0.4, 0.2),
     (-6400, 0.4, 0.1),
@@ -25,7 +25,7 @@ const MOVES: &[(i64, f64, f64)] = &[
 ];
 
 #[test]
-fn top_speeds_are_those_of_the_area() {
+fn top_speeds_follow_from_the_area() {
     for ramp in [Ramp::Straight, Ramp::Bezier, Ramp::sigmoid(6.0)] {
         assert_eq!(Ramps::new(6400, 0.4, 0.2, ramp).top_speed(), Cosine::new(6400, 0.4, 0.2).top_speed());
     }
@@ -37,7 +37,7 @@ fn top_speeds_are_those_of_the_area() {
 }
 
 #[test]
-fn the_end_is_exact_the_halves_are_mirrored_and_nothing_turns_round() {
+fn ends_exactly_with_mirrored_halves_and_no_reversal() {
     for ramp in shapes() {
         for &(steps, duration_s, ramp_s) in MOVES {
             let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
@@ -60,14 +60,14 @@ fn the_end_is_exact_the_halves_are_mirrored_and_nothing_turns_round() {
 }
 
 #[test]
-fn speed_and_acceleration_are_the_differences_of_position_and_speed() {
+fn speed_and_acceleration_are_derivatives() {
     for ramp in shapes() {
         for (steps, duration_s, ramp_s) in [(3200, 0.4, 0.2), (-6400, 0.4, 0.1), (1, 2.0, 0.5)] {
             let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
             let peaks = curve.peaks();
             let dt = duration_s * 1e-6;
             for i in 0..1000 {
-                // Not where a joint is.
+                // Except at breakpoints.
                 let t = duration_s * (f64::from(i) + 0.37) / 1000.0;
                 let slope = |of: &dyn Fn(f64) -> f64| (of(t + dt) - of(t - dt)) / (2.0 * dt);
                 let (speed, acceleration) = (slope(&|t| curve.position(t)), slope(&|t| curve.speed(t)));
@@ -81,13 +81,13 @@ fn speed_and_acceleration_are_the_differences_of_position_and_speed() {
 }
 
 #[test]
-fn a_steps_cycle_is_where_the_position_is_rounded_to_the_next() {
+fn a_step_is_in_the_cycle_where_the_rounded_position_changes() {
     let clock = 16e6;
     for ramp in shapes() {
         for &(steps, duration_s, ramp_s) in MOVES {
             let curve = Ramps::new(steps, duration_s, ramp_s, ramp);
             let count = steps.unsigned_abs();
-            // All steps of a short move; of a long one its first, its last and some between.
+            // All steps of a short move; the first, the last and some others of a long one.
             let some = (0..1000).map(|i| 1 + i * (count - 1) / 999);
             let all: Vec<u64> =
                 (1..=count.min(7000)).chain(some).chain(count.saturating_sub(99).max(1)..=count).collect();
@@ -95,7 +95,7 @@ fn a_steps_cycle_is_where_the_position_is_rounded_to_the_next() {
                 let position = k as f64 - 0.5;
                 let cycle = libm::floor(curve.time_s(position) * clock + 0.5);
                 let at = |cycle: f64| libm::fabs(curve.position(cycle / clock));
-                // The position itself has its last digit.
+                // The rounding error of the position.
                 let digit = count as f64 * 4.0 * f64::EPSILON;
                 let (before, after) = (at(cycle - 1.0), at(cycle + 1.0));
                 assert!(
@@ -107,8 +107,8 @@ fn a_steps_cycle_is_where_the_position_is_rounded_to_the_next() {
     }
 }
 
-/// Ramp, steps, time, ramp's time, and some steps with the nanoseconds in which they are due, by bisection with
-/// 60 digits of formulas that are not those of the ramp's own.
+/// Ramp, steps, duration, ramp time, and some steps with the nanoseconds in which they are due, by bisection of independent
+/// formulas with 60 digits.
 type Due = (fn() -> Ramp, i64, f64, f64, &'static [(u64, u64)]);
 const DUE: &[Due] = &[
     (
@@ -422,7 +422,7 @@ const DUE: &[Due] = &[
 ];
 
 #[test]
-fn steps_are_within_a_cycle_of_a_gigahertz_of_where_sixty_digits_put_them() {
+fn steps_are_within_a_nanosecond_of_values_of_60_digits() {
     for (ramp, steps, duration_s, ramp_s, due) in DUE {
         let curve = Ramps::new(*steps, *duration_s, *ramp_s, ramp());
         for &(k, nanosecond) in *due {
@@ -435,7 +435,7 @@ fn steps_are_within_a_cycle_of_a_gigahertz_of_where_sixty_digits_put_them() {
 }
 
 #[test]
-fn a_straight_ramps_steps_are_where_whole_numbers_put_them() {
+fn steps_of_a_straight_ramp_agree_with_integers() {
     // 6400 steps in 0.4 s, ramps 0.2 s: s = f_max*t^2/(2*t_s) = 80000*t^2, so at c cycles of 16 MHz
     // s = c^2/3.2e9, and step k is due where c^2 = 1.6e9*(2k - 1).
     let curve = Ramps::new(6400, 0.4, 0.2, Ramp::Straight);
@@ -448,7 +448,7 @@ fn a_straight_ramps_steps_are_where_whole_numbers_put_them() {
 }
 
 #[test]
-fn peaks_of_one_turn_are_those_of_the_formulas() {
+fn peaks_follow_the_formulas() {
     // f_max = 16000, t_s = 0.2: slopes of 80000, bends of 400000.
     let peaks = |ramp| Ramps::new(3200, 0.4, 0.2, ramp).peaks();
     let straight = peaks(Ramp::Straight);
